@@ -1,0 +1,98 @@
+//! Everything that differs between two and three dimensions, and nothing else.
+//!
+//! Lattice arithmetic is the same program in both: a [`Point`] always has three
+//! coordinates, and the third one stays 0 in 2D. What a dimension adds is how many axes
+//! count ([`Dim::N`]) and what follows from that.
+
+use std::fmt::Debug;
+
+/// A lattice point, a voxel, or a cell, in units of the lattice. In 2D the third coordinate is 0.
+pub type Point = [i32; 3];
+
+/// The number of space dimensions, as a type.
+pub trait Dim: Copy + Clone + Debug + Default + PartialEq + Eq + Send + Sync + 'static {
+    /// Number of axes: 2 or 3.
+    const N: usize;
+    /// Corners of a cell, children of a cell, and voxels around a lattice point: 2^N.
+    const CORNERS: usize = 1 << Self::N;
+    /// Slots of the 3 × 3 (× 3) lattice of an element: 3^N.
+    const SLOTS: usize = 3usize.pow(Self::N as u32);
+    /// The mask with a bit for every corner.
+    const ALL_CORNERS: u8 = ((1u16 << Self::CORNERS) - 1) as u8;
+    /// Stiffness of the hourglass modes relative to Young's modulus. Derived so that a beam one
+    /// element thick bends exactly: 1/3 in the plane, 1/6 in space.
+    const HOURGLASS: f64;
+}
+
+/// The plane.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub struct Dim2;
+
+/// Space.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub struct Dim3;
+
+impl Dim for Dim2 {
+    const N: usize = 2;
+    const HOURGLASS: f64 = 1.0 / 3.0;
+}
+
+impl Dim for Dim3 {
+    const N: usize = 3;
+    const HOURGLASS: f64 = 1.0 / 6.0;
+}
+
+/// The corner `index` of the unit cell: bit k of the index is the coordinate on axis k.
+///
+/// ```text
+///   2 ─── 3
+///   │     │      the same numbers name the children of a cell, and the voxels
+///   0 ─── 1      around a lattice point (bit set = on the far side of the point)
+/// ```
+#[inline]
+pub fn corner(index: usize) -> Point {
+    [
+        (index & 1) as i32,
+        (index >> 1 & 1) as i32,
+        (index >> 2 & 1) as i32,
+    ]
+}
+
+/// Coordinate-wise sum.
+#[inline]
+pub fn add(a: Point, b: Point) -> Point {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+/// Coordinate-wise multiple.
+#[inline]
+pub fn scale(a: Point, k: i32) -> Point {
+    [a[0] * k, a[1] * k, a[2] * k]
+}
+
+/// The voxel on side `octant` of the lattice point `at`.
+#[inline]
+pub fn voxel_around<D: Dim>(at: Point, octant: usize) -> Point {
+    let mut voxel = at;
+    for axis in 0..D::N {
+        voxel[axis] += (octant >> axis & 1) as i32 - 1;
+    }
+    voxel
+}
+
+/// All points of the box `low..=high`, the first axis running fastest.
+pub fn points_in(low: Point, high: Point) -> impl Iterator<Item = Point> {
+    (low[2]..=high[2]).flat_map(move |z| {
+        (low[1]..=high[1]).flat_map(move |y| (low[0]..=high[0]).map(move |x| [x, y, z]))
+    })
+}
+
+/// The neighbourhood of `at` out to `reach` lattice steps on every axis of `D`.
+pub fn neighbourhood<D: Dim>(at: Point, reach: i32) -> impl Iterator<Item = Point> {
+    let (mut low, mut high) = (at, at);
+    for axis in 0..D::N {
+        low[axis] -= reach;
+        high[axis] += reach;
+    }
+    points_in(low, high)
+}

@@ -1,0 +1,156 @@
+//! What must hold for every shape and every history of cuts.
+#![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
+
+use fuwafuwa::dim::{neighbourhood, points_in};
+use fuwafuwa::law::{Elasticity, Law, forces};
+use fuwafuwa::pyramid::Pyramid;
+use fuwafuwa::sharing::Sharing;
+use fuwafuwa::{Dim, Dim2, Dim3, Mesh, Point, VoxelGrid};
+
+/// A small repeatable stream of numbers (xorshift64*).
+struct Random(u64);
+
+impl Random {
+    fn new(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1)
+    }
+
+    fn below(&mut self, bound: i32) -> i32 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 33) as i32 % bound
+    }
+}
+
+/// A union of balls and boxes less one ball, of one or two materials.
+fn random_shape<D: Dim>(random: &mut Random, n: i32) -> Option<VoxelGrid<D>> {
+    let parts: Vec<([i32; 3], i32, bool)> = (0..4)
+        .map(|_| {
+            let at = [random.below(n), random.below(n), random.below(n)];
+            (at, n / 6 + random.below(n / 3), random.below(2) == 0)
+        })
+        .collect();
+    let inside = |part: &([i32; 3], i32, bool), at: Point| {
+        let away = (0..D::N).map(|axis| (at[axis] - part.0[axis]).abs());
+        if part.2 {
+            away.max().is_some_and(|distance| distance < part.1)
+        } else {
+            away.map(|k| k * k).sum::<i32>() < part.1 * part.1
+        }
+    };
+    let two_materials = random.below(3) == 0;
+    let extent = n as usize;
+    let size = [extent, extent, if D::N == 3 { extent } else { 1 }];
+    VoxelGrid::from_fn(size, 1.0, |at| {
+        let solid = parts[..3].iter().any(|part| inside(part, at)) && !inside(&parts[3], at);
+        u8::from(solid) * (1 + u8::from(two_materials && at[0] > n / 2))
+    })
+    .ok()
+}
+
+/// Releases a few single points or whole rectangles, as a crack or a knife would.
+fn random_cut<D: Dim>(sharing: &mut Sharing<D>, random: &mut Random, n: i32) -> Vec<Point> {
+    let axis = random.below(D::N as i32) as usize;
+    let side = (0..D::CORNERS).fold(0u8, |mask, octant| {
+        mask | ((octant >> axis & 1) as u8) << octant
+    });
+    let (mut low, mut high) = ([0; 3], [0; 3]);
+    let reach = if random.below(2) == 0 { 1 } else { n };
+    for k in 0..D::N {
+        low[k] = random.below(n + 1);
+        high[k] = (low[k] + random.below(reach)).min(n);
+    }
+    high[axis] = low[axis];
+    let mut touched = Vec::new();
+    for at in points_in(low, high) {
+        if sharing.release(at, side) {
+            touched.push(at);
+        }
+    }
+    let around = touched
+        .iter()
+        .flat_map(|&at| neighbourhood::<D>(at, 1))
+        .collect();
+    touched.extend(sharing.normalise(around));
+    touched
+}
+
+fn remodelled_pyramid_equals_one_from_scratch<D: Dim>(sequences: u64, n: i32) {
+    for seed in 0..sequences {
+        let mut random = Random::new(seed + 1);
+        let Some(grid) = random_shape::<D>(&mut random, n) else {
+            continue;
+        };
+        let mut sharing = Sharing::new(&grid);
+        let mut pyramid = Pyramid::new(&grid, &sharing);
+        for _ in 0..1 + random.below(5) {
+            let touched = random_cut(&mut sharing, &mut random, n);
+            let around = touched.iter().flat_map(|&at| neighbourhood::<D>(at, 1));
+            pyramid.refine(&grid, &sharing, around);
+        }
+        assert_eq!(pyramid, Pyramid::new(&grid, &sharing), "seed {seed}");
+        let mesh = Mesh::grade(&grid, &sharing, &pyramid).unwrap();
+        mesh.validate(&grid, &sharing)
+            .unwrap_or_else(|defect| panic!("seed {seed}: {defect}"));
+        assert_uniform_strain_leaves_inner_nodes_at_rest(&mesh, &sharing, seed);
+    }
+}
+
+/// The patch test: residual of the default law on inner nodes, relative to stress × voxel face.
+fn assert_uniform_strain_leaves_inner_nodes_at_rest<D: Dim>(
+    mesh: &Mesh<D>,
+    sharing: &Sharing<D>,
+    seed: u64,
+) {
+    let elasticity = Elasticity::new(1000.0, 0.3).unwrap();
+    let strain = [[1.12, 0.07, 0.0], [-0.21, 0.91, 0.05], [0.0, 0.11, 1.04]];
+    let deformed = |at: Point| {
+        let mut x = [0.0; 3];
+        for i in 0..D::N {
+            x[i] = (0..D::N).map(|j| strain[i][j] * f64::from(at[j])).sum();
+        }
+        x
+    };
+    let mut sums = vec![[0.0; 3]; mesh.nodes.len()];
+    for element in &mesh.elements {
+        let positions: Vec<_> = element
+            .nodes
+            .iter()
+            .map(|&node| deformed(mesh.nodes[node as usize].at))
+            .collect();
+        let size = f64::from(element.cell.width());
+        let all = forces(
+            Law::PatchExact,
+            elasticity,
+            mesh.stencil(element),
+            size,
+            &positions,
+        );
+        for (&node, force) in element.nodes.iter().zip(all) {
+            for axis in 0..3 {
+                sums[node as usize][axis] += force[axis];
+            }
+        }
+    }
+    let stress = 0.2 * elasticity.young;
+    for (node, sum) in mesh.nodes.iter().zip(&sums) {
+        let inner = node.group == D::ALL_CORNERS && !sharing.is_front(node.at);
+        let residual = sum.iter().fold(0.0f64, |most, k| most.max(k.abs())) / stress;
+        assert!(
+            !inner || residual < 1e-9,
+            "seed {seed}: {residual} at {:?}",
+            node.at
+        );
+    }
+}
+
+#[test]
+fn remodelling_equals_grading_from_scratch_2d() {
+    remodelled_pyramid_equals_one_from_scratch::<Dim2>(600, 24);
+}
+
+#[test]
+fn remodelling_equals_grading_from_scratch_3d() {
+    remodelled_pyramid_equals_one_from_scratch::<Dim3>(60, 13);
+}

@@ -1,0 +1,116 @@
+//! Figures and formulas of the paper, measured.
+#![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
+
+use fuwafuwa::law::{Elasticity, Law, forces};
+use fuwafuwa::pyramid::Pyramid;
+use fuwafuwa::sharing::Sharing;
+use fuwafuwa::stencil::{Stencil, cell_corners};
+use fuwafuwa::{Dim, Dim2, Dim3, Mesh, VoxelGrid};
+
+fn graded<D: Dim>(grid: &VoxelGrid<D>) -> Mesh<D> {
+    let sharing = Sharing::new(grid);
+    let pyramid = Pyramid::new(grid, &sharing);
+    let mesh = Mesh::grade(grid, &sharing, &pyramid).unwrap();
+    mesh.validate(grid, &sharing).unwrap();
+    mesh
+}
+
+/// §3.1: elements grow from the surface to the centre, so their number grows with the surface.
+#[test]
+fn element_count_grows_with_the_surface() {
+    let count = |n| {
+        graded(&VoxelGrid::<Dim3>::ball(n, 1.0).unwrap())
+            .elements
+            .len()
+    };
+    // The counts of an independent prototype.
+    assert_eq!((count(32), count(48)), (5_048, 12_368));
+    let disc = |n| {
+        graded(&VoxelGrid::<Dim2>::ball(n, 1.0).unwrap())
+            .elements
+            .len() as f64
+    };
+    let growth = disc(128) / disc(64);
+    assert!(
+        (1.9..2.2).contains(&growth),
+        "doubling n doubles a ring: {growth}"
+    );
+}
+
+/// Fig. 1: a small disc, each voxel named by the level that owns it.
+#[test]
+fn a_disc_is_fine_at_the_rim_and_coarse_inside() {
+    let grid = VoxelGrid::<Dim2>::ball(12, 1.0).unwrap();
+    let mesh = graded(&grid);
+    let mut rows = vec![vec!['.'; 12]; 12];
+    for element in &mesh.elements {
+        for at in mesh.voxels(element) {
+            rows[at[1] as usize][at[0] as usize] = (b'0' + element.cell.level) as char;
+        }
+    }
+    let picture: Vec<String> = rows.iter().map(|row| row.iter().collect()).collect();
+    assert_eq!(
+        picture,
+        [
+            "............",
+            "...000000...",
+            "..00111100..",
+            ".0011111100.",
+            ".0112222110.",
+            ".0112222110.",
+            ".0112222110.",
+            ".0112222110.",
+            ".0011111100.",
+            "..00111100..",
+            "...000000...",
+            "............",
+        ]
+    );
+}
+
+/// §3.1: for a regular polyhedron the paper's force equals that of a linear element of the given
+/// Young's modulus and no lateral contraction: a stretched cube pulls with Y × strain × area.
+#[test]
+fn the_papers_law_has_youngs_modulus_on_a_cube() {
+    fn check<D: Dim>() {
+        let stencil = Stencil::<D>::new(D::ALL_CORNERS, cell_corners::<D>()).unwrap();
+        let elasticity = Elasticity::new(2000.0, 0.0).unwrap();
+        let (size, strain) = (0.5, 0.01);
+        let positions: Vec<_> = stencil
+            .offsets
+            .iter()
+            .map(|r| [r[0] * 0.25 * (1.0 + strain), r[1] * 0.25, r[2] * 0.25])
+            .collect();
+        let ideal = 2000.0 * strain * (1..D::N).fold(1.0, |area, _| area * size);
+        for law in [Law::Endo2004, Law::PatchExact] {
+            let all = forces(law, elasticity, &stencil, size, &positions);
+            let pull: f64 = all
+                .iter()
+                .zip(&stencil.offsets)
+                .filter(|(_, r)| r[0] > 0.0)
+                .map(|(force, _)| -force[0])
+                .sum();
+            assert!(
+                (pull / ideal - 1.0).abs() < 1e-9,
+                "{law:?}: {pull} of {ideal}"
+            );
+        }
+    }
+    check::<Dim2>();
+    check::<Dim3>();
+}
+
+/// §3.1: vertices that swap places come back, because the force knows the rotation.
+#[test]
+fn swapped_nodes_are_pulled_back() {
+    let stencil = Stencil::<Dim2>::new(15, cell_corners::<Dim2>()).unwrap();
+    let elasticity = Elasticity::new(1000.0, 0.0).unwrap();
+    let mut positions = stencil.offsets.clone();
+    positions.swap(0, 1);
+    let all = forces(Law::Endo2004, elasticity, &stencil, 2.0, &positions);
+    let home = |k: usize| stencil.offsets[k][0] - positions[k][0];
+    assert!(
+        all[0][0] * home(0) > 0.0 && all[1][0] * home(1) > 0.0,
+        "{all:?}"
+    );
+}
