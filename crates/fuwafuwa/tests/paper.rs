@@ -18,18 +18,10 @@ fn graded<D: Dim>(grid: &VoxelGrid<D>) -> Mesh<D> {
 /// §3.1: elements grow from the surface to the centre, so their number grows with the surface.
 #[test]
 fn element_count_grows_with_the_surface() {
-    let count = |n| {
-        graded(&VoxelGrid::<Dim3>::ball(n, 1.0).unwrap())
-            .elements
-            .len()
-    };
+    let count = |n| graded(&VoxelGrid::<Dim3>::ball(n, 1.0).unwrap()).element_count();
     // The counts of an independent prototype.
     assert_eq!((count(32), count(48)), (5_048, 12_368));
-    let disc = |n| {
-        graded(&VoxelGrid::<Dim2>::ball(n, 1.0).unwrap())
-            .elements
-            .len() as f64
-    };
+    let disc = |n| graded(&VoxelGrid::<Dim2>::ball(n, 1.0).unwrap()).element_count() as f64;
     let growth = disc(128) / disc(64);
     assert!(
         (1.9..2.2).contains(&growth),
@@ -43,7 +35,7 @@ fn a_disc_is_fine_at_the_rim_and_coarse_inside() {
     let grid = VoxelGrid::<Dim2>::ball(12, 1.0).unwrap();
     let mesh = graded(&grid);
     let mut rows = vec![vec!['.'; 12]; 12];
-    for element in &mesh.elements {
+    for (_, element) in mesh.elements() {
         for at in mesh.voxels(element) {
             rows[at[1] as usize][at[0] as usize] = (b'0' + element.cell.level) as char;
         }
