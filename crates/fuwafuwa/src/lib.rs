@@ -2,21 +2,28 @@
 //!
 //! The way through the library, each module using only those above it:
 //! [`grid`] which voxels are solid → [`sharing`] what is connected → [`pyramid`] which cells exist
-//! → [`stencil`] one class of element → [`mesh`] elements and nodes → [`law`] forces on them.
+//! → [`stencil`] one class of element → [`mesh`] elements and nodes → [`law`] the forces of one element
+//! → [`solve`] of all of them → [`body`] what moves and tears.
 //! Two and three dimensions are one program: [`dim`] holds all that differs.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
+// Units and sources stand in brackets: [m], [Endo 2004, §3.1].
+#![allow(rustdoc::broken_intra_doc_links)]
 // An axis indexes several vectors at once; zipping them would hide the formula.
 #![allow(clippy::needless_range_loop)]
 
+pub mod body;
 pub mod dim;
 pub mod grid;
 pub mod law;
 pub mod mesh;
+pub mod momentum;
 pub mod pyramid;
 pub mod sharing;
+pub mod solve;
 pub mod stencil;
 
+pub use body::{Body, Material};
 pub use dim::{Dim, Dim2, Dim3, Point};
 pub use grid::{BuildError, VoxelGrid};
 pub use mesh::Mesh;

@@ -25,7 +25,7 @@ pub struct Element {
     pub cell: Cell,
     /// The children of the cell that it fills; every corner set at level 0.
     pub children: u8,
-    /// Its class: an index into [`Mesh::stencils`].
+    /// Its class: see [`Mesh::stencil`].
     pub stencil: u32,
     /// Its nodes, in the order of the stencil's slots.
     pub nodes: Vec<u32>,
@@ -227,6 +227,35 @@ impl<D: Dim> Mesh<D> {
     /// When the id was never used.
     pub fn node(&self, id: u32) -> Node {
         self.nodes[id as usize]
+    }
+
+    /// The element with an id, if it is alive.
+    pub fn element(&self, id: u32) -> Option<&Element> {
+        self.elements.get(id as usize)?.as_ref()
+    }
+
+    /// The elements that carry a node, each with the node's place among its own, in the order of
+    /// the octants around the node: an order that no numbering can change.
+    pub fn carriers_of(&self, id: u32) -> impl Iterator<Item = (&Element, usize)> {
+        self.carrier_ids(id).into_iter().map(move |owner| {
+            let element = self.alive(owner);
+            let place = element.nodes.iter().position(|&node| node == id);
+            (
+                element,
+                place.expect("an element in a node's group carries it"),
+            )
+        })
+    }
+
+    /// The ids of the elements that carry a node, in the order of the octants around it.
+    pub fn carrier_ids(&self, id: u32) -> Vec<u32> {
+        let node = self.node(id);
+        let mut owners: Vec<u32> = Vec::with_capacity(D::CORNERS);
+        for octant in (0..D::CORNERS).filter(|octant| node.group >> octant & 1 == 1) {
+            let owner = self.owner(voxel_around::<D>(node.at, octant));
+            owners.extend(owner.filter(|owner| !owners.contains(owner)));
+        }
+        owners
     }
 
     /// Number of elements on each level, finest first.

@@ -1,0 +1,193 @@
+//! Bodies that move: forces against the reference law, momentum, spin and energy.
+#![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
+
+use fuwafuwa::body::BodyError;
+use fuwafuwa::law::{Elasticity, Law, forces};
+use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, VoxelGrid};
+
+const SOFT: Material = Material {
+    elasticity: Elasticity {
+        young: 5000.0,
+        poisson: 0.3,
+    },
+    density: 100.0,
+};
+
+fn ball<D: Dim>(n: usize, law: Law) -> Body<D> {
+    Body::new(VoxelGrid::ball(n, 1.0).unwrap(), &[SOFT], law).unwrap()
+}
+
+/// Sets every node by its rest position [m], relative to the middle of a body 1 m wide.
+fn arrange<D: Dim>(body: &mut Body<D>, state: impl Fn([f32; 3]) -> ([f32; 3], [f32; 3])) {
+    let nodes: Vec<_> = body.mesh().nodes().collect();
+    let size = body.grid().voxel_size();
+    for (id, node) in nodes {
+        let rest = [0, 1, 2].map(|k| {
+            if k < D::N {
+                node.at[k] as f32 * size - 0.5
+            } else {
+                0.0
+            }
+        });
+        let (position, velocity) = state(rest);
+        assert!(body.set_node_state(id, position, velocity));
+    }
+}
+
+/// Linear and angular momentum about the origin.
+fn momentum<D: Dim>(body: &Body<D>) -> ([f64; 3], [f64; 3]) {
+    let (mut linear, mut angular) = ([0.0; 3], [0.0; 3]);
+    for (id, _) in body.mesh().nodes() {
+        let (x, v, mass) = body.node_state(id);
+        let (x, v, mass) = (x.map(f64::from), v.map(f64::from), f64::from(mass));
+        for axis in 0..3 {
+            let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
+            linear[axis] += mass * v[axis];
+            angular[axis] += mass * (x[j] * v[k] - x[k] * v[j]);
+        }
+    }
+    (linear, angular)
+}
+
+fn length(v: [f64; 3]) -> f64 {
+    v.iter().map(|k| k * k).sum::<f64>().sqrt()
+}
+
+/// The blocks in single precision against the law in double precision, on a bent, turned body.
+fn check_forces_against_the_law<D: Dim>(law: Law) {
+    let mut body = ball::<D>(16, law);
+    arrange(&mut body, |[x, y, z]| {
+        let bent = [x * 1.1 + 0.2 * y * y, y * 0.8 + 0.1 * x, z + 0.2 * x * y];
+        let turned = [
+            0.8 * bent[0] - 0.6 * bent[1],
+            0.6 * bent[0] + 0.8 * bent[1],
+            bent[2],
+        ];
+        (turned, [0.0; 3])
+    });
+    // A step of no length evaluates the forces; several let the rotations settle.
+    for _ in 0..8 {
+        body.advance(0.0, [0.0; 3]);
+    }
+    let mut expected = vec![[0.0f64; 3]; body.mesh().node_capacity()];
+    for (_, element) in body.mesh().elements() {
+        let positions: Vec<[f64; 3]> = element
+            .nodes
+            .iter()
+            .map(|&node| body.node_state(node).0.map(f64::from))
+            .collect();
+        let size = f64::from(element.cell.width()) / 16.0;
+        let all = forces(
+            law,
+            SOFT.elasticity,
+            body.mesh().stencil(element),
+            size,
+            &positions,
+        );
+        for (&node, force) in element.nodes.iter().zip(all) {
+            for axis in 0..3 {
+                expected[node as usize][axis] += force[axis];
+            }
+        }
+    }
+    let largest = expected
+        .iter()
+        .map(|&force| length(force))
+        .fold(0.0, f64::max);
+    for (id, node) in body.mesh().nodes() {
+        let found = body.force_on(id).map(f64::from);
+        let want = expected[id as usize];
+        let error = length([0, 1, 2].map(|axis: usize| found[axis] - want[axis]));
+        assert!(
+            error < 2e-4 * largest,
+            "{law:?} at {:?}: {found:?}, not {want:?}",
+            node.at
+        );
+    }
+}
+
+#[test]
+fn blocks_of_lanes_compute_the_law() {
+    for law in [Law::PatchExact, Law::Endo2004] {
+        check_forces_against_the_law::<Dim2>(law);
+        check_forces_against_the_law::<Dim3>(law);
+    }
+}
+
+/// A free ball that spins at 5 rad/s keeps its angular momentum for five seconds.
+#[test]
+fn a_spinning_ball_keeps_its_spin() {
+    let mut body = ball::<Dim3>(12, Law::PatchExact);
+    arrange(&mut body, |[x, y, z]| {
+        ([x, y, z], [4.0 * z - 3.0 * y, 3.0 * x, -4.0 * x])
+    });
+    let (_, before) = momentum(&body);
+    for _ in 0..5 * 960 {
+        body.advance(1.0 / 960.0, [0.0; 3]);
+    }
+    let (_, after) = momentum(&body);
+    let kept =
+        (0..3).map(|k| before[k] * after[k]).sum::<f64>() / (length(before) * length(before));
+    assert!((0.999..1.001).contains(&kept), "kept {kept}");
+}
+
+/// Cuts a moving body again and again: mass and linear momentum pass over.
+fn check_releases_keep_momentum<D: Dim>(n: i32) {
+    let mut body = ball::<D>(n as usize, Law::PatchExact);
+    arrange(&mut body, |[x, y, z]| {
+        let velocity = [
+            1.0 + 2.0 * y,
+            0.5 - x + z,
+            if D::N == 3 { 0.3 * x } else { 0.0 },
+        ];
+        ([x * 1.05, y * 0.95, z], velocity)
+    });
+    let mass = |body: &Body<D>| -> f64 {
+        body.mesh()
+            .nodes()
+            .map(|(id, _)| f64::from(body.node_state(id).2))
+            .sum()
+    };
+    let (mass_before, (before, spin_before)) = (mass(&body), momentum(&body));
+    for step in 0..1000 {
+        let at = [
+            step * 7 % n,
+            step * 5 % n,
+            if D::N == 3 { step * 3 % n } else { 0 },
+        ];
+        let side = [0b1010_1010, 0b1100_1100, 0b1111_0000][step as usize % D::N];
+        body.release(&[(at, side)]).unwrap();
+        if step % 10 == 0 {
+            body.advance(1.0 / 960.0, [0.0; 3]);
+        }
+    }
+    body.mesh().validate(body.grid(), body.sharing()).unwrap();
+    let (after, spin_after) = momentum(&body);
+    let drift = length([0, 1, 2].map(|k: usize| after[k] - before[k])) / length(before);
+    let spin =
+        length([0, 1, 2].map(|k: usize| spin_after[k] - spin_before[k])) / length(spin_before);
+    assert!((mass(&body) / mass_before - 1.0).abs() < 1e-5);
+    assert!(drift < 1e-4, "linear momentum drifts by {drift}");
+    assert!(spin < 1e-4, "angular momentum drifts by {spin}");
+}
+
+#[test]
+fn releases_keep_momentum() {
+    check_releases_keep_momentum::<Dim2>(24);
+    check_releases_keep_momentum::<Dim3>(12);
+}
+
+#[test]
+fn bad_bodies_are_refused() {
+    let grid = || VoxelGrid::<Dim2>::cube(2, 1.0).unwrap();
+    let missing = Body::new(grid(), &[], Law::PatchExact).map(|_| ());
+    assert_eq!(missing, Err(BodyError::MissingMaterial { number: 1 }));
+    let weightless = Material {
+        density: 0.0,
+        ..SOFT
+    };
+    let refused = Body::new(grid(), &[weightless], Law::PatchExact).map(|_| ());
+    assert_eq!(refused, Err(BodyError::BadDensity(0.0)));
+    let mut body = Body::new(grid(), &[SOFT], Law::PatchExact).unwrap();
+    assert!(!body.set_node_state(0, [f32::NAN, 0.0, 0.0], [0.0; 3]));
+}
