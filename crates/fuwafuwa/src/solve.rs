@@ -31,6 +31,13 @@ pub const LANES: usize = 8;
 
 const VACANT: u32 = u32::MAX;
 
+/// Places of the forces on a node: one an element, eight at most, in the order of the octants.
+#[derive(Copy, Clone, Debug, Default)]
+struct Slots {
+    places: [u32; 8],
+    count: u8,
+}
+
 /// One number for each element of a block.
 #[derive(Copy, Clone)]
 struct Lane([f32; LANES]);
@@ -47,7 +54,7 @@ pub struct Blocks<D: Dim> {
     /// Block and lane of each element, by id; the block is [`VACANT`] while it has none.
     seats: Vec<(u32, u8)>,
     /// Where the forces on each node stand: places in `forces`, by id.
-    slots: Vec<Vec<u32>>,
+    slots: Vec<Slots>,
     forces: Vec<Row>,
     dim: PhantomData<D>,
 }
@@ -117,18 +124,40 @@ impl<D: Dim> Blocks<D> {
         }
         touched.sort_unstable();
         touched.dedup();
-        self.slots.resize(mesh.node_capacity(), Vec::new());
+        self.slots.resize(mesh.node_capacity(), Slots::default());
         for node in touched {
-            self.slots[node as usize] = mesh
-                .carrier_ids(node)
-                .iter()
-                .map(|&id| self.slot(id, node))
-                .collect();
+            let mut slots = Slots::default();
+            for id in mesh.carrier_ids(node) {
+                slots.places[slots.count as usize] = self.slot(id, node);
+                slots.count += 1;
+            }
+            self.slots[node as usize] = slots;
         }
     }
 
     /// Computes the forces of all elements at the given node positions [m].
     pub fn evaluate(&mut self, position: &[Row]) {
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx2") {
+            // SAFETY: the machine has AVX2; the function is safe code otherwise.
+            #[allow(unsafe_code)]
+            unsafe {
+                self.evaluate_avx2(position);
+            }
+            return;
+        }
+        self.evaluate_in(position);
+    }
+
+    /// As [`Blocks::evaluate`], compiled for wider vectors: the same operations, the same bits.
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn evaluate_avx2(&mut self, position: &[Row]) {
+        self.evaluate_in(position);
+    }
+
+    #[inline(always)]
+    fn evaluate_in(&mut self, position: &[Row]) {
         for block in &mut self.blocks {
             let constants = &self.constants[block.constants as usize];
             let first = block.first_slot as usize;
@@ -141,7 +170,8 @@ impl<D: Dim> Blocks<D> {
     #[inline]
     pub fn force_on(&self, node: u32) -> Row {
         let mut sum = [0.0; 4];
-        for &slot in &self.slots[node as usize] {
+        let slots = &self.slots[node as usize];
+        for &slot in &slots.places[..slots.count as usize] {
             for (total, part) in sum.iter_mut().zip(self.forces[slot as usize]) {
                 *total += part;
             }
@@ -306,31 +336,13 @@ fn evaluate<D: Dim>(
     let zero = Lane::splat(0.0);
     let half = Lane(block.half_size);
     let one = Lane::splat(1.0);
-    let gather = |place: usize| -> [Lane; 3] {
-        let mut rows = [zero; 3];
-        for lane in 0..LANES {
-            let row = &position[block.nodes[place * LANES + lane] as usize];
-            for axis in 0..D::N {
-                rows[axis].0[lane] = row[axis];
-            }
-        }
-        rows
-    };
-    let origin = gather(0);
-    let relative = |place: usize| -> [Lane; 3] {
-        let x = gather(place);
-        let mut rows = [zero; 3];
-        for axis in 0..D::N {
-            rows[axis] = x[axis] - origin[axis];
-        }
-        rows
-    };
+    let origin = gather::<D>(position, block, 0);
 
     let mut gradient = [[zero; 3]; 3];
     let mut moment = [[zero; 3]; 3];
     let mut centre = [zero; 3];
     for (place, (b, wr, w)) in constants.nodes.iter().enumerate().skip(1) {
-        let x = relative(place);
+        let x = relative::<D>(position, block, place, origin);
         for i in 0..D::N {
             for j in 0..D::N {
                 gradient[i][j] = gradient[i][j] + x[i] * Lane::splat(b[j]);
@@ -362,8 +374,9 @@ fn evaluate<D: Dim>(
     }
     let rotation = matrix_of(turned);
 
-    let size_power = (1..D::N).fold(one, |power, _| power * half);
-    let double_power = (2..D::N).fold(one, |power, _| power * (half + half));
+    let size_power = if D::N == 2 { half } else { half * half };
+    let size_rest = if D::N == 2 { one } else { half };
+    let double_power = if D::N == 2 { one } else { half + half };
     let (mut pull, mut shear) = ([[zero; 3]; 3], [[zero; 3]; 3]);
     let stiffness;
     match law {
@@ -385,8 +398,7 @@ fn evaluate<D: Dim>(
         }
         Law::Endo2004 => {
             let young = block.elasticity.young as f32;
-            let power = (2..D::N).fold(one, |power, _| power * half);
-            stiffness = Lane::splat(young * constants.stiffness) * power;
+            stiffness = Lane::splat(young * constants.stiffness) * size_rest;
             for i in 0..D::N {
                 for j in 0..D::N {
                     pull[i][j] = stiffness * half * rotation[i][j];
@@ -399,18 +411,65 @@ fn evaluate<D: Dim>(
         let x = if place == 0 {
             [zero; 3]
         } else {
-            relative(place)
+            relative::<D>(position, block, place, origin)
         };
+        let mut all = [zero; 3];
         for i in 0..D::N {
             let mut force = stiffness * Lane::splat(*w) * (centre[i] - x[i]);
             for j in 0..D::N {
                 force = force + pull[i][j] * Lane::splat(b[j]) + shear[i][j] * Lane::splat(wr[j]);
             }
-            for lane in 0..LANES {
-                forces[place * LANES + lane][i] = force.0[lane];
-            }
+            all[i] = force;
+        }
+        let target: &mut [Row; LANES] = (&mut forces[place * LANES..][..LANES])
+            .try_into()
+            .expect("a place has a force for every lane");
+        for lane in 0..LANES {
+            target[lane] = [all[0].0[lane], all[1].0[lane], all[2].0[lane], 0.0];
         }
     }
+}
+
+/// The positions of one node of every lane.
+#[inline(always)]
+fn gather<D: Dim>(position: &[Row], block: &Block, place: usize) -> [Lane; 3] {
+    let mut rows = [Lane::splat(0.0); 3];
+    let nodes: &[u32; LANES] = block.nodes[place * LANES..][..LANES]
+        .try_into()
+        .expect("a place has a node for every lane");
+    let r: [Row; LANES] = [
+        position[nodes[0] as usize],
+        position[nodes[1] as usize],
+        position[nodes[2] as usize],
+        position[nodes[3] as usize],
+        position[nodes[4] as usize],
+        position[nodes[5] as usize],
+        position[nodes[6] as usize],
+        position[nodes[7] as usize],
+    ];
+    for axis in 0..D::N {
+        let k = axis;
+        rows[axis] = Lane([
+            r[0][k], r[1][k], r[2][k], r[3][k], r[4][k], r[5][k], r[6][k], r[7][k],
+        ]);
+    }
+    rows
+}
+
+/// As [`gather`], from `origin`.
+#[inline(always)]
+fn relative<D: Dim>(position: &[Row], block: &Block, place: usize, origin: [Lane; 3]) -> [Lane; 3] {
+    let mut rows = gather::<D>(position, block, place);
+    for axis in 0..D::N {
+        rows[axis] = rows[axis] - origin[axis];
+    }
+    rows
+}
+
+/// The minor of rows a, b and columns c, d.
+#[inline(always)]
+fn minor(f: &[[Lane; 3]; 3], a: usize, b: usize, c: usize, d: usize) -> Lane {
+    f[a][c] * f[b][d] - f[a][d] * f[b][c]
 }
 
 /// One round towards the rotation of a deformation; see [`crate::law::rotation_of`].
@@ -513,11 +572,22 @@ fn stress<D: Dim>(
         }
     }
     let pressure = lame * stretch - twice_shear;
-    let minor = |a: usize, b: usize, c: usize, d: usize| f[a][c] * f[b][d] - f[a][d] * f[b][c];
     let cofactor = [
-        [minor(1, 2, 1, 2), minor(1, 2, 2, 0), minor(1, 2, 0, 1)],
-        [minor(2, 0, 1, 2), minor(2, 0, 2, 0), minor(2, 0, 0, 1)],
-        [minor(0, 1, 1, 2), minor(0, 1, 2, 0), minor(0, 1, 0, 1)],
+        [
+            minor(f, 1, 2, 1, 2),
+            minor(f, 1, 2, 2, 0),
+            minor(f, 1, 2, 0, 1),
+        ],
+        [
+            minor(f, 2, 0, 1, 2),
+            minor(f, 2, 0, 2, 0),
+            minor(f, 2, 0, 0, 1),
+        ],
+        [
+            minor(f, 0, 1, 1, 2),
+            minor(f, 0, 1, 2, 0),
+            minor(f, 0, 1, 0, 1),
+        ],
     ];
     let volume_ratio =
         f[0][0] * cofactor[0][0] + f[0][1] * cofactor[0][1] + f[0][2] * cofactor[0][2];
