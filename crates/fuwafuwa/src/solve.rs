@@ -146,23 +146,23 @@ impl<D: Dim> Blocks<D> {
             }
             return;
         }
-        self.evaluate_in(position);
+        self.evaluate_in::<false>(position);
     }
 
     /// As [`Blocks::evaluate`], compiled for wider vectors: the same operations, the same bits.
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
     fn evaluate_avx2(&mut self, position: &[Row]) {
-        self.evaluate_in(position);
+        self.evaluate_in::<true>(position);
     }
 
     #[inline(always)]
-    fn evaluate_in(&mut self, position: &[Row]) {
+    fn evaluate_in<const WIDE: bool>(&mut self, position: &[Row]) {
         for block in &mut self.blocks {
             let constants = &self.constants[block.constants as usize];
             let first = block.first_slot as usize;
             let forces = &mut self.forces[first..first + block.nodes.len()];
-            evaluate::<D>(self.law, constants, block, position, forces);
+            evaluate::<D, WIDE>(self.law, constants, block, position, forces);
         }
     }
 
@@ -326,7 +326,7 @@ impl Constants {
 
 /// The forces of one block, all lanes at once; a vacant lane repeats what it held.
 #[inline(always)]
-fn evaluate<D: Dim>(
+fn evaluate<D: Dim, const WIDE: bool>(
     law: Law,
     constants: &Constants,
     block: &mut Block,
@@ -336,13 +336,13 @@ fn evaluate<D: Dim>(
     let zero = Lane::splat(0.0);
     let half = Lane(block.half_size);
     let one = Lane::splat(1.0);
-    let origin = gather::<D>(position, block, 0);
+    let origin = gather::<D, WIDE>(position, block, 0);
 
     let mut gradient = [[zero; 3]; 3];
     let mut moment = [[zero; 3]; 3];
     let mut centre = [zero; 3];
     for (place, (b, wr, w)) in constants.nodes.iter().enumerate().skip(1) {
-        let x = relative::<D>(position, block, place, origin);
+        let x = relative::<D, WIDE>(position, block, place, origin);
         for i in 0..D::N {
             for j in 0..D::N {
                 gradient[i][j] = gradient[i][j] + x[i] * Lane::splat(b[j]);
@@ -411,7 +411,7 @@ fn evaluate<D: Dim>(
         let x = if place == 0 {
             [zero; 3]
         } else {
-            relative::<D>(position, block, place, origin)
+            relative::<D, WIDE>(position, block, place, origin)
         };
         let mut all = [zero; 3];
         for i in 0..D::N {
@@ -424,6 +424,11 @@ fn evaluate<D: Dim>(
         let target: &mut [Row; LANES] = (&mut forces[place * LANES..][..LANES])
             .try_into()
             .expect("a place has a force for every lane");
+        #[cfg(target_arch = "x86_64")]
+        if WIDE {
+            avx::store(all, target);
+            continue;
+        }
         for lane in 0..LANES {
             target[lane] = [all[0].0[lane], all[1].0[lane], all[2].0[lane], 0.0];
         }
@@ -432,34 +437,42 @@ fn evaluate<D: Dim>(
 
 /// The positions of one node of every lane.
 #[inline(always)]
-fn gather<D: Dim>(position: &[Row], block: &Block, place: usize) -> [Lane; 3] {
-    let mut rows = [Lane::splat(0.0); 3];
+fn gather<D: Dim, const WIDE: bool>(position: &[Row], block: &Block, place: usize) -> [Lane; 3] {
     let nodes: &[u32; LANES] = block.nodes[place * LANES..][..LANES]
         .try_into()
         .expect("a place has a node for every lane");
-    let r: [Row; LANES] = [
-        position[nodes[0] as usize],
-        position[nodes[1] as usize],
-        position[nodes[2] as usize],
-        position[nodes[3] as usize],
-        position[nodes[4] as usize],
-        position[nodes[5] as usize],
-        position[nodes[6] as usize],
-        position[nodes[7] as usize],
+    let rows = [
+        &position[nodes[0] as usize],
+        &position[nodes[1] as usize],
+        &position[nodes[2] as usize],
+        &position[nodes[3] as usize],
+        &position[nodes[4] as usize],
+        &position[nodes[5] as usize],
+        &position[nodes[6] as usize],
+        &position[nodes[7] as usize],
     ];
-    for axis in 0..D::N {
-        let k = axis;
-        rows[axis] = Lane([
-            r[0][k], r[1][k], r[2][k], r[3][k], r[4][k], r[5][k], r[6][k], r[7][k],
-        ]);
+    #[cfg(target_arch = "x86_64")]
+    if WIDE {
+        return avx::columns(rows);
     }
-    rows
+    let mut columns = [Lane::splat(0.0); 3];
+    for axis in 0..D::N {
+        for lane in 0..LANES {
+            columns[axis].0[lane] = rows[lane][axis];
+        }
+    }
+    columns
 }
 
 /// As [`gather`], from `origin`.
 #[inline(always)]
-fn relative<D: Dim>(position: &[Row], block: &Block, place: usize, origin: [Lane; 3]) -> [Lane; 3] {
-    let mut rows = gather::<D>(position, block, place);
+fn relative<D: Dim, const WIDE: bool>(
+    position: &[Row],
+    block: &Block,
+    place: usize,
+    origin: [Lane; 3],
+) -> [Lane; 3] {
+    let mut rows = gather::<D, WIDE>(position, block, place);
     for axis in 0..D::N {
         rows[axis] = rows[axis] - origin[axis];
     }
@@ -470,6 +483,80 @@ fn relative<D: Dim>(position: &[Row], block: &Block, place: usize, origin: [Lane
 #[inline(always)]
 fn minor(f: &[[Lane; 3]; 3], a: usize, b: usize, c: usize, d: usize) -> Lane {
     f[a][c] * f[b][d] - f[a][d] * f[b][c]
+}
+
+/// Rows to columns and back in registers: what the compiler does through memory by itself.
+///
+/// Every function here needs AVX. They are reached with `WIDE` alone, which only
+/// [`Blocks::evaluate_avx2`] sets, and that is called after the machine was asked for AVX2.
+#[cfg(target_arch = "x86_64")]
+#[allow(unsafe_code)]
+mod avx {
+    use super::{LANES, Lane, Row};
+    use std::arch::x86_64::*;
+
+    /// The first three columns of eight rows.
+    #[inline(always)]
+    pub fn columns(rows: [&Row; LANES]) -> [Lane; 3] {
+        // SAFETY: AVX is there (see the module); a row is four floats, read without alignment;
+        // a Lane and a register are eight floats each.
+        unsafe {
+            let (a, b) = (pair(rows[0], rows[4]), pair(rows[1], rows[5]));
+            let (c, d) = (pair(rows[2], rows[6]), pair(rows[3], rows[7]));
+            let (ab, cd) = (_mm256_unpacklo_ps(a, b), _mm256_unpacklo_ps(c, d));
+            let (ab_high, cd_high) = (_mm256_unpackhi_ps(a, b), _mm256_unpackhi_ps(c, d));
+            [
+                lane(_mm256_shuffle_ps::<0x44>(ab, cd)),
+                lane(_mm256_shuffle_ps::<0xEE>(ab, cd)),
+                lane(_mm256_shuffle_ps::<0x44>(ab_high, cd_high)),
+            ]
+        }
+    }
+
+    /// Three columns as eight rows, the fourth number 0.
+    #[inline(always)]
+    pub fn store(columns: [Lane; 3], rows: &mut [Row; LANES]) {
+        // SAFETY: as in `columns`; each store fills one row.
+        unsafe {
+            let (x, y, z) = (
+                register(columns[0]),
+                register(columns[1]),
+                register(columns[2]),
+            );
+            let zero = _mm256_setzero_ps();
+            let (xy, xy_high) = (_mm256_unpacklo_ps(x, y), _mm256_unpackhi_ps(x, y));
+            let (z, z_high) = (_mm256_unpacklo_ps(z, zero), _mm256_unpackhi_ps(z, zero));
+            let pairs = [
+                _mm256_shuffle_ps::<0x44>(xy, z),
+                _mm256_shuffle_ps::<0xEE>(xy, z),
+                _mm256_shuffle_ps::<0x44>(xy_high, z_high),
+                _mm256_shuffle_ps::<0xEE>(xy_high, z_high),
+            ];
+            for lane in 0..LANES / 2 {
+                _mm_storeu_ps(rows[lane].as_mut_ptr(), _mm256_castps256_ps128(pairs[lane]));
+                let high = _mm256_extractf128_ps::<1>(pairs[lane]);
+                _mm_storeu_ps(rows[lane + LANES / 2].as_mut_ptr(), high);
+            }
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn pair(low: &Row, high: &Row) -> __m256 {
+        unsafe {
+            let low = _mm256_castps128_ps256(_mm_loadu_ps(low.as_ptr()));
+            _mm256_insertf128_ps::<1>(low, _mm_loadu_ps(high.as_ptr()))
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn lane(register: __m256) -> Lane {
+        unsafe { Lane(std::mem::transmute::<__m256, [f32; LANES]>(register)) }
+    }
+
+    #[inline(always)]
+    unsafe fn register(lane: Lane) -> __m256 {
+        unsafe { std::mem::transmute::<[f32; LANES], __m256>(lane.0) }
+    }
 }
 
 /// One round towards the rotation of a deformation; see [`crate::law::rotation_of`].
