@@ -123,13 +123,15 @@ impl<D: Dim> Body<D> {
     /// symplectic Euler, stable while `duration` ≤ 0.6 s / c (s the voxel, c the pressure wave).
     pub fn advance(&mut self, duration: f32, gravity: [f32; 3]) {
         self.blocks.evaluate(&self.position);
-        for (id, _) in self.mesh.nodes() {
-            let node = id as usize;
-            let force = self.blocks.force_on(id);
+        let nodes: Vec<u32> = self.mesh.nodes().map(|(id, _)| id).collect();
+        let lightness: Vec<f32> = self.mass.iter().map(|mass| 1.0 / mass).collect();
+        let mut pull = [gravity[0], gravity[1], gravity[2], 0.0];
+        pull[D::N..].fill(0.0);
+        self.blocks
+            .kick(&nodes, &lightness, duration, pull, &mut self.velocity);
+        for id in nodes {
             for axis in 0..D::N {
-                let acceleration = force[axis] / self.mass[node] + gravity[axis];
-                self.velocity[node][axis] += duration * acceleration;
-                self.position[node][axis] += duration * self.velocity[node][axis];
+                self.position[id as usize][axis] += duration * self.velocity[id as usize][axis];
             }
         }
     }

@@ -30,6 +30,7 @@ pub type Row = [f32; 4];
 pub const LANES: usize = 8;
 
 const VACANT: u32 = u32::MAX;
+const ALL_LANES: u8 = u8::MAX;
 
 /// Places of the forces on a node: one an element, eight at most, in the order of the octants.
 #[derive(Copy, Clone, Debug, Default)]
@@ -64,6 +65,8 @@ struct Block {
     constants: u32,
     elasticity: Elasticity,
     elements: [u32; LANES],
+    /// The lanes that sleep or are vacant, as a mask.
+    asleep: u8,
     half_size: [f32; LANES],
     rotation: [[f32; LANES]; 4],
     /// The nodes of each lane: node k of lane l at k · LANES + l, and its force at `first_slot` on.
@@ -159,6 +162,9 @@ impl<D: Dim> Blocks<D> {
     #[inline(always)]
     fn evaluate_in<const WIDE: bool>(&mut self, position: &[Row]) {
         for block in &mut self.blocks {
+            if block.asleep == ALL_LANES {
+                continue;
+            }
             let constants = &self.constants[block.constants as usize];
             let first = block.first_slot as usize;
             let forces = &mut self.forces[first..first + block.nodes.len()];
@@ -177,6 +183,54 @@ impl<D: Dim> Blocks<D> {
             }
         }
         sum
+    }
+
+    /// The force [N] of one element on its node number `place`, as of the last evaluation.
+    ///
+    /// # Panics
+    /// When the element has no seat: it is not part of the mesh.
+    #[inline]
+    pub fn element_force(&self, id: u32, place: usize) -> Row {
+        let (block, lane) = self.seats[id as usize];
+        let first = self.blocks[block as usize].first_slot as usize;
+        self.forces[first + place * LANES + lane as usize]
+    }
+
+    /// The rotation of an element as of the last evaluation, by rows.
+    pub fn rotation(&self, id: u32) -> [[f32; 3]; 3] {
+        let turned = self.rotation_of(id).map(Lane::splat);
+        matrix_of(turned).map(|row| row.map(|lane| lane.0[0]))
+    }
+
+    /// Lets an element sleep, or wakes it: a block whose elements all sleep is not evaluated, and
+    /// keeps the forces it had.
+    pub fn set_asleep(&mut self, id: u32, asleep: bool) {
+        let (block, lane) = self.seats[id as usize];
+        let sleepers = &mut self.blocks[block as usize].asleep;
+        *sleepers = *sleepers & !(1 << lane) | u8::from(asleep) << lane;
+    }
+
+    /// Adds a substep's worth of elastic force and of `gravity` [m/s²] to the velocity of `nodes`
+    /// [m/s]. `lightness` is one over the mass of each node [1/kg], 0 where it is held.
+    pub fn kick(
+        &self,
+        nodes: &[u32],
+        lightness: &[f32],
+        duration: f32,
+        gravity: Row,
+        velocity: &mut [Row],
+    ) {
+        for &id in nodes {
+            let node = id as usize;
+            if lightness[node] == 0.0 {
+                continue;
+            }
+            let force = self.force_on(id);
+            for axis in 0..4 {
+                let acceleration = force[axis] * lightness[node] + gravity[axis];
+                velocity[node][axis] += duration * acceleration;
+            }
+        }
     }
 
     fn rotation_of(&self, id: u32) -> [f32; 4] {
@@ -209,6 +263,7 @@ impl<D: Dim> Blocks<D> {
         self.seats[id as usize] = (VACANT, 0);
         let block = &mut self.blocks[index as usize];
         block.elements[lane as usize] = VACANT;
+        block.asleep |= 1 << lane;
         let mut classes = self.classes.values_mut();
         let class = classes.find(|class| class.constants == block.constants);
         let class = class.expect("every block belongs to a class");
@@ -246,6 +301,7 @@ impl<D: Dim> Blocks<D> {
                     constants: class.constants,
                     elasticity: self.elasticities[material as usize - 1],
                     elements: [VACANT; LANES],
+                    asleep: ALL_LANES,
                     half_size: [self.voxel_size; LANES],
                     rotation: [[0.0; LANES], [0.0; LANES], [0.0; LANES], [1.0; LANES]],
                     nodes: vec![element.nodes[0]; slots],
@@ -263,6 +319,7 @@ impl<D: Dim> Blocks<D> {
             .position(|&other| other == VACANT)
             .expect("open blocks have a vacancy");
         block.elements[lane] = id;
+        block.asleep &= !(1 << lane);
         block.half_size[lane] = 0.5 * self.voxel_size * element.cell.width() as f32;
         for (place, &node) in element.nodes.iter().enumerate() {
             block.nodes[place * LANES + lane] = node;
