@@ -5,7 +5,7 @@ use crate::grid::VoxelGrid;
 use crate::law::{Elasticity, Law};
 use crate::mesh::{Defect, Inheritance, Mesh, Remodelled};
 use crate::momentum::{Momentum, RigidMotion, centre_of};
-use crate::pyramid::Pyramid;
+use crate::pyramid::{Grading, Pyramid};
 use crate::sharing::Sharing;
 use crate::solve::{Blocks, Row};
 
@@ -90,7 +90,7 @@ impl<D: Dim> Body<D> {
             return Err(BodyError::BadDensity(material.density));
         }
         let sharing = Sharing::new(&grid);
-        let pyramid = Pyramid::new(&grid, &sharing);
+        let pyramid = Pyramid::new(&grid, &sharing, Grading::Graded);
         let mesh = Mesh::grade(&grid, &sharing, &pyramid)?;
         let elasticities = materials
             .iter()

@@ -12,7 +12,7 @@
 
 use crate::dim::{Dim, Point, add, corner, neighbourhood, points_in, scale, voxel_around};
 use crate::grid::VoxelGrid;
-use crate::pyramid::{Cell, Pyramid, parts};
+use crate::pyramid::{Cell, Grading, Pyramid, parts};
 use crate::sharing::Sharing;
 use crate::stencil::{MissingCorner, Stencil, cell_corners, closure, slot_at, slot_index};
 use std::collections::{BTreeMap, BTreeSet};
@@ -46,6 +46,8 @@ pub struct Mesh<D: Dim> {
     elements: Vec<Option<Element>>,
     nodes: Vec<Node>,
     stencils: Vec<Stencil<D>>,
+    /// Whether every lattice point of the surface is a node, whatever the size of its elements.
+    dense_surface: bool,
     /// Elements of each cell.
     by_cell: BTreeMap<Cell, Vec<u32>>,
     by_node: BTreeMap<Node, u32>,
@@ -114,6 +116,7 @@ impl<D: Dim> Mesh<D> {
             elements: Vec::new(),
             nodes: Vec::new(),
             stencils: Vec::new(),
+            dense_surface: pyramid.grading() == Grading::Coarse,
             by_cell: BTreeMap::new(),
             by_node: BTreeMap::new(),
             classes: BTreeMap::new(),
@@ -418,7 +421,8 @@ impl<D: Dim> Mesh<D> {
                 at,
                 group: sharing.groups(at).group_of(octant),
             };
-            if whole || self.is_node(node) {
+            let on_surface = self.dense_surface && node.group != D::ALL_CORNERS;
+            if whole || on_surface || self.is_node(node) {
                 slots |= 1 << slot;
                 wanted.push((node, voxel_around::<D>(at, octant)));
             }

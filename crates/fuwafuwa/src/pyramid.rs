@@ -61,10 +61,24 @@ impl Cell {
     }
 }
 
+/// How fine the elements are, and where.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub enum Grading {
+    /// Single voxels at the surface, larger ones inside: what cutting needs.
+    #[default]
+    Graded,
+    /// Single voxels everywhere: the reference that graded bodies are measured against.
+    Uniform,
+    /// Two voxels wide at the surface, every lattice point there a node: the variant that the
+    /// paper counts [Endo 2004, §3.1]. It cannot be cut.
+    Coarse,
+}
+
 /// Which cells exist, level by level.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pyramid<D: Dim> {
     levels: Vec<Table>,
+    grading: Grading,
     dim: PhantomData<D>,
 }
 
@@ -83,9 +97,10 @@ impl Table {
 
 impl<D: Dim> Pyramid<D> {
     /// The cells of a body from scratch.
-    pub fn new(grid: &VoxelGrid<D>, sharing: &Sharing<D>) -> Self {
+    pub fn new(grid: &VoxelGrid<D>, sharing: &Sharing<D>, grading: Grading) -> Self {
         let mut pyramid = Self {
             levels: Vec::new(),
+            grading,
             dim: PhantomData,
         };
         let mut size = grid.size();
@@ -102,6 +117,11 @@ impl<D: Dim> Pyramid<D> {
         }
         pyramid.refine(grid, sharing, sharing.points());
         pyramid
+    }
+
+    /// How fine the cells are.
+    pub fn grading(&self) -> Grading {
+        self.grading
     }
 
     /// Number of levels, the topmost included.
@@ -178,12 +198,15 @@ impl<D: Dim> Pyramid<D> {
     ) -> Vec<Cell> {
         let mut born = Vec::new();
         let mut layer: Vec<Cell> = Vec::new();
-        for at in changed.filter(|&at| is_fine(grid, sharing, at)) {
+        let everywhere = self.grading == Grading::Uniform;
+        let is_coarse = self.grading == Grading::Coarse && self.levels.len() > 1;
+        for at in changed.filter(|&at| everywhere || is_fine(grid, sharing, at)) {
             for voxel in (0..D::CORNERS).map(|octant| voxel_around::<D>(at, octant)) {
-                let cell = Cell {
+                let finest = Cell {
                     level: 0,
                     at: voxel,
                 };
+                let cell = if is_coarse { finest.parent() } else { finest };
                 if grid.is_solid(voxel) && self.add(cell) {
                     layer.push(cell);
                 }

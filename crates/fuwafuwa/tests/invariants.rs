@@ -4,7 +4,7 @@
 use fuwafuwa::dim::{neighbourhood, points_in};
 use fuwafuwa::law::{Elasticity, Law, forces};
 use fuwafuwa::mesh::{Inheritance, Remodelled};
-use fuwafuwa::pyramid::Pyramid;
+use fuwafuwa::pyramid::{Grading, Pyramid};
 use fuwafuwa::sharing::Sharing;
 use fuwafuwa::{Dim, Dim2, Dim3, Mesh, Point, VoxelGrid};
 
@@ -100,7 +100,7 @@ fn check_one_sequence<D: Dim>(seed: u64, n: i32) {
         return;
     };
     let mut sharing = Sharing::new(&grid);
-    let mut pyramid = Pyramid::new(&grid, &sharing);
+    let mut pyramid = Pyramid::new(&grid, &sharing, Grading::Graded);
     let mut mesh = Mesh::grade(&grid, &sharing, &pyramid).unwrap();
     for _ in 0..1 + random.below(5) {
         let touched = random_cut(&mut sharing, &mut random, n);
@@ -114,7 +114,11 @@ fn check_one_sequence<D: Dim>(seed: u64, n: i32) {
         mesh.validate(&grid, &sharing)
             .unwrap_or_else(|defect| panic!("seed {seed}: {defect}"));
     }
-    assert_eq!(pyramid, Pyramid::new(&grid, &sharing), "seed {seed}");
+    assert_eq!(
+        pyramid,
+        Pyramid::new(&grid, &sharing, Grading::Graded),
+        "seed {seed}"
+    );
     let scratch = Mesh::grade(&grid, &sharing, &pyramid).unwrap();
     assert!(
         mesh.is_same_as(&scratch),

@@ -2,14 +2,18 @@
 #![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
 
 use fuwafuwa::law::{Elasticity, Law, forces};
-use fuwafuwa::pyramid::Pyramid;
+use fuwafuwa::pyramid::{Grading, Pyramid};
 use fuwafuwa::sharing::Sharing;
 use fuwafuwa::stencil::{Stencil, cell_corners};
 use fuwafuwa::{Dim, Dim2, Dim3, Mesh, VoxelGrid};
 
 fn graded<D: Dim>(grid: &VoxelGrid<D>) -> Mesh<D> {
+    mesh_of(grid, Grading::Graded)
+}
+
+fn mesh_of<D: Dim>(grid: &VoxelGrid<D>, grading: Grading) -> Mesh<D> {
     let sharing = Sharing::new(grid);
-    let pyramid = Pyramid::new(grid, &sharing);
+    let pyramid = Pyramid::new(grid, &sharing, grading);
     let mesh = Mesh::grade(grid, &sharing, &pyramid).unwrap();
     mesh.validate(grid, &sharing).unwrap();
     mesh
@@ -27,6 +31,21 @@ fn element_count_grows_with_the_surface() {
         (1.9..2.2).contains(&growth),
         "doubling n doubles a ring: {growth}"
     );
+}
+
+/// §3.1: counted by each element for itself, n³ voxels have 8n³ vertices; graded from two voxels
+/// at the surface about 26n² are left.
+#[test]
+fn vertices_fall_from_8n3_to_26n2() {
+    let count = |n, grading| {
+        let cube = VoxelGrid::<Dim3>::cube(n, 1.0).unwrap();
+        mesh_of(&cube, grading).independent_vertex_count() as f64
+    };
+    assert_eq!(count(8, Grading::Uniform), 8.0 * 8.0f64 * 8.0 * 8.0);
+    for n in [32, 64] {
+        let ratio = count(n, Grading::Coarse) / (26.0 * (n * n) as f64);
+        assert!((0.8..1.2).contains(&ratio), "n = {n}: {ratio} of 26n²");
+    }
 }
 
 /// Fig. 1: a small disc, each voxel named by the level that owns it.
