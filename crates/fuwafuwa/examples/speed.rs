@@ -3,17 +3,11 @@
 //! `cargo run --release -p fuwafuwa --example speed`
 #![allow(clippy::disallowed_types, clippy::disallowed_methods)] // a benchmark needs the clock
 
-use fuwafuwa::law::{Elasticity, Law};
 use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, VoxelGrid};
 use std::time::Instant;
 
 fn measure<D: Dim>(n: usize) -> Result<(), Box<dyn std::error::Error>> {
-    let elasticity = Elasticity::new(5000.0, 0.3)?;
-    let material = Material {
-        elasticity,
-        density: 100.0,
-    };
-    let mut body = Body::<D>::new(VoxelGrid::ball(n, 1.0)?, &[material], Law::PatchExact)?;
+    let mut body = Body::<D>::new(VoxelGrid::ball(n, 1.0)?, &[Material::default()])?;
     let elements = body.mesh().element_count();
     let mut times: Vec<f64> = (0..60)
         .map(|_| {

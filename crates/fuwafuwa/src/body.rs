@@ -1,72 +1,49 @@
-//! One soft object: what it is made of, how it hangs together, and how it moves.
+//! One soft object: its voxels, how they hang together, and the state of its nodes.
 
-use crate::dim::{Dim, Point, neighbourhood};
+use crate::dim::{Dim, Point, voxel_around};
 use crate::grid::VoxelGrid;
 use crate::law::{Elasticity, Law};
-use crate::mesh::{Defect, Inheritance, Mesh, Remodelled};
-use crate::momentum::{Momentum, RigidMotion, centre_of};
+use crate::material::{BodyError, Material};
+use crate::mesh::{Element, Mesh};
+use crate::momentum::Momentum;
+use crate::piece::Pieces;
 use crate::pyramid::{Grading, Pyramid};
 use crate::sharing::Sharing;
 use crate::solve::{Blocks, Row};
+use crate::vector::{dot, plus, scaled};
 
-/// What a voxel is made of.
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Material {
-    /// Stiffness and bulging.
-    pub elasticity: Elasticity,
-    /// Density [kg/m³], in 2D of a sheet 1 m deep; a game body has about 100.
-    pub density: f32,
-}
-
-/// One soft object.
+/// One soft object, whole or in pieces.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Body<D: Dim> {
-    grid: VoxelGrid<D>,
-    sharing: Sharing<D>,
-    pyramid: Pyramid<D>,
-    mesh: Mesh<D>,
-    blocks: Blocks<D>,
+    pub(crate) grid: VoxelGrid<D>,
+    pub(crate) sharing: Sharing<D>,
+    pub(crate) pyramid: Pyramid<D>,
+    pub(crate) mesh: Mesh<D>,
+    pub(crate) blocks: Blocks<D>,
+    pub(crate) pieces: Pieces,
+    law: Law,
     materials: Vec<Material>,
+    /// By what its stiffness was lowered so that the substep bears it; 1 = not at all.
+    softening: f64,
     /// Position [m], velocity [m/s] and mass [kg] of each node, by id.
-    position: Vec<Row>,
-    velocity: Vec<Row>,
+    pub(crate) position: Vec<Row>,
+    pub(crate) velocity: Vec<Row>,
     mass: Vec<f32>,
-}
-
-/// Why a body could not be made.
-#[derive(Clone, Debug, PartialEq)]
-pub enum BodyError {
-    /// The grid names a material that was not given.
-    MissingMaterial {
-        /// Number in the grid, from 1.
-        number: u8,
-    },
-    /// A density is not positive and finite.
-    BadDensity(f32),
-    /// The mesh is broken: a fault of this library.
-    Mesh(Defect),
-}
-
-impl std::fmt::Display for BodyError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::MissingMaterial { number } => {
-                write!(f, "the grid uses material {number}, which was not given")
-            }
-            Self::BadDensity(density) => {
-                write!(f, "the density {density} kg/m³ is not positive and finite")
-            }
-            Self::Mesh(defect) => write!(f, "the mesh is broken: {defect}"),
-        }
-    }
-}
-
-impl std::error::Error for BodyError {}
-
-impl From<Defect> for BodyError {
-    fn from(defect: Defect) -> Self {
-        Self::Mesh(defect)
-    }
+    /// One over the mass [1/kg]; 0 while a node is held or sleeps.
+    pub(crate) lightness: Vec<f32>,
+    held: Vec<bool>,
+    /// The nodes that move, ascending; stale after a remodelling.
+    pub(crate) awake: Vec<u32>,
+    pub(crate) awake_is_stale: bool,
+    /// Nodes where a crack can start or go on, ascending, and how far each is overstrained.
+    pub(crate) fronts: Vec<u32>,
+    pub(crate) damage: Vec<f32>,
+    /// Which faces of an element of level 0 are bare: bit 2 · axis + side; by element id.
+    pub(crate) bare: Vec<u8>,
+    /// Positions a moment ahead, where damped forces are evaluated.
+    pub(crate) ahead: Vec<Row>,
 }
 
 impl<D: Dim> Body<D> {
@@ -74,34 +51,49 @@ impl<D: Dim> Body<D> {
     /// corner at the origin.
     ///
     /// # Errors
-    /// [`BodyError`] when a material is missing or has no proper density.
-    pub fn new(grid: VoxelGrid<D>, materials: &[Material], law: Law) -> Result<Self, BodyError> {
-        let number = grid
-            .voxels()
-            .map(|voxel| grid.material(voxel))
-            .max()
-            .unwrap_or(0);
+    /// [`BodyError`] when a material is missing or has a field out of range.
+    pub fn new(grid: VoxelGrid<D>, materials: &[Material]) -> Result<Self, BodyError> {
+        Self::with(grid, materials, Law::default(), Grading::default())
+    }
+
+    /// As [`Body::new`], with a law and a grading of choice ([`Grading::Coarse`] cannot be cut).
+    ///
+    /// # Errors
+    /// As [`Body::new`].
+    pub fn with(
+        grid: VoxelGrid<D>,
+        materials: &[Material],
+        law: Law,
+        grading: Grading,
+    ) -> Result<Self, BodyError> {
+        let numbers = grid.voxels().map(|voxel| grid.material(voxel));
+        let number = numbers.max().unwrap_or(0);
         if number as usize > materials.len() {
             return Err(BodyError::MissingMaterial { number });
         }
-        let is_bad =
-            |material: &&Material| !(material.density.is_finite() && material.density > 0.0);
-        if let Some(material) = materials.iter().find(is_bad) {
-            return Err(BodyError::BadDensity(material.density));
+        for (index, material) in materials.iter().enumerate() {
+            material.check(index + 1)?;
         }
         let sharing = Sharing::new(&grid);
-        let pyramid = Pyramid::new(&grid, &sharing, Grading::Graded);
+        let pyramid = Pyramid::new(&grid, &sharing, grading);
         let mesh = Mesh::grade(&grid, &sharing, &pyramid)?;
-        let elasticities = materials
-            .iter()
-            .map(|material| material.elasticity)
-            .collect();
         let mut body = Self {
-            blocks: Blocks::new(law, elasticities, grid.voxel_size()),
+            blocks: Blocks::new(law, elasticities(materials, 1.0), grid.voxel_size()),
+            pieces: Pieces::new(&mesh),
+            law,
+            materials: materials.to_vec(),
+            softening: 1.0,
             position: Vec::new(),
             velocity: Vec::new(),
             mass: Vec::new(),
-            materials: materials.to_vec(),
+            lightness: Vec::new(),
+            held: Vec::new(),
+            awake: Vec::new(),
+            awake_is_stale: true,
+            fronts: Vec::new(),
+            damage: Vec::new(),
+            bare: Vec::new(),
+            ahead: Vec::new(),
             grid,
             sharing,
             pyramid,
@@ -112,75 +104,48 @@ impl<D: Dim> Body<D> {
             let at = node.at.map(|k| k as f32 * body.grid.voxel_size());
             body.position[id as usize] = [at[0], at[1], at[2], 0.0];
         }
-        let everything: Vec<u32> = body.mesh.elements().map(|(id, _)| id).collect();
-        body.blocks.update(&body.mesh, &body.grid, &[], &everything);
+        body.ahead.clone_from(&body.position);
+        body.seat_all_elements();
         let all: Vec<u32> = body.mesh.nodes().map(|(id, _)| id).collect();
         body.weigh(&all);
+        let voxels: Vec<Point> = body.grid.voxels().collect();
+        body.expose(&voxels);
+        body.find_fronts(&all);
         Ok(body)
     }
 
-    /// Moves the body on by `duration` seconds under `gravity` [m/s²], without contact or damping:
-    /// symplectic Euler, stable while `duration` ≤ 0.6 s / c (s the voxel, c the pressure wave).
-    pub fn advance(&mut self, duration: f32, gravity: [f32; 3]) {
-        self.blocks.evaluate(&self.position);
-        let nodes: Vec<u32> = self.mesh.nodes().map(|(id, _)| id).collect();
-        let lightness: Vec<f32> = self.mass.iter().map(|mass| 1.0 / mass).collect();
-        let mut pull = [gravity[0], gravity[1], gravity[2], 0.0];
-        pull[D::N..].fill(0.0);
-        self.blocks
-            .kick(&nodes, &lightness, duration, pull, &mut self.velocity);
-        for id in nodes {
+    /// The same body elsewhere.
+    pub fn moved(mut self, by: [f32; 3]) -> Self {
+        for row in self.position.iter_mut().chain(&mut self.ahead) {
             for axis in 0..D::N {
-                self.position[id as usize][axis] += duration * self.velocity[id as usize][axis];
+                row[axis] += by[axis];
             }
         }
+        self
     }
 
-    /// Releases the sharing of nodes at lattice points `at`, each between the octants of its mask
-    /// and the rest, and remodels around them. Positions and velocities pass over: linear
-    /// and angular momentum are kept.
-    ///
-    /// # Errors
-    /// A [`Defect`] when the mesh breaks: a fault of this library.
-    pub fn release(&mut self, at: &[(Point, u8)]) -> Result<(), Defect> {
-        let mut changed: Vec<Point> = Vec::new();
-        for &(point, side) in at {
-            if self.sharing.release(point, side) {
-                changed.push(point);
-            }
+    /// The same body, every node moving at `velocity` [m/s].
+    pub fn thrown(mut self, velocity: [f32; 3]) -> Self {
+        for row in &mut self.velocity {
+            row[..D::N].copy_from_slice(&velocity[..D::N]);
         }
-        if changed.is_empty() {
-            return Ok(());
-        }
-        let near = |points: &[Point]| -> Vec<Point> {
-            points
-                .iter()
-                .flat_map(|&point| neighbourhood::<D>(point, 1))
-                .collect()
-        };
-        let spread = self.sharing.normalise(near(&changed));
-        changed.extend(spread);
-        let born = self
-            .pyramid
-            .refine(&self.grid, &self.sharing, near(&changed).into_iter());
-        let remodelled =
-            self.mesh
-                .remodel(&self.grid, &self.sharing, &self.pyramid, &changed, &born)?;
-        let touched = self.touched_by(&remodelled);
-        let is_new = |id: &u32| remodelled.inherited.iter().any(|new| new.node == *id);
-        let old: Vec<u32> = touched.iter().filter(|id| !is_new(id)).copied().collect();
-        let old: Vec<u32> = old.iter().chain(&remodelled.abandoned).copied().collect();
-        let centre = centre_of(self.states(&old).map(|(x, _, mass)| (x, mass)));
-        let before = Momentum::of(self.states(&old), centre);
+        self
+    }
 
-        self.inherit(&remodelled.inherited);
-        let Remodelled {
-            removed, seated, ..
-        } = &remodelled;
-        self.blocks.update(&self.mesh, &self.grid, removed, seated);
-        self.weigh(&touched);
-        self.restore_momentum(&touched, before, centre);
-        Ok(())
+    /// Moves a free body on by `duration` seconds under `gravity` [m/s²], without contact or
+    /// damping: symplectic Euler, stable while `duration` ≤ 0.6 s / c (s the voxel, c the wave).
+    pub fn advance(&mut self, duration: f32, gravity: [f32; 3]) {
+        self.push(duration, gravity);
+        self.drift(duration, 0.0);
+    }
+
+    /// Holds a node: from now on it keeps the velocity it is given, whatever pulls at it.
+    ///
+    /// # Panics
+    /// When the id was never used.
+    pub fn hold(&mut self, id: u32) {
+        self.held[id as usize] = true;
+        self.lightness[id as usize] = 0.0;
     }
 
     /// The voxels it was made from.
@@ -198,27 +163,37 @@ impl<D: Dim> Body<D> {
         &self.mesh
     }
 
+    /// Its pieces.
+    pub fn pieces(&self) -> &Pieces {
+        &self.pieces
+    }
+
+    /// Its materials, number 1 first.
+    pub fn materials(&self) -> &[Material] {
+        &self.materials
+    }
+
+    /// The material of an element.
+    pub fn material(&self, element: &Element) -> &Material {
+        let child = element.children.trailing_zeros() as usize;
+        let voxel = match element.cell.level {
+            0 => element.cell.at,
+            _ => element.cell.child(child).first_voxel(),
+        };
+        &self.materials[self.grid.material(voxel) as usize - 1]
+    }
+
     /// Position [m], velocity [m/s] and mass [kg] of a node.
     ///
     /// # Panics
     /// When the id was never used.
     pub fn node_state(&self, id: u32) -> ([f32; 3], [f32; 3], f32) {
         let id = id as usize;
-        let three = |row: Row| [row[0], row[1], row[2]];
         (
             three(self.position[id]),
             three(self.velocity[id]),
             self.mass[id],
         )
-    }
-
-    /// The elastic force [N] on a node, as of the start of the last step.
-    ///
-    /// # Panics
-    /// When the id was never used.
-    pub fn force_on(&self, id: u32) -> [f32; 3] {
-        let force = self.blocks.force_on(id);
-        [force[0], force[1], force[2]]
     }
 
     /// Places a node at `position` [m] with `velocity` [m/s]; what is not finite is refused.
@@ -227,94 +202,234 @@ impl<D: Dim> Body<D> {
         if finite {
             self.position[id as usize][..D::N].copy_from_slice(&position[..D::N]);
             self.velocity[id as usize][..D::N].copy_from_slice(&velocity[..D::N]);
+            self.ahead[id as usize] = self.position[id as usize];
         }
         finite
     }
 
-    fn make_room(&mut self) {
-        let capacity = self.mesh.node_capacity();
-        self.position.resize(capacity, [0.0; 4]);
-        self.velocity.resize(capacity, [0.0; 4]);
-        self.mass.resize(capacity, 0.0);
+    /// The elastic force [N] on a node, as of the start of the last step.
+    ///
+    /// # Panics
+    /// When the id was never used.
+    pub fn force_on(&self, id: u32) -> [f32; 3] {
+        three(self.blocks.force_on(id))
     }
 
-    /// New nodes take over the weighted state of old ones, all read before any is written.
-    fn inherit(&mut self, inherited: &[Inheritance]) {
-        let mean = |rows: &[Row], from: &[(u32, f64)]| {
-            let mut sum = [0.0f64; 4];
-            for &(old, weight) in from {
-                for axis in 0..D::N {
-                    sum[axis] += weight * f64::from(rows[old as usize][axis]);
-                }
-            }
-            sum.map(|component| component as f32)
-        };
-        let states: Vec<(Row, Row)> = inherited
-            .iter()
-            .map(|new| {
-                (
-                    mean(&self.position, &new.from),
-                    mean(&self.velocity, &new.from),
-                )
-            })
-            .collect();
-        self.make_room();
-        for (new, (position, velocity)) in inherited.iter().zip(states) {
-            self.position[new.node as usize] = position;
-            self.velocity[new.node as usize] = velocity;
+    /// Linear and angular momentum of everything, about the origin.
+    pub fn momentum(&self) -> Momentum {
+        let ids: Vec<u32> = self.mesh.nodes().map(|(id, _)| id).collect();
+        Momentum::of(self.states(&ids), [0.0; 3])
+    }
+
+    /// Energy of motion [J].
+    pub fn kinetic_energy(&self) -> f64 {
+        let states = self.mesh.nodes().map(|(id, _)| {
+            let velocity = self.velocity[id as usize].map(f64::from);
+            0.5 * f64::from(self.mass[id as usize]) * dot(velocity, velocity)
+        });
+        states.sum()
+    }
+
+    /// Mass [kg].
+    pub fn total_mass(&self) -> f64 {
+        let ids = self.mesh.nodes();
+        ids.map(|(id, _)| f64::from(self.mass[id as usize])).sum()
+    }
+
+    /// The longest substep that its stiffest material bears [s]: 0.6 s / c.
+    pub fn longest_substep(&self) -> f64 {
+        let fastest = self.materials.iter().map(Material::wave_speed);
+        let fastest = fastest.fold(0.0, f64::max) * self.softening.sqrt();
+        0.6 * f64::from(self.grid.voxel_size()) / fastest
+    }
+
+    /// The factor by which its Young's modulus was lowered so that its substep bears it.
+    pub fn softening(&self) -> f64 {
+        self.softening
+    }
+
+    /// Lowers the stiffness so that a substep of `duration` [s] is stable.
+    pub(crate) fn soften_for(&mut self, duration: f64) {
+        let ratio = self.longest_substep() / duration;
+        if ratio >= 1.0 {
+            return;
+        }
+        self.softening *= ratio * ratio;
+        let elasticities = elasticities(&self.materials, self.softening);
+        self.blocks = Blocks::new(self.law, elasticities, self.grid.voxel_size());
+        self.seat_all_elements();
+    }
+
+    /// Adds elastic forces and gravity over `duration` [s] to the velocities.
+    pub(crate) fn push(&mut self, duration: f32, gravity: [f32; 3]) {
+        self.refresh_awake();
+        self.blocks.evaluate(&self.ahead);
+        let mut pull = [gravity[0], gravity[1], gravity[2], 0.0];
+        pull[D::N..].fill(0.0);
+        let velocity = &mut self.velocity;
+        self.blocks
+            .kick(&self.awake, &self.lightness, duration, pull, velocity);
+    }
+
+    /// Moves every awake node by its velocity, and looks `lead` seconds ahead for the next forces.
+    pub(crate) fn drift(&mut self, duration: f32, lead: f32) {
+        for &id in &self.awake {
+            let node = id as usize;
+            let velocity = self.velocity[node];
+            let position = plus(self.position[node], scaled(velocity, duration));
+            self.position[node] = position;
+            self.ahead[node] = plus(position, scaled(velocity, lead));
         }
     }
 
-    /// The nodes of all elements that a remodelling made or changed, ascending.
-    fn touched_by(&self, remodelled: &Remodelled) -> Vec<u32> {
-        let elements = remodelled
-            .seated
-            .iter()
-            .filter_map(|&id| self.mesh.element(id));
-        let mut nodes: Vec<u32> = elements
-            .flat_map(|element| element.nodes.iter().copied())
-            .collect();
-        nodes.sort_unstable();
-        nodes.dedup();
-        nodes
+    /// Wakes or puts to sleep all pieces whose number is marked.
+    pub(crate) fn set_asleep(&mut self, marked: &[bool], asleep: bool) {
+        for (id, element) in self.mesh.elements() {
+            if !marked[self.pieces.of_element(id) as usize] {
+                continue;
+            }
+            self.blocks.set_asleep(id, asleep);
+            for &node in &element.nodes {
+                let node = node as usize;
+                if asleep {
+                    self.velocity[node] = [0.0; 4];
+                    self.ahead[node] = self.position[node];
+                }
+                let free = !asleep && !self.held[node];
+                self.lightness[node] = if free { 1.0 / self.mass[node] } else { 0.0 };
+            }
+        }
+        for (piece, _) in self
+            .pieces
+            .list
+            .iter_mut()
+            .zip(marked)
+            .filter(|(_, marked)| **marked)
+        {
+            piece.asleep = asleep;
+            piece.still = 0.0;
+        }
+        self.awake_is_stale = true;
     }
 
-    fn states<'a>(&'a self, nodes: &'a [u32]) -> impl Iterator<Item = (Row, Row, f32)> + 'a {
+    /// Brings the list of moving nodes up to date.
+    pub(crate) fn refresh_awake(&mut self) {
+        if !self.awake_is_stale {
+            return;
+        }
+        self.awake_is_stale = false;
+        let mut awake = std::mem::take(&mut self.awake);
+        awake.clear();
+        let nodes = self.mesh.nodes().map(|(id, _)| id);
+        awake.extend(nodes.filter(|&id| !self.pieces.sleeps(id)));
+        self.awake = awake;
+    }
+
+    pub(crate) fn make_room(&mut self) {
+        let capacity = self.mesh.node_capacity();
+        self.position.resize(capacity, [0.0; 4]);
+        self.ahead.resize(capacity, [0.0; 4]);
+        self.velocity.resize(capacity, [0.0; 4]);
+        self.mass.resize(capacity, 0.0);
+        self.lightness.resize(capacity, 0.0);
+        self.held.resize(capacity, false);
+        self.damage.resize(capacity, 0.0);
+        self.bare.resize(self.mesh.element_capacity(), 0);
+        self.pieces.make_room(&self.mesh);
+    }
+
+    /// A new node is held when every node it comes from was.
+    pub(crate) fn inherit_hold(&mut self, node: u32, from: &[(u32, f64)]) {
+        self.held[node as usize] = from.iter().all(|&(old, _)| self.held[old as usize]);
+    }
+
+    pub(crate) fn states<'a>(
+        &'a self,
+        nodes: &'a [u32],
+    ) -> impl Iterator<Item = (Row, Row, f32)> + 'a {
         let state = |id: usize| (self.position[id], self.velocity[id], self.mass[id]);
         nodes.iter().map(move |&id| state(id as usize))
     }
 
-    /// Adds the rigid motion that gives the nodes the momentum `before` about `centre` again.
-    /// Interpolation keeps linear momentum, but the spin inside an element is lost when new nodes
-    /// stand between its corners, and their masses move to new places.
-    fn restore_momentum(&mut self, nodes: &[u32], before: Momentum, centre: [f64; 3]) {
-        if nodes.is_empty() {
-            return;
-        }
-        let missing = before.less(Momentum::of(self.states(nodes), centre));
-        let places = self.states(nodes).map(|(x, _, mass)| (x, mass));
-        let motion = RigidMotion::with_momentum(places, centre, missing);
-        for &id in nodes {
-            let change = motion.at(self.position[id as usize]);
-            for axis in 0..D::N {
-                self.velocity[id as usize][axis] += change[axis] as f32;
-            }
-        }
-    }
-
     /// Adds up the masses of nodes from the elements that carry them.
-    fn weigh(&mut self, nodes: &[u32]) {
+    pub(crate) fn weigh(&mut self, nodes: &[u32]) {
         let half = f64::from(self.grid.voxel_size()) * 0.5;
         for &id in nodes {
             let mut mass = 0.0;
             for (element, place) in self.mesh.carriers_of(id) {
-                let material = self.grid.material(self.mesh.voxels(element)[0]);
-                let density = f64::from(self.materials[material as usize - 1].density);
+                let density = f64::from(self.material(element).density);
                 let child = half * f64::from(element.cell.width());
                 let volume = (0..D::N).fold(1.0, |volume, _| volume * child);
                 mass += density * volume * self.mesh.stencil(element).volumes[place];
             }
-            self.mass[id as usize] = mass as f32;
+            let node = id as usize;
+            self.mass[node] = mass as f32;
+            let free = !self.held[node] && !self.pieces.sleeps(id);
+            self.lightness[node] = if free { 1.0 / self.mass[node] } else { 0.0 };
         }
     }
+
+    /// Notes which faces of the elements of level 0 on these voxels are bare.
+    pub(crate) fn expose(&mut self, voxels: &[Point]) {
+        for &voxel in voxels.iter().filter(|&&voxel| self.grid.is_solid(voxel)) {
+            let owner = self.mesh.owner(voxel).expect("a solid voxel has an owner");
+            let element = self.mesh.element(owner).expect("owners are alive");
+            if element.cell.level > 0 {
+                continue;
+            }
+            let mut bare = 0;
+            for axis in 0..D::N {
+                for side in 0..2 {
+                    if !self.is_face_closed(voxel, axis, side) {
+                        bare |= 1 << (2 * axis + side);
+                    }
+                }
+            }
+            self.bare[owner as usize] = bare;
+        }
+    }
+
+    /// Brings the list of front nodes up to date at `nodes`.
+    pub(crate) fn find_fronts(&mut self, nodes: &[u32]) {
+        for &id in nodes {
+            let node = self.mesh.node(id);
+            let several = node.group & (node.group - 1) != 0;
+            let alive = self.mesh.is_alive(id);
+            let is_front = alive && several && self.sharing.is_front(node.at);
+            match (self.fronts.binary_search(&id), is_front) {
+                (Ok(place), false) => {
+                    self.fronts.remove(place);
+                }
+                (Err(place), true) => self.fronts.insert(place, id),
+                _ => {}
+            }
+        }
+    }
+
+    fn is_face_closed(&self, voxel: Point, axis: usize, side: usize) -> bool {
+        let mut at = voxel;
+        at[axis] += side as i32;
+        // Seen from the low corner of the face, the voxel stands on the high side of every axis
+        // but, where the face is its own high one, of this one.
+        let octant = D::CORNERS - 1 - (side << axis);
+        debug_assert_eq!(voxel_around::<D>(at, octant), voxel);
+        self.sharing.is_closed(at, octant, axis)
+    }
+
+    fn seat_all_elements(&mut self) {
+        let everything: Vec<u32> = self.mesh.elements().map(|(id, _)| id).collect();
+        self.blocks.update(&self.mesh, &self.grid, &[], &everything);
+    }
+}
+
+fn elasticities(materials: &[Material], softening: f64) -> Vec<Elasticity> {
+    let soft = |material: &Material| Elasticity {
+        young: material.elasticity.young * softening,
+        ..material.elasticity
+    };
+    materials.iter().map(soft).collect()
+}
+
+fn three(row: Row) -> [f32; 3] {
+    [row[0], row[1], row[2]]
 }

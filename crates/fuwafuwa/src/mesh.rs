@@ -224,6 +224,16 @@ impl<D: Dim> Mesh<D> {
         self.nodes.len()
     }
 
+    /// One more than the highest element id ever used: the length of an array indexed by element.
+    pub fn element_capacity(&self) -> usize {
+        self.elements.len()
+    }
+
+    /// Whether some element carries the node with this id.
+    pub fn is_alive(&self, id: u32) -> bool {
+        self.carriers[id as usize] > 0
+    }
+
     /// The node with an id.
     ///
     /// # Panics

@@ -2,18 +2,12 @@
 //!
 //! A changed hash is a changed simulation: say why in the commit.
 
-use fuwafuwa::law::{Elasticity, Law};
 use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, VoxelGrid};
 
 /// A ball that is squashed, let go, cut while it swings and followed for half a second.
 fn hash_of_a_cut_ball<D: Dim>(n: i32) -> u64 {
-    let elasticity = Elasticity::new(5000.0, 0.3).unwrap();
-    let material = Material {
-        elasticity,
-        density: 100.0,
-    };
     let grid = VoxelGrid::<D>::ball(n as usize, 1.0).unwrap();
-    let mut body = Body::new(grid, &[material], Law::PatchExact).unwrap();
+    let mut body = Body::new(grid, &[Material::default()]).unwrap();
     let nodes: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
     for id in nodes {
         let (x, _, _) = body.node_state(id);

@@ -1,20 +1,13 @@
 //! Bodies that move: forces against the reference law, momentum, spin and energy.
 #![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
 
-use fuwafuwa::body::BodyError;
-use fuwafuwa::law::{Elasticity, Law, forces};
-use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, VoxelGrid};
-
-const SOFT: Material = Material {
-    elasticity: Elasticity {
-        young: 5000.0,
-        poisson: 0.3,
-    },
-    density: 100.0,
-};
+use fuwafuwa::law::{Law, forces};
+use fuwafuwa::pyramid::Grading;
+use fuwafuwa::{Body, BodyError, Dim, Dim2, Dim3, Material, VoxelGrid};
 
 fn ball<D: Dim>(n: usize, law: Law) -> Body<D> {
-    Body::new(VoxelGrid::ball(n, 1.0).unwrap(), &[SOFT], law).unwrap()
+    let grid = VoxelGrid::ball(n, 1.0).unwrap();
+    Body::with(grid, &[Material::default()], law, Grading::Graded).unwrap()
 }
 
 /// Sets every node by its rest position [m], relative to the middle of a body 1 m wide.
@@ -79,7 +72,7 @@ fn check_forces_against_the_law<D: Dim>(law: Law) {
         let size = f64::from(element.cell.width()) / 16.0;
         let all = forces(
             law,
-            SOFT.elasticity,
+            Material::default().elasticity,
             body.mesh().stencil(element),
             size,
             &positions,
@@ -180,14 +173,18 @@ fn releases_keep_momentum() {
 #[test]
 fn bad_bodies_are_refused() {
     let grid = || VoxelGrid::<Dim2>::cube(2, 1.0).unwrap();
-    let missing = Body::new(grid(), &[], Law::PatchExact).map(|_| ());
+    let missing = Body::new(grid(), &[]).map(|_| ());
     assert_eq!(missing, Err(BodyError::MissingMaterial { number: 1 }));
     let weightless = Material {
         density: 0.0,
-        ..SOFT
+        ..Material::default()
     };
-    let refused = Body::new(grid(), &[weightless], Law::PatchExact).map(|_| ());
-    assert_eq!(refused, Err(BodyError::BadDensity(0.0)));
-    let mut body = Body::new(grid(), &[SOFT], Law::PatchExact).unwrap();
+    let refused = Body::new(grid(), &[weightless]).map(|_| ());
+    let message = refused.unwrap_err().to_string();
+    assert_eq!(
+        message,
+        "material 1: density = 0 must be positive and finite"
+    );
+    let mut body = Body::new(grid(), &[Material::default()]).unwrap();
     assert!(!body.set_node_state(0, [f32::NAN, 0.0, 0.0], [0.0; 3]));
 }

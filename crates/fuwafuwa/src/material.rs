@@ -1,0 +1,134 @@
+//! What a voxel is made of, and why a body could not be made of it.
+
+use crate::law::{BadElasticity, Elasticity};
+use crate::mesh::Defect;
+use std::fmt;
+
+/// What a voxel is made of.
+#[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Material {
+    /// Stiffness and bulging.
+    pub elasticity: Elasticity,
+    /// Density [kg/m³], in 2D of a sheet 1 m deep; a game body has about 100.
+    pub density: f32,
+    /// Damping ratio of a body's slowest own swing: 0 rings on for ever, 1 creeps back; about 0.08.
+    pub damping: f32,
+    /// Coulomb friction between pieces, 0 to 2; about 0.4.
+    pub friction: f32,
+    /// Tension that a smooth surface bears [Pa]; infinite = it never tears. A fifth of Young's
+    /// modulus gives a body that can be torn by hand.
+    pub strength: f32,
+    /// What a crack tip bears: tension times the root of the distance over which it is spread
+    /// [Pa √m]. The tip of a crack is as sharp as a voxel is small, so its tension grows with
+    /// 1/√voxel and must be compared with toughness/√voxel: that makes a body tear at the same
+    /// load whatever its resolution [Griffith 1921].
+    pub toughness: f32,
+}
+
+impl Default for Material {
+    /// A soft body for a game: Y = 5000 Pa, ν = 0.3, 100 kg/m³, torn by a firm push.
+    fn default() -> Self {
+        Self {
+            elasticity: Elasticity {
+                young: 5000.0,
+                poisson: 0.3,
+            },
+            density: 100.0,
+            damping: 0.08,
+            friction: 0.4,
+            strength: 1000.0,
+            toughness: 250.0,
+        }
+    }
+}
+
+/// Why a body could not be made.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BodyError {
+    /// The grid names a material that was not given.
+    MissingMaterial {
+        /// Number in the grid, from 1.
+        number: u8,
+    },
+    /// A field of a material is out of range.
+    BadMaterial {
+        /// Number in the grid, from 1.
+        number: usize,
+        /// The field.
+        field: &'static str,
+        /// What it was.
+        given: f32,
+        /// What was expected.
+        expected: &'static str,
+    },
+    /// The elastic constants of a material are out of range.
+    Elasticity {
+        /// Number in the grid, from 1.
+        number: usize,
+        /// What is wrong with them.
+        reason: BadElasticity,
+    },
+    /// The mesh is broken: a fault of this library.
+    Mesh(Defect),
+}
+
+impl fmt::Display for BodyError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::MissingMaterial { number } => {
+                write!(f, "the grid uses material {number}, which was not given")
+            }
+            Self::BadMaterial {
+                number,
+                field,
+                given,
+                expected,
+            } => write!(f, "material {number}: {field} = {given} must be {expected}"),
+            Self::Elasticity { number, reason } => write!(f, "material {number}: {reason}"),
+            Self::Mesh(defect) => write!(f, "the mesh is broken: {defect}"),
+        }
+    }
+}
+
+impl std::error::Error for BodyError {}
+
+impl From<Defect> for BodyError {
+    fn from(defect: Defect) -> Self {
+        Self::Mesh(defect)
+    }
+}
+
+impl Material {
+    /// Checks every field; `number` says in the error which material it is.
+    ///
+    /// # Errors
+    /// [`BodyError`] names the first field that is out of range.
+    pub fn check(&self, number: usize) -> Result<(), BodyError> {
+        let Elasticity { young, poisson } = self.elasticity;
+        Elasticity::new(young, poisson)
+            .map_err(|reason| BodyError::Elasticity { number, reason })?;
+        let within = |field, given: f32, low: f32, high: f32, expected| {
+            let bad = BodyError::BadMaterial {
+                number,
+                field,
+                given,
+                expected,
+            };
+            (given >= low && given <= high).then_some(()).ok_or(bad)
+        };
+        let (tiny, huge) = (f32::MIN_POSITIVE, f32::MAX);
+        within("density", self.density, tiny, huge, "positive and finite")?;
+        within("damping", self.damping, 0.0, 1.0, "0 to 1")?;
+        within("friction", self.friction, 0.0, 2.0, "0 to 2")?;
+        let infinite = f32::INFINITY;
+        within("strength", self.strength, tiny, infinite, "positive")?;
+        within("toughness", self.toughness, tiny, infinite, "positive")
+    }
+
+    /// Speed of a pressure wave [m/s].
+    pub fn wave_speed(&self) -> f64 {
+        let stiffness = self.elasticity.lame() + 2.0 * self.elasticity.shear_modulus();
+        (stiffness / f64::from(self.density)).sqrt()
+    }
+}

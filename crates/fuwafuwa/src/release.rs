@@ -1,0 +1,184 @@
+//! What a release of shared nodes does to a body: connections, cells, elements, state, pieces.
+
+use crate::body::Body;
+use crate::dim::{Dim, Point, neighbourhood, voxel_around};
+use crate::mesh::{Defect, Inheritance, Remodelled};
+use crate::momentum::{Momentum, RigidMotion, centre_of};
+use crate::solve::Row;
+use std::collections::BTreeMap;
+
+impl<D: Dim> Body<D> {
+    /// Releases the sharing of nodes at lattice points, each between the octants of its mask and
+    /// the rest, and remodels around them [Endo 2004, §3.2]. Positions and velocities pass over;
+    /// linear and angular momentum are kept. Returns the pieces that came off.
+    ///
+    /// # Errors
+    /// A [`Defect`] when the mesh breaks: a fault of this library.
+    pub fn release(&mut self, at: &[(Point, u8)]) -> Result<Vec<u32>, Defect> {
+        let mut changed: Vec<Point> = Vec::new();
+        for &(point, side) in at {
+            if self.sharing.release(point, side) {
+                changed.push(point);
+            }
+        }
+        if changed.is_empty() {
+            return Ok(Vec::new());
+        }
+        changed.extend(self.sharing.normalise(around::<D>(&changed)));
+        let near = around::<D>(&changed).into_iter();
+        let born = self.pyramid.refine(&self.grid, &self.sharing, near);
+        let remodelled =
+            self.mesh
+                .remodel(&self.grid, &self.sharing, &self.pyramid, &changed, &born)?;
+        self.pass_on(&remodelled);
+        let beside = beside::<D>(&changed);
+        self.expose(&beside);
+        let touching = beside.iter().filter_map(|&voxel| self.mesh.owner(voxel));
+        let mut elements: Vec<u32> = touching.collect();
+        elements.sort_unstable();
+        elements.dedup();
+        self.refresh_fronts(&elements, &remodelled);
+        self.awake_is_stale = true;
+        Ok(self.pieces.part(&self.mesh, &elements))
+    }
+
+    /// Gives new nodes and elements the state of those they come from.
+    fn pass_on(&mut self, remodelled: &Remodelled) {
+        let touched = self.touched_by(remodelled);
+        let is_new = |id: u32| remodelled.inherited.iter().any(|new| new.node == id);
+        // Held nodes keep their velocity; the rest of each piece keeps its momentum.
+        let free = |id: &u32| self.lightness[*id as usize] > 0.0;
+        let stay = touched.iter().copied().filter(|&id| !is_new(id));
+        let old = stay.chain(remodelled.abandoned.iter().copied());
+        let old = self.by_piece(old.filter(free));
+        let before: BTreeMap<u32, ([f64; 3], Momentum)> = old
+            .iter()
+            .map(|(&piece, nodes)| {
+                let centre = centre_of(self.states(nodes).map(|(x, _, mass)| (x, mass)));
+                (piece, (centre, Momentum::of(self.states(nodes), centre)))
+            })
+            .collect();
+
+        self.inherit(&remodelled.inherited);
+        for &id in &remodelled.seated {
+            let element = self.mesh.element(id).expect("seated elements are alive");
+            self.pieces.adopt(id, &element.nodes);
+            self.bare[id as usize] = 0;
+        }
+        let Remodelled {
+            removed, seated, ..
+        } = remodelled;
+        self.blocks.update(&self.mesh, &self.grid, removed, seated);
+        let level_0 = |id: &&u32| {
+            let element = self.mesh.element(**id);
+            element.is_some_and(|element| element.cell.level == 0)
+        };
+        let fresh = seated
+            .iter()
+            .filter(level_0)
+            .filter_map(|&id| self.mesh.element(id));
+        let fresh: Vec<Point> = fresh.map(|element| element.cell.at).collect();
+        self.expose(&fresh);
+        self.weigh(&touched);
+        let free = |id: &u32| self.lightness[*id as usize] > 0.0;
+        let now = self.by_piece(touched.iter().copied().filter(free));
+        for (piece, nodes) in &now {
+            if let Some(&(centre, momentum)) = before.get(piece) {
+                self.restore_momentum(nodes, momentum, centre);
+            }
+        }
+    }
+
+    fn refresh_fronts(&mut self, elements: &[u32], remodelled: &Remodelled) {
+        let mut nodes = self.touched_by(remodelled);
+        for &id in elements {
+            let element = self.mesh.element(id).expect("owners are alive");
+            nodes.extend(&element.nodes);
+        }
+        nodes.extend(&remodelled.abandoned);
+        nodes.sort_unstable();
+        nodes.dedup();
+        self.find_fronts(&nodes);
+    }
+
+    fn by_piece(&self, nodes: impl Iterator<Item = u32>) -> BTreeMap<u32, Vec<u32>> {
+        let mut sorted: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+        for id in nodes {
+            sorted.entry(self.pieces.of_node(id)).or_default().push(id);
+        }
+        sorted
+    }
+
+    /// New nodes take over the weighted state of old ones, all read before any is written.
+    fn inherit(&mut self, inherited: &[Inheritance]) {
+        let mean = |rows: &[Row], from: &[(u32, f64)]| {
+            let mut sum = [0.0f64; 4];
+            for &(old, weight) in from {
+                for axis in 0..D::N {
+                    sum[axis] += weight * f64::from(rows[old as usize][axis]);
+                }
+            }
+            sum.map(|component| component as f32)
+        };
+        let state = |new: &Inheritance| {
+            let (position, velocity) = (&self.position, &self.velocity);
+            (mean(position, &new.from), mean(velocity, &new.from))
+        };
+        let states: Vec<(Row, Row)> = inherited.iter().map(state).collect();
+        self.make_room();
+        for (new, (position, velocity)) in inherited.iter().zip(states) {
+            let node = new.node as usize;
+            self.position[node] = position;
+            self.ahead[node] = position;
+            self.velocity[node] = velocity;
+            self.damage[node] = 0.0;
+            self.pieces.inherit(new.node, new.from[0].0);
+            self.inherit_hold(new.node, &new.from);
+        }
+    }
+
+    /// The nodes of all elements that a remodelling made or changed, ascending.
+    fn touched_by(&self, remodelled: &Remodelled) -> Vec<u32> {
+        let elements = remodelled
+            .seated
+            .iter()
+            .filter_map(|&id| self.mesh.element(id));
+        let mut nodes: Vec<u32> = elements
+            .flat_map(|element| element.nodes.iter().copied())
+            .collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+
+    /// Adds the rigid motion that gives the nodes the momentum `before` about `centre` again.
+    /// Interpolation keeps linear momentum, but the spin inside an element is lost when new nodes
+    /// stand between its corners, and their masses move to new places.
+    fn restore_momentum(&mut self, nodes: &[u32], before: Momentum, centre: [f64; 3]) {
+        let missing = before.less(Momentum::of(self.states(nodes), centre));
+        let places = self.states(nodes).map(|(x, _, mass)| (x, mass));
+        let motion = RigidMotion::with_momentum(places, centre, missing);
+        for &id in nodes {
+            let change = motion.at(self.position[id as usize]);
+            for axis in 0..D::N {
+                self.velocity[id as usize][axis] += change[axis] as f32;
+            }
+        }
+    }
+}
+
+fn around<D: Dim>(points: &[Point]) -> Vec<Point> {
+    let near = |&point: &Point| neighbourhood::<D>(point, 1);
+    points.iter().flat_map(near).collect()
+}
+
+/// The voxels around the given points, in ascending order.
+fn beside<D: Dim>(points: &[Point]) -> Vec<Point> {
+    let mut voxels: Vec<Point> = points
+        .iter()
+        .flat_map(|&point| (0..D::CORNERS).map(move |octant| voxel_around::<D>(point, octant)))
+        .collect();
+    voxels.sort_unstable_by_key(|&[x, y, z]| [z, y, x]);
+    voxels.dedup();
+    voxels
+}

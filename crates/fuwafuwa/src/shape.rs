@@ -1,0 +1,217 @@
+//! Rigid shapes as signed distances: floors, walls, bars, balls.
+//!
+//! The same shapes serve both dimensions. In 2D the third coordinate is 0 everywhere, so that a
+//! ball is a disc and a capsule a bar with round ends.
+
+use crate::vector::{dot, length, minus, plus, scaled};
+use std::fmt;
+
+/// A vector or a place in space; the third coordinate is 0 in 2D.
+pub type Vector = [f32; 3];
+
+/// A rigid shape.
+#[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Shape {
+    /// Everything below a plane (2D: a line).
+    HalfSpace {
+        /// Points out of the solid; length 1.
+        normal: Vector,
+        /// Distance of the surface from the origin along the normal [m].
+        offset: f32,
+    },
+    /// An upright box.
+    Box {
+        /// Its middle [m].
+        centre: Vector,
+        /// Half of its width on each axis [m]; the third one does not count in 2D.
+        half: Vector,
+    },
+    /// All points within `radius` of a segment: a bar with round ends.
+    Capsule {
+        /// One end [m].
+        from: Vector,
+        /// The other end [m].
+        to: Vector,
+        /// Half of its thickness [m].
+        radius: f32,
+    },
+    /// A ball; in 2D a disc.
+    Ball {
+        /// Its middle [m].
+        centre: Vector,
+        /// Its radius [m].
+        radius: f32,
+    },
+}
+
+/// A shape that is not one: which field, and what it must be.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct BadShape {
+    /// The field.
+    pub field: &'static str,
+    /// What was expected.
+    pub expected: &'static str,
+}
+
+impl fmt::Display for BadShape {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "the shape's {} must be {}", self.field, self.expected)
+    }
+}
+
+impl std::error::Error for BadShape {}
+
+impl Shape {
+    /// The half-space with the given outward normal, of any length, and surface through `point`.
+    pub fn half_space(normal: Vector, point: Vector) -> Self {
+        let normal = scaled(normal, 1.0 / length(normal));
+        let offset = dot(normal, point);
+        Self::HalfSpace { normal, offset }
+    }
+
+    /// Checks that every number is finite and every size positive.
+    ///
+    /// # Errors
+    /// [`BadShape`] names the first field that is wrong.
+    pub fn check(&self) -> Result<(), BadShape> {
+        let finite = |field, v: Vector| {
+            let expected = "finite";
+            let good = v.iter().all(|k| k.is_finite());
+            good.then_some(()).ok_or(BadShape { field, expected })
+        };
+        let positive = |field, k: f32| {
+            let expected = "positive and finite";
+            let good = k.is_finite() && k > 0.0;
+            good.then_some(()).ok_or(BadShape { field, expected })
+        };
+        match *self {
+            Self::HalfSpace { normal, offset } => {
+                finite("offset", [offset; 3])?;
+                let expected = "of length 1";
+                let good = (length(normal) - 1.0).abs() < 1e-3;
+                let field = "normal";
+                good.then_some(()).ok_or(BadShape { field, expected })
+            }
+            Self::Box { centre, half } => {
+                finite("centre", centre)?;
+                half.iter().try_for_each(|&k| positive("half", k))
+            }
+            Self::Capsule { from, to, radius } => {
+                finite("from", from)?;
+                finite("to", to)?;
+                positive("radius", radius)
+            }
+            Self::Ball { centre, radius } => {
+                finite("centre", centre)?;
+                positive("radius", radius)
+            }
+        }
+    }
+
+    /// Distance of a point from the surface [m], negative inside, and the outward normal there.
+    #[inline]
+    pub fn distance(&self, point: Vector) -> (f32, Vector) {
+        match *self {
+            Self::HalfSpace { normal, offset } => (dot(normal, point) - offset, normal),
+            Self::Box { centre, half } => distance_from_box(minus(point, centre), half),
+            Self::Capsule { from, to, radius } => {
+                let (axis, reach) = (minus(to, from), minus(point, from));
+                let along = dot(axis, reach) / dot(axis, axis).max(1e-12);
+                let nearest = scaled(axis, along.clamp(0.0, 1.0));
+                let (distance, normal) = away(minus(reach, nearest));
+                (distance - radius, normal)
+            }
+            Self::Ball { centre, radius } => {
+                let (distance, normal) = away(minus(point, centre));
+                (distance - radius, normal)
+            }
+        }
+    }
+
+    /// The same shape moved `by` [m].
+    pub fn moved(self, by: Vector) -> Self {
+        match self {
+            Self::HalfSpace { normal, offset } => Self::HalfSpace {
+                normal,
+                offset: offset + dot(normal, by),
+            },
+            Self::Box { centre, half } => Self::Box {
+                centre: plus(centre, by),
+                half,
+            },
+            Self::Capsule { from, to, radius } => Self::Capsule {
+                from: plus(from, by),
+                to: plus(to, by),
+                radius,
+            },
+            Self::Ball { centre, radius } => Self::Ball {
+                centre: plus(centre, by),
+                radius,
+            },
+        }
+    }
+}
+
+/// Length and direction of a vector; upwards where it has none.
+#[inline]
+fn away(v: Vector) -> (f32, Vector) {
+    let distance = length(v);
+    if distance > 1e-9 {
+        (distance, scaled(v, 1.0 / distance))
+    } else {
+        (0.0, [0.0, 1.0, 0.0])
+    }
+}
+
+/// Inside, the way out is through the nearest side; outside, away from the nearest point.
+#[inline]
+fn distance_from_box(at: Vector, half: Vector) -> (f32, Vector) {
+    let beyond = [0, 1, 2].map(|k: usize| at[k].abs() - half[k]);
+    let sign = |k: usize| if at[k] < 0.0 { -1.0 } else { 1.0 };
+    if beyond.iter().all(|&k| k <= 0.0) {
+        let side = (0..3).fold(0, |side, k| if beyond[k] > beyond[side] { k } else { side });
+        let mut normal = [0.0; 3];
+        normal[side] = sign(side);
+        return (beyond[side], normal);
+    }
+    away([0, 1, 2].map(|k| beyond[k].max(0.0) * sign(k)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_and_normals() {
+        let wall = Shape::Box {
+            centre: [1.0, 0.0, 0.0],
+            half: [0.5, 2.0, 9.0],
+        };
+        assert_eq!(wall.distance([0.0, 1.0, 0.0]), (0.5, [-1.0, 0.0, 0.0]));
+        let (gap, normal) = wall.distance([0.75, 0.0, 0.0]);
+        assert_eq!((gap, normal), (-0.25, [-1.0, 0.0, 0.0]));
+        let (gap, _) = wall.distance([1.5 + 3.0, 2.0 + 4.0, 0.0]);
+        assert_eq!(gap, 5.0);
+        let bar = Shape::Capsule {
+            from: [0.0; 3],
+            to: [2.0, 0.0, 0.0],
+            radius: 0.5,
+        };
+        assert_eq!(bar.distance([1.0, 2.0, 0.0]), (1.5, [0.0, 1.0, 0.0]));
+        assert_eq!(bar.distance([5.0, 0.0, 4.0]).0, 4.5);
+        let floor = Shape::half_space([0.0, 2.0, 0.0], [7.0, 1.0, 0.0]);
+        assert_eq!(floor.distance([0.0, 0.5, 0.0]), (-0.5, [0.0, 1.0, 0.0]));
+    }
+
+    #[test]
+    fn a_bad_shape_names_its_field() {
+        let ball = Shape::Ball {
+            centre: [0.0; 3],
+            radius: -1.0,
+        };
+        assert_eq!(ball.check().map_err(|bad| bad.field), Err("radius"));
+        let nowhere = Shape::half_space([0.0; 3], [0.0; 3]);
+        assert!(nowhere.check().is_err());
+    }
+}

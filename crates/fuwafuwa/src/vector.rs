@@ -1,0 +1,65 @@
+//! The little vector arithmetic that the rest needs, in single and double precision.
+
+use std::ops::{Add, Mul, Sub};
+
+/// A number that vectors are made of.
+pub trait Number:
+    Copy + Default + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
+{
+}
+
+impl Number for f32 {}
+impl Number for f64 {}
+
+/// a + b
+#[inline(always)]
+pub fn plus<T: Number, const K: usize>(mut a: [T; K], b: [T; K]) -> [T; K] {
+    for axis in 0..K {
+        a[axis] = a[axis] + b[axis];
+    }
+    a
+}
+
+/// a − b
+#[inline(always)]
+pub fn minus<T: Number, const K: usize>(mut a: [T; K], b: [T; K]) -> [T; K] {
+    for axis in 0..K {
+        a[axis] = a[axis] - b[axis];
+    }
+    a
+}
+
+/// a k
+#[inline(always)]
+pub fn scaled<T: Number, const K: usize>(mut a: [T; K], k: T) -> [T; K] {
+    for axis in 0..K {
+        a[axis] = a[axis] * k;
+    }
+    a
+}
+
+/// a · b
+#[inline(always)]
+pub fn dot<T: Number, const K: usize>(a: [T; K], b: [T; K]) -> T {
+    let mut sum = a[0] * b[0];
+    for axis in 1..K {
+        sum = sum + a[axis] * b[axis];
+    }
+    sum
+}
+
+/// a × b
+#[inline(always)]
+pub fn cross<T: Number>(a: [T; 3], b: [T; 3]) -> [T; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+/// |a|
+#[inline(always)]
+pub fn length<const K: usize>(a: [f32; K]) -> f32 {
+    dot(a, a).sqrt()
+}
