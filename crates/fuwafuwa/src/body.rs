@@ -25,6 +25,7 @@ pub struct Body<D: Dim> {
     pub(crate) pieces: Pieces,
     law: Law,
     materials: Vec<Material>,
+    swing: Swing,
     /// By what its stiffness was lowered so that the substep bears it; 1 = not at all.
     softening: f64,
     /// Position [m], velocity [m/s] and mass [kg] of each node, by id.
@@ -44,6 +45,16 @@ pub struct Body<D: Dim> {
     pub(crate) bare: Vec<u8>,
     /// Positions a moment ahead, where damped forces are evaluated.
     pub(crate) ahead: Vec<Row>,
+}
+
+/// The slowest swing of a whole body.
+#[derive(Copy, Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Swing {
+    /// Damping ratio.
+    ratio: f64,
+    /// ω = π √(Y/ρ) / width [1/s].
+    slow: f64,
 }
 
 impl<D: Dim> Body<D> {
@@ -81,6 +92,7 @@ impl<D: Dim> Body<D> {
             blocks: Blocks::new(law, elasticities(materials, 1.0), grid.voxel_size()),
             pieces: Pieces::new(&mesh),
             law,
+            swing: Swing::of(&grid, materials),
             materials: materials.to_vec(),
             softening: 1.0,
             position: Vec::new(),
@@ -236,6 +248,27 @@ impl<D: Dim> Body<D> {
         ids.map(|(id, _)| f64::from(self.mass[id as usize])).sum()
     }
 
+    /// How it is damped in substeps of `duration` [s]: the lead of its elastic forces [s], and the
+    /// rate [1/s] at which each piece relaxes towards its rigid motion.
+    ///
+    /// A lead of τ damps its slowest swing by τω/2; the fast swing of a single voxel allows τ ≤ (2.8/Ω² − h²) / 2h, of which
+    /// a part is kept back.
+    pub(crate) fn damping(&self, duration: f32) -> (f32, f32) {
+        let Swing { ratio, slow } = self.swing;
+        let slow = slow * self.softening.sqrt();
+        let (step, longest) = (f64::from(duration), self.longest_substep());
+        let fast = 2.0 * 0.6 / longest;
+        let most = 0.7 * (2.8 / (fast * fast) - step * step) / (2.0 * step);
+        let lead = (2.0 * ratio / slow).min(most).max(0.0);
+        let rate = 2.0 * slow * (ratio - 0.5 * lead * slow).max(0.0);
+        (lead as f32, rate as f32)
+    }
+
+    /// Friction of its skin.
+    pub(crate) fn friction(&self) -> f32 {
+        self.materials[0].friction
+    }
+
     /// The longest substep that its stiffest material bears [s]: 0.6 s / c.
     pub fn longest_substep(&self) -> f64 {
         let fastest = self.materials.iter().map(Material::wave_speed);
@@ -310,6 +343,35 @@ impl<D: Dim> Body<D> {
             piece.still = 0.0;
         }
         self.awake_is_stale = true;
+    }
+
+    /// Puts pieces with a node that is not finite, or faster than `top_speed` [m/s], back to where
+    /// they were and to sleep for good; returns their numbers.
+    pub(crate) fn quarantine(&mut self, before: &[Row], top_speed: f32) -> Vec<u32> {
+        let mut marked = vec![false; self.pieces.list.len()];
+        for &id in &self.awake {
+            let velocity = self.velocity[id as usize];
+            let speed = dot(velocity, velocity);
+            let at = self.position[id as usize];
+            let sane = speed <= top_speed * top_speed && at.iter().all(|k| k.is_finite());
+            marked[self.pieces.of_node(id) as usize] |= !sane;
+        }
+        if !marked.contains(&true) {
+            return Vec::new();
+        }
+        for (id, _) in self.mesh.nodes() {
+            if marked[self.pieces.of_node(id) as usize] {
+                let rest = before.get(id as usize).copied().unwrap_or([0.0; 4]);
+                self.position[id as usize] = rest;
+            }
+        }
+        self.set_asleep(&marked, true);
+        let numbers = (0..marked.len() as u32).filter(|&piece| marked[piece as usize]);
+        let numbers: Vec<u32> = numbers.collect();
+        for &piece in &numbers {
+            self.pieces.list[piece as usize].quarantined = true;
+        }
+        numbers
     }
 
     /// Brings the list of moving nodes up to date.
@@ -428,6 +490,42 @@ fn elasticities(materials: &[Material], softening: f64) -> Vec<Elasticity> {
         ..material.elasticity
     };
     materials.iter().map(soft).collect()
+}
+
+impl Swing {
+    fn of<D: Dim>(grid: &VoxelGrid<D>, materials: &[Material]) -> Self {
+        let mut counts = vec![0.0; materials.len()];
+        for number in grid.voxels().map(|voxel| grid.material(voxel)) {
+            if number > 0 {
+                counts[number as usize - 1] += 1.0;
+            }
+        }
+        let total: f64 = counts.iter().sum();
+        let mean = |of: &dyn Fn(&Material) -> f64| {
+            let weighted = counts.iter().zip(materials);
+            weighted
+                .map(|(count, material)| count * of(material))
+                .sum::<f64>()
+                / total
+        };
+        let young = mean(&|material| material.elasticity.young);
+        let density = mean(&|material| f64::from(material.density));
+        let width = f64::from(grid.voxel_size()) * root(total, D::N);
+        Self {
+            ratio: mean(&|material| f64::from(material.damping)),
+            slow: std::f64::consts::PI * (young / density).sqrt() / width,
+        }
+    }
+}
+
+/// The square or cube root, by Newton's iteration: it may not come from the platform.
+fn root(of: f64, order: usize) -> f64 {
+    let mut root = of.max(1.0);
+    for _ in 0..60 {
+        let power = (1..order).fold(1.0, |power, _| power * root);
+        root -= (power * root - of) / (order as f64 * power);
+    }
+    root
 }
 
 fn three(row: Row) -> [f32; 3] {

@@ -14,24 +14,35 @@
 #![allow(clippy::needless_range_loop)]
 
 pub mod body;
+mod contact;
+mod damping;
 pub mod dim;
+pub mod event;
+mod fracture;
 pub mod grid;
 pub mod law;
+pub mod manipulator;
 pub mod material;
 pub mod mesh;
 pub mod momentum;
 pub mod piece;
 pub mod pyramid;
 mod release;
+mod rest;
 pub mod shape;
 pub mod sharing;
 pub mod solve;
 pub mod stencil;
+mod touch;
 pub mod vector;
+pub mod world;
 
 pub use body::Body;
 pub use dim::{Dim, Dim2, Dim3, Point};
+pub use event::{Event, StepReport, With};
 pub use grid::{BuildError, VoxelGrid};
+pub use manipulator::{Drive, Manipulator};
 pub use material::{BodyError, Material};
 pub use mesh::Mesh;
 pub use shape::Shape;
+pub use world::{Settings, World};

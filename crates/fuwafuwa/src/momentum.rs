@@ -1,6 +1,7 @@
 //! Linear and angular momentum of a set of nodes, and the rigid motion that makes up a difference.
 
 use crate::solve::Row;
+use crate::vector::{cross, dot, minus, plus, scaled};
 
 /// Sums over mass points, in double precision, about a common centre.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
@@ -26,10 +27,27 @@ impl Momentum {
 
     /// `self` − `other`.
     pub fn less(self, other: Self) -> Self {
-        let minus = |a: [f64; 3], b: [f64; 3]| plus(a, b.map(|k| -k));
         Self {
             linear: minus(self.linear, other.linear),
             angular: minus(self.angular, other.angular),
+        }
+    }
+
+    /// Adds a point at `x` from the centre to an angular momentum and an inertia.
+    pub(crate) fn add_spin(
+        angular: &mut [f64; 3],
+        inertia: &mut [[f64; 3]; 3],
+        x: [f64; 3],
+        velocity: [f64; 3],
+        mass: f64,
+    ) {
+        *angular = plus(*angular, scaled(cross(x, velocity), mass));
+        let squared = dot(x, x);
+        for i in 0..3 {
+            inertia[i][i] += mass * squared;
+            for j in 0..3 {
+                inertia[i][j] -= mass * x[i] * x[j];
+            }
         }
     }
 }
@@ -50,25 +68,30 @@ impl RigidMotion {
         centre: [f64; 3],
         wanted: Momentum,
     ) -> Self {
-        let mut inertia = [[0.0; 3]; 3];
-        let mut total = 0.0;
+        let (mut unused, mut inertia, mut total) = ([0.0; 3], [[0.0; 3]; 3], 0.0);
         for (position, mass) in points {
             let (x, mass) = (from_centre(position, centre), f64::from(mass));
-            let squared: f64 = x.iter().map(|k| k * k).sum();
-            for i in 0..3 {
-                inertia[i][i] += mass * squared;
-                for j in 0..3 {
-                    inertia[i][j] -= mass * x[i] * x[j];
-                }
-            }
+            Momentum::add_spin(&mut unused, &mut inertia, x, [0.0; 3], mass);
             total += mass;
         }
+        let velocity = scaled(wanted.linear, 1.0 / total);
+        Self::of_spin(velocity, centre, &wanted.angular, &inertia)
+    }
+
+    /// The motion with a given velocity of the centre and angular momentum about it.
+    pub(crate) fn of_spin(
+        velocity: [f64; 3],
+        centre: [f64; 3],
+        angular: &[f64; 3],
+        inertia: &[[f64; 3]; 3],
+    ) -> Self {
         // Points on one line have no inertia about it; the little that is added stands for it.
+        let mut inertia = *inertia;
         let little = 1e-9 * (inertia[0][0] + inertia[1][1] + inertia[2][2]) + f64::MIN_POSITIVE;
         (0..3).for_each(|k| inertia[k][k] += little);
         Self {
-            velocity: wanted.linear.map(|k| k / total),
-            spin: solved(&inertia, wanted.angular),
+            velocity,
+            spin: solved(&inertia, *angular),
             centre,
         }
     }
@@ -97,25 +120,12 @@ pub fn centre_of(points: impl Iterator<Item = (Row, f32)>) -> [f64; 3] {
 fn solved(m: &[[f64; 3]; 3], b: [f64; 3]) -> [f64; 3] {
     let columns = [cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])];
     let determinant = dot(m[0], columns[0]);
+    if determinant == 0.0 {
+        return [0.0; 3];
+    }
     columns.map(|column| dot(column, b) / determinant)
 }
 
 fn from_centre(position: Row, centre: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|k: usize| f64::from(position[k]) - centre[k])
-}
-
-fn plus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 }

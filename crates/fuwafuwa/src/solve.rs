@@ -185,6 +185,15 @@ impl<D: Dim> Blocks<D> {
         sum
     }
 
+    /// The forces [N] of the elements on a node, in the order of the octants around it, as of the
+    /// last evaluation.
+    #[inline]
+    pub fn parts_on(&self, node: u32) -> impl Iterator<Item = Row> + '_ {
+        let slots = &self.slots[node as usize];
+        let places = &slots.places[..slots.count as usize];
+        places.iter().map(|&place| self.forces[place as usize])
+    }
+
     /// The force [N] of one element on its node number `place`, as of the last evaluation.
     ///
     /// # Panics

@@ -1,0 +1,41 @@
+//! Drops a soft ball onto a floor and prints how it squashes and bounces.
+//!
+//! `cargo run --release -p fuwafuwa --example drop`
+
+use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, Settings, Shape, VoxelGrid, World};
+
+fn drop<D: Dim>(n: usize) -> Result<(), Box<dyn std::error::Error>> {
+    let mut world = World::<D>::new(Settings::default())?;
+    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    world.add_obstacle(floor, 0.5)?;
+    let ball = VoxelGrid::ball(n, 1.0)?;
+    let stiff = Material {
+        strength: f32::INFINITY,
+        ..Material::default()
+    };
+    world.add_body(Body::new(ball, &[stiff])?.moved([0.0, 0.5, 0.0]));
+    println!("{}D ball, {n} voxels across:", D::N);
+    for tick in 0..180 {
+        let report = world.step();
+        let heights = world.bodies()[0].mesh().nodes().map(|(id, _)| {
+            let (position, _, _) = world.bodies()[0].node_state(id);
+            position[1]
+        });
+        let (low, high) = heights.fold((f32::MAX, f32::MIN), |(low, high), y| {
+            (low.min(y), high.max(y))
+        });
+        if tick % 10 == 9 {
+            let seconds = (tick + 1) as f32 / 60.0;
+            println!(
+                "{seconds:5.2} s  bottom {low:6.3} m  top {high:6.3} m  {} substeps",
+                report.substeps
+            );
+        }
+    }
+    Ok(())
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    drop::<Dim2>(64)?;
+    drop::<Dim3>(24)
+}

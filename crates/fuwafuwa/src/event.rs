@@ -1,0 +1,90 @@
+//! What happened in a tick.
+
+use crate::shape::Vector;
+
+/// Something that happened in the last tick, for sound, score and show.
+#[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Event {
+    /// Voxels stopped sharing a node: a crack went on.
+    Released {
+        /// Place among the bodies.
+        body: u32,
+        /// Where [m].
+        at: Vector,
+        /// Elastic energy set free [J]; 0 where it was cut on purpose.
+        energy: f32,
+    },
+    /// A piece came off.
+    Parted {
+        /// Place among the bodies.
+        body: u32,
+        /// Number of the new piece.
+        piece: u32,
+    },
+    /// Things pressed on each other.
+    Touched {
+        /// Place among the bodies.
+        body: u32,
+        /// Number of the piece.
+        piece: u32,
+        /// What it pressed on.
+        with: With,
+        /// Where, at the strongest contact [m].
+        at: Vector,
+        /// Along the normals, over the whole tick [N s].
+        impulse: f32,
+    },
+    /// A piece came to rest.
+    FellAsleep {
+        /// Place among the bodies.
+        body: u32,
+        /// Number of the piece.
+        piece: u32,
+    },
+    /// A resting piece was disturbed.
+    Woke {
+        /// Place among the bodies.
+        body: u32,
+        /// Number of the piece.
+        piece: u32,
+    },
+    /// A piece went out of hand and was stopped for good, so that it spoils nothing else.
+    Quarantined {
+        /// Place among the bodies.
+        body: u32,
+        /// Number of the piece.
+        piece: u32,
+    },
+}
+
+/// What a piece can press on.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum With {
+    /// A rigid shape, by its place among the obstacles.
+    Obstacle(u32),
+    /// A hand, by its place among the manipulators.
+    Manipulator(u32),
+    /// Another piece, or itself.
+    Piece {
+        /// Place among the bodies.
+        body: u32,
+        /// Number of the piece.
+        piece: u32,
+    },
+}
+
+/// What a tick did.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct StepReport {
+    /// Substeps in the tick.
+    pub substeps: u32,
+    /// Nodes that were released.
+    pub released: u32,
+    /// Pieces that came off.
+    pub parted: u32,
+    /// Pieces that went out of hand and were stopped.
+    pub quarantined: u32,
+}

@@ -1,0 +1,592 @@
+//! Everything together, and time: [`World::step`] is the program.
+
+use crate::body::Body;
+use crate::contact::{Contacts, Hit};
+use crate::damping::{PieceMotion, Slowing, motions, slow_down};
+use crate::dim::Dim;
+use crate::event::{Event, StepReport, With};
+use crate::fracture::{Failure, Rests, failures};
+use crate::manipulator::{BadManipulator, Manipulator};
+use crate::rest::{fall_asleep, wake};
+use crate::shape::{BadShape, Shape, Vector};
+use crate::solve::Row;
+use crate::touch::{Collider, Nearby};
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// Length of a tick [s].
+pub const TICK: f32 = 1.0 / 60.0;
+/// Substeps in a tick at the least: a force-feedback stick wants its force 960 times a second.
+pub const LEAST_SUBSTEPS: u32 = 16;
+/// Cracks are looked for this many times in a tick: 480 times a second.
+const FRACTURE_ROUNDS: u32 = 8;
+/// Swings are damped this many times in a tick: 240 times a second.
+const DAMPING_ROUNDS: u32 = 4;
+/// A piece of one voxel does not roll on what it touches; its spin dies at this rate [1/s].
+const CRUMB_SPIN_LOSS: f32 = 20.0;
+/// Slow pieces that touch something lose their last motion at this rate [1/s], below this speed [m/s].
+const SETTLING: f32 = 2.0;
+const SETTLING_SPEED: f64 = 0.1;
+/// Nothing moves faster than this [m/s]: half a voxel a substep is far less, but a node thrown out
+/// by a violent start may come back.
+const TOP_SPEED: f32 = 1000.0;
+
+/// What holds for the whole world.
+#[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Settings {
+    /// [m/s²]; the third component does not count in 2D.
+    pub gravity: Vector,
+    /// Share of its speed that everything loses to the air in a second [1/s]; 0 to 10. With no
+    /// gravity and about 1, bodies float.
+    pub drag: f32,
+    /// Substeps in a tick at most, 16 to 1024; 64 if speed matters. A body too stiff for so many is
+    /// softened until it is not, see [`Body::softening`].
+    pub most_substeps: u32,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            gravity: [0.0, -9.81, 0.0],
+            drag: 0.0,
+            most_substeps: 64,
+        }
+    }
+}
+
+/// Something rigid that never moves.
+#[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Obstacle {
+    /// What it is.
+    pub shape: Shape,
+    /// Coulomb friction; about 0.2.
+    pub friction: f32,
+}
+
+/// Why something was not let into the world.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub enum Refused {
+    /// A setting is out of range.
+    Setting {
+        /// The field.
+        field: &'static str,
+        /// What was expected.
+        expected: &'static str,
+    },
+    /// A shape is not one.
+    Shape(BadShape),
+    /// Friction is negative or not a number.
+    Friction(f32),
+    /// A manipulator cannot be.
+    Manipulator(BadManipulator),
+}
+
+impl fmt::Display for Refused {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Setting { field, expected } => {
+                write!(f, "the setting {field} must be {expected}")
+            }
+            Self::Shape(bad) => bad.fmt(f),
+            Self::Friction(friction) => write!(f, "friction {friction} must be 0 or more"),
+            Self::Manipulator(bad) => bad.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for Refused {}
+
+/// Bodies, what they bump into, and the hands that push them.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound = ""))]
+pub struct World<D: Dim> {
+    settings: Settings,
+    bodies: Vec<Body<D>>,
+    obstacles: Vec<Obstacle>,
+    manipulators: Vec<Manipulator>,
+    ticks: u64,
+    nearby: Nearby,
+    rests: Vec<Rests>,
+    events: Vec<Event>,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    contacts: Contacts,
+}
+
+impl<D: Dim> World<D> {
+    /// An empty world.
+    ///
+    /// # Errors
+    /// [`Refused::Setting`] when a setting is out of range.
+    pub fn new(settings: Settings) -> Result<Self, Refused> {
+        let range = LEAST_SUBSTEPS..=1024;
+        let checks = [
+            (
+                "gravity",
+                "finite",
+                settings.gravity.iter().all(|k| k.is_finite()),
+            ),
+            ("drag", "0 to 10", (0.0..=10.0).contains(&settings.drag)),
+            (
+                "most_substeps",
+                "16 to 1024",
+                range.contains(&settings.most_substeps),
+            ),
+        ];
+        for (field, expected, good) in checks {
+            if !good {
+                return Err(Refused::Setting { field, expected });
+            }
+        }
+        Ok(Self {
+            settings,
+            bodies: Vec::new(),
+            obstacles: Vec::new(),
+            manipulators: Vec::new(),
+            ticks: 0,
+            nearby: Nearby::default(),
+            rests: Vec::new(),
+            events: Vec::new(),
+            contacts: Contacts::default(),
+        })
+    }
+
+    /// Puts a body into the world; returns its place among the bodies. A body that is too stiff
+    /// for the most substeps allowed is softened: see [`Body::softening`].
+    pub fn add_body(&mut self, mut body: Body<D>) -> usize {
+        let shortest = f64::from(TICK) / f64::from(self.settings.most_substeps);
+        body.soften_for(shortest);
+        self.bodies.push(body);
+        self.rests.push(Rests::default());
+        self.nearby.expire();
+        self.bodies.len() - 1
+    }
+
+    /// Puts a rigid shape into the world; returns its place among the obstacles.
+    ///
+    /// # Errors
+    /// [`Refused`] when the shape is not one or friction is negative.
+    pub fn add_obstacle(&mut self, shape: Shape, friction: f32) -> Result<usize, Refused> {
+        shape.check().map_err(Refused::Shape)?;
+        if !(friction >= 0.0) {
+            return Err(Refused::Friction(friction));
+        }
+        self.obstacles.push(Obstacle { shape, friction });
+        // Places of the hands among the colliders move up.
+        self.nearby.forget_node_pairs();
+        Ok(self.obstacles.len() - 1)
+    }
+
+    /// Puts a hand into the world; returns its place among the manipulators.
+    ///
+    /// # Errors
+    /// [`Refused::Manipulator`] when a field of it is out of range.
+    pub fn add_manipulator(&mut self, manipulator: Manipulator) -> Result<usize, Refused> {
+        manipulator.check().map_err(Refused::Manipulator)?;
+        self.manipulators.push(manipulator);
+        self.nearby.expire();
+        Ok(self.manipulators.len() - 1)
+    }
+
+    /// Sends a hand to a goal [m], where it is to be at the end of the next tick; a goal that is
+    /// not finite is refused.
+    ///
+    /// # Panics
+    /// When there is no such manipulator.
+    pub fn set_goal(&mut self, manipulator: usize, goal: Vector) -> bool {
+        let finite = goal.iter().all(|k| k.is_finite());
+        if finite {
+            let hand = &mut self.manipulators[manipulator];
+            hand.goal[..D::N].copy_from_slice(&goal[..D::N]);
+        }
+        finite
+    }
+
+    /// Lets a tick pass.
+    pub fn step(&mut self) -> StepReport {
+        self.events.clear();
+        let substeps = self.substeps();
+        let duration = TICK / substeps as f32;
+        let mut report = StepReport {
+            substeps,
+            ..StepReport::default()
+        };
+        let before: Vec<Vec<Row>> = self
+            .bodies
+            .iter()
+            .map(|body| body.position.clone())
+            .collect();
+        self.start_tick();
+        for substep in 0..substeps {
+            if is_due(substep, substeps, FRACTURE_ROUNDS) {
+                self.fracture(&mut report);
+            }
+            if is_due(substep, substeps, DAMPING_ROUNDS) {
+                self.damp(duration);
+            }
+            self.push(duration);
+            self.touch(duration);
+            self.drift(duration);
+        }
+        self.quarantine(&before, &mut report);
+        self.rest();
+        self.end_tick();
+        report
+    }
+
+    /// Its settings.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Its bodies.
+    pub fn bodies(&self) -> &[Body<D>] {
+        &self.bodies
+    }
+
+    /// A body, to be changed from outside: held, thrown, cut.
+    ///
+    /// # Panics
+    /// When there is no such body.
+    pub fn body_mut(&mut self, body: usize) -> &mut Body<D> {
+        self.nearby.expire();
+        &mut self.bodies[body]
+    }
+
+    /// The rigid shapes.
+    pub fn obstacles(&self) -> &[Obstacle] {
+        &self.obstacles
+    }
+
+    /// The hands.
+    pub fn manipulators(&self) -> &[Manipulator] {
+        &self.manipulators
+    }
+
+    /// What happened in the last tick.
+    pub fn events(&self) -> &[Event] {
+        &self.events
+    }
+
+    /// Ticks since the beginning.
+    pub fn ticks(&self) -> u64 {
+        self.ticks
+    }
+
+    /// Substeps that the stiffest body asks for: at least 16, at most what the settings allow.
+    pub fn substeps(&self) -> u32 {
+        let longest = self.bodies.iter().map(Body::longest_substep);
+        let longest = longest.fold(f64::INFINITY, f64::min);
+        let asked = (f64::from(TICK) / longest - 1e-6).ceil() as u32;
+        asked.clamp(LEAST_SUBSTEPS, self.settings.most_substeps)
+    }
+
+    /// A number that two worlds share only when every node and hand of them is in the same state,
+    /// to the last bit [FNV-1a].
+    pub fn hash(&self) -> u64 {
+        let mut hash = 0xcbf2_9ce4_8422_2325u64;
+        let mut add = |bits: u64| hash = (hash ^ bits).wrapping_mul(0x0100_0000_01b3);
+        add(self.ticks);
+        for body in &self.bodies {
+            for (id, _) in body.mesh.nodes() {
+                let (at, speed) = (body.position[id as usize], body.velocity[id as usize]);
+                add(u64::from(body.pieces.of_node(id)));
+                for value in at.iter().chain(&speed) {
+                    add(u64::from(value.to_bits()));
+                }
+            }
+        }
+        for hand in &self.manipulators {
+            for value in hand.position.iter().chain(&hand.velocity) {
+                add(u64::from(value.to_bits()));
+            }
+        }
+        hash
+    }
+
+    fn start_tick(&mut self) {
+        for hand in &mut self.manipulators {
+            hand.start_tick(TICK);
+        }
+        self.nearby.start_tick();
+    }
+
+    fn end_tick(&mut self) {
+        for hand in &mut self.manipulators {
+            hand.end_tick();
+        }
+        self.note_touches();
+        self.ticks += 1;
+    }
+
+    /// Releases what is overstrained, and remodels around it.
+    fn fracture(&mut self, report: &mut StepReport) {
+        let duration = TICK / FRACTURE_ROUNDS as f32;
+        for place in 0..self.bodies.len() {
+            let body = &mut self.bodies[place];
+            for failure in failures(body, &mut self.rests[place], duration) {
+                self.release(place, &failure, report);
+            }
+        }
+    }
+
+    fn release(&mut self, place: usize, failure: &Failure, report: &mut StepReport) {
+        let body = &mut self.bodies[place];
+        let at = body.position[failure.node as usize];
+        let parted = body.release(&[(failure.at, failure.side)]);
+        let parted = parted.expect("a release leaves the mesh whole");
+        report.released += 1;
+        report.parted += parted.len() as u32;
+        let body = place as u32;
+        self.events.push(Event::Released {
+            body,
+            at: [at[0], at[1], at[2]],
+            energy: failure.energy,
+        });
+        let events = parted.iter().map(|&piece| Event::Parted { body, piece });
+        self.events.extend(events);
+        self.nearby.expire();
+    }
+
+    /// Calms the swings within each piece, and slows what moves through air.
+    fn damp(&mut self, substep: f32) {
+        let duration = TICK / DAMPING_ROUNDS as f32;
+        let touching = self.touching();
+        for (body, touching) in self.bodies.iter_mut().zip(touching) {
+            body.refresh_awake();
+            let motions = motions(body);
+            let (_, rate) = body.damping(substep);
+            let slowing: Vec<Slowing> = motions
+                .iter()
+                .zip(touching)
+                .map(|(motion, touches)| {
+                    slowing(motion, touches, rate, self.settings.drag, D::CORNERS)
+                })
+                .map(|slowing| slowing.over(duration))
+                .collect();
+            slow_down(body, &motions, &slowing);
+        }
+    }
+
+    /// Adds elastic forces, gravity and the pull of the coupling to the velocities.
+    fn push(&mut self, duration: f32) {
+        for body in &mut self.bodies {
+            body.push(duration, self.settings.gravity);
+        }
+        for hand in &mut self.manipulators {
+            hand.pull(duration);
+        }
+    }
+
+    /// Changes velocities so that nothing goes through anything else.
+    fn touch(&mut self, duration: f32) {
+        let colliders = self.colliders();
+        let (obstacles, first_hand) = (self.obstacles.len(), self.obstacles.len());
+        self.nearby.refresh(&self.bodies, &colliders, duration);
+        let hits = self
+            .contacts
+            .find(&self.bodies, &colliders, &mut self.nearby, duration);
+        self.wake(&hits);
+        let hands = &mut self.manipulators;
+        self.contacts
+            .find_hands(hands, &colliders[..obstacles], duration);
+        let (bodies, nearby) = (&mut self.bodies, &mut self.nearby);
+        self.contacts
+            .solve(bodies, hands, nearby, first_hand, duration);
+    }
+
+    /// Moves everything by its velocity, and takes back what only pushed overlaps out.
+    fn drift(&mut self, duration: f32) {
+        for body in &mut self.bodies {
+            let (lead, _) = body.damping(duration);
+            body.drift(duration, lead);
+        }
+        for hand in &mut self.manipulators {
+            hand.drift(duration);
+        }
+        let first_hand = self.obstacles.len();
+        let (bodies, hands) = (&mut self.bodies, &mut self.manipulators);
+        self.contacts
+            .relax(bodies, hands, &self.nearby, first_hand, duration);
+    }
+
+    /// Stops pieces that went out of hand where they were before the tick, for good.
+    fn quarantine(&mut self, before: &[Vec<Row>], report: &mut StepReport) {
+        for (place, body) in self.bodies.iter_mut().enumerate() {
+            body.refresh_awake();
+            for piece in body.quarantine(&before[place], TOP_SPEED) {
+                report.quarantined += 1;
+                let body = place as u32;
+                self.events.push(Event::Quarantined { body, piece });
+                self.nearby.expire();
+            }
+        }
+    }
+
+    /// Lets islands that have been slow fall asleep.
+    fn rest(&mut self) {
+        let motions: Vec<Vec<PieceMotion>> = self
+            .bodies
+            .iter_mut()
+            .map(|body| {
+                body.refresh_awake();
+                motions(body)
+            })
+            .collect();
+        let first_hand = self.obstacles.len() as u32;
+        let pairs = self.nearby.node_pairs.iter();
+        let handled =
+            pairs.filter(|pair| pair.collider >= first_hand && pair.impulse.pressed > 0.0);
+        let piece = |body: u32, node| self.bodies[body as usize].pieces.of_node(node);
+        let handled: Vec<Hit> = handled
+            .map(|pair| (pair.body, piece(pair.body, pair.node)))
+            .collect();
+        let fallen = fall_asleep(&mut self.bodies, &self.nearby, &motions, &handled, TICK);
+        if !fallen.is_empty() {
+            self.nearby.expire();
+        }
+        let events = fallen
+            .iter()
+            .map(|&(body, piece)| Event::FellAsleep { body, piece });
+        self.events.extend(events);
+    }
+
+    fn wake(&mut self, hits: &[Hit]) {
+        let woken = wake(&mut self.bodies, hits);
+        if woken.is_empty() {
+            return;
+        }
+        for body in &mut self.bodies {
+            body.refresh_awake();
+        }
+        self.nearby.expire();
+        let events = woken
+            .iter()
+            .map(|&(body, piece)| Event::Woke { body, piece });
+        self.events.extend(events);
+    }
+
+    /// Everything rigid as nodes meet it: obstacles first, then hands.
+    fn colliders(&self) -> Vec<Collider> {
+        let fixed = |obstacle: &Obstacle| Collider {
+            shape: obstacle.shape,
+            velocity: [0.0; 4],
+            lightness: 0.0,
+            friction: obstacle.friction,
+            is_hand: false,
+        };
+        let moving = |hand: &Manipulator| Collider {
+            shape: hand.shape(),
+            velocity: [hand.velocity[0], hand.velocity[1], hand.velocity[2], 0.0],
+            lightness: hand.lightness(),
+            friction: hand.friction,
+            is_hand: true,
+        };
+        let fixed = self.obstacles.iter().map(fixed);
+        fixed.chain(self.manipulators.iter().map(moving)).collect()
+    }
+
+    /// Which pieces of each body touch anything.
+    fn touching(&self) -> Vec<Vec<bool>> {
+        let none = |body: &Body<D>| vec![false; body.pieces.list.len()];
+        let mut touching: Vec<Vec<bool>> = self.bodies.iter().map(none).collect();
+        for pair in self
+            .nearby
+            .node_pairs
+            .iter()
+            .filter(|pair| pair.impulse.pressed > 0.0)
+        {
+            let piece = self.bodies[pair.body as usize].pieces.of_node(pair.node);
+            touching[pair.body as usize][piece as usize] = true;
+        }
+        for pair in self
+            .nearby
+            .skin_pairs
+            .iter()
+            .filter(|pair| pair.impulse.pressed > 0.0)
+        {
+            for skin in pair.skins.map(|skin| &self.nearby.skins[skin as usize]) {
+                touching[skin.body as usize][skin.piece as usize] = true;
+            }
+        }
+        touching
+    }
+
+    /// Adds up what pressed on what over the tick.
+    fn note_touches(&mut self) {
+        let mut sums: BTreeMap<(u32, u32, With), (f32, f32, Vector)> = BTreeMap::new();
+        let mut add = |body, piece, with, impulse: f32, at: Row| {
+            let sum = sums
+                .entry((body, piece, with))
+                .or_insert((0.0, 0.0, [0.0; 3]));
+            sum.0 += impulse;
+            if impulse > sum.1 {
+                (sum.1, sum.2) = (impulse, [at[0], at[1], at[2]]);
+            }
+        };
+        let first_hand = self.obstacles.len() as u32;
+        for pair in self
+            .nearby
+            .node_pairs
+            .iter()
+            .filter(|pair| pair.impulse.total > 0.0)
+        {
+            let with = match pair.collider.checked_sub(first_hand) {
+                Some(hand) => With::Manipulator(hand),
+                None => With::Obstacle(pair.collider),
+            };
+            let body = &self.bodies[pair.body as usize];
+            let piece = body.pieces.of_node(pair.node);
+            let at = body.position[pair.node as usize];
+            add(pair.body, piece, with, pair.impulse.total, at);
+        }
+        for pair in self
+            .nearby
+            .skin_pairs
+            .iter()
+            .filter(|pair| pair.impulse.total > 0.0)
+        {
+            let [a, b] = pair.skins.map(|skin| &self.nearby.skins[skin as usize]);
+            let (body, piece) = (b.body, b.piece);
+            let with = With::Piece { body, piece };
+            add(
+                a.body,
+                a.piece,
+                with,
+                pair.impulse.total,
+                a.centre(&self.bodies),
+            );
+        }
+        for ((body, piece, with), (impulse, _, at)) in sums {
+            self.events.push(Event::Touched {
+                body,
+                piece,
+                with,
+                at,
+                impulse,
+            });
+        }
+    }
+}
+
+/// Whether one of `rounds` rounds, spread evenly over the substeps of a tick, is due in this one.
+fn is_due(substep: u32, substeps: u32, rounds: u32) -> bool {
+    substep * rounds % substeps < rounds
+}
+
+/// How a piece is slowed [1/s].
+fn slowing(motion: &PieceMotion, touches: bool, rate: f32, drag: f32, corners: usize) -> Slowing {
+    let is_crumb = motion.nodes as usize == corners;
+    let settles = touches && motion.speed_squared < SETTLING_SPEED * SETTLING_SPEED;
+    Slowing {
+        swing: rate,
+        spin: if is_crumb && touches {
+            CRUMB_SPIN_LOSS
+        } else {
+            0.0
+        },
+        drag: drag + if settles { SETTLING } else { 0.0 },
+    }
+}
