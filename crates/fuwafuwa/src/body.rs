@@ -187,11 +187,7 @@ impl<D: Dim> Body<D> {
 
     /// The material of an element.
     pub fn material(&self, element: &Element) -> &Material {
-        let child = element.children.trailing_zeros() as usize;
-        let voxel = match element.cell.level {
-            0 => element.cell.at,
-            _ => element.cell.child(child).first_voxel(),
-        };
+        let voxel = self.first_voxel(element);
         &self.materials[self.grid.material(voxel) as usize - 1]
     }
 
@@ -305,10 +301,18 @@ impl<D: Dim> Body<D> {
     }
 
     /// Moves every awake node by its velocity, and looks `lead` seconds ahead for the next forces.
+    /// No node moves by more than a voxel: faster ones would turn elements inside out, and the
+    /// forces would grow from substep to substep.
     pub(crate) fn drift(&mut self, duration: f32, lead: f32) {
+        let top_speed = self.grid.voxel_size() / duration;
         for &id in &self.awake {
             let node = id as usize;
-            let velocity = self.velocity[node];
+            let mut velocity = self.velocity[node];
+            let squared = dot(velocity, velocity);
+            if squared > top_speed * top_speed {
+                velocity = scaled(velocity, top_speed / squared.sqrt());
+                self.velocity[node] = velocity;
+            }
             let position = plus(self.position[node], scaled(velocity, duration));
             self.position[node] = position;
             self.ahead[node] = plus(position, scaled(velocity, lead));

@@ -13,6 +13,7 @@
 // An axis indexes several vectors at once; zipping them would hide the formula.
 #![allow(clippy::needless_range_loop)]
 
+pub mod blade;
 pub mod body;
 mod contact;
 mod damping;
@@ -35,8 +36,10 @@ pub mod solve;
 pub mod stencil;
 mod touch;
 pub mod vector;
+pub mod view;
 pub mod world;
 
+pub use blade::Blade;
 pub use body::Body;
 pub use dim::{Dim, Dim2, Dim3, Point};
 pub use event::{Event, StepReport, With};

@@ -1,5 +1,6 @@
 //! Everything together, and time: [`World::step`] is the program.
 
+use crate::blade::Blade;
 use crate::body::Body;
 use crate::contact::{Contacts, Hit};
 use crate::damping::{PieceMotion, Slowing, motions, slow_down};
@@ -234,6 +235,25 @@ impl<D: Dim> World<D> {
         self.rest();
         self.end_tick();
         report
+    }
+
+    /// Cuts a body along a blade at once, whatever it bears; returns how many nodes were released.
+    /// What came off stands among the events until the next tick.
+    ///
+    /// # Panics
+    /// When there is no such body.
+    pub fn cut(&mut self, body: usize, blade: &Blade) -> usize {
+        let hits: Vec<Hit> = (0..self.bodies[body].pieces.list.len() as u32)
+            .map(|piece| (body as u32, piece))
+            .collect();
+        self.wake(&hits);
+        let cut = self.bodies[body].cut(blade);
+        let (released, parted) = cut.expect("a release leaves the mesh whole");
+        let body = body as u32;
+        let events = parted.iter().map(|&piece| Event::Parted { body, piece });
+        self.events.extend(events);
+        self.nearby.expire();
+        released
     }
 
     /// Its settings.

@@ -1,0 +1,150 @@
+//! Cutting on purpose: along a segment in the plane, along a parallelogram in space.
+//!
+//! A blade parts two neighbouring voxels when the line between their middles, where they are now,
+//! crosses it. Shared nodes are then released as they are when a body tears.
+
+use crate::body::Body;
+use crate::dim::{Dim, Point, voxel_around};
+use crate::mesh::Defect;
+use crate::shape::Vector;
+use crate::sharing::faces_around;
+use crate::vector::{cross, dot, minus, plus, scaled};
+use std::collections::BTreeSet;
+
+/// What cuts: all points `from` + a `across` + b `along`, a and b between 0 and 1.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Blade {
+    /// One corner [m].
+    pub from: Vector,
+    /// One edge [m].
+    pub across: Vector,
+    /// The other edge [m].
+    pub along: Vector,
+}
+
+impl Blade {
+    /// A blade that cuts from one point of the plane to another [m].
+    pub fn segment(from: [f32; 2], to: [f32; 2]) -> Self {
+        Self {
+            from: [from[0], from[1], -0.5],
+            across: [to[0] - from[0], to[1] - from[1], 0.0],
+            along: [0.0, 0.0, 1.0],
+        }
+    }
+
+    /// Whether the line between two points crosses it.
+    fn parts(&self, a: Vector, b: Vector) -> bool {
+        let normal = cross(self.across, self.along);
+        let (over, under) = (
+            dot(normal, minus(a, self.from)),
+            dot(normal, minus(b, self.from)),
+        );
+        if (over > 0.0) == (under > 0.0) {
+            return false;
+        }
+        let meeting = plus(a, scaled(minus(b, a), over / (over - under)));
+        let reach = minus(meeting, self.from);
+        let squared = dot(normal, normal);
+        let first = dot(cross(reach, self.along), normal);
+        let second = dot(cross(self.across, reach), normal);
+        (0.0..=squared).contains(&first) && (0.0..=squared).contains(&second)
+    }
+}
+
+impl<D: Dim> Body<D> {
+    /// Cuts along a blade; returns how many nodes were released and the pieces that came off.
+    ///
+    /// # Errors
+    /// A [`Defect`] when the mesh breaks: a fault of this library.
+    pub fn cut(&mut self, blade: &Blade) -> Result<(usize, Vec<u32>), Defect> {
+        let opened = self.faces_across(blade);
+        let mut points: BTreeSet<Point> = BTreeSet::new();
+        for &(voxel, axis) in &opened {
+            for corner in 0..D::CORNERS / 2 {
+                points.insert(corner_of_face::<D>(voxel, axis, corner));
+            }
+        }
+        let mut releases = Vec::new();
+        for &at in &points {
+            releases.extend(self.sides(at, &opened).into_iter().map(|side| (at, side)));
+        }
+        let parted = self.release(&releases)?;
+        Ok((releases.len(), parted))
+    }
+
+    /// The faces that a blade crosses, each as the voxel before it and its axis.
+    fn faces_across(&self, blade: &Blade) -> BTreeSet<(Point, usize)> {
+        let mut middles = vec![None; self.grid.voxels().count()];
+        for (_, element) in self.mesh.elements() {
+            let (centre, gradient) = self.deformation(element);
+            let stencil = self.mesh.stencil(element);
+            let size = self.grid.voxel_size();
+            let half = 0.5 * size * element.cell.width() as f32;
+            // The slot in the low corner of the cell, as seen from the volume centroid at rest.
+            let first = stencil.slots[0] as usize;
+            let steps = crate::stencil::slot_at(first).map(|k| k as f32 * half);
+            let origin = minus(scaled(stencil.offsets[0].map(|k| k as f32), half), steps);
+            for voxel in self.mesh.voxels(element) {
+                let low = element.cell.first_voxel();
+                let mut rest = origin;
+                for axis in 0..D::N {
+                    rest[axis] += ((voxel[axis] - low[axis]) as f32 + 0.5) * size;
+                }
+                let middle = [0, 1, 2].map(|row: usize| centre[row] + dot(gradient[row], rest));
+                let flat = if D::N == 2 { 0.0 } else { middle[2] };
+                middles[self.grid.index(voxel)] = Some([middle[0], middle[1], flat]);
+            }
+        }
+        let mut crossed = BTreeSet::new();
+        for voxel in self.grid.voxels() {
+            let Some(here) = middles[self.grid.index(voxel)] else {
+                continue;
+            };
+            for axis in 0..D::N {
+                let mut next = voxel;
+                next[axis] += 1;
+                if !self.grid.is_solid(next) {
+                    continue;
+                }
+                let there = middles[self.grid.index(next)].expect("every solid voxel is owned");
+                if blade.parts(here, there) {
+                    crossed.insert((voxel, axis));
+                }
+            }
+        }
+        crossed
+    }
+
+    /// The octants at a point that still hang together when the given faces are open: one mask for
+    /// each side, nothing when they all do.
+    fn sides(&self, at: Point, opened: &BTreeSet<(Point, usize)>) -> Vec<u8> {
+        let groups = self.sharing.groups(at);
+        let mut sides: Vec<u8> = (0..D::CORNERS)
+            .filter(|octant| groups.solid() >> octant & 1 == 1)
+            .map(|octant| 1 << octant)
+            .collect();
+        for (octant, axis) in faces_around::<D>() {
+            let face = (voxel_around::<D>(at, octant), axis);
+            if opened.contains(&face) || !self.sharing.is_closed(at, octant, axis) {
+                continue;
+            }
+            let (a, b) = (1u8 << octant, 1u8 << (octant ^ 1 << axis));
+            let (joined, rest): (Vec<u8>, Vec<u8>) =
+                sides.into_iter().partition(|side| side & (a | b) != 0);
+            sides = rest;
+            sides.push(joined.into_iter().fold(0, |all, side| all | side));
+        }
+        sides.sort_unstable();
+        if sides.len() > 1 { sides } else { Vec::new() }
+    }
+}
+
+/// A corner of the face after a voxel across an axis.
+fn corner_of_face<D: Dim>(voxel: Point, axis: usize, corner: usize) -> Point {
+    let mut at = voxel;
+    at[axis] += 1;
+    for (bit, other) in (0..D::N).filter(|&other| other != axis).enumerate() {
+        at[other] += (corner >> bit & 1) as i32;
+    }
+    at
+}

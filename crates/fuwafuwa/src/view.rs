@@ -1,0 +1,344 @@
+//! What can be asked of a body: its pieces, its skin, its elements, the mass in a region.
+
+use crate::body::Body;
+use crate::dim::{Dim, add, corner};
+use crate::mesh::Element;
+use crate::shape::{Shape, Vector};
+use crate::stencil::{slot_at, slot_index};
+use crate::vector::{cross, length, minus, plus, scaled};
+
+/// A piece as a whole.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct PieceView {
+    /// Its number.
+    pub number: u32,
+    /// Mass [kg].
+    pub mass: f32,
+    /// Centre of mass [m].
+    pub centre: Vector,
+    /// Velocity of the centre [m/s].
+    pub velocity: Vector,
+    /// Least coordinates of its nodes [m].
+    pub low: Vector,
+    /// Greatest coordinates of its nodes [m].
+    pub high: Vector,
+    /// Number of elements.
+    pub element_count: u32,
+    /// Whether it rests.
+    pub asleep: bool,
+    /// Whether it was stopped for good.
+    pub quarantined: bool,
+}
+
+/// A bare face of a voxel: a segment in 2D, a quad in 3D.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Facet {
+    /// Its nodes, two in 2D, four in 3D; seen from outside they run counterclockwise in 3D, and
+    /// in 2D the body lies to the left.
+    pub nodes: [u32; 4],
+    /// Where they are [m].
+    pub corners: [Vector; 4],
+    /// Outwards, of length 1.
+    pub normal: Vector,
+    /// The element it belongs to.
+    pub element: u32,
+    /// Its piece.
+    pub piece: u32,
+    /// Whether it was inside before the body tore.
+    pub is_fresh: bool,
+}
+
+/// A closed line around a piece, or around a hole in it, of a body in the plane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outline {
+    /// Its piece.
+    pub piece: u32,
+    /// Node ids, the body to the left.
+    pub nodes: Vec<u32>,
+    /// Where they are [m].
+    pub points: Vec<Vector>,
+    /// Outward normals at the points, of length 1.
+    pub normals: Vec<Vector>,
+    /// Whether the segment from each point to the next was inside before the body tore.
+    pub is_fresh: Vec<bool>,
+}
+
+/// An element, to be looked at.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ElementView {
+    /// Its id.
+    pub id: u32,
+    /// 0 = finest.
+    pub level: u8,
+    /// Its piece.
+    pub piece: u32,
+    /// Number of its material.
+    pub material: u8,
+    /// The children of its cell that it fills, as a mask.
+    pub children: u8,
+    /// How far it is strained: ‖F − R‖, 0 at rest.
+    pub strain: f32,
+    /// Where the slots of its 3 × 3 (× 3) lattice are [m]; those it does not reach hold its centre.
+    pub slots: [Vector; 27],
+}
+
+impl<D: Dim> Body<D> {
+    /// Its pieces as wholes, by number.
+    pub fn piece_views(&self) -> Vec<PieceView> {
+        let none = |(number, piece): (usize, &crate::piece::Piece)| PieceView {
+            number: number as u32,
+            mass: 0.0,
+            centre: [0.0; 3],
+            velocity: [0.0; 3],
+            low: [f32::MAX; 3],
+            high: [f32::MIN; 3],
+            element_count: 0,
+            asleep: piece.asleep,
+            quarantined: piece.quarantined,
+        };
+        let mut views: Vec<PieceView> = self.pieces.list.iter().enumerate().map(none).collect();
+        for (id, _) in self.mesh.elements() {
+            views[self.pieces.of_element(id) as usize].element_count += 1;
+        }
+        for (id, _) in self.mesh.nodes() {
+            let (at, velocity, mass) = self.node_state(id);
+            let view = &mut views[self.pieces.of_node(id) as usize];
+            view.mass += mass;
+            view.centre = plus(view.centre, scaled(at, mass));
+            view.velocity = plus(view.velocity, scaled(velocity, mass));
+            for axis in 0..3 {
+                view.low[axis] = view.low[axis].min(at[axis]);
+                view.high[axis] = view.high[axis].max(at[axis]);
+            }
+        }
+        for view in &mut views {
+            view.centre = scaled(view.centre, 1.0 / view.mass);
+            view.velocity = scaled(view.velocity, 1.0 / view.mass);
+        }
+        views
+    }
+
+    /// The mass of all nodes inside a region [kg].
+    pub fn mass_inside(&self, region: &Shape) -> f32 {
+        self.mass_where(|at| region.distance(at).0 < 0.0)
+    }
+
+    /// The mass of all nodes at places [m] that satisfy a condition [kg].
+    pub fn mass_where(&self, is_inside: impl Fn(Vector) -> bool) -> f32 {
+        let states = self.mesh.nodes().map(|(id, _)| self.node_state(id));
+        states
+            .filter(|&(at, _, _)| is_inside(at))
+            .map(|(_, _, mass)| mass)
+            .sum()
+    }
+
+    /// All bare faces, by element.
+    pub fn facets(&self) -> impl Iterator<Item = Facet> + '_ {
+        self.mesh.elements().flat_map(move |(id, element)| {
+            let bare = match element.cell.level {
+                0 => self.bare[id as usize],
+                _ => 0,
+            };
+            (0..2 * D::N)
+                .filter(move |face| bare >> face & 1 == 1)
+                .map(move |face| self.facet(id, element, face / 2, face % 2))
+        })
+    }
+
+    /// The closed lines around all pieces of a body in the plane; nothing in space.
+    pub fn outlines(&self) -> Vec<Outline> {
+        if D::N != 2 {
+            return Vec::new();
+        }
+        // Every node of the surface starts one segment and ends one.
+        let mut leaving: Vec<Option<Facet>> = vec![None; self.mesh.node_capacity()];
+        for facet in self.facets() {
+            leaving[facet.nodes[0] as usize] = Some(facet);
+        }
+        let mut outlines = Vec::new();
+        for start in 0..leaving.len() {
+            let mut ring: Vec<Facet> = Vec::new();
+            let mut at = start;
+            while let Some(facet) = leaving[at].take() {
+                at = facet.nodes[1] as usize;
+                ring.push(facet);
+            }
+            if let Some(last) = ring.last() {
+                let before = std::iter::once(last).chain(&ring);
+                let normals = ring.iter().zip(before);
+                let normals = normals.map(|(next, last)| unit(plus(last.normal, next.normal)));
+                outlines.push(Outline {
+                    piece: ring[0].piece,
+                    nodes: ring.iter().map(|facet| facet.nodes[0]).collect(),
+                    points: ring.iter().map(|facet| facet.corners[0]).collect(),
+                    normals: normals.collect(),
+                    is_fresh: ring.iter().map(|facet| facet.is_fresh).collect(),
+                });
+            }
+        }
+        outlines
+    }
+
+    /// All elements, to be looked at.
+    pub fn element_views(&self) -> impl Iterator<Item = ElementView> + '_ {
+        self.mesh.elements().map(|(id, element)| ElementView {
+            id,
+            level: element.cell.level,
+            piece: self.pieces.of_element(id),
+            material: self.grid.material(self.first_voxel(element)),
+            children: element.children,
+            strain: self.strain(id, element),
+            slots: self.slot_positions(element),
+        })
+    }
+
+    /// ‖F − R‖ of an element: 0.1 is a stretch by a tenth.
+    fn strain(&self, id: u32, element: &Element) -> f32 {
+        let deformation = self.deformation(element).1;
+        let rotation = self.blocks.rotation(id);
+        let mut sum = 0.0;
+        for i in 0..D::N {
+            for j in 0..D::N {
+                let difference = deformation[i][j] - rotation[i][j];
+                sum += difference * difference;
+            }
+        }
+        sum.sqrt()
+    }
+
+    /// The centre of an element [m] and its deformation gradient F, by rows.
+    pub(crate) fn deformation(&self, element: &Element) -> (Vector, [Vector; 3]) {
+        let stencil = self.mesh.stencil(element);
+        let half = 0.5 * self.grid.voxel_size() * element.cell.width() as f32;
+        let scale = 1.0 / (stencil.volume as f32 * half);
+        let (mut centre, mut gradient) = ([0.0; 3], [[0.0; 3]; 3]);
+        for (place, &node) in element.nodes.iter().enumerate() {
+            let at = self.position[node as usize];
+            let at = [at[0], at[1], at[2]];
+            let share = (stencil.volumes[place] / stencil.volume) as f32;
+            centre = plus(centre, scaled(at, share));
+            let b = stencil.gradients[place].map(|k| k as f32);
+            for i in 0..D::N {
+                gradient[i] = plus(gradient[i], scaled(b, at[i] * scale));
+            }
+        }
+        gradient
+            .iter_mut()
+            .enumerate()
+            .skip(D::N)
+            .for_each(|(k, row)| row[k] = 1.0);
+        (centre, gradient)
+    }
+
+    /// Where the slots of an element are: at its nodes, or between the nodes that stand for them.
+    fn slot_positions(&self, element: &Element) -> [Vector; 27] {
+        let centre = self.deformation(element).0;
+        let mut places: [Option<Vector>; 27] = [None; 27];
+        let slots = &self.mesh.stencil(element).slots;
+        for (&slot, &node) in slots.iter().zip(&element.nodes) {
+            let at = self.position[node as usize];
+            places[slot as usize] = Some([at[0], at[1], at[2]]);
+        }
+        // From edge middles up to the centre: the mean of what a slot lies between.
+        for order in 1..=D::N {
+            for slot in 0..D::SLOTS {
+                let at = slot_at(slot);
+                let middles = at.iter().filter(|&&k| k == 1).count();
+                if places[slot].is_some() || middles != order {
+                    continue;
+                }
+                let mut sum = [0.0; 3];
+                let mut count = 0.0;
+                for axis in (0..D::N).filter(|&axis| at[axis] == 1) {
+                    for end in [0, 2] {
+                        let mut near = at;
+                        near[axis] = end;
+                        if let Some(place) = places[slot_index(near)] {
+                            sum = plus(sum, place);
+                            count += 1.0;
+                        }
+                    }
+                }
+                if count == 2.0 * order as f32 {
+                    places[slot] = Some(scaled(sum, 1.0 / count));
+                }
+            }
+        }
+        places.map(|place| place.unwrap_or(centre))
+    }
+
+    fn facet(&self, id: u32, element: &Element, axis: usize, side: usize) -> Facet {
+        let ring: &[usize] = match D::N {
+            2 => &[0, 1],
+            _ => &[0, 1, 3, 2],
+        };
+        // The other axes, in an order that makes the ring turn around the outward normal.
+        let others = match D::N {
+            2 => [1 - axis, 2],
+            _ => [(axis + 1) % 3, (axis + 2) % 3],
+        };
+        let forwards = match D::N {
+            2 => (side == 1) == (axis == 0),
+            _ => side == 1,
+        };
+        let mut nodes = [u32::MAX; 4];
+        let mut corners = [[0.0; 3]; 4];
+        for (place, &step) in ring.iter().enumerate() {
+            let place = if forwards {
+                place
+            } else {
+                ring.len() - 1 - place
+            };
+            let vertex = side << axis | (step & 1) << others[0] | (step >> 1) << others[1];
+            let node = element.nodes[vertex];
+            nodes[place] = node;
+            let at = self.position[node as usize];
+            corners[place] = [at[0], at[1], at[2]];
+        }
+        let normal = match D::N {
+            2 => {
+                let along = minus(corners[1], corners[0]);
+                [along[1], -along[0], 0.0]
+            }
+            _ => cross(minus(corners[2], corners[0]), minus(corners[3], corners[1])),
+        };
+        let mut beyond = element.cell.at;
+        beyond[axis] += 2 * side as i32 - 1;
+        Facet {
+            nodes,
+            corners,
+            normal: unit(normal),
+            element: id,
+            piece: self.pieces.of_element(id),
+            is_fresh: self.grid.is_solid(beyond),
+        }
+    }
+
+    /// A voxel that an element fills.
+    pub(crate) fn first_voxel(&self, element: &Element) -> crate::dim::Point {
+        match element.cell.level {
+            0 => element.cell.at,
+            _ => {
+                let child = element.children.trailing_zeros() as usize;
+                element.cell.child(child).first_voxel()
+            }
+        }
+    }
+}
+
+impl ElementView {
+    /// The corners [m] of a child that the element fills, in the order of [`corner`]; those of the
+    /// whole cell at level 0, which has no children.
+    pub fn child_corners<D: Dim>(&self, child: usize) -> Vec<Vector> {
+        let at = |vertex: usize| match self.level {
+            0 => corner(vertex).map(|k| 2 * k),
+            _ => add(corner(child), corner(vertex)),
+        };
+        let place = |vertex: usize| self.slots[slot_index(at(vertex))];
+        (0..D::CORNERS).map(place).collect()
+    }
+}
+
+fn unit(v: Vector) -> Vector {
+    scaled(v, 1.0 / length(v).max(1e-12))
+}

@@ -1,0 +1,241 @@
+//! Worlds: things fall, rest, sleep, are cut, pushed, torn and looked at.
+
+use fuwafuwa::blade::Blade;
+use fuwafuwa::manipulator::{Drive, Manipulator};
+use fuwafuwa::{Body, Dim, Dim2, Dim3, Event, Material, Settings, Shape, VoxelGrid, World};
+
+const WEIGHTLESS: Settings = Settings {
+    gravity: [0.0; 3],
+    drag: 0.0,
+    most_substeps: 64,
+};
+
+fn unbreakable() -> Material {
+    Material {
+        strength: f32::INFINITY,
+        ..Material::default()
+    }
+}
+
+fn ball<D: Dim>(n: usize, material: Material) -> Body<D> {
+    Body::new(VoxelGrid::ball(n, 1.0).unwrap(), &[material]).unwrap()
+}
+
+fn validate<D: Dim>(world: &World<D>) {
+    for body in world.bodies() {
+        body.mesh().validate(body.grid(), body.sharing()).unwrap();
+    }
+}
+
+/// The volume inside all facets, by the divergence theorem.
+fn volume_inside<D: Dim>(body: &Body<D>) -> f32 {
+    let of = |facet: fuwafuwa::view::Facet| {
+        let [a, b, c, d] = facet.corners;
+        match D::N {
+            2 => 0.5 * (a[0] * b[1] - a[1] * b[0]),
+            _ => {
+                let triple = |a: [f32; 3], b: [f32; 3], c: [f32; 3]| {
+                    (a[0] * (b[1] * c[2] - b[2] * c[1])
+                        + a[1] * (b[2] * c[0] - b[0] * c[2])
+                        + a[2] * (b[0] * c[1] - b[1] * c[0]))
+                        / 6.0
+                };
+                triple(a, b, c) + triple(a, c, d)
+            }
+        }
+    };
+    body.facets().map(of).sum()
+}
+
+fn check_cut_in_two<D: Dim>(n: usize, blade: Blade) {
+    let mut world = World::<D>::new(WEIGHTLESS).unwrap();
+    world.add_body(ball::<D>(n, unbreakable()));
+    let mass = world.bodies()[0].total_mass();
+    let volume = volume_inside(&world.bodies()[0]);
+    assert!(
+        (f64::from(volume) * 100.0 / mass - 1.0).abs() < 1e-3,
+        "{volume}"
+    );
+    assert!(world.cut(0, &blade) > n / 2);
+    validate(&world);
+    let body = &world.bodies()[0];
+    let views = body.piece_views();
+    assert_eq!(views.len(), 2);
+    let total: f32 = views.iter().map(|view| view.mass).sum();
+    assert!((f64::from(total) / mass - 1.0).abs() < 1e-4);
+    assert!(views.iter().all(|view| view.mass > 0.2 * total));
+    let fresh = body.facets().filter(|facet| facet.is_fresh).count();
+    assert!(fresh >= n, "{fresh} fresh faces");
+    assert!((volume_inside(body) / volume - 1.0).abs() < 1e-3);
+    for _ in 0..30 {
+        world.step();
+    }
+    let kept: f64 = world.bodies()[0].total_mass();
+    assert!((kept / mass - 1.0).abs() < 1e-4);
+}
+
+#[test]
+fn a_blade_cuts_in_two() {
+    check_cut_in_two::<Dim2>(24, Blade::segment([0.47, -0.1], [0.55, 1.1]));
+    let across = Blade {
+        from: [-0.1, 0.45, -0.1],
+        across: [1.2, 0.1, 0.0],
+        along: [0.0, 0.1, 1.2],
+    };
+    check_cut_in_two::<Dim3>(16, across);
+}
+
+#[test]
+fn a_short_blade_leaves_a_slit() {
+    let mut world = World::<Dim2>::new(WEIGHTLESS).unwrap();
+    world.add_body(ball(24, unbreakable()));
+    assert!(world.cut(0, &Blade::segment([0.5, -0.1], [0.5, 0.5])) > 5);
+    validate(&world);
+    assert_eq!(world.bodies()[0].pieces().list.len(), 1);
+    assert_eq!(
+        world.bodies()[0].outlines().len(),
+        1,
+        "the slit joins the rim"
+    );
+    assert!(world.cut(0, &Blade::segment([0.5, 0.7], [0.5, 0.8])) > 0);
+    assert_eq!(world.bodies()[0].outlines().len(), 2, "a hole of its own");
+}
+
+fn check_falls_rests_and_sleeps<D: Dim>(n: usize) {
+    let mut world = World::<D>::new(Settings::default()).unwrap();
+    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    world.add_obstacle(floor, 0.5).unwrap();
+    let damped = Material {
+        damping: 0.3,
+        ..unbreakable()
+    };
+    world.add_body(ball::<D>(n, damped).moved([0.0, 0.3, 0.0]));
+    let (mut hit, mut slept) = (false, false);
+    for _ in 0..600 {
+        world.step();
+        for event in world.events() {
+            hit |= matches!(event, Event::Touched { impulse, .. } if *impulse > 1.0);
+            slept |= matches!(event, Event::FellAsleep { .. });
+        }
+        if slept {
+            break;
+        }
+    }
+    let view = world.bodies()[0].piece_views()[0];
+    assert!(hit && slept && view.asleep, "{view:?}");
+    assert!(view.low[1] > -0.01 && view.high[1] > 0.5, "{view:?}");
+    let still = world.hash();
+    world.step();
+    let mut hand = Manipulator::new([0.5, 2.0, if D::N == 3 { 0.5 } else { 0.0 }], 0.1);
+    hand.drive = Drive::Kinematic;
+    world.add_manipulator(hand).unwrap();
+    assert_ne!(world.hash(), still, "ticks count");
+    let mut woke = false;
+    for tick in 0..60 {
+        let height = 2.0 - 1.5 * tick as f32 / 60.0;
+        world.set_goal(0, [0.5, height, if D::N == 3 { 0.5 } else { 0.0 }]);
+        world.step();
+        woke |= world
+            .events()
+            .iter()
+            .any(|event| matches!(event, Event::Woke { .. }));
+    }
+    assert!(woke, "a hand wakes what it touches");
+    let felt = world.manipulators()[0].reactions().last().unwrap().contact;
+    assert!(felt[1] > 1.0, "the body pushes back: {felt:?}");
+}
+
+#[test]
+fn a_ball_falls_rests_sleeps_and_wakes() {
+    check_falls_rests_and_sleeps::<Dim2>(24);
+    check_falls_rests_and_sleeps::<Dim3>(12);
+}
+
+/// The hand is slammed through the body at 20 body widths a second.
+fn check_slam<D: Dim>(n: usize, drive: Drive) {
+    let mut world = World::<D>::new(WEIGHTLESS).unwrap();
+    world.add_body(ball::<D>(n, Material::default()));
+    let depth = if D::N == 3 { 0.5 } else { 0.0 };
+    let hand = Manipulator::new([-0.5, 0.5, depth], 0.1).driven(drive);
+    world.add_manipulator(hand).unwrap();
+    for tick in 0..60 {
+        world.set_goal(0, [-0.5 + tick as f32 * 20.0 / 60.0, 0.5, depth]);
+        let report = world.step();
+        assert_eq!(report.quarantined, 0, "tick {tick}");
+    }
+    validate(&world);
+    let body = &world.bodies()[0];
+    for (id, _) in body.mesh().nodes() {
+        let (at, velocity, _) = body.node_state(id);
+        assert!(at.iter().chain(&velocity).all(|k| k.is_finite()));
+    }
+}
+
+#[test]
+fn a_slammed_hand_leaves_a_finite_world() {
+    for drive in [Drive::Kinematic, Drive::default()] {
+        check_slam::<Dim2>(32, drive);
+        check_slam::<Dim3>(12, drive);
+    }
+}
+
+#[test]
+fn what_is_not_finite_is_refused() {
+    let mut world = World::<Dim2>::new(WEIGHTLESS).unwrap();
+    world
+        .add_manipulator(Manipulator::new([0.0; 3], 0.1))
+        .unwrap();
+    assert!(!world.set_goal(0, [f32::NAN, 0.0, 0.0]));
+    assert!(
+        world
+            .add_manipulator(Manipulator::new([0.0; 3], -1.0))
+            .is_err()
+    );
+    let nowhere = Shape::Ball {
+        centre: [f32::INFINITY, 0.0, 0.0],
+        radius: 1.0,
+    };
+    assert!(world.add_obstacle(nowhere, 0.1).is_err());
+    assert!(
+        World::<Dim2>::new(Settings {
+            drag: -1.0,
+            ..WEIGHTLESS
+        })
+        .is_err()
+    );
+}
+
+#[test]
+fn an_inverted_start_stays_finite() {
+    let mut world = World::<Dim2>::new(WEIGHTLESS).unwrap();
+    let mut body = ball::<Dim2>(24, unbreakable());
+    let nodes: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
+    for id in nodes {
+        let (at, _, _) = body.node_state(id);
+        body.set_node_state(id, [1.0 - at[0], at[1], 0.0], [0.0; 3]);
+    }
+    world.add_body(body);
+    for _ in 0..120 {
+        world.step();
+    }
+    let view = world.bodies()[0].piece_views()[0];
+    assert!(view.high[0] - view.low[0] < 2.0, "{view:?}");
+}
+
+/// A body far too stiff for the substeps allowed is softened, and says so.
+#[test]
+fn a_body_too_stiff_is_softened() {
+    let mut world = World::<Dim2>::new(Settings::default()).unwrap();
+    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    world.add_obstacle(floor, 0.5).unwrap();
+    let mut steel = unbreakable();
+    steel.elasticity.young = 1e9;
+    world.add_body(ball::<Dim2>(24, steel).moved([0.0, 0.1, 0.0]));
+    assert!(world.bodies()[0].softening() < 0.1);
+    assert_eq!(world.substeps(), 64);
+    for _ in 0..60 {
+        assert_eq!(world.step().quarantined, 0);
+    }
+    let view = world.bodies()[0].piece_views()[0];
+    assert!(view.low[1] > -0.05 && view.high[1] < 1.5, "{view:?}");
+}
