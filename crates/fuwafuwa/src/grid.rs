@@ -54,6 +54,8 @@ impl std::error::Error for BuildError {}
 
 /// A box of voxels, each empty (0) or of a material (1 to 255).
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct VoxelGrid<D: Dim> {
     size: Point,
     voxel_size: f32,

@@ -20,6 +20,7 @@ use std::fmt;
 
 /// How an element answers to being deformed.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Law {
     /// Exactly the force of [Endo 2004, §3.1].
     Endo2004,
@@ -30,6 +31,7 @@ pub enum Law {
 
 /// Elastic constants of a material.
 #[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Elasticity {
     /// Young's modulus Y [Pa]; a game body has about 5000. Too high for the substep: blow-up.
     pub young: f64,

@@ -32,6 +32,8 @@ mod release;
 mod rest;
 pub mod shape;
 pub mod sharing;
+#[cfg(feature = "serde")]
+pub mod snapshot;
 pub mod solve;
 pub mod stencil;
 mod touch;

@@ -20,6 +20,7 @@ use std::fmt;
 
 /// An elastic unit on a cell or on a face-connected part of one.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Element {
     /// Where it sits.
     pub cell: Cell,
@@ -33,6 +34,7 @@ pub struct Element {
 
 /// A mass point: a lattice point and the octants of the group that shares it.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Node {
     /// Lattice point at rest.
     pub at: Point,
@@ -42,6 +44,8 @@ pub struct Node {
 
 /// The elements of one body and the nodes they share.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Mesh<D: Dim> {
     elements: Vec<Option<Element>>,
     nodes: Vec<Node>,

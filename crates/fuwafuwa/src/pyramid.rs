@@ -16,6 +16,7 @@ use std::marker::PhantomData;
 
 /// A place in the pyramid: level 0 is one voxel, level l is 2^l voxels wide.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Cell {
     /// 0 = finest.
     pub level: u8,
@@ -63,6 +64,7 @@ impl Cell {
 
 /// How fine the elements are, and where.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Grading {
     /// Single voxels at the surface, larger ones inside: what cutting needs.
     #[default]
@@ -76,6 +78,8 @@ pub enum Grading {
 
 /// Which cells exist, level by level.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Pyramid<D: Dim> {
     levels: Vec<Table>,
     grading: Grading,
@@ -83,6 +87,7 @@ pub struct Pyramid<D: Dim> {
 }
 
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Table {
     size: Point,
     exists: Vec<bool>,

@@ -22,6 +22,7 @@ const EMPTY: u32 = 15;
 ///
 /// Four bits an octant, 15 where there is no voxel.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Groups(u32);
 
 impl Groups {
@@ -118,6 +119,8 @@ impl Groups {
 
 /// The grouping at every lattice point of a voxel grid.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Sharing<D: Dim> {
     /// Lattice points on each axis: one more than there are voxels (1 on the third axis in 2D).
     size: Point,

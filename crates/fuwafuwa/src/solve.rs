@@ -34,6 +34,7 @@ const ALL_LANES: u8 = u8::MAX;
 
 /// Places of the forces on a node: one an element, eight at most, in the order of the octants.
 #[derive(Copy, Clone, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Slots {
     places: [u32; 8],
     count: u8,
@@ -45,6 +46,8 @@ struct Lane([f32; LANES]);
 
 /// All elements of a body in blocks, with the forces they put on their nodes.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Blocks<D: Dim> {
     law: Law,
     elasticities: Vec<Elasticity>,
@@ -61,6 +64,7 @@ pub struct Blocks<D: Dim> {
 }
 
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Block {
     constants: u32,
     elasticity: Elasticity,
@@ -76,6 +80,7 @@ struct Block {
 
 /// The blocks of one class and material, some with vacant lanes.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Class {
     constants: u32,
     open: Vec<u32>,
@@ -83,6 +88,7 @@ struct Class {
 
 /// A stencil in single precision.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Constants {
     /// b, w r and w of each node.
     nodes: Vec<([f32; 3], [f32; 3], f32)>,

@@ -65,6 +65,8 @@ impl std::error::Error for MissingCorner {}
 
 /// The geometry of a class of element, for a child of edge length 1.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Stencil<D: Dim> {
     /// The children it fills; every corner set for a whole cell.
     pub children: u8,

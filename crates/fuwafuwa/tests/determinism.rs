@@ -1,43 +1,112 @@
-//! The same bits in debug and in release.
+//! The same bits in debug and in release, and after saving and loading.
 //!
 //! A changed hash is a changed simulation: say why in the commit.
 
-use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, VoxelGrid};
+use fuwafuwa::law::Law;
+use fuwafuwa::manipulator::Manipulator;
+use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, Settings, Shape, VoxelGrid, World};
 
-/// A ball that is squashed, let go, cut while it swings and followed for half a second.
-fn hash_of_a_cut_ball<D: Dim>(n: i32) -> u64 {
-    let grid = VoxelGrid::<D>::ball(n as usize, 1.0).unwrap();
-    let mut body = Body::new(grid, &[Material::default()]).unwrap();
-    let nodes: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
-    for id in nodes {
-        let (x, _, _) = body.node_state(id);
-        body.set_node_state(id, [x[0] * 1.2, x[1] * 0.75, x[2]], [x[1], -x[0], 0.0]);
+/// A ball that falls on a floor while a hand is pushed through it.
+fn torn_world<D: Dim>(n: usize) -> World<D> {
+    let mut world = World::<D>::new(Settings::default()).unwrap();
+    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    world.add_obstacle(floor, 0.4).unwrap();
+    let ball = VoxelGrid::ball(n, 1.0).unwrap();
+    let body = Body::new(ball, &[Material::default()]).unwrap();
+    world.add_body(body.moved([0.0, 0.05, 0.0]));
+    let depth = if D::N == 3 { 0.5 } else { 0.0 };
+    let hand = Manipulator::new([-0.3, 0.5, depth], 0.08);
+    world.add_manipulator(hand).unwrap();
+    world
+}
+
+fn push<D: Dim>(world: &mut World<D>, ticks: std::ops::Range<u32>) -> u32 {
+    let depth = if D::N == 3 { 0.5 } else { 0.0 };
+    let mut released = 0;
+    for tick in ticks {
+        world.set_goal(0, [-0.3 + tick as f32 * 0.03, 0.5, depth]);
+        released += world.step().released;
     }
-    for step in 0..480 {
-        if step % 16 == 0 {
-            let depth = step / 16;
-            let at = [n / 2, depth % n, if D::N == 3 { n / 2 } else { 0 }];
-            body.release(&[(at, 0b1010_1010)]).unwrap();
-        }
-        body.advance(1.0 / 960.0, [0.0, -9.81, 0.0]);
+    released
+}
+
+fn hash_of_torn_world<D: Dim>(n: usize) -> u64 {
+    let mut world = torn_world::<D>(n);
+    let released = push(&mut world, 0..70);
+    assert!(released > 10, "{released} releases: the body must tear");
+    world.hash()
+}
+
+/// The elastic force of the paper, without tearing.
+fn hash_of_paper_law<D: Dim>(n: usize) -> u64 {
+    let mut world = World::<D>::new(Settings::default()).unwrap();
+    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    world.add_obstacle(floor, 0.4).unwrap();
+    let ball = VoxelGrid::ball(n, 1.0).unwrap();
+    let grading = fuwafuwa::pyramid::Grading::Graded;
+    let body = Body::with(ball, &[Material::default()], Law::Endo2004, grading).unwrap();
+    world.add_body(body.moved([0.0, 0.05, 0.0]));
+    for _ in 0..30 {
+        world.step();
     }
-    let mut hash = 0xcbf2_9ce4_8422_2325u64;
-    for (id, _) in body.mesh().nodes() {
-        let (position, velocity, _) = body.node_state(id);
-        for value in position.iter().chain(&velocity) {
-            assert!(value.is_finite());
-            hash = (hash ^ u64::from(value.to_bits())).wrapping_mul(0x0100_0000_01b3);
-        }
-    }
-    hash
+    world.hash()
 }
 
 #[test]
 fn golden_hashes() {
     let found = [
-        hash_of_a_cut_ball::<Dim2>(32),
-        hash_of_a_cut_ball::<Dim3>(16),
+        hash_of_torn_world::<Dim2>(32),
+        hash_of_torn_world::<Dim3>(16),
+        hash_of_paper_law::<Dim2>(16),
+        hash_of_paper_law::<Dim3>(8),
     ];
-    let golden = [0xd080_94ca_50fe_0cde, 0x4f86_1f57_3d6c_13e7];
+    let golden = [
+        0x4409_2ad5_ed88_373c,
+        0x0921_2987_f402_aa90,
+        0x8805_fc89_4720_8c3c,
+        0xcd90_5528_0621_f6b7,
+    ];
     assert_eq!(found, golden, "{found:#x?}");
+}
+
+#[cfg(feature = "serde")]
+mod snapshots {
+    use super::*;
+    use fuwafuwa::snapshot::{BadSnapshot, load, save};
+
+    fn check_resumes<D: Dim>(n: usize) {
+        let mut world = torn_world::<D>(n);
+        push(&mut world, 0..40);
+        let mut resumed = load::<D>(&save(&world)).unwrap();
+        assert_eq!(resumed.hash(), world.hash());
+        push(&mut world, 40..60);
+        push(&mut resumed, 40..60);
+        assert_eq!(resumed.hash(), world.hash());
+    }
+
+    #[test]
+    fn a_saved_world_goes_on_to_the_same_bits() {
+        check_resumes::<Dim2>(24);
+        check_resumes::<Dim3>(12);
+    }
+
+    #[test]
+    fn what_is_not_as_it_was_saved_is_refused() {
+        let bytes = save(&torn_world::<Dim2>(8));
+        let refused = |bytes: &[u8]| load::<Dim2>(bytes).map(|_| ()).unwrap_err();
+        let solid = load::<Dim3>(&bytes).map(|_| ());
+        assert_eq!(solid, Err(BadSnapshot::Dimensions { found: 2 }));
+        assert_eq!(refused(b"something else, long enough"), BadSnapshot::NotOne);
+        let mut newer = bytes.clone();
+        newer[4] = 200;
+        assert_eq!(refused(&newer), BadSnapshot::Version { found: 200 });
+        for length in 0..bytes.len() {
+            refused(&bytes[..length]);
+        }
+        for place in 9..bytes.len() {
+            let mut damaged = bytes.clone();
+            damaged[place] ^= 4;
+            assert_eq!(refused(&damaged), BadSnapshot::Damaged);
+        }
+    }
 }
