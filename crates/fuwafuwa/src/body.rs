@@ -89,7 +89,7 @@ impl<D: Dim> Body<D> {
         let pyramid = Pyramid::new(&grid, &sharing, grading);
         let mesh = Mesh::grade(&grid, &sharing, &pyramid)?;
         let mut body = Self {
-            blocks: Blocks::new(law, elasticities(materials, 1.0), grid.voxel_size()),
+            blocks: Blocks::new(law, &elasticities(materials, 1.0), grid.voxel_size()),
             pieces: Pieces::new(&mesh),
             law,
             swing: Swing::of(&grid, materials),
@@ -187,7 +187,7 @@ impl<D: Dim> Body<D> {
 
     /// The material of an element.
     pub fn material(&self, element: &Element) -> &Material {
-        let voxel = self.first_voxel(element);
+        let voxel = self.mesh.first_voxel(element);
         &self.materials[self.grid.material(voxel) as usize - 1]
     }
 
@@ -285,7 +285,7 @@ impl<D: Dim> Body<D> {
         }
         self.softening *= ratio * ratio;
         let elasticities = elasticities(&self.materials, self.softening);
-        self.blocks = Blocks::new(self.law, elasticities, self.grid.voxel_size());
+        self.blocks = Blocks::new(self.law, &elasticities, self.grid.voxel_size());
         self.seat_all_elements();
     }
 

@@ -307,6 +307,15 @@ impl<D: Dim> Mesh<D> {
         })
     }
 
+    /// A voxel that an element fills.
+    pub fn first_voxel(&self, element: &Element) -> Point {
+        let child = element.children.trailing_zeros() as usize;
+        match element.cell.level {
+            0 => element.cell.at,
+            _ => element.cell.child(child).first_voxel(),
+        }
+    }
+
     /// The voxels that an element fills.
     pub fn voxels(&self, element: &Element) -> Vec<Point> {
         if element.cell.level == 0 {

@@ -1,27 +1,30 @@
-//! The forces of all elements, eight of one class at a time.
+//! The forces of all elements, eight at a time.
 //!
-//! Elements of one class and material stand side by side in the lanes of a block. Each lane does
-//! the operations of the scalar formula in the scalar order and nothing is summed across lanes: the
-//! width of the machine's vectors cannot change a bit. The tests hold the forces against [`crate::law`]. An element writes to its own slots, and a node adds up
-//! its slots in the order of the octants around it: neither thread nor numbering can change a bit.
+//! Elements stand side by side in the lanes of a block. Each lane does the operations of the scalar
+//! formula in the scalar order and nothing is summed across lanes, so the width of the machine's
+//! vectors cannot change a bit; the tests hold the forces against [`crate::law`]. An element writes
+//! to its own slots, and a node adds up its slots in the order of the octants around it: neither
+//! thread nor numbering can change a bit.
 //!
-//! With x relative to the first node, unit stencil (b, r, w, V) and half size h, the formulas of
-//! [`crate::law`] become
-//!
-//! ```text
-//! F = Σ x bᵀ / (V h)     G = Σ x (w r)ᵀ     c = Σ w x / V     W = Σ w r rᵀ
-//! A = (k / V) (G − h F W) − h^(d−1) P       B = k h F
-//! f = A b + B (w r) − k w (x − c)
-//! ```
+//! The lanes of a block are of one class where a class has elements enough. The rest, a fifth of a
+//! body in some hundred classes, is pooled by number of nodes, with a stencil for each lane.
+
+mod kernel;
+mod lanes;
 
 use crate::dim::Dim;
 use crate::grid::VoxelGrid;
-use crate::law::{Elasticity, Law, SQUASH_LIMIT};
+use crate::law::{Elasticity, Law};
 use crate::mesh::{Element, Mesh};
 use crate::stencil::Stencil;
-use std::collections::BTreeMap;
+use crate::vector::plus;
+use kernel::{
+    Eight, Mixed, Moduli, Same, Scratch, Seats, forces, gradient, numbers, numbers_a_node,
+    plain_forces, plain_gradient, stress,
+};
+use lanes::{Lanes, Portable};
+use std::collections::{BTreeMap, BTreeSet};
 use std::marker::PhantomData;
-use std::ops::{Add, Div, Mul, Sub};
 
 /// Three coordinates and a pad, so that a row is one aligned load; in 2D the third is 0.
 pub type Row = [f32; 4];
@@ -29,8 +32,39 @@ pub type Row = [f32; 4];
 /// Elements in a block.
 pub const LANES: usize = 8;
 
+/// Blocks that go through the three loops of the kernel together: their scratch fits the L1 cache.
+const GROUP: usize = 16;
+
 const VACANT: u32 = u32::MAX;
 const ALL_LANES: u8 = u8::MAX;
+
+/// All elements of a body in blocks, with the forces they put on their nodes.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound = ""))]
+pub struct Blocks<D: Dim> {
+    law: Law,
+    moduli: Vec<Moduli>,
+    voxel_size: f32,
+    blocks: Vec<Block>,
+    /// Blocks with vacant lanes.
+    open: BTreeMap<Home, BTreeSet<u32>>,
+    /// Blocks without elements, by number of nodes and by whether their lanes differ.
+    empty: BTreeMap<(u32, bool), Vec<u32>>,
+    /// The stencil of each class that has a block of its own: `numbers` each.
+    stencils: BTreeMap<u32, u32>,
+    numbers: Vec<f32>,
+    /// The stencils of pooled lanes.
+    pooled: Vec<Eight>,
+    /// Block and lane of each element, by id; the block is [`VACANT`] while it has none.
+    seats: Vec<(u32, u8)>,
+    /// Where the forces on each node stand: places in `forces`, by id.
+    slots: Vec<Slots>,
+    /// The nodes of all blocks: node k of lane l at k · LANES + l after the block's first.
+    nodes: Vec<u32>,
+    forces: Vec<Row>,
+    dim: PhantomData<D>,
+}
 
 /// Places of the forces on a node: one an element, eight at most, in the order of the octants.
 #[derive(Copy, Clone, Debug, Default)]
@@ -40,78 +74,98 @@ struct Slots {
     count: u8,
 }
 
-/// One number for each element of a block.
-#[derive(Copy, Clone)]
-struct Lane([f32; LANES]);
-
-/// All elements of a body in blocks, with the forces they put on their nodes.
-#[derive(Clone, Debug)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(bound = ""))]
-pub struct Blocks<D: Dim> {
-    law: Law,
-    elasticities: Vec<Elasticity>,
-    voxel_size: f32,
-    blocks: Vec<Block>,
-    classes: BTreeMap<(u8, u32), Class>,
-    constants: Vec<Constants>,
-    /// Block and lane of each element, by id; the block is [`VACANT`] while it has none.
-    seats: Vec<(u32, u8)>,
-    /// Where the forces on each node stand: places in `forces`, by id.
-    slots: Vec<Slots>,
-    forces: Vec<Row>,
-    dim: PhantomData<D>,
-}
-
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Block {
-    constants: u32,
-    elasticity: Elasticity,
+    home: Home,
     elements: [u32; LANES],
     /// The lanes that sleep or are vacant, as a mask.
     asleep: u8,
-    half_size: [f32; LANES],
-    rotation: [[f32; LANES]; 4],
-    /// The nodes of each lane: node k of lane l at k · LANES + l, and its force at `first_slot` on.
-    nodes: Vec<u32>,
-    first_slot: u32,
+    half_size: Eight,
+    /// In space a quaternion; in the plane cosine and sine.
+    rotation: [Eight; 4],
+    node_count: u32,
+    /// Where its nodes and forces begin.
+    first: u32,
+    /// Where its stencil begins, in `numbers` or in `pooled`, and how long it is.
+    stencil: u32,
+    numbers: u32,
 }
 
-/// The blocks of one class and material, some with vacant lanes.
-#[derive(Clone, Debug)]
+/// What the elements of a block have in common; each with the number of its material.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct Class {
-    constants: u32,
-    open: Vec<u32>,
+enum Home {
+    /// Whole cells with nodes in their corners only.
+    Plain(u8),
+    /// One class.
+    Class(u8, u32),
+    /// A number of nodes.
+    Pool(u8, u32),
 }
 
-/// A stencil in single precision.
-#[derive(Clone, Debug)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct Constants {
-    /// b, w r and w of each node.
-    nodes: Vec<([f32; 3], [f32; 3], f32)>,
-    /// W, by rows.
-    spread: [[f32; 3]; 3],
-    /// 1 / V.
-    inverse_volume: f32,
-    /// Of [`Law::Endo2004`]: the stiffness over Y h^(d−2).
-    stiffness: f32,
+impl Home {
+    fn material(self) -> u8 {
+        match self {
+            Self::Plain(material) | Self::Class(material, _) | Self::Pool(material, _) => material,
+        }
+    }
+
+    fn is_pool(self) -> bool {
+        matches!(self, Self::Pool(..))
+    }
+}
+
+/// The stencils of all blocks.
+struct Numbers<'a> {
+    same: &'a [f32],
+    pooled: &'a [Eight],
+}
+
+impl Block {
+    /// Its stencil: one for all lanes, or else one for each.
+    #[inline(always)]
+    fn stencil<'a>(&self, numbers: &Numbers<'a>) -> (&'a [f32], &'a [Eight]) {
+        let places = self.stencil as usize..(self.stencil + self.numbers) as usize;
+        match self.home {
+            Home::Plain(_) => (&[], &[]),
+            Home::Class(..) => (&numbers.same[places], &[]),
+            Home::Pool(..) => (&[], &numbers.pooled[places]),
+        }
+    }
+
+    #[inline(always)]
+    fn seats<'a>(&'a mut self, nodes: &'a [u32], forces: &'a mut [Row]) -> Seats<'a> {
+        let first = self.first as usize;
+        let places = first..first + self.node_count as usize * LANES;
+        Seats {
+            nodes: &nodes[places.clone()],
+            half_size: &self.half_size,
+            rotation: &mut self.rotation,
+            forces: &mut forces[places],
+        }
+    }
 }
 
 impl<D: Dim> Blocks<D> {
     /// No elements yet. `elasticities[number - 1]` belongs to material `number`; `voxel_size` [m].
-    pub fn new(law: Law, elasticities: Vec<Elasticity>, voxel_size: f32) -> Self {
+    pub fn new(law: Law, elasticities: &[Elasticity], voxel_size: f32) -> Self {
         Self {
             law,
-            elasticities,
+            moduli: elasticities
+                .iter()
+                .map(|&elasticity| Moduli::of::<D>(elasticity))
+                .collect(),
             voxel_size,
             blocks: Vec::new(),
-            classes: BTreeMap::new(),
-            constants: Vec::new(),
+            open: BTreeMap::new(),
+            empty: BTreeMap::new(),
+            stencils: BTreeMap::new(),
+            numbers: Vec::new(),
+            pooled: Vec::new(),
             seats: Vec::new(),
             slots: Vec::new(),
+            nodes: Vec::new(),
             forces: Vec::new(),
             dim: PhantomData,
         }
@@ -124,16 +178,28 @@ impl<D: Dim> Blocks<D> {
         for &id in removed.iter().chain(seated) {
             self.take_out(id);
         }
-        let mut touched = Vec::new();
+        let mut classes: BTreeMap<(u8, u32), Vec<Newcomer>> = BTreeMap::new();
         for (&id, rotation) in seated.iter().zip(rotations) {
             let element = mesh.element(id).expect("seated elements are alive");
-            let material = grid.material(mesh.voxels(element)[0]);
-            self.put_in(id, element, mesh.stencil(element), material, rotation);
-            touched.extend_from_slice(&element.nodes);
+            let material = grid.material(mesh.first_voxel(element));
+            let class = classes.entry((material, element.stencil)).or_default();
+            class.push(Newcomer {
+                id,
+                element,
+                rotation,
+            });
         }
+        for (&(material, class), newcomers) in &classes {
+            let stencil = mesh.stencil(newcomers[0].element);
+            self.put_in(material, class, stencil, newcomers);
+        }
+        self.slots.resize(mesh.node_capacity(), Slots::default());
+        let elements = seated.iter().filter_map(|&id| mesh.element(id));
+        let mut touched: Vec<u32> = elements
+            .flat_map(|element| element.nodes.iter().copied())
+            .collect();
         touched.sort_unstable();
         touched.dedup();
-        self.slots.resize(mesh.node_capacity(), Slots::default());
         for node in touched {
             let mut slots = Slots::default();
             for id in mesh.carrier_ids(node) {
@@ -144,7 +210,7 @@ impl<D: Dim> Blocks<D> {
         }
     }
 
-    /// Computes the forces of all elements at the given node positions [m].
+    /// Computes the forces of all elements that are awake, at the given node positions [m].
     pub fn evaluate(&mut self, position: &[Row]) {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {
@@ -155,40 +221,71 @@ impl<D: Dim> Blocks<D> {
             }
             return;
         }
-        self.evaluate_in::<false>(position);
+        self.evaluate_in::<Portable>(position);
     }
 
-    /// As [`Blocks::evaluate`], compiled for wider vectors: the same operations, the same bits.
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
     fn evaluate_avx2(&mut self, position: &[Row]) {
-        self.evaluate_in::<true>(position);
+        self.evaluate_in::<lanes::Wide>(position);
     }
 
     #[inline(always)]
-    fn evaluate_in<const WIDE: bool>(&mut self, position: &[Row]) {
-        for block in &mut self.blocks {
-            if block.asleep == ALL_LANES {
-                continue;
+    fn evaluate_in<L: Lanes>(&mut self, position: &[Row]) {
+        let mut scratch = [Scratch::EMPTY; GROUP];
+        let law = self.law;
+        for group in self.blocks.chunks_mut(GROUP) {
+            let numbers = Numbers {
+                same: &self.numbers,
+                pooled: &self.pooled,
+            };
+            for (block, scratch) in group.iter_mut().zip(&mut scratch) {
+                if block.asleep == ALL_LANES {
+                    continue;
+                }
+                let home = block.home;
+                let stencil = block.stencil(&numbers);
+                let seats = block.seats(&self.nodes, &mut self.forces);
+                match (home, stencil) {
+                    (Home::Plain(_), _) => plain_gradient::<D, L>(position, &seats, scratch),
+                    (_, (same, [])) => gradient::<D, L>(&Same(same), position, &seats, scratch),
+                    (_, (_, mixed)) => gradient::<D, L>(&Mixed(mixed), position, &seats, scratch),
+                }
             }
-            let constants = &self.constants[block.constants as usize];
-            let first = block.first_slot as usize;
-            let forces = &mut self.forces[first..first + block.nodes.len()];
-            evaluate::<D, WIDE>(self.law, constants, block, position, forces);
+            for (block, scratch) in group.iter_mut().zip(&mut scratch) {
+                if block.asleep == ALL_LANES {
+                    continue;
+                }
+                let moduli = &self.moduli[block.home.material() as usize - 1];
+                let mut seats = block.seats(&self.nodes, &mut self.forces);
+                stress::<D, L>(law, moduli, &mut seats, scratch);
+            }
+            for (block, scratch) in group.iter_mut().zip(&scratch) {
+                if block.asleep == ALL_LANES {
+                    continue;
+                }
+                let home = block.home;
+                let moduli = &self.moduli[home.material() as usize - 1];
+                let stencil = block.stencil(&numbers);
+                let mut seats = block.seats(&self.nodes, &mut self.forces);
+                let seats = &mut seats;
+                match (home, stencil) {
+                    (Home::Plain(_), _) => plain_forces::<D, L>(moduli, position, seats, scratch),
+                    (_, (same, [])) => {
+                        forces::<D, L>(law, moduli, &Same(same), position, seats, scratch);
+                    }
+                    (_, (_, mixed)) => {
+                        forces::<D, L>(law, moduli, &Mixed(mixed), position, seats, scratch);
+                    }
+                }
+            }
         }
     }
 
     /// The force [N] on a node, as of the last evaluation.
     #[inline]
     pub fn force_on(&self, node: u32) -> Row {
-        let mut sum = [0.0; 4];
-        let slots = &self.slots[node as usize];
-        for &slot in &slots.places[..slots.count as usize] {
-            for (total, part) in sum.iter_mut().zip(self.forces[slot as usize]) {
-                *total += part;
-            }
-        }
-        sum
+        self.parts_on(node).fold([0.0; 4], plus)
     }
 
     /// The forces [N] of the elements on a node, in the order of the octants around it, as of the
@@ -200,21 +297,22 @@ impl<D: Dim> Blocks<D> {
         places.iter().map(|&place| self.forces[place as usize])
     }
 
-    /// The force [N] of one element on its node number `place`, as of the last evaluation.
-    ///
-    /// # Panics
-    /// When the element has no seat: it is not part of the mesh.
-    #[inline]
-    pub fn element_force(&self, id: u32, place: usize) -> Row {
-        let (block, lane) = self.seats[id as usize];
-        let first = self.blocks[block as usize].first_slot as usize;
-        self.forces[first + place * LANES + lane as usize]
-    }
-
     /// The rotation of an element as of the last evaluation, by rows.
     pub fn rotation(&self, id: u32) -> [[f32; 3]; 3] {
-        let turned = self.rotation_of(id).map(Lane::splat);
-        matrix_of(turned).map(|row| row.map(|lane| lane.0[0]))
+        let turned = self.rotation_of(id);
+        if D::N == 2 {
+            let [cosine, sine, ..] = turned;
+            return [[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]];
+        }
+        let mut lanes = [[0.0; LANES]; 9];
+        for (k, entry) in kernel::matrix_of(turned.map(Portable::splat))
+            .iter()
+            .flatten()
+            .enumerate()
+        {
+            entry.store(&mut lanes[k]);
+        }
+        [0, 1, 2].map(|row: usize| [0, 1, 2].map(|column: usize| lanes[3 * row + column][0]))
     }
 
     /// Lets an element sleep, or wakes it: a block whose elements all sleep is not evaluated, and
@@ -237,13 +335,15 @@ impl<D: Dim> Blocks<D> {
     ) {
         for &id in nodes {
             let node = id as usize;
-            if lightness[node] == 0.0 {
+            let lightness = lightness[node];
+            if lightness == 0.0 {
                 continue;
             }
             let force = self.force_on(id);
+            let velocity = &mut velocity[node];
             for axis in 0..4 {
-                let acceleration = force[axis] * lightness[node] + gravity[axis];
-                velocity[node][axis] += duration * acceleration;
+                let acceleration = force[axis] * lightness + gravity[axis];
+                velocity[axis] += duration * acceleration;
             }
         }
     }
@@ -253,6 +353,7 @@ impl<D: Dim> Blocks<D> {
             Some(&(block, lane)) if block != VACANT => self.blocks[block as usize]
                 .rotation
                 .map(|part| part[lane as usize]),
+            _ if D::N == 2 => [1.0, 0.0, 0.0, 0.0],
             _ => [0.0, 0.0, 0.0, 1.0],
         }
     }
@@ -261,11 +362,12 @@ impl<D: Dim> Blocks<D> {
     fn slot(&self, id: u32, node: u32) -> u32 {
         let (block, lane) = self.seats[id as usize];
         let block = &self.blocks[block as usize];
-        let mut lane_nodes = block.nodes[lane as usize..].iter().step_by(LANES);
+        let first = block.first as usize + lane as usize;
+        let mut lane_nodes = self.nodes[first..].iter().step_by(LANES);
         let place = lane_nodes
             .position(|&other| other == node)
             .expect("the element carries the node");
-        block.first_slot + (place * LANES) as u32 + u32::from(lane)
+        (first + place * LANES) as u32
     }
 
     fn take_out(&mut self, id: u32) {
@@ -279,527 +381,232 @@ impl<D: Dim> Blocks<D> {
         let block = &mut self.blocks[index as usize];
         block.elements[lane as usize] = VACANT;
         block.asleep |= 1 << lane;
-        let mut classes = self.classes.values_mut();
-        let class = classes.find(|class| class.constants == block.constants);
-        let class = class.expect("every block belongs to a class");
-        if !class.open.contains(&index) {
-            class.open.push(index);
+        let open = self.open.entry(block.home).or_default();
+        if block.elements == [VACANT; LANES] {
+            open.remove(&index);
+            let kind = (block.node_count, block.home.is_pool());
+            self.empty.entry(kind).or_default().push(index);
+        } else {
+            open.insert(index);
         }
     }
 
+    /// Puts elements of one class and material into blocks: into vacant lanes of the class, eight
+    /// at a time into blocks of their own, and what is left into the pool.
     fn put_in(
         &mut self,
-        id: u32,
-        element: &Element,
-        stencil: &Stencil<D>,
         material: u8,
-        rotation: [f32; 4],
+        class: u32,
+        stencil: &Stencil<D>,
+        mut newcomers: &[Newcomer],
     ) {
-        let constants = &mut self.constants;
-        let law = self.law;
-        let class = self
-            .classes
-            .entry((material, element.stencil))
-            .or_insert_with(|| {
-                constants.push(Constants::new(law, stencil));
-                Class {
-                    constants: constants.len() as u32 - 1,
-                    open: Vec::new(),
-                }
-            });
-        let index = match class.open.last() {
-            Some(&index) => index,
-            None => {
-                let index = self.blocks.len() as u32;
-                let slots = element.nodes.len() * LANES;
-                self.blocks.push(Block {
-                    constants: class.constants,
-                    elasticity: self.elasticities[material as usize - 1],
-                    elements: [VACANT; LANES],
-                    asleep: ALL_LANES,
-                    half_size: [self.voxel_size; LANES],
-                    rotation: [[0.0; LANES], [0.0; LANES], [0.0; LANES], [1.0; LANES]],
-                    nodes: vec![element.nodes[0]; slots],
-                    first_slot: self.forces.len() as u32,
-                });
-                self.forces.resize(self.forces.len() + slots, [0.0; 4]);
-                class.open.push(index);
-                index
-            }
-        };
-        let block = &mut self.blocks[index as usize];
-        let lane = block
-            .elements
-            .iter()
-            .position(|&other| other == VACANT)
-            .expect("open blocks have a vacancy");
-        block.elements[lane] = id;
-        block.asleep &= !(1 << lane);
-        block.half_size[lane] = 0.5 * self.voxel_size * element.cell.width() as f32;
-        for (place, &node) in element.nodes.iter().enumerate() {
-            block.nodes[place * LANES + lane] = node;
-        }
-        for part in 0..4 {
-            block.rotation[part][lane] = rotation[part];
-        }
-        if !block.elements.contains(&VACANT) {
-            class.open.retain(|&other| other != index);
-        }
-        let seats = &mut self.seats;
-        seats.resize(seats.len().max(id as usize + 1), (VACANT, 0));
-        seats[id as usize] = (index, lane as u8);
-    }
-}
-
-impl Constants {
-    fn new<D: Dim>(law: Law, stencil: &Stencil<D>) -> Self {
-        let count = stencil.slots.len();
-        let mut mean = [0.0; 3];
-        for offset in &stencil.offsets {
-            for axis in 0..3 {
-                mean[axis] += offset[axis] / count as f64;
-            }
-        }
-        let centred = |k: usize| [0, 1, 2].map(|axis: usize| stencil.offsets[k][axis] - mean[axis]);
-        let spread_of = |k: usize| centred(k).iter().map(|r| r * r).sum::<f64>();
-        let total: f64 = (0..count).map(spread_of).sum();
-        let single = |v: [f64; 3]| v.map(|component| component as f32);
-        let node = |k: usize| match law {
-            Law::PatchExact => {
-                let w = stencil.volumes[k];
-                (
-                    single(stencil.gradients[k]),
-                    single(stencil.offsets[k].map(|r| w * r)),
-                    w as f32,
-                )
-            }
-            Law::Endo2004 => (single(centred(k)), [0.0; 3], 1.0),
-        };
-        let mut spread = [[0.0f32; 3]; 3];
-        for i in 0..3 {
-            for j in 0..3 {
-                let terms = (0..count)
-                    .map(|k| stencil.volumes[k] * stencil.offsets[k][i] * stencil.offsets[k][j]);
-                spread[i][j] = terms.sum::<f64>() as f32;
-            }
-        }
-        let volume = match law {
-            Law::PatchExact => stencil.volume,
-            Law::Endo2004 => count as f64,
-        };
-        Self {
-            nodes: (0..count).map(node).collect(),
-            spread,
-            inverse_volume: (1.0 / volume) as f32,
-            stiffness: (stencil.volume * D::N as f64 / total) as f32,
-        }
-    }
-}
-
-/// The forces of one block, all lanes at once; a vacant lane repeats what it held.
-#[inline(always)]
-fn evaluate<D: Dim, const WIDE: bool>(
-    law: Law,
-    constants: &Constants,
-    block: &mut Block,
-    position: &[Row],
-    forces: &mut [Row],
-) {
-    let zero = Lane::splat(0.0);
-    let half = Lane(block.half_size);
-    let one = Lane::splat(1.0);
-    let origin = gather::<D, WIDE>(position, block, 0);
-
-    let mut gradient = [[zero; 3]; 3];
-    let mut moment = [[zero; 3]; 3];
-    let mut centre = [zero; 3];
-    for (place, (b, wr, w)) in constants.nodes.iter().enumerate().skip(1) {
-        let x = relative::<D, WIDE>(position, block, place, origin);
-        for i in 0..D::N {
-            for j in 0..D::N {
-                gradient[i][j] = gradient[i][j] + x[i] * Lane::splat(b[j]);
-                moment[i][j] = moment[i][j] + x[i] * Lane::splat(wr[j]);
-            }
-            centre[i] = centre[i] + x[i] * Lane::splat(*w);
-        }
-    }
-    let inverse_volume = Lane::splat(constants.inverse_volume);
-    let scale = inverse_volume / half;
-    for i in 0..D::N {
-        for j in 0..D::N {
-            gradient[i][j] = gradient[i][j] * scale;
-        }
-        centre[i] = centre[i] * inverse_volume;
-    }
-    if D::N == 2 {
-        gradient[2][2] = one;
-    }
-
-    let mut turned = [zero; 4];
-    for part in 0..4 {
-        turned[part] = Lane(block.rotation[part]);
-    }
-    // Two rounds keep up with a body that spins and is squashed at once; one lags.
-    turned = turn::<D>(&gradient, turn::<D>(&gradient, turned));
-    for part in 0..4 {
-        block.rotation[part] = turned[part].0;
-    }
-    let rotation = matrix_of(turned);
-
-    let size_power = if D::N == 2 { half } else { half * half };
-    let size_rest = if D::N == 2 { one } else { half };
-    let double_power = if D::N == 2 { one } else { half + half };
-    let (mut pull, mut shear) = ([[zero; 3]; 3], [[zero; 3]; 3]);
-    let stiffness;
-    match law {
-        Law::PatchExact => {
-            let young = block.elasticity.young * D::HOURGLASS;
-            stiffness = Lane::splat(young as f32) * double_power;
-            let stress = stress::<D>(block.elasticity, &gradient, &rotation);
-            for i in 0..D::N {
-                for j in 0..D::N {
-                    let mut bent = zero;
-                    for k in 0..D::N {
-                        bent = bent + gradient[i][k] * Lane::splat(constants.spread[k][j]);
-                    }
-                    let skew = moment[i][j] - half * bent;
-                    pull[i][j] = stiffness * inverse_volume * skew - size_power * stress[i][j];
-                    shear[i][j] = stiffness * half * gradient[i][j];
-                }
-            }
-        }
-        Law::Endo2004 => {
-            let young = block.elasticity.young as f32;
-            stiffness = Lane::splat(young * constants.stiffness) * size_rest;
-            for i in 0..D::N {
-                for j in 0..D::N {
-                    pull[i][j] = stiffness * half * rotation[i][j];
-                }
-            }
-        }
-    }
-
-    for (place, (b, wr, w)) in constants.nodes.iter().enumerate() {
-        let x = if place == 0 {
-            [zero; 3]
+        let is_plain = stencil.is_plain() && self.law == Law::PatchExact;
+        let home = if is_plain {
+            Home::Plain(material)
         } else {
-            relative::<D, WIDE>(position, block, place, origin)
+            Home::Class(material, class)
         };
-        let mut all = [zero; 3];
-        for i in 0..D::N {
-            let mut force = stiffness * Lane::splat(*w) * (centre[i] - x[i]);
-            for j in 0..D::N {
-                force = force + pull[i][j] * Lane::splat(b[j]) + shear[i][j] * Lane::splat(wr[j]);
-            }
-            all[i] = force;
-        }
-        let target: &mut [Row; LANES] = (&mut forces[place * LANES..][..LANES])
-            .try_into()
-            .expect("a place has a force for every lane");
-        #[cfg(target_arch = "x86_64")]
-        if WIDE {
-            avx::store(all, target);
-            continue;
-        }
-        for lane in 0..LANES {
-            target[lane] = [all[0].0[lane], all[1].0[lane], all[2].0[lane], 0.0];
-        }
-    }
-}
-
-/// The positions of one node of every lane.
-#[inline(always)]
-fn gather<D: Dim, const WIDE: bool>(position: &[Row], block: &Block, place: usize) -> [Lane; 3] {
-    let nodes: &[u32; LANES] = block.nodes[place * LANES..][..LANES]
-        .try_into()
-        .expect("a place has a node for every lane");
-    let rows = [
-        &position[nodes[0] as usize],
-        &position[nodes[1] as usize],
-        &position[nodes[2] as usize],
-        &position[nodes[3] as usize],
-        &position[nodes[4] as usize],
-        &position[nodes[5] as usize],
-        &position[nodes[6] as usize],
-        &position[nodes[7] as usize],
-    ];
-    #[cfg(target_arch = "x86_64")]
-    if WIDE {
-        return avx::columns(rows);
-    }
-    let mut columns = [Lane::splat(0.0); 3];
-    for axis in 0..D::N {
-        for lane in 0..LANES {
-            columns[axis].0[lane] = rows[lane][axis];
-        }
-    }
-    columns
-}
-
-/// As [`gather`], from `origin`.
-#[inline(always)]
-fn relative<D: Dim, const WIDE: bool>(
-    position: &[Row],
-    block: &Block,
-    place: usize,
-    origin: [Lane; 3],
-) -> [Lane; 3] {
-    let mut rows = gather::<D, WIDE>(position, block, place);
-    for axis in 0..D::N {
-        rows[axis] = rows[axis] - origin[axis];
-    }
-    rows
-}
-
-/// The minor of rows a, b and columns c, d.
-#[inline(always)]
-fn minor(f: &[[Lane; 3]; 3], a: usize, b: usize, c: usize, d: usize) -> Lane {
-    f[a][c] * f[b][d] - f[a][d] * f[b][c]
-}
-
-/// Rows to columns and back in registers: what the compiler does through memory by itself.
-///
-/// Every function here needs AVX. They are reached with `WIDE` alone, which only
-/// [`Blocks::evaluate_avx2`] sets, and that is called after the machine was asked for AVX2.
-#[cfg(target_arch = "x86_64")]
-#[allow(unsafe_code)]
-mod avx {
-    use super::{LANES, Lane, Row};
-    use std::arch::x86_64::*;
-
-    /// The first three columns of eight rows.
-    #[inline(always)]
-    pub fn columns(rows: [&Row; LANES]) -> [Lane; 3] {
-        // SAFETY: AVX is there (see the module); a row is four floats, read without alignment;
-        // a Lane and a register are eight floats each.
-        unsafe {
-            let (a, b) = (pair(rows[0], rows[4]), pair(rows[1], rows[5]));
-            let (c, d) = (pair(rows[2], rows[6]), pair(rows[3], rows[7]));
-            let (ab, cd) = (_mm256_unpacklo_ps(a, b), _mm256_unpacklo_ps(c, d));
-            let (ab_high, cd_high) = (_mm256_unpackhi_ps(a, b), _mm256_unpackhi_ps(c, d));
-            [
-                lane(_mm256_shuffle_ps::<0x44>(ab, cd)),
-                lane(_mm256_shuffle_ps::<0xEE>(ab, cd)),
-                lane(_mm256_shuffle_ps::<0x44>(ab_high, cd_high)),
-            ]
-        }
-    }
-
-    /// Three columns as eight rows, the fourth number 0.
-    #[inline(always)]
-    pub fn store(columns: [Lane; 3], rows: &mut [Row; LANES]) {
-        // SAFETY: as in `columns`; each store fills one row.
-        unsafe {
-            let (x, y, z) = (
-                register(columns[0]),
-                register(columns[1]),
-                register(columns[2]),
-            );
-            let zero = _mm256_setzero_ps();
-            let (xy, xy_high) = (_mm256_unpacklo_ps(x, y), _mm256_unpackhi_ps(x, y));
-            let (z, z_high) = (_mm256_unpacklo_ps(z, zero), _mm256_unpackhi_ps(z, zero));
-            let pairs = [
-                _mm256_shuffle_ps::<0x44>(xy, z),
-                _mm256_shuffle_ps::<0xEE>(xy, z),
-                _mm256_shuffle_ps::<0x44>(xy_high, z_high),
-                _mm256_shuffle_ps::<0xEE>(xy_high, z_high),
-            ];
-            for lane in 0..LANES / 2 {
-                _mm_storeu_ps(rows[lane].as_mut_ptr(), _mm256_castps256_ps128(pairs[lane]));
-                let high = _mm256_extractf128_ps::<1>(pairs[lane]);
-                _mm_storeu_ps(rows[lane + LANES / 2].as_mut_ptr(), high);
-            }
-        }
-    }
-
-    #[inline(always)]
-    unsafe fn pair(low: &Row, high: &Row) -> __m256 {
-        unsafe {
-            let low = _mm256_castps128_ps256(_mm_loadu_ps(low.as_ptr()));
-            _mm256_insertf128_ps::<1>(low, _mm_loadu_ps(high.as_ptr()))
-        }
-    }
-
-    #[inline(always)]
-    unsafe fn lane(register: __m256) -> Lane {
-        unsafe { Lane(std::mem::transmute::<__m256, [f32; LANES]>(register)) }
-    }
-
-    #[inline(always)]
-    unsafe fn register(lane: Lane) -> __m256 {
-        unsafe { std::mem::transmute::<[f32; LANES], __m256>(lane.0) }
-    }
-}
-
-/// One round towards the rotation of a deformation; see [`crate::law::rotation_of`].
-#[inline(always)]
-fn turn<D: Dim>(f: &[[Lane; 3]; 3], q: [Lane; 4]) -> [Lane; 4] {
-    let zero = Lane::splat(0.0);
-    let half = Lane::splat(0.5);
-    if D::N == 2 {
-        // (w, z) is the half angle of (cos, sin) ∝ (F₀₀ + F₁₁, F₁₀ − F₀₁), in closed form; the
-        // quaternion then turns by twice that half angle. Where the sum vanishes, q stays.
-        return turn_in_plane(f, q);
-    }
-    let r = matrix_of(q);
-    let mut s = [[zero; 3]; 3];
-    let mut norm = zero;
-    for i in 0..3 {
-        for j in 0..3 {
-            s[i][j] = f[i][0] * r[j][0] + f[i][1] * r[j][1] + f[i][2] * r[j][2];
-            norm = norm + f[i][j] * f[i][j];
-        }
-    }
-    let t = (Lane::splat(3.0) * norm).sqrt() + Lane::splat(1e-6);
-    let axial = [s[2][1] - s[1][2], s[0][2] - s[2][0], s[1][0] - s[0][1]];
-    let (a, d, g) = (t - s[0][0], t - s[1][1], t - s[2][2]);
-    let b = zero - half * (s[0][1] + s[1][0]);
-    let c = zero - half * (s[0][2] + s[2][0]);
-    let e = zero - half * (s[1][2] + s[2][1]);
-    let (c00, c01, c02) = (d * g - e * e, c * e - b * g, b * e - c * d);
-    let (c11, c12, c22) = (a * g - c * c, b * c - a * e, a * d - b * b);
-    let k = half / (a * c00 + b * c01 + c * c02);
-    let w = [
-        k * (c00 * axial[0] + c01 * axial[1] + c02 * axial[2]),
-        k * (c01 * axial[0] + c11 * axial[1] + c12 * axial[2]),
-        k * (c02 * axial[0] + c12 * axial[1] + c22 * axial[2]),
-    ];
-    let [x, y, z, o] = q;
-    normalised([
-        x + w[0] * o + w[1] * z - w[2] * y,
-        y + w[1] * o + w[2] * x - w[0] * z,
-        z + w[2] * o + w[0] * y - w[1] * x,
-        o - w[0] * x - w[1] * y - w[2] * z,
-    ])
-}
-
-/// The exact rotation in the plane: no trigonometry, no rounds.
-#[inline(always)]
-fn turn_in_plane(f: &[[Lane; 3]; 3], q: [Lane; 4]) -> [Lane; 4] {
-    let (a, b) = (f[0][0] + f[1][1], f[1][0] - f[0][1]);
-    let length = (a * a + b * b).sqrt();
-    let mut next = q;
-    for lane in 0..LANES {
-        let (a, b, length) = (a.0[lane], b.0[lane], length.0[lane]);
-        if length > 1e-12 {
-            // Half of the angle, from the side that does not cancel.
-            let (z, w) = if a >= 0.0 {
-                (b, length + a)
-            } else {
-                (length - a, b)
-            };
-            let scale = 1.0 / (z * z + w * w).sqrt();
-            next[2].0[lane] = z * scale;
-            next[3].0[lane] = w * scale;
-        }
-    }
-    next
-}
-
-#[inline(always)]
-fn normalised(q: [Lane; 4]) -> [Lane; 4] {
-    let squared = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-    let scale = Lane::splat(1.0) / squared.sqrt();
-    [q[0] * scale, q[1] * scale, q[2] * scale, q[3] * scale]
-}
-
-#[inline(always)]
-fn matrix_of(q: [Lane; 4]) -> [[Lane; 3]; 3] {
-    let [x, y, z, w] = q;
-    let (x2, y2, z2) = (x + x, y + y, z + z);
-    let one = Lane::splat(1.0);
-    [
-        [one - (y * y2 + z * z2), x * y2 - w * z2, x * z2 + w * y2],
-        [x * y2 + w * z2, one - (x * x2 + z * z2), y * z2 - w * x2],
-        [x * z2 - w * y2, y * z2 + w * x2, one - (x * x2 + y * y2)],
-    ]
-}
-
-/// First Piola–Kirchhoff stress [Pa]; see [`crate::law`].
-#[inline(always)]
-fn stress<D: Dim>(
-    elasticity: Elasticity,
-    f: &[[Lane; 3]; 3],
-    r: &[[Lane; 3]; 3],
-) -> [[Lane; 3]; 3] {
-    let twice_shear = Lane::splat((2.0 * elasticity.shear_modulus()) as f32);
-    let lame = Lane::splat(elasticity.lame() as f32);
-    let mut stretch = Lane::splat(-3.0);
-    for i in 0..3 {
-        for j in 0..3 {
-            stretch = stretch + f[i][j] * r[i][j];
-        }
-    }
-    let pressure = lame * stretch - twice_shear;
-    let cofactor = [
-        [
-            minor(f, 1, 2, 1, 2),
-            minor(f, 1, 2, 2, 0),
-            minor(f, 1, 2, 0, 1),
-        ],
-        [
-            minor(f, 2, 0, 1, 2),
-            minor(f, 2, 0, 2, 0),
-            minor(f, 2, 0, 0, 1),
-        ],
-        [
-            minor(f, 0, 1, 1, 2),
-            minor(f, 0, 1, 2, 0),
-            minor(f, 0, 1, 0, 1),
-        ],
-    ];
-    let volume_ratio =
-        f[0][0] * cofactor[0][0] + f[0][1] * cofactor[0][1] + f[0][2] * cofactor[0][2];
-    let squash = (Lane::splat(SQUASH_LIMIT as f32) - volume_ratio).at_least_zero();
-    let barrier = Lane::splat(elasticity.young as f32) * squash;
-    let mut stress = [[Lane::splat(0.0); 3]; 3];
-    for i in 0..D::N {
-        for j in 0..D::N {
-            stress[i][j] = twice_shear * f[i][j] + pressure * r[i][j] - barrier * cofactor[i][j];
-        }
-    }
-    stress
-}
-
-impl Lane {
-    #[inline(always)]
-    fn splat(value: f32) -> Self {
-        Self([value; LANES])
-    }
-
-    #[inline(always)]
-    fn sqrt(mut self) -> Self {
-        for value in &mut self.0 {
-            *value = value.sqrt();
-        }
-        self
-    }
-
-    #[inline(always)]
-    fn at_least_zero(mut self) -> Self {
-        for value in &mut self.0 {
-            *value = if *value > 0.0 { *value } else { 0.0 };
-        }
-        self
-    }
-}
-
-macro_rules! lane_operator {
-    ($trait:ident, $method:ident, $operator:tt) => {
-        impl $trait for Lane {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(mut self, other: Self) -> Self {
-                for lane in 0..LANES {
-                    self.0[lane] $operator other.0[lane];
+        let count = stencil.slots.len() as u32;
+        let numbers = numbers_of(self.law, stencil);
+        while let Some((newcomer, rest)) = newcomers.split_first() {
+            let open = self.open.get(&home).and_then(|open| open.first().copied());
+            let index = match open {
+                Some(index) => index,
+                None if is_plain || newcomers.len() >= LANES => {
+                    let index = self.empty_block(home, count);
+                    self.blocks[index as usize].stencil = self.stencil_of(class, &numbers);
+                    index
                 }
-                self
+                None => {
+                    let pool = Home::Pool(material, count);
+                    let open = self.open.get(&pool).and_then(|open| open.first().copied());
+                    open.unwrap_or_else(|| self.empty_block(pool, count))
+                }
+            };
+            self.seat(index, newcomer, &numbers);
+            newcomers = rest;
+        }
+    }
+
+    /// A block without elements, for elements of so many nodes.
+    fn empty_block(&mut self, home: Home, count: u32) -> u32 {
+        let kind = (count, home.is_pool());
+        if let Some(index) = self.empty.get_mut(&kind).and_then(Vec::pop) {
+            self.blocks[index as usize].home = home;
+            return index;
+        }
+        let first = self.nodes.len() as u32;
+        let stencil = self.pooled.len() as u32;
+        let rows = self.nodes.len() + count as usize * LANES;
+        self.nodes.resize(rows, VACANT);
+        self.forces.resize(rows, [0.0; 4]);
+        if home.is_pool() {
+            let length = self.pooled.len() + numbers::<D>(count as usize);
+            self.pooled.resize(length, [0.0; LANES]);
+        }
+        self.blocks.push(Block {
+            home,
+            elements: [VACANT; LANES],
+            asleep: ALL_LANES,
+            half_size: [self.voxel_size; LANES],
+            rotation: [[0.0; LANES]; 4],
+            node_count: count,
+            first,
+            stencil,
+            numbers: numbers::<D>(count as usize) as u32,
+        });
+        self.blocks.len() as u32 - 1
+    }
+
+    /// Where the numbers of a class stand.
+    fn stencil_of(&mut self, class: u32, numbers: &[f32]) -> u32 {
+        let all = &mut self.numbers;
+        *self.stencils.entry(class).or_insert_with(|| {
+            all.extend_from_slice(numbers);
+            (all.len() - numbers.len()) as u32
+        })
+    }
+
+    /// Seats an element in a vacant lane of a block.
+    fn seat(&mut self, index: u32, newcomer: &Newcomer, numbers: &[f32]) {
+        let block = &mut self.blocks[index as usize];
+        let is_first = block.elements == [VACANT; LANES];
+        let mut vacant = (0..LANES).filter(|&lane| block.elements[lane] == VACANT);
+        let lane = vacant.next().expect("open blocks have a vacancy");
+        let is_last = vacant.next().is_none();
+        // The first in a block lends the vacant lanes its numbers: they compute something sane.
+        let lanes = if is_first { 0..LANES } else { lane..lane + 1 };
+        let half_size = 0.5 * self.voxel_size * newcomer.element.cell.width() as f32;
+        let first = block.first as usize;
+        for lane in lanes {
+            block.half_size[lane] = half_size;
+            for part in 0..4 {
+                block.rotation[part][lane] = newcomer.rotation[part];
+            }
+            for (place, &node) in newcomer.element.nodes.iter().enumerate() {
+                self.nodes[first + place * LANES + lane] = node;
+            }
+            if block.home.is_pool() {
+                let pooled = &mut self.pooled[block.stencil as usize..];
+                for (all, &number) in pooled.iter_mut().zip(numbers) {
+                    all[lane] = number;
+                }
             }
         }
-    };
+        block.elements[lane] = newcomer.id;
+        block.asleep &= !(1 << lane);
+        let open = self.open.entry(block.home).or_default();
+        if is_last {
+            open.remove(&index);
+        } else {
+            open.insert(index);
+        }
+        let id = newcomer.id as usize;
+        self.seats.resize(self.seats.len().max(id + 1), (VACANT, 0));
+        self.seats[id] = (index, lane as u8);
+    }
 }
 
-lane_operator!(Add, add, +=);
-lane_operator!(Sub, sub, -=);
-lane_operator!(Mul, mul, *=);
-lane_operator!(Div, div, /=);
+/// An element on its way into a block.
+struct Newcomer<'a> {
+    id: u32,
+    element: &'a Element,
+    rotation: [f32; 4],
+}
+
+/// A stencil in single precision, as the kernel reads it.
+fn numbers_of<D: Dim>(law: Law, stencil: &Stencil<D>) -> Vec<f32> {
+    let count = stencil.slots.len();
+    let mut mean = [0.0; 3];
+    for offset in &stencil.offsets {
+        for axis in 0..3 {
+            mean[axis] += offset[axis] / count as f64;
+        }
+    }
+    let mut all = vec![0.0; numbers::<D>(count)];
+    let mut total = 0.0;
+    for k in 0..count {
+        let node = &mut all[numbers_a_node::<D>() * k..][..numbers_a_node::<D>()];
+        let w = stencil.volumes[k];
+        for axis in 0..D::N {
+            let centred = stencil.offsets[k][axis] - mean[axis];
+            total += centred * centred;
+            match law {
+                Law::PatchExact => {
+                    node[axis] = stencil.gradients[k][axis] as f32;
+                    node[D::N + axis] = (w * stencil.offsets[k][axis]) as f32;
+                }
+                Law::Endo2004 => node[axis] = centred as f32,
+            }
+        }
+        node[2 * D::N] = if law == Law::PatchExact {
+            w as f32
+        } else {
+            1.0
+        };
+    }
+    for i in 0..D::N {
+        for j in i..D::N {
+            let term =
+                |k: usize| stencil.volumes[k] * stencil.offsets[k][i] * stencil.offsets[k][j];
+            let spread: f64 = (0..count).map(term).sum();
+            all[numbers_a_node::<D>() * count + kernel::symmetric::<D>(i, j)] = spread as f32;
+        }
+    }
+    let volume = match law {
+        Law::PatchExact => stencil.volume,
+        Law::Endo2004 => count as f64,
+    };
+    let last = all.len() - 1;
+    all[last - 1] = (1.0 / volume) as f32;
+    all[last] = (stencil.volume * D::N as f64 / total) as f32;
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dim::{Dim2, Dim3};
+    use crate::pyramid::{Grading, Pyramid};
+    use crate::sharing::Sharing;
+
+    /// The wide path against the portable one, on a body with every kind of block.
+    fn check_same_bits<D: Dim>(law: Law) {
+        let grid = VoxelGrid::<D>::ball(24, 1.0).unwrap();
+        let sharing = Sharing::new(&grid);
+        let pyramid = Pyramid::new(&grid, &sharing, Grading::Graded);
+        let mesh = Mesh::grade(&grid, &sharing, &pyramid).unwrap();
+        let elasticity = Elasticity::new(5000.0, 0.3).unwrap();
+        let mut wide = Blocks::new(law, &[elasticity], grid.voxel_size());
+        let all: Vec<u32> = mesh.elements().map(|(id, _)| id).collect();
+        wide.update(&mesh, &grid, &[], &all);
+        let mut portable = wide.clone();
+        let mut position = vec![[0.0; 4]; mesh.node_capacity()];
+        for (id, node) in mesh.nodes() {
+            let [x, y, z] = node.at.map(|k| k as f32 / 24.0);
+            let bent = [
+                1.2 * x - 0.7 * y * y,
+                0.6 * x + 0.8 * y,
+                z + 0.3 * x * y,
+                0.0,
+            ];
+            position[id as usize][..D::N].copy_from_slice(&bent[..D::N]);
+        }
+        for _ in 0..3 {
+            wide.evaluate(&position);
+            portable.evaluate_in::<Portable>(&position);
+        }
+        for (id, _) in mesh.nodes() {
+            let bits = |blocks: &Blocks<D>| blocks.force_on(id).map(f32::to_bits);
+            assert_eq!(bits(&wide), bits(&portable));
+        }
+    }
+
+    #[test]
+    fn wide_and_portable_lanes_give_the_same_bits() {
+        for law in [Law::PatchExact, Law::Endo2004] {
+            check_same_bits::<Dim2>(law);
+            check_same_bits::<Dim3>(law);
+        }
+    }
+}

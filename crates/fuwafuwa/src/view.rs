@@ -185,7 +185,7 @@ impl<D: Dim> Body<D> {
             id,
             level: element.cell.level,
             piece: self.pieces.of_element(id),
-            material: self.grid.material(self.first_voxel(element)),
+            material: self.grid.material(self.mesh.first_voxel(element)),
             children: element.children,
             strain: self.strain(id, element),
             slots: self.slot_positions(element),
@@ -311,17 +311,6 @@ impl<D: Dim> Body<D> {
             element: id,
             piece: self.pieces.of_element(id),
             is_fresh: self.grid.is_solid(beyond),
-        }
-    }
-
-    /// A voxel that an element fills.
-    pub(crate) fn first_voxel(&self, element: &Element) -> crate::dim::Point {
-        match element.cell.level {
-            0 => element.cell.at,
-            _ => {
-                let child = element.children.trailing_zeros() as usize;
-                element.cell.child(child).first_voxel()
-            }
         }
     }
 }

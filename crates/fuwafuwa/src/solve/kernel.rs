@@ -1,0 +1,491 @@
+//! The arithmetic of a block, all lanes at once.
+//!
+//! With x relative to the first node, unit stencil (b, r, w, V) and half size h, the formulas of
+//! [`crate::law`] become
+//!
+//! ```text
+//! F = Σ x bᵀ / (V h)     G = Σ x (w r)ᵀ     c = Σ w x / V     W = Σ w r rᵀ
+//! A = (k / V) (G − h F W) − h^(d−1) P       B = k h F
+//! f = A b + B (w r) − k w (x − c)
+//! ```
+//!
+//! Blocks are taken in small groups through three short loops, gradient, stress and forces: a
+//! single long one needs far more registers than there are, and its chain of square roots and
+//! divisions leaves the machine waiting.
+//!
+//! A plain cell, all of whose nodes are corners, has w = 1, b and r of ±1 and no skew: its sums
+//! are sums and differences. Four of five elements are plain.
+
+use super::lanes::Lanes;
+use super::{LANES, Row};
+use crate::dim::Dim;
+use crate::law::{Elasticity, Law, SQUASH_LIMIT};
+
+/// One number for each lane, in memory.
+pub type Eight = [f32; LANES];
+
+/// What one block brings along.
+pub struct Seats<'a> {
+    /// Node k of lane l at k · LANES + l.
+    pub nodes: &'a [u32],
+    pub half_size: &'a Eight,
+    /// In space a quaternion; in the plane cosine and sine.
+    pub rotation: &'a mut [Eight; 4],
+    /// The forces on the nodes, in their order.
+    pub forces: &'a mut [Row],
+}
+
+/// The stiffnesses of a material in single precision.
+#[derive(Copy, Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Moduli {
+    twice_shear: f32,
+    lame: f32,
+    young: f32,
+    hourglass: f32,
+}
+
+impl Moduli {
+    pub fn of<D: Dim>(elasticity: Elasticity) -> Self {
+        Self {
+            twice_shear: (2.0 * elasticity.shear_modulus()) as f32,
+            lame: elasticity.lame() as f32,
+            young: elasticity.young as f32,
+            hourglass: (elasticity.young * D::HOURGLASS) as f32,
+        }
+    }
+}
+
+/// Numbers of a stencil: for each node b, w r and w, then the upper half of W, 1/V and the
+/// stiffness of [`Law::Endo2004`]. `get` reads one of them, for all lanes or for each.
+pub trait Stencils<L: Lanes> {
+    fn get(&self, index: usize) -> L;
+}
+
+/// All lanes are of one class.
+pub struct Same<'a>(pub &'a [f32]);
+
+/// Each lane is of its own class.
+pub struct Mixed<'a>(pub &'a [Eight]);
+
+impl<L: Lanes> Stencils<L> for Same<'_> {
+    #[inline(always)]
+    fn get(&self, index: usize) -> L {
+        L::splat(self.0[index])
+    }
+}
+
+impl<L: Lanes> Stencils<L> for Mixed<'_> {
+    #[inline(always)]
+    fn get(&self, index: usize) -> L {
+        L::load(&self.0[index])
+    }
+}
+
+/// How many numbers a node has in a stencil.
+pub const fn numbers_a_node<D: Dim>() -> usize {
+    2 * D::N + 1
+}
+
+/// How many numbers a stencil has.
+pub const fn numbers<D: Dim>(nodes: usize) -> usize {
+    numbers_a_node::<D>() * nodes + D::N * (D::N + 1) / 2 + 2
+}
+
+type Matrix<L> = [[L; 3]; 3];
+
+/// What passes from one loop over some blocks to the next.
+#[derive(Copy, Clone)]
+pub struct Scratch {
+    f: [[Eight; 3]; 3],
+    moment: [[Eight; 3]; 3],
+    centre: [Eight; 3],
+    /// The stress; for [`Law::Endo2004`] the rotation.
+    stress: [[Eight; 3]; 3],
+}
+
+impl Scratch {
+    pub const EMPTY: Self = Self {
+        f: [[[0.0; LANES]; 3]; 3],
+        moment: [[[0.0; LANES]; 3]; 3],
+        centre: [[0.0; LANES]; 3],
+        stress: [[[0.0; LANES]; 3]; 3],
+    };
+}
+
+/// First loop: F and c of plain cells, by sums and differences.
+#[inline(always)]
+pub fn plain_gradient<D: Dim, L: Lanes>(position: &[Row], seats: &Seats, scratch: &mut Scratch) {
+    let zero = L::splat(0.0);
+    let share = L::splat(1.0 / D::CORNERS as f32);
+    let scale = share / L::load(seats.half_size);
+    let origin = L::gather(position, places(seats.nodes, 0));
+    let mut x = [[zero; 3]; 8];
+    for node in 1..D::CORNERS {
+        let at = L::gather(position, places(seats.nodes, node));
+        for i in 0..D::N {
+            x[node][i] = at[i] - origin[i];
+        }
+    }
+    for i in 0..D::N {
+        let (d0, s0) = (x[1][i], x[1][i]);
+        let (d1, s1) = (x[3][i] - x[2][i], x[3][i] + x[2][i]);
+        let f = &mut scratch.f[i];
+        if D::N == 2 {
+            (scale * (d0 + d1)).store(&mut f[0]);
+            (scale * (s1 - s0)).store(&mut f[1]);
+            (share * (s0 + s1)).store(&mut scratch.centre[i]);
+        } else {
+            let (d2, s2) = (x[5][i] - x[4][i], x[5][i] + x[4][i]);
+            let (d3, s3) = (x[7][i] - x[6][i], x[7][i] + x[6][i]);
+            let (low, high) = (s0 + s1, s2 + s3);
+            (scale * (d0 + d1 + (d2 + d3))).store(&mut f[0]);
+            (scale * (s1 - s0 + (s3 - s2))).store(&mut f[1]);
+            (scale * (high - low)).store(&mut f[2]);
+            (share * (low + high)).store(&mut scratch.centre[i]);
+        }
+    }
+}
+
+/// First loop: F, G and c of elements of any class.
+#[inline(always)]
+pub fn gradient<D: Dim, L: Lanes>(
+    stencils: &impl Stencils<L>,
+    position: &[Row],
+    seats: &Seats,
+    scratch: &mut Scratch,
+) {
+    let zero = L::splat(0.0);
+    let count = seats.nodes.len() / LANES;
+    let a_node = numbers_a_node::<D>();
+    let origin = L::gather(position, places(seats.nodes, 0));
+    let mut f = [[zero; 3]; 3];
+    let mut moment = [[zero; 3]; 3];
+    let mut centre = [zero; 3];
+    for node in 1..count {
+        let at = L::gather(position, places(seats.nodes, node));
+        let w = stencils.get(a_node * node + 2 * D::N);
+        let mut x = [zero; 3];
+        for i in 0..D::N {
+            x[i] = at[i] - origin[i];
+            centre[i] = centre[i] + x[i] * w;
+        }
+        for j in 0..D::N {
+            let b = stencils.get(a_node * node + j);
+            let wr = stencils.get(a_node * node + D::N + j);
+            for i in 0..D::N {
+                f[i][j] = f[i][j] + x[i] * b;
+                moment[i][j] = moment[i][j] + x[i] * wr;
+            }
+        }
+    }
+    let inverse_volume = stencils.get(numbers::<D>(count) - 2);
+    let scale = inverse_volume / L::load(seats.half_size);
+    for i in 0..D::N {
+        for j in 0..D::N {
+            (f[i][j] * scale).store(&mut scratch.f[i][j]);
+            moment[i][j].store(&mut scratch.moment[i][j]);
+        }
+        (centre[i] * inverse_volume).store(&mut scratch.centre[i]);
+    }
+}
+
+/// Second loop: brings the rotation up to date, and finds the stress.
+#[inline(always)]
+pub fn stress<D: Dim, L: Lanes>(
+    law: Law,
+    moduli: &Moduli,
+    seats: &mut Seats,
+    scratch: &mut Scratch,
+) {
+    let mut f = [[L::splat(0.0); 3]; 3];
+    for i in 0..D::N {
+        for j in 0..D::N {
+            f[i][j] = L::load(&scratch.f[i][j]);
+        }
+    }
+    let rotation = turn::<D, L>(&f, seats.rotation);
+    let stress = match law {
+        Law::PatchExact => stress_of::<D, L>(moduli, &f, &rotation),
+        Law::Endo2004 => rotation,
+    };
+    for i in 0..D::N {
+        for j in 0..D::N {
+            stress[i][j].store(&mut scratch.stress[i][j]);
+        }
+    }
+}
+
+/// Third loop: the forces of plain cells.
+#[inline(always)]
+pub fn plain_forces<D: Dim, L: Lanes>(
+    moduli: &Moduli,
+    position: &[Row],
+    seats: &mut Seats,
+    scratch: &Scratch,
+) {
+    let half = L::load(seats.half_size);
+    let (stiffness, area) = scales::<D, L>(moduli, half);
+    let bend = stiffness * half;
+    let origin = L::gather(position, places(seats.nodes, 0));
+    let mut force = [[L::splat(0.0); 3]; 8];
+    for node in 0..D::CORNERS {
+        let at = L::gather(position, places(seats.nodes, node));
+        for i in 0..D::N {
+            let centre = L::load(&scratch.centre[i]);
+            force[node][i] = stiffness * (centre - (at[i] - origin[i]));
+        }
+    }
+    for i in 0..D::N {
+        let mut m = [L::splat(0.0); 3];
+        for j in 0..D::N {
+            m[j] = bend * L::load(&scratch.f[i][j]) - area * L::load(&scratch.stress[i][j]);
+        }
+        if D::N == 2 {
+            let (sum, difference) = (m[0] + m[1], m[0] - m[1]);
+            force[0][i] = force[0][i] - sum;
+            force[1][i] = force[1][i] + difference;
+            force[2][i] = force[2][i] - difference;
+            force[3][i] = force[3][i] + sum;
+        } else {
+            let (sum, difference) = (m[1] + m[2], m[1] - m[2]);
+            let turns = [sum + m[0], sum - m[0], difference + m[0], difference - m[0]];
+            force[0][i] = force[0][i] - turns[0];
+            force[1][i] = force[1][i] - turns[1];
+            force[2][i] = force[2][i] + turns[3];
+            force[3][i] = force[3][i] + turns[2];
+            force[4][i] = force[4][i] - turns[2];
+            force[5][i] = force[5][i] - turns[3];
+            force[6][i] = force[6][i] + turns[1];
+            force[7][i] = force[7][i] + turns[0];
+        }
+    }
+    for node in 0..D::CORNERS {
+        L::scatter(force[node], target(seats.forces, node));
+    }
+}
+
+/// Third loop: the forces of elements of any class.
+#[inline(always)]
+pub fn forces<D: Dim, L: Lanes>(
+    law: Law,
+    moduli: &Moduli,
+    stencils: &impl Stencils<L>,
+    position: &[Row],
+    seats: &mut Seats,
+    scratch: &Scratch,
+) {
+    let zero = L::splat(0.0);
+    let count = seats.nodes.len() / LANES;
+    let a_node = numbers_a_node::<D>();
+    let half = L::load(seats.half_size);
+    let (mut pull, mut shear) = ([[zero; 3]; 3], [[zero; 3]; 3]);
+    let stiffness;
+    if law == Law::PatchExact {
+        let (spring, area) = scales::<D, L>(moduli, half);
+        let inverse_volume = stencils.get(numbers::<D>(count) - 2);
+        let (bend, skew) = (spring * half, spring * inverse_volume);
+        stiffness = spring;
+        for i in 0..D::N {
+            for j in 0..D::N {
+                let mut bent = zero;
+                for k in 0..D::N {
+                    let spread = stencils.get(a_node * count + symmetric::<D>(k, j));
+                    bent = bent + L::load(&scratch.f[i][k]) * spread;
+                }
+                let moment = L::load(&scratch.moment[i][j]);
+                let stress = L::load(&scratch.stress[i][j]);
+                pull[i][j] = skew * (moment - half * bent) - area * stress;
+                shear[i][j] = bend * L::load(&scratch.f[i][j]);
+            }
+        }
+    } else {
+        let rest = if D::N == 2 { L::splat(1.0) } else { half };
+        stiffness = L::splat(moduli.young) * stencils.get(numbers::<D>(count) - 1) * rest;
+        for i in 0..D::N {
+            for j in 0..D::N {
+                pull[i][j] = stiffness * half * L::load(&scratch.stress[i][j]);
+            }
+        }
+    }
+    let origin = L::gather(position, places(seats.nodes, 0));
+    for node in 0..count {
+        let at = L::gather(position, places(seats.nodes, node));
+        let spring = stiffness * stencils.get(a_node * node + 2 * D::N);
+        let mut force = [zero; 3];
+        for i in 0..D::N {
+            let centre = L::load(&scratch.centre[i]);
+            force[i] = spring * (centre - (at[i] - origin[i]));
+        }
+        for j in 0..D::N {
+            let b = stencils.get(a_node * node + j);
+            let wr = stencils.get(a_node * node + D::N + j);
+            for i in 0..D::N {
+                force[i] = force[i] + (pull[i][j] * b + shear[i][j] * wr);
+            }
+        }
+        L::scatter(force, target(seats.forces, node));
+    }
+}
+
+/// k and h^(d−1): the stiffness of the hourglass term, and what turns stress into force.
+#[inline(always)]
+fn scales<D: Dim, L: Lanes>(moduli: &Moduli, half: L) -> (L, L) {
+    let hourglass = L::splat(moduli.hourglass);
+    if D::N == 2 {
+        (hourglass, half)
+    } else {
+        (hourglass * (half + half), half * half)
+    }
+}
+
+/// First Piola–Kirchhoff stress [Pa] of the deformation f with rotation r.
+#[inline(always)]
+fn stress_of<D: Dim, L: Lanes>(moduli: &Moduli, f: &Matrix<L>, r: &Matrix<L>) -> Matrix<L> {
+    let zero = L::splat(0.0);
+    let mut stretch = L::splat(-(D::N as f32));
+    for i in 0..D::N {
+        for j in 0..D::N {
+            stretch = stretch + f[i][j] * r[i][j];
+        }
+    }
+    let twice_shear = L::splat(moduli.twice_shear);
+    let pressure = L::splat(moduli.lame) * stretch - twice_shear;
+    let mut cofactor = [[zero; 3]; 3];
+    if D::N == 2 {
+        cofactor[0] = [f[1][1], zero - f[1][0], zero];
+        cofactor[1] = [zero - f[0][1], f[0][0], zero];
+    } else {
+        for i in 0..3 {
+            let (a, b) = (f[(i + 1) % 3], f[(i + 2) % 3]);
+            for j in 0..3 {
+                let (k, l) = ((j + 1) % 3, (j + 2) % 3);
+                cofactor[i][j] = a[k] * b[l] - a[l] * b[k];
+            }
+        }
+    }
+    let mut squash = L::splat(SQUASH_LIMIT as f32);
+    for j in 0..D::N {
+        squash = squash - f[0][j] * cofactor[0][j];
+    }
+    let barrier = L::splat(moduli.young) * squash.at_least(zero);
+    let mut p = [[zero; 3]; 3];
+    for i in 0..D::N {
+        for j in 0..D::N {
+            p[i][j] = twice_shear * f[i][j] + pressure * r[i][j] - barrier * cofactor[i][j];
+        }
+    }
+    p
+}
+
+/// The rotation of a deformation; see [`crate::law::rotation_of`].
+#[inline(always)]
+fn turn<D: Dim, L: Lanes>(f: &Matrix<L>, rotation: &mut [Eight; 4]) -> Matrix<L> {
+    if D::N == 2 {
+        return turn_in_plane(f, rotation);
+    }
+    let mut q = [L::splat(0.0); 4];
+    for part in 0..4 {
+        q[part] = L::load(&rotation[part]);
+    }
+    // Two rounds keep up with a body that spins and is squashed at once; one lags.
+    q = turn_in_space(f, turn_in_space(f, q));
+    for part in 0..4 {
+        q[part].store(&mut rotation[part]);
+    }
+    matrix_of(q)
+}
+
+/// The exact rotation in the plane: (cos, sin) ∝ (F₀₀ + F₁₁, F₁₀ − F₀₁). Where both vanish, it stays.
+#[inline(always)]
+fn turn_in_plane<L: Lanes>(f: &Matrix<L>, rotation: &mut [Eight; 4]) -> Matrix<L> {
+    let zero = L::splat(0.0);
+    let (a, b) = (f[0][0] + f[1][1], f[1][0] - f[0][1]);
+    let squared = a * a + b * b;
+    let inverse = L::splat(1.0) / squared.sqrt();
+    let is_clear = squared - L::splat(1e-24);
+    let cosine = is_clear.if_positive(a * inverse, L::load(&rotation[0]));
+    let sine = is_clear.if_positive(b * inverse, L::load(&rotation[1]));
+    cosine.store(&mut rotation[0]);
+    sine.store(&mut rotation[1]);
+    [[cosine, zero - sine, zero], [sine, cosine, zero], [zero; 3]]
+}
+
+/// One round towards the rotation in space.
+#[inline(always)]
+fn turn_in_space<L: Lanes>(f: &Matrix<L>, q: [L; 4]) -> [L; 4] {
+    let zero = L::splat(0.0);
+    let half = L::splat(0.5);
+    let r = matrix_of(q);
+    let mut s = [[zero; 3]; 3];
+    let mut norm = zero;
+    for i in 0..3 {
+        for j in 0..3 {
+            s[i][j] = f[i][0] * r[j][0] + f[i][1] * r[j][1] + f[i][2] * r[j][2];
+            norm = norm + f[i][j] * f[i][j];
+        }
+    }
+    let t = (L::splat(3.0) * norm).sqrt() + L::splat(1e-6);
+    let axial = [s[2][1] - s[1][2], s[0][2] - s[2][0], s[1][0] - s[0][1]];
+    let (a, d, g) = (t - s[0][0], t - s[1][1], t - s[2][2]);
+    let b = zero - half * (s[0][1] + s[1][0]);
+    let c = zero - half * (s[0][2] + s[2][0]);
+    let e = zero - half * (s[1][2] + s[2][1]);
+    let (c00, c01, c02) = (d * g - e * e, c * e - b * g, b * e - c * d);
+    let (c11, c12, c22) = (a * g - c * c, b * c - a * e, a * d - b * b);
+    let k = half / (a * c00 + b * c01 + c * c02);
+    let w = [
+        k * (c00 * axial[0] + c01 * axial[1] + c02 * axial[2]),
+        k * (c01 * axial[0] + c11 * axial[1] + c12 * axial[2]),
+        k * (c02 * axial[0] + c12 * axial[1] + c22 * axial[2]),
+    ];
+    let [x, y, z, o] = q;
+    let next = [
+        x + w[0] * o + w[1] * z - w[2] * y,
+        y + w[1] * o + w[2] * x - w[0] * z,
+        z + w[2] * o + w[0] * y - w[1] * x,
+        o - w[0] * x - w[1] * y - w[2] * z,
+    ];
+    let squared = next[0] * next[0] + next[1] * next[1] + next[2] * next[2] + next[3] * next[3];
+    let scale = L::splat(1.0) / squared.sqrt();
+    [
+        next[0] * scale,
+        next[1] * scale,
+        next[2] * scale,
+        next[3] * scale,
+    ]
+}
+
+/// The matrix of a quaternion.
+#[inline(always)]
+pub fn matrix_of<L: Lanes>(q: [L; 4]) -> Matrix<L> {
+    let [x, y, z, w] = q;
+    let (x2, y2, z2) = (x + x, y + y, z + z);
+    let one = L::splat(1.0);
+    [
+        [one - (y * y2 + z * z2), x * y2 - w * z2, x * z2 + w * y2],
+        [x * y2 + w * z2, one - (x * x2 + z * z2), y * z2 - w * x2],
+        [x * z2 - w * y2, y * z2 + w * x2, one - (x * x2 + y * y2)],
+    ]
+}
+
+/// The place of W's row i and column j in its upper half.
+#[inline(always)]
+pub fn symmetric<D: Dim>(i: usize, j: usize) -> usize {
+    let (low, high) = if i < j { (i, j) } else { (j, i) };
+    low * D::N - low * (low + 1) / 2 + high
+}
+
+#[inline(always)]
+fn places(nodes: &[u32], node: usize) -> &[u32; LANES] {
+    nodes[node * LANES..][..LANES]
+        .try_into()
+        .expect("a node has a place for every lane")
+}
+
+#[inline(always)]
+fn target(forces: &mut [Row], node: usize) -> &mut [Row; LANES] {
+    (&mut forces[node * LANES..][..LANES])
+        .try_into()
+        .expect("a node has a force for every lane")
+}
