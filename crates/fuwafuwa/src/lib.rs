@@ -36,6 +36,7 @@ pub mod sharing;
 pub mod snapshot;
 pub mod solve;
 pub mod stencil;
+mod table;
 mod touch;
 pub mod vector;
 pub mod view;

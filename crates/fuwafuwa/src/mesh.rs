@@ -15,6 +15,7 @@ use crate::grid::VoxelGrid;
 use crate::pyramid::{Cell, Grading, Pyramid, parts};
 use crate::sharing::Sharing;
 use crate::stencil::{MissingCorner, Stencil, cell_corners, closure, slot_at, slot_index};
+use crate::table::{Chains, Places};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
@@ -52,9 +53,12 @@ pub struct Mesh<D: Dim> {
     stencils: Vec<Stencil<D>>,
     /// Whether every lattice point of the surface is a node, whatever the size of its elements.
     dense_surface: bool,
-    /// Elements of each cell.
-    by_cell: BTreeMap<Cell, Vec<u32>>,
-    by_node: BTreeMap<Node, u32>,
+    /// The places of the cells of each level, and the elements of each cell.
+    cells: Vec<Places>,
+    by_cell: Chains,
+    /// The places of the lattice points, and the nodes of each point.
+    points: Places,
+    by_point: Chains,
     classes: BTreeMap<(u8, u32), u32>,
     /// How many elements carry each node; 0 = the id is free.
     carriers: Vec<u8>,
@@ -116,13 +120,21 @@ impl<D: Dim> Mesh<D> {
         sharing: &Sharing<D>,
         pyramid: &Pyramid<D>,
     ) -> Result<Self, Defect> {
+        let mut cells: Vec<Places> = Vec::new();
+        for level in 0..pyramid.level_count() as u8 {
+            let first = cells.last().map_or(0, Places::end);
+            cells.push(Places::new(pyramid.size(level), first));
+        }
+        let points = Places::new(sharing.size(), 0);
         let mut mesh = Self {
             elements: Vec::new(),
             nodes: Vec::new(),
             stencils: Vec::new(),
             dense_surface: pyramid.grading() == Grading::Coarse,
-            by_cell: BTreeMap::new(),
-            by_node: BTreeMap::new(),
+            by_cell: Chains::new(cells.last().map_or(0, Places::end)),
+            cells,
+            by_point: Chains::new(points.end()),
+            points,
             classes: BTreeMap::new(),
             carriers: Vec::new(),
             free_elements: Vec::new(),
@@ -194,7 +206,8 @@ impl<D: Dim> Mesh<D> {
         }
         remodelled.abandoned = past.abandoned(&self.carriers);
         for &id in &remodelled.abandoned {
-            self.by_node.remove(&self.nodes[id as usize]);
+            let place = self.place_of_point(self.nodes[id as usize].at);
+            self.by_point.remove(place, id);
         }
         self.free_nodes.extend(&remodelled.abandoned);
         self.free_elements.extend(&remodelled.removed);
@@ -220,7 +233,7 @@ impl<D: Dim> Mesh<D> {
 
     /// Number of nodes.
     pub fn node_count(&self) -> usize {
-        self.by_node.len()
+        self.nodes.len() - self.free_nodes.len()
     }
 
     /// One more than the highest node id ever used: the length of an array indexed by node.
@@ -301,9 +314,8 @@ impl<D: Dim> Mesh<D> {
     /// The element that owns a solid voxel; `None` for an empty one.
     pub fn owner(&self, voxel: Point) -> Option<u32> {
         path::<D>(voxel).find_map(|(cell, child)| {
-            let ids = self.by_cell.get(&cell)?;
-            let fills = |id: &&u32| self.alive(**id).children >> child & 1 == 1;
-            ids.iter().find(fills).copied()
+            let fills = |id: &u32| self.alive(*id).children >> child & 1 == 1;
+            self.elements_of(cell).find(fills)
         })
     }
 
@@ -388,15 +400,32 @@ impl<D: Dim> Mesh<D> {
         } else {
             self.elements[id as usize] = Some(element);
         }
-        self.by_cell.entry(cell).or_default().push(id);
+        let place = self.place_of_cell(cell).expect("elements lie in the grid");
+        self.by_cell.insert(place, id);
+    }
+
+    /// The elements of a cell.
+    #[inline]
+    fn elements_of(&self, cell: Cell) -> impl Iterator<Item = u32> + '_ {
+        let place = self.place_of_cell(cell);
+        place.into_iter().flat_map(|place| self.by_cell.at(place))
+    }
+
+    #[inline]
+    fn place_of_cell(&self, cell: Cell) -> Option<usize> {
+        self.cells.get(cell.level as usize)?.number(cell.at)
+    }
+
+    fn place_of_point(&self, at: Point) -> usize {
+        let number = self.points.number(at);
+        number.expect("nodes are lattice points")
     }
 
     /// Rebuilds the elements of a cell so that they fill `filled` [Endo 2004, §3.2, phase 2 d].
     fn refit(&mut self, cell: Cell, filled: u8, past: &mut Past, removed: &mut Vec<u32>) {
         let wanted: Vec<u8> = parts::<D>(filled).collect();
-        let present = self.by_cell.remove(&cell).unwrap_or_default();
-        let (kept, outdated): (Vec<u32>, Vec<u32>) = present
-            .into_iter()
+        let (kept, outdated): (Vec<u32>, Vec<u32>) = self
+            .elements_of(cell)
             .partition(|&id| wanted.contains(&self.alive(id).children));
         let is_new = |children: &&u8| kept.iter().all(|&id| self.alive(id).children != **children);
         let new: Vec<u8> = wanted.iter().filter(is_new).copied().collect();
@@ -411,10 +440,9 @@ impl<D: Dim> Mesh<D> {
                 .nodes
                 .iter()
                 .for_each(|&node| self.carriers[node as usize] -= 1);
+            let place = self.place_of_cell(cell).expect("elements lie in the grid");
+            self.by_cell.remove(place, id);
             removed.push(id);
-        }
-        if !kept.is_empty() {
-            self.by_cell.insert(cell, kept);
         }
         for children in new {
             self.place(cell, children);
@@ -492,7 +520,9 @@ impl<D: Dim> Mesh<D> {
 
     /// The id of a node, and whether it was made just now.
     fn node_id(&mut self, node: Node) -> (u32, bool) {
-        if let Some(&id) = self.by_node.get(&node) {
+        let place = self.place_of_point(node.at);
+        let known = |id: &u32| self.nodes[*id as usize].group == node.group;
+        if let Some(id) = self.by_point.at(place).find(known) {
             return (id, false);
         }
         let id = self.free_nodes.pop().unwrap_or(self.nodes.len() as u32);
@@ -502,7 +532,7 @@ impl<D: Dim> Mesh<D> {
         } else {
             self.nodes[id as usize] = node;
         }
-        self.by_node.insert(node, id);
+        self.by_point.insert(place, id);
         (id, true)
     }
 
@@ -662,10 +692,7 @@ impl Past {
             let fills = |element: &&Element| element.children >> child & 1 == 1;
             let found = match self.by_cell.get(&cell) {
                 Some(old) => old.iter().find(fills),
-                None => {
-                    let ids = mesh.by_cell.get(&cell)?;
-                    ids.iter().map(|&id| mesh.alive(id)).find(fills)
-                }
+                None => mesh.elements_of(cell).map(|id| mesh.alive(id)).find(fills),
             };
             Some((found?, child))
         })

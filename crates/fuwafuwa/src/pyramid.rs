@@ -129,6 +129,14 @@ impl<D: Dim> Pyramid<D> {
         self.grading
     }
 
+    /// Number of cells of a level on each axis, whether they exist or not.
+    ///
+    /// # Panics
+    /// When there is no such level.
+    pub fn size(&self, level: u8) -> Point {
+        self.levels[level as usize].size
+    }
+
     /// Number of levels, the topmost included.
     pub fn level_count(&self) -> usize {
         self.levels.len()

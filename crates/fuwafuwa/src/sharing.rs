@@ -149,6 +149,11 @@ impl<D: Dim> Sharing<D> {
         sharing
     }
 
+    /// Number of lattice points on each axis.
+    pub fn size(&self) -> Point {
+        self.size
+    }
+
     /// All lattice points.
     pub fn points(&self) -> impl Iterator<Item = Point> + use<D> {
         points_in([0; 3], self.size.map(|extent| extent - 1))

@@ -171,7 +171,7 @@ impl<D: Dim> World<D> {
     /// [`Refused`] when the shape is not one or friction is negative.
     pub fn add_obstacle(&mut self, shape: Shape, friction: f32) -> Result<usize, Refused> {
         shape.check().map_err(Refused::Shape)?;
-        if !(friction >= 0.0) {
+        if friction.is_nan() || friction < 0.0 {
             return Err(Refused::Friction(friction));
         }
         self.obstacles.push(Obstacle { shape, friction });
