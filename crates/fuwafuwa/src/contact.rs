@@ -53,7 +53,6 @@ pub struct Contacts {
     nodes: Vec<Contact>,
     skins: Vec<Contact>,
     hands: Vec<HandContact>,
-    centres: Vec<Row>,
 }
 
 /// A sleeping piece that was hit: body and piece number.
@@ -186,16 +185,10 @@ impl Contacts {
         hits: &mut Vec<Hit>,
     ) {
         self.skins.clear();
-        self.centres.clear();
-        if nearby.skin_pairs.is_empty() {
-            return;
-        }
-        let skins = &nearby.skins;
-        let centres = skins.iter().map(|skin| skin.centre(bodies));
-        self.centres.extend(centres);
+        let (skins, centres) = (&nearby.skins, &nearby.centres);
         for (place, pair) in nearby.skin_pairs.iter_mut().enumerate() {
             let [a, b] = pair.skins.map(|skin| skin as usize);
-            let apart = minus(self.centres[a], self.centres[b]);
+            let apart = minus(centres[a], centres[b]);
             let touching = skins[a].radius + skins[b].radius;
             let squared = dot(apart, apart);
             let reach = touching * (1.0 + MARGIN);

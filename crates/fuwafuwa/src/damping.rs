@@ -23,6 +23,8 @@ pub struct PieceMotion {
     pub speed_squared: f64,
     /// Number of its nodes that move.
     pub nodes: u32,
+    /// Whether some of its nodes are held and on the move: it cannot rest.
+    pub is_driven: bool,
 }
 
 /// The motions of all pieces, by number; those asleep have no mass here.
@@ -36,6 +38,7 @@ pub fn motions<D: Dim>(body: &Body<D>) -> Vec<PieceMotion> {
         motion.velocity = plus(motion.velocity, scaled(v, mass));
         motion.speed_squared += mass * dot(v, v);
         motion.nodes += 1;
+        motion.is_driven |= body.lightness[id as usize] == 0.0 && velocity != [0.0; 4];
     }
     for motion in motions.iter_mut().filter(|motion| motion.mass > 0.0) {
         let share = 1.0 / motion.mass;

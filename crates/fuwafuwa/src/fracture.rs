@@ -16,7 +16,7 @@
 use crate::body::Body;
 use crate::dim::{Dim, Point, voxel_around};
 use crate::material::Material;
-use crate::sharing::{Groups, Sharing};
+use crate::sharing::{Sharing, faces_around};
 use crate::solve::Row;
 use crate::vector::{dot, length, minus, plus, scaled};
 
@@ -46,9 +46,9 @@ pub struct Rests {
 /// How long a node has to be overstrained by half before it gives way [s]. Shorter: knocks shatter
 /// the surface. Longer: fast hands push through without cutting.
 const DAMAGE_TIME: f32 = 0.004;
-/// Least and most that chance adds to what a node bears; scatter keeps a row of equally strained
-/// nodes from bursting at once.
-const SCATTER: f32 = 0.2;
+/// The most that chance adds to what a smooth surface bears; scatter keeps a row of equally
+/// strained nodes from bursting at once. The tip of a crack is one node: there is none to spare.
+const SCATTER: f32 = 0.4;
 /// How much more it takes to set a single voxel free: else a crack leaves a trail of crumbs.
 const CRUMB_FACTOR: f32 = 1.3;
 /// Lattice steps around a release that rest after it.
@@ -85,7 +85,7 @@ pub fn failures<D: Dim>(body: &mut Body<D>, rests: &mut Rests, duration: f32) ->
     let size = body.grid.voxel_size();
     let toughest = |material: &Material| material.strength.min(material.toughness / size.sqrt());
     let least = body.materials().iter().map(toughest);
-    let bearable = least.fold(f32::INFINITY, f32::min) * (1.0 - SCATTER) * face_area::<D>(size);
+    let bearable = least.fold(f32::INFINITY, f32::min) * face_area::<D>(size);
     let mut found: Vec<Failure> = Vec::new();
     let fronts = std::mem::take(&mut body.fronts);
     for &id in &fronts {
@@ -145,13 +145,11 @@ fn worst_cut<D: Dim>(body: &Body<D>, id: u32) -> Option<Failure> {
         }
     }
     let (material, _) = weakest?;
-    let is_tip = body.sharing.groups(node.at) == Groups::joined(D::ALL_CORNERS);
-    let borne = if is_tip {
+    let borne = if is_tip(&body.sharing, node.at, node.group) {
         material.toughness / size.sqrt()
     } else {
-        material.strength
+        material.strength * (1.0 + SCATTER * chance(node.at))
     };
-    let borne = borne * (1.0 + SCATTER * chance(node.at));
     let mut worst: Option<Failure> = None;
     for cut in cuts(&body.sharing, node.at, node.group) {
         let direction = [
@@ -181,6 +179,14 @@ fn worst_cut<D: Dim>(body: &Body<D>, id: u32) -> Option<Failure> {
         }
     }
     worst
+}
+
+/// Whether a crack ends at a point: some voxels still share a node there, but no longer a face.
+fn is_tip<D: Dim>(sharing: &Sharing<D>, at: Point, group: u8) -> bool {
+    faces_around::<D>().any(|(octant, axis)| {
+        let both = 1 << octant | 1 << (octant ^ 1 << axis);
+        group & both == both && !sharing.is_closed(at, octant, axis)
+    })
 }
 
 /// The part of a face that belongs to one of its corners: half an edge, a quarter of a square.
@@ -297,7 +303,7 @@ fn would_crumble<D: Dim>(body: &Body<D>, at: Point, side: u8) -> bool {
     (0..D::N).filter(is_held).count() <= 1
 }
 
-/// A fixed number between −1 and 1 for each lattice point.
+/// A fixed number between 0 and 1 for each lattice point.
 fn chance(at: Point) -> f32 {
     let mix = |hash: u64, k: i32| {
         let hash = (hash ^ u64::from(k as u32)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
@@ -305,5 +311,5 @@ fn chance(at: Point) -> f32 {
     };
     let hash = at.iter().fold(0x5eed, |hash, &k| mix(hash, k));
     let hash = hash.wrapping_mul(0xbf58_476d_1ce4_e5b9) >> 40;
-    hash as f32 / (1u32 << 23) as f32 - 1.0
+    hash as f32 / (1u32 << 24) as f32
 }

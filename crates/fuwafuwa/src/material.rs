@@ -16,13 +16,14 @@ pub struct Material {
     pub damping: f32,
     /// Coulomb friction between pieces, 0 to 2; about 0.4.
     pub friction: f32,
-    /// Tension that a smooth surface bears [Pa]; infinite = it never tears. A fifth of Young's
-    /// modulus gives a body that can be torn by hand.
+    /// Tension that the weakest place of a smooth surface bears [Pa]; infinite = it never tears. A
+    /// fifth of Young's modulus gives a body that can be torn by hand.
     pub strength: f32,
     /// What a crack tip bears: tension times the root of the distance over which it is spread
     /// [Pa √m]. The tip of a crack is as sharp as a voxel is small, so its tension grows with
     /// 1/√voxel and must be compared with toughness/√voxel: that makes a body tear at the same
-    /// load whatever its resolution [Griffith 1921].
+    /// load whatever its resolution [Griffith 1921]. A fifth of the strength, in these units, is a
+    /// body whose cracks run once they have begun; half of it is one that only scuffs.
     pub toughness: f32,
 }
 
@@ -38,7 +39,7 @@ impl Default for Material {
             damping: 0.08,
             friction: 0.4,
             strength: 1000.0,
-            toughness: 250.0,
+            toughness: 200.0,
         }
     }
 }

@@ -53,7 +53,7 @@ pub fn fall_asleep<D: Dim>(
             if piece.asleep {
                 continue;
             }
-            let slow = motion.speed_squared < SLOW * SLOW;
+            let slow = motion.speed_squared < SLOW * SLOW && !motion.is_driven;
             piece.still = if slow { piece.still + duration } else { 0.0 };
         }
     }

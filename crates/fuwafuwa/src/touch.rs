@@ -92,24 +92,35 @@ pub struct Nearby {
     pub skins: Vec<Skin>,
     /// Skins close to each other, ascending.
     pub skin_pairs: Vec<SkinPair>,
-    /// How far things may still move before the lists must be made anew [m].
+    /// Where the middles of the skins are now [m].
+    pub centres: Vec<Row>,
+    /// Where they were when the lists were made, and how far each may move before they must be
+    /// made anew [m]; on the whole, and as seen from what moves along.
+    made_at: Vec<Row>,
+    slack: Vec<f32>,
     node_slack: f32,
-    skin_slack: f32,
+    /// How far a hand has come since the list of nodes was made [m].
+    hand_travel: f32,
+    nodes_are_good: bool,
+    skins_are_good: bool,
 }
 
-/// Slack of the skin list, in voxels: larger means longer lists, smaller more lists.
-const SKIN_SLACK: f32 = 0.6;
-/// Slack of the node list, in voxels, and in seconds at the speed things have.
+/// Slack of a skin, in voxels, and in seconds at the speed it has: larger means longer lists,
+/// smaller more lists.
+const SKIN_SLACK: f32 = 0.3;
+const SLACK_TIME: f32 = 1.0 / 60.0;
+/// The most slack that a fast skin gets, in voxels.
+const MOST_SLACK: f32 = 8.0;
+/// Slack of the list of nodes, in voxels.
 const NODE_SLACK: f32 = 1.0;
-const NODE_SLACK_TIME: f32 = 1.0 / 60.0;
 /// Contacts are looked for out to this many voxels, so that none comes as a surprise.
 pub const MARGIN: f32 = 0.3;
 
 impl Nearby {
-    /// Forgets all lists: the meshes or who is asleep have changed.
+    /// The lists are out of date: the meshes or who is asleep have changed.
     pub fn expire(&mut self) {
-        self.node_slack = -1.0;
-        self.skin_slack = -1.0;
+        self.nodes_are_good = false;
+        self.skins_are_good = false;
     }
 
     /// Forgets which node touched which collider: the colliders have other places now.
@@ -125,30 +136,75 @@ impl Nearby {
         nodes.chain(skins).for_each(|impulse| impulse.total = 0.0);
     }
 
-    /// Makes new lists where the old ones are used up after a substep of `duration` [s]; returns
-    /// whether it did.
-    pub fn refresh<D: Dim>(
-        &mut self,
-        bodies: &[Body<D>],
-        colliders: &[Collider],
-        duration: f32,
-    ) -> bool {
-        let (fastest, apart) = speeds(bodies, colliders);
-        self.node_slack -= 2.0 * fastest * duration;
-        self.skin_slack -= 2.0 * apart * duration;
+    /// Finds the middles of the skins, and makes new lists where something may have moved further
+    /// than the old ones bear; a substep takes `duration` [s].
+    pub fn refresh<D: Dim>(&mut self, bodies: &[Body<D>], colliders: &[Collider], duration: f32) {
         let sizes = bodies.iter().map(|body| body.grid.voxel_size());
         let size = sizes.fold(0.0, f32::max);
-        let (nodes_are_old, skins_are_old) = (self.node_slack < 0.0, self.skin_slack < 0.0);
-        if nodes_are_old {
-            self.node_slack = NODE_SLACK * size + 2.0 * fastest * NODE_SLACK_TIME;
-            self.find_node_pairs(bodies, colliders, self.node_slack + MARGIN * size);
+        if self.skins_are_good {
+            self.find_centres(bodies);
+            self.check_slack();
         }
-        if skins_are_old {
-            self.skin_slack = SKIN_SLACK * size;
+        let hands = colliders.iter().map(|collider| length(collider.velocity));
+        let hand_speed = hands.fold(0.0, f32::max);
+        self.hand_travel += hand_speed * duration;
+        self.nodes_are_good &= self.hand_travel < 0.5 * self.node_slack;
+        if !self.skins_are_good {
             self.find_skins(bodies);
-            self.find_skin_pairs(bodies, (1.0 + MARGIN) * size + self.skin_slack);
+            self.find_centres(bodies);
+            self.find_slack(bodies, size);
+            self.find_skin_pairs(bodies, (1.0 + MARGIN) * size, SKIN_SLACK * size);
+            self.skins_are_good = true;
+            self.nodes_are_good = false;
         }
-        nodes_are_old || skins_are_old
+        if !self.nodes_are_good {
+            let speed = fastest(bodies).max(hand_speed);
+            self.node_slack = NODE_SLACK * size + 2.0 * speed * SLACK_TIME;
+            self.find_node_pairs(bodies, colliders, self.node_slack + MARGIN * size);
+            self.made_at.clone_from(&self.centres);
+            self.hand_travel = 0.0;
+            self.nodes_are_good = true;
+        }
+    }
+
+    fn find_centres<D: Dim>(&mut self, bodies: &[Body<D>]) {
+        self.centres.clear();
+        let centres = self.skins.iter().map(|skin| skin.centre(bodies));
+        self.centres.extend(centres);
+    }
+
+    /// Whether something has moved further than the lists bear. What moves along with everything
+    /// else comes no closer to it.
+    fn check_slack(&mut self) {
+        let mut shift = [0.0; 4];
+        for (now, then) in self.centres.iter().zip(&self.made_at) {
+            shift = plus(shift, minus(*now, *then));
+        }
+        let shift = scaled(shift, 1.0 / self.centres.len().max(1) as f32);
+        let mut furthest = 0.0f32;
+        for ((now, then), slack) in self.centres.iter().zip(&self.made_at).zip(&self.slack) {
+            let moved = minus(*now, *then);
+            furthest = furthest.max(dot(moved, moved));
+            let apart = minus(moved, shift);
+            self.skins_are_good &= dot(apart, apart) < slack * slack;
+        }
+        let bearable = 0.5 * self.node_slack;
+        self.nodes_are_good &= furthest < bearable * bearable;
+    }
+
+    /// How far each skin may move as seen from the rest: fast ones further.
+    fn find_slack<D: Dim>(&mut self, bodies: &[Body<D>], size: f32) {
+        let velocity = |skin: &Skin| skin.mean::<D>(&bodies[skin.body as usize].velocity);
+        let velocities: Vec<Row> = self.skins.iter().map(velocity).collect();
+        let sum = velocities
+            .iter()
+            .fold([0.0; 4], |sum, &velocity| plus(sum, velocity));
+        let mean = scaled(sum, 1.0 / velocities.len().max(1) as f32);
+        self.slack.clear();
+        self.slack.extend(velocities.iter().map(|&velocity| {
+            let own = length(minus(velocity, mean)) * SLACK_TIME;
+            own.clamp(SKIN_SLACK * size, MOST_SLACK * size)
+        }));
     }
 
     fn find_node_pairs<D: Dim>(&mut self, bodies: &[Body<D>], colliders: &[Collider], reach: f32) {
@@ -206,15 +262,16 @@ impl Nearby {
         }
     }
 
-    fn find_skin_pairs<D: Dim>(&mut self, bodies: &[Body<D>], reach: f32) {
-        let centres: Vec<Row> = self.skins.iter().map(|skin| skin.centre(bodies)).collect();
+    /// Finds the skins whose middles are no further apart than `touching` and the slack of both;
+    /// `slow` is the least slack.
+    fn find_skin_pairs<D: Dim>(&mut self, bodies: &[Body<D>], touching: f32, slow: f32) {
         let sleeps = |skin: &Skin| {
             let body = &bodies[skin.body as usize];
             body.pieces.list[skin.piece as usize].asleep
         };
         let asleep: Vec<bool> = self.skins.iter().map(sleeps).collect();
         let mut found: Vec<[u32; 2]> = Vec::new();
-        for_each_close_pair::<D>(&centres, reach, |a, b| {
+        for_each_close_pair::<D>(&self.centres, &self.slack, touching, slow, |a, b| {
             let (low, high) = (a.min(b), a.max(b));
             let pair = [&self.skins[low as usize], &self.skins[high as usize]];
             let both_sleep = asleep[a as usize] && asleep[b as usize];
@@ -268,32 +325,16 @@ impl Skin {
     }
 }
 
-/// The greatest speed of anything awake, and the greatest relative to the mean [m/s].
-fn speeds<D: Dim>(bodies: &[Body<D>], colliders: &[Collider]) -> (f32, f32) {
-    let (mut sum, mut count) = ([0.0; 4], 0);
-    for body in bodies {
-        for &node in &body.awake {
-            sum = plus(sum, body.velocity[node as usize]);
-        }
-        count += body.awake.len();
-    }
-    let mean = scaled(sum, 1.0 / count.max(1) as f32);
-    let (mut fastest, mut apart) = (0.0f32, 0.0f32);
+/// The greatest speed of anything awake [m/s].
+fn fastest<D: Dim>(bodies: &[Body<D>]) -> f32 {
+    let mut fastest = 0.0f32;
     for body in bodies {
         for &node in &body.awake {
             let velocity = body.velocity[node as usize];
             fastest = fastest.max(dot(velocity, velocity));
-            let other = minus(velocity, mean);
-            apart = apart.max(dot(other, other));
-        }
-        // What sleeps stands still while the rest moves.
-        if body.awake.len() < body.mesh.node_count() {
-            apart = apart.max(dot(mean, mean));
         }
     }
-    let hands = colliders.iter().map(|collider| length(collider.velocity));
-    let hand = hands.fold(0.0, f32::max);
-    (fastest.sqrt().max(hand), apart.sqrt())
+    fastest.sqrt()
 }
 
 /// A ball around all nodes of a body.
@@ -310,54 +351,111 @@ fn bounding_ball<D: Dim>(body: &Body<D>) -> (Row, f32) {
     (centre, length(minus(high, centre)))
 }
 
-/// Calls `visit` once for each pair of points no further apart than `reach`.
-fn for_each_close_pair<D: Dim>(points: &[Row], reach: f32, mut visit: impl FnMut(u32, u32)) {
-    if points.is_empty() {
-        return;
-    }
-    let inverse = 1.0 / reach;
-    let cell_of = |at: &Row| [0, 1, 2].map(|axis: usize| (at[axis] * inverse).floor() as i32);
-    let cells: Vec<Point> = points.iter().map(cell_of).collect();
-    let buckets = points.len().next_power_of_two();
-    let bucket_of = |cell: Point| {
-        let mixed = (cell[0] as u32).wrapping_mul(0x8da6_b343)
-            ^ (cell[1] as u32).wrapping_mul(0xd816_3841)
-            ^ (cell[2] as u32).wrapping_mul(0xcb1a_b31f);
-        (mixed ^ mixed >> 15) as usize & (buckets - 1)
+/// Calls `visit` once for each pair of points no further apart than `touching` and the slack of
+/// both. Points of the least slack, `slow`, are looked for in narrow cells, the others, few as they
+/// are, in wide ones.
+fn for_each_close_pair<D: Dim>(
+    points: &[Row],
+    slack: &[f32],
+    touching: f32,
+    slow: f32,
+    mut visit: impl FnMut(u32, u32),
+) {
+    let is_close = |a: usize, b: usize| {
+        let apart = minus(points[a], points[b]);
+        let reach = touching + slack[a] + slack[b];
+        dot(apart, apart) <= reach * reach
     };
-    // Sorted by bucket, counting: `start[b]..start[b + 1]` are the points of bucket b.
-    let mut start = vec![0u32; buckets + 1];
-    for &cell in &cells {
-        start[bucket_of(cell) + 1] += 1;
-    }
-    for bucket in 0..buckets {
-        start[bucket + 1] += start[bucket];
-    }
-    let mut sorted = vec![0u32; points.len()];
-    let mut next = start.clone();
-    for (index, &cell) in cells.iter().enumerate() {
-        let place = &mut next[bucket_of(cell)];
-        sorted[*place as usize] = index as u32;
-        *place += 1;
-    }
+    let is_fast = |index: usize| slack[index] > slow;
+    let narrow = Cells::new(points, touching + 2.0 * slow);
     let ahead = cells_ahead::<D>();
-    for (index, &cell) in cells.iter().enumerate() {
+    for index in (0..points.len()).filter(|&index| !is_fast(index)) {
         for step in &ahead {
-            let other_cell = [0, 1, 2].map(|axis: usize| cell[axis].wrapping_add(step[axis]));
-            let bucket = bucket_of(other_cell);
-            for &other in &sorted[start[bucket] as usize..start[bucket + 1] as usize] {
-                let same_cell = *step == [0; 3];
-                let seen = same_cell && other <= index as u32;
-                if seen || cells[other as usize] != other_cell {
-                    continue;
-                }
-                let apart = minus(points[index], points[other as usize]);
-                if dot(apart, apart) <= reach * reach {
-                    visit(index as u32, other);
+            for other in narrow.near(index, *step) {
+                let seen = *step == [0; 3] && other <= index;
+                if !seen && !is_fast(other) && is_close(index, other) {
+                    visit(index as u32, other as u32);
                 }
             }
         }
     }
+    let most = slack.iter().fold(slow, |most, &slack| most.max(slack));
+    if most == slow {
+        return;
+    }
+    let wide = Cells::new(points, touching + 2.0 * most);
+    let around: Vec<Point> = crate::dim::neighbourhood::<D>([0; 3], 1).collect();
+    for index in (0..points.len()).filter(|&index| is_fast(index)) {
+        for step in &around {
+            for other in wide.near(index, *step) {
+                let seen = is_fast(other) && other <= index;
+                if !seen && is_close(index, other) {
+                    visit(index as u32, other as u32);
+                }
+            }
+        }
+    }
+}
+
+/// Points sorted into the cells of a grid without bounds.
+struct Cells {
+    /// The cell of each point.
+    cells: Vec<Point>,
+    /// `sorted[start[b]..start[b + 1]]` are the points of bucket b.
+    start: Vec<u32>,
+    sorted: Vec<u32>,
+}
+
+impl Cells {
+    fn new(points: &[Row], width: f32) -> Self {
+        let inverse = 1.0 / width;
+        // Rounding towards zero alone would make the cells around the middle twice as wide.
+        let cell_of = |at: &Row| {
+            [0, 1, 2].map(|axis: usize| {
+                let place = at[axis] * inverse;
+                place as i32 - i32::from(place < 0.0)
+            })
+        };
+        let cells: Vec<Point> = points.iter().map(cell_of).collect();
+        let buckets = points.len().next_power_of_two();
+        let mut start = vec![0u32; buckets + 1];
+        for &cell in &cells {
+            start[bucket(cell, buckets) + 1] += 1;
+        }
+        for bucket in 0..buckets {
+            start[bucket + 1] += start[bucket];
+        }
+        let mut sorted = vec![0u32; points.len()];
+        let mut next = start.clone();
+        for (index, &cell) in cells.iter().enumerate() {
+            let place = &mut next[bucket(cell, buckets)];
+            sorted[*place as usize] = index as u32;
+            *place += 1;
+        }
+        Self {
+            cells,
+            start,
+            sorted,
+        }
+    }
+
+    /// The points in the cell some steps from that of a point.
+    fn near(&self, index: usize, step: Point) -> impl Iterator<Item = usize> + '_ {
+        let own = self.cells[index];
+        let cell = [0, 1, 2].map(|axis: usize| own[axis].wrapping_add(step[axis]));
+        let bucket = bucket(cell, self.start.len() - 1);
+        let places = self.start[bucket] as usize..self.start[bucket + 1] as usize;
+        let here = self.sorted[places].iter().map(|&other| other as usize);
+        here.filter(move |&other| self.cells[other] == cell)
+    }
+}
+
+/// The bucket of a cell; the number of buckets is a power of two.
+fn bucket(cell: Point, buckets: usize) -> usize {
+    let mixed = (cell[0] as u32).wrapping_mul(0x8da6_b343)
+        ^ (cell[1] as u32).wrapping_mul(0xd816_3841)
+        ^ (cell[2] as u32).wrapping_mul(0xcb1a_b31f);
+    (mixed ^ mixed >> 15) as usize & (buckets - 1)
 }
 
 /// A cell itself and one of each two opposite neighbours.
@@ -386,15 +484,21 @@ mod tests {
             [random(), random(), z, 0.0]
         };
         let points: Vec<Row> = (0..400).map(point).collect();
+        let slack: Vec<f32> = (0..400)
+            .map(|k| if k % 9 == 0 { 0.4 } else { 0.05 })
+            .collect();
         let mut found = Vec::new();
-        for_each_close_pair::<D>(&points, 0.3, |a, b| found.push((a.min(b), a.max(b))));
+        for_each_close_pair::<D>(&points, &slack, 0.2, 0.05, |a, b| {
+            found.push((a.min(b), a.max(b)));
+        });
         found.sort_unstable();
         let mut expected = Vec::new();
-        for b in 0..points.len() as u32 {
+        for b in 0..points.len() {
             for a in 0..b {
-                let apart = minus(points[a as usize], points[b as usize]);
-                if dot(apart, apart) <= 0.3f32 * 0.3 {
-                    expected.push((a, b));
+                let reach = 0.2 + slack[a] + slack[b];
+                let apart = minus(points[a], points[b]);
+                if dot(apart, apart) <= reach * reach {
+                    expected.push((a as u32, b as u32));
                 }
             }
         }
