@@ -72,6 +72,16 @@ impl<D: Dim> Body<D> {
         Ok((releases.len(), parted))
     }
 
+    /// Cuts all voxels apart: nothing is left but dust. Returns the pieces that came off.
+    ///
+    /// # Errors
+    /// A [`Defect`] when the mesh breaks: a fault of this library.
+    pub fn crumble(&mut self) -> Result<Vec<u32>, Defect> {
+        let octants = |at: Point| (0..D::CORNERS).map(move |octant| (at, 1 << octant));
+        let everything: Vec<(Point, u8)> = self.sharing.points().flat_map(octants).collect();
+        self.release(&everything)
+    }
+
     /// The faces that a blade crosses, each as the voxel before it and its axis.
     fn faces_across(&self, blade: &Blade) -> BTreeSet<(Point, usize)> {
         let mut middles = vec![None; self.grid.voxels().count()];

@@ -1,0 +1,11 @@
+//! Worlds to look at, to measure and to play in: scenes as data files, and recordings of what
+//! hands did in them. Used by tests, benchmarks, the command line and the game alike.
+#![deny(unsafe_code)]
+#![warn(missing_docs)]
+#![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
+
+pub mod recording;
+pub mod scene;
+
+pub use recording::Recording;
+pub use scene::{Scene, SceneError};
