@@ -18,9 +18,8 @@ const WARM_START: f32 = 0.9;
 /// How much of an overlap is pushed out in a substep, and how fast at most [m/s].
 const PUSH_OUT: f32 = 0.2;
 const PUSH_OUT_SPEED: f32 = 0.5;
-/// A sleeper wakes when it is hit at this speed [m/s], or more slowly with an overlap.
-const WAKE_SPEED: f32 = 0.25;
-const WAKE_SPEED_OVERLAPPING: f32 = 0.08;
+/// A sleeper wakes when what touches it moves at this speed [m/s].
+const WAKE_SPEED: f32 = 0.15;
 
 /// One contact in one substep.
 #[derive(Copy, Clone, Debug)]
@@ -207,9 +206,7 @@ impl Contacts {
             if light_a + light_b == 0.0 {
                 continue;
             }
-            let speed = length(relative);
-            let overlaps = gap < -0.2 * touching && speed > WAKE_SPEED_OVERLAPPING;
-            if gap < 0.0 && (speed > WAKE_SPEED || overlaps) {
+            if gap < 0.05 * touching && length(relative) > WAKE_SPEED {
                 for skin in [&skins[a], &skins[b]] {
                     let pieces = &bodies[skin.body as usize].pieces;
                     if pieces.list[skin.piece as usize].asleep {

@@ -18,8 +18,6 @@ pub struct Piece {
     pub quarantined: bool,
     /// How long it has been slow [s].
     pub still: f32,
-    /// The pieces that fell asleep with it wake with it.
-    pub island: u32,
 }
 
 /// The pieces of one body, and which one each element and node belongs to.

@@ -445,7 +445,7 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Lets islands that have been slow fall asleep.
+    /// Lets pieces that have been slow fall asleep.
     fn rest(&mut self) {
         let motions: Vec<Vec<PieceMotion>> = self
             .bodies
@@ -463,7 +463,7 @@ impl<D: Dim> World<D> {
         let handled: Vec<Hit> = handled
             .map(|pair| (pair.body, piece(pair.body, pair.node)))
             .collect();
-        let fallen = fall_asleep(&mut self.bodies, &self.nearby, &motions, &handled, TICK);
+        let fallen = fall_asleep(&mut self.bodies, &motions, &handled, TICK);
         if !fallen.is_empty() {
             self.nearby.expire();
         }
