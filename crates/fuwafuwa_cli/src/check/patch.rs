@@ -13,21 +13,23 @@ const LIMIT: f64 = 1e-5;
 
 /// How many random shapes are tried in the plane and in space.
 #[derive(Copy, Clone, Debug)]
-pub struct Shapes {
-    /// In 2D.
-    pub plane: u64,
-    /// In 3D.
-    pub space: u64,
+struct Shapes {
+    plane: u64,
+    space: u64,
 }
 
 /// What the command line runs.
-pub const FULL: Shapes = Shapes {
+const FULL: Shapes = Shapes {
     plane: 1000,
     space: 400,
 };
 
 /// Worst residual of both laws over random cut shapes.
-pub fn check(shapes: Shapes, progress: &Progress) -> Result<Vec<Outcome>> {
+pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+    check_shapes(FULL, progress)
+}
+
+fn check_shapes(shapes: Shapes, progress: &Progress) -> Result<Vec<Outcome>> {
     progress.expect(shapes.plane + shapes.space);
     let mut outcomes = check_dim::<Dim2>(shapes.plane, 6..20, progress)?;
     outcomes.extend(check_dim::<Dim3>(shapes.space, 6..11, progress)?);
@@ -189,7 +191,7 @@ mod tests {
             plane: 40,
             space: 20,
         };
-        let outcomes = check(shapes, &Progress::new()).unwrap();
+        let outcomes = check_shapes(shapes, &Progress::new()).unwrap();
         assert_eq!(outcomes.len(), 4);
         assert!(outcomes.iter().all(|outcome| outcome.pass != Some(false)));
         assert!(outcomes[1].value > LIMIT && outcomes[3].value > LIMIT);
