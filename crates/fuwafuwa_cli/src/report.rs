@@ -2,6 +2,7 @@
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
+use std::ops::RangeInclusive;
 use std::time::{Duration, Instant};
 
 /// A check that is faster than this shows no bar.
@@ -18,6 +19,48 @@ pub struct Outcome {
     pub wanted: String,
     /// Whether it does; `None` where the value is shown for comparison only.
     pub pass: Option<bool>,
+}
+
+impl Outcome {
+    /// A value that must not differ from `ideal` by more than `tolerance`.
+    pub fn near(case: String, value: f64, ideal: f64, tolerance: f64) -> Self {
+        Self {
+            case,
+            value,
+            wanted: format!("{ideal} +- {tolerance}"),
+            pass: Some((value - ideal).abs() <= tolerance),
+        }
+    }
+
+    /// A value that must lie in a range.
+    pub fn within(case: String, value: f64, range: RangeInclusive<f64>) -> Self {
+        Self {
+            case,
+            value,
+            wanted: format!("{} to {}", range.start(), range.end()),
+            pass: Some(range.contains(&value)),
+        }
+    }
+
+    /// A value that must not exceed a limit; one that is not a number does.
+    pub fn at_most(case: String, value: f64, limit: f64) -> Self {
+        Self {
+            case,
+            value,
+            wanted: format!("<= {limit:e}"),
+            pass: Some(value <= limit),
+        }
+    }
+
+    /// A value that is shown for comparison only.
+    pub fn shown(case: String, value: f64) -> Self {
+        Self {
+            case,
+            value,
+            wanted: "for comparison".into(),
+            pass: None,
+        }
+    }
 }
 
 /// A bar on the error stream that stays away while a check is quick.

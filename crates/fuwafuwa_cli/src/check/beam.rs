@@ -9,15 +9,15 @@
 //! The load is small, so the law is linearised at rest: a stiffness matrix for each class of
 //! element, by central differences of [`forces`], and conjugate gradients over all elements.
 
+use super::parallel;
 use crate::report::{Outcome, Progress};
-use anyhow::{Result, anyhow, ensure};
+use anyhow::{Result, ensure};
 use fuwafuwa::law::{Elasticity, Law, forces};
 use fuwafuwa::pyramid::{Grading, Pyramid};
 use fuwafuwa::sharing::Sharing;
 use fuwafuwa::stencil::Stencil;
 use fuwafuwa::{Dim, Dim2, Dim3, Mesh, VoxelGrid};
 use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Thickness of a beam in voxels.
 const THICKNESS: usize = 16;
@@ -54,47 +54,17 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
             }));
         }
     }
-    progress.expect(beams.len() as u64);
-    let ratios = ratios(&beams, progress)?;
-    let outcome = |(beam, value): (&Beam, f64)| Outcome {
-        case: format!(
-            "beam {}D, length {}t, poisson {}",
+    let ratios = parallel::each(&beams, progress, |beam| beam.ratio(progress))?;
+    let outcome = |(beam, value): (&Beam, f64)| {
+        let case = format!(
+            "beam {}D, length {}t, poisson {}, tip / theory",
             beam.dim,
             beam.length / beam.thickness,
             beam.poisson
-        ),
-        value,
-        wanted: format!("1 +- {TOLERANCE}"),
-        pass: Some((value - 1.0).abs() <= TOLERANCE),
+        );
+        Outcome::near(case, value, 1.0, TOLERANCE)
     };
     Ok(beams.iter().zip(ratios).map(outcome).collect())
-}
-
-/// The ratio of each beam, shared out among threads, the slow ones first.
-fn ratios(beams: &[Beam], progress: &Progress) -> Result<Vec<f64>> {
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let next = AtomicUsize::new(0);
-    let work = || {
-        let mut done = Vec::new();
-        loop {
-            let taken = next.fetch_add(1, Ordering::Relaxed);
-            let Some(index) = beams.len().checked_sub(taken + 1) else {
-                return done;
-            };
-            done.push((index, beams[index].ratio(progress)));
-            progress.step();
-        }
-    };
-    let mut all = Vec::new();
-    std::thread::scope(|scope| -> Result<()> {
-        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-        for worker in workers {
-            all.extend(worker.join().map_err(|_| anyhow!("a beam panicked"))?);
-        }
-        Ok(())
-    })?;
-    all.sort_by_key(|&(index, _)| index);
-    all.into_iter().map(|(_, ratio)| ratio).collect()
 }
 
 impl Beam {
