@@ -1,0 +1,125 @@
+//! The energy stored in a deformed body, whose slope is the force of the default law:
+//!
+//! ```text
+//! E = V (μ ‖F − R‖² + λ/2 (tr RᵀF − d)²) + k/2 Σ w_i |h_i|²
+//! ```
+//!
+//! with the names of `fuwafuwa::law`. The resistance of an element that is squashed flat is left
+//! out: the bodies of the checks are nowhere near that.
+
+use fuwafuwa::law::{Elasticity, Matrix};
+use fuwafuwa::stencil::{Stencil, Vector64};
+use fuwafuwa::vector::{cross, dot, minus, plus, scaled};
+use fuwafuwa::{Body, Dim};
+
+/// The energy stored in a body [J].
+pub fn of_body<D: Dim>(body: &Body<D>) -> f64 {
+    let elements = body.mesh().elements().map(|(_, element)| {
+        let place = |&node: &u32| body.node_state(node).0.map(f64::from);
+        let positions: Vec<Vector64> = element.nodes.iter().map(place).collect();
+        let size = f64::from(element.cell.width()) * f64::from(body.grid().voxel_size());
+        let elasticity = body.material(element).elasticity;
+        of_element(elasticity, body.mesh().stencil(element), size, &positions)
+    });
+    elements.sum()
+}
+
+/// The energy stored in an element of width `size` [m] with its nodes at `positions` [m].
+fn of_element<D: Dim>(
+    elasticity: Elasticity,
+    stencil: &Stencil<D>,
+    size: f64,
+    positions: &[Vector64],
+) -> f64 {
+    let half = 0.5 * size;
+    let mut deformation = [[0.0; 3]; 3];
+    let mut centre = [0.0; 3];
+    for (k, &at) in positions.iter().enumerate() {
+        centre = plus(centre, scaled(at, stencil.volumes[k] / stencil.volume));
+        for i in 0..3 {
+            let share = at[i] / (stencil.volume * half);
+            deformation[i] = plus(deformation[i], scaled(stencil.gradients[k], share));
+        }
+    }
+    if D::N == 2 {
+        deformation[2] = [0.0, 0.0, 1.0];
+    }
+    let rotation = rotation_of(&deformation);
+    let (mut apart, mut growth) = (0.0, -3.0);
+    for (f, r) in deformation.iter().zip(rotation) {
+        let difference = minus(*f, r);
+        apart += dot(difference, difference);
+        growth += dot(*f, r);
+    }
+    let (shear, lame) = (elasticity.shear_modulus(), elasticity.lame());
+    let density = shear * apart + 0.5 * lame * growth * growth;
+    let volume = (0..D::N).fold(stencil.volume, |volume, _| volume * half);
+
+    let swerve = |(k, &at): (usize, &Vector64)| {
+        let rest = scaled(stencil.offsets[k], half);
+        let affine = plus(centre, deformation.map(|row| dot(row, rest)));
+        let h = minus(at, affine);
+        stencil.volumes[k] * dot(h, h)
+    };
+    let stiffness = D::HOURGLASS * elasticity.young * (2..D::N).fold(1.0, |scale, _| scale * size);
+    let hourglass: f64 = positions.iter().enumerate().map(swerve).sum();
+    volume * density + 0.5 * stiffness * hourglass
+}
+
+/// The rotation in a matrix of positive determinant, by Newton's iteration towards its polar factor.
+fn rotation_of(matrix: &Matrix) -> Matrix {
+    let mut rotation = *matrix;
+    for _ in 0..30 {
+        let [a, b, c] = rotation;
+        let cofactors = [cross(b, c), cross(c, a), cross(a, b)];
+        let determinant = dot(a, cofactors[0]);
+        for (row, cofactor) in rotation.iter_mut().zip(cofactors) {
+            *row = scaled(plus(*row, scaled(cofactor, 1.0 / determinant)), 0.5);
+        }
+    }
+    rotation
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fuwafuwa::law::{Law, forces};
+    use fuwafuwa::stencil::{cell_corners, closure};
+    use fuwafuwa::{Dim2, Dim3};
+
+    /// The force is the slope of the energy, also for elements with mid nodes.
+    fn check_slope<D: Dim>(children: u8, slots: u32) {
+        let elasticity = Elasticity::new(1000.0, 0.3).unwrap();
+        let stencil = Stencil::<D>::new(children, slots).unwrap();
+        let size = 0.5;
+        let bent = |r: &Vector64| {
+            let [x, y, z] = r.map(|k| 0.5 * size * k);
+            let third = if D::N == 3 { z + 0.3 * x } else { 0.0 };
+            [
+                1.1 * x - 0.3 * y + x * y,
+                0.9 * y + 0.2 * x + 0.7 * x * x,
+                third,
+            ]
+        };
+        let positions: Vec<Vector64> = stencil.offsets.iter().map(bent).collect();
+        let found = forces(Law::PatchExact, elasticity, &stencil, size, &positions);
+        for (node, axis) in (0..positions.len()).flat_map(|k| (0..D::N).map(move |i| (k, i))) {
+            let at = |by: f64| {
+                let mut moved = positions.clone();
+                moved[node][axis] += by;
+                of_element(elasticity, &stencil, size, &moved)
+            };
+            let slope = (at(-1e-6) - at(1e-6)) / 2e-6;
+            let error = (found[node][axis] - slope).abs();
+            assert!(error < 1e-5, "{:?} is not {slope}", found[node]);
+        }
+    }
+
+    #[test]
+    fn the_force_is_the_slope_of_the_energy() {
+        check_slope::<Dim2>(15, cell_corners::<Dim2>() | 1 << 1);
+        check_slope::<Dim2>(0b0111, closure::<Dim2>(0b0111));
+        check_slope::<Dim3>(255, cell_corners::<Dim3>() | 1 << 4);
+        check_slope::<Dim3>(0b0111_1111, closure::<Dim3>(0b0111_1111));
+    }
+}

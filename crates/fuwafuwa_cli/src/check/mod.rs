@@ -1,0 +1,73 @@
+//! The mechanics against references; the exit code is 1 when a check fails.
+
+mod beam;
+mod energy;
+mod momentum;
+mod motion;
+mod parallel;
+mod patch;
+mod period;
+mod random;
+mod sag;
+mod spin;
+
+use crate::report::{self, Outcome, Progress};
+use anyhow::Result;
+use clap::ValueEnum;
+use std::process::ExitCode;
+
+/// Check the mechanics against references; the exit code is 1 when a check fails.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Which check.
+    #[arg(value_enum)]
+    which: Which,
+    /// Print JSON instead of a table.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Copy, Clone, Debug, PartialEq, Eq, ValueEnum)]
+enum Which {
+    /// Uniform strain of random cut shapes must leave inner nodes at rest.
+    Patch,
+    /// Graded cantilevers must bend as Timoshenko's theory says.
+    Beam,
+    /// Graded bodies must sag under their weight as uniform ones do.
+    Sag,
+    /// Graded bodies must ring as uniform ones do, and keep their energy.
+    Period,
+    /// A free body must keep its spin.
+    Spin,
+    /// Releases must leave mass and momentum as they are.
+    Momentum,
+    /// All of them.
+    All,
+}
+
+type Check = fn(&Progress) -> Result<Vec<Outcome>>;
+
+/// Runs the checks and prints what they found.
+pub fn run(arguments: &Arguments) -> Result<ExitCode> {
+    let checks: [(Which, Check); 6] = [
+        (Which::Patch, patch::check),
+        (Which::Beam, beam::check),
+        (Which::Sag, sag::check),
+        (Which::Period, period::check),
+        (Which::Spin, spin::check),
+        (Which::Momentum, momentum::check),
+    ];
+    let mut outcomes = Vec::new();
+    for (name, check) in checks {
+        if arguments.which == name || arguments.which == Which::All {
+            outcomes.extend(check(&Progress::new())?);
+        }
+    }
+    if arguments.json {
+        println!("{}", serde_json::to_string_pretty(&outcomes)?);
+    } else {
+        print!("{}", report::outcome_table(&outcomes));
+    }
+    let failed = outcomes.iter().any(|outcome| outcome.pass == Some(false));
+    Ok(ExitCode::from(u8::from(failed)))
+}

@@ -1,0 +1,79 @@
+//! Momentum: neither releases nor remodelling push or turn a body.
+
+use super::motion::{arrange, ball, length, material};
+use super::parallel;
+use super::random::Random;
+use crate::report::{Outcome, Progress};
+use anyhow::Result;
+use fuwafuwa::dim::{Dim, Point};
+use fuwafuwa::pyramid::Grading;
+use fuwafuwa::{Dim2, Dim3};
+
+/// Dimensions and voxels across of the bodies.
+const BODIES: [(usize, usize); 3] = [(2, 32), (3, 12), (3, 16)];
+/// Releases, each at a random point along a random axis.
+const RELEASES: usize = 1000;
+/// A step is taken after so many releases.
+const BETWEEN_STEPS: usize = 10;
+/// Largest change, relative to the momentum at the start.
+const TOLERANCE: f64 = 1e-4;
+
+/// Drift of linear and angular momentum through random releases.
+pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+    let found = parallel::each(&BODIES, progress, |&(dim, n)| match dim {
+        2 => drifts::<Dim2>(n, RELEASES),
+        _ => drifts::<Dim3>(n, RELEASES),
+    })?;
+    let mut outcomes = Vec::new();
+    for ((dim, n), drifts) in BODIES.iter().zip(found) {
+        for (name, drift) in ["mass", "linear momentum", "angular momentum"]
+            .iter()
+            .zip(drifts)
+        {
+            let case = format!("{name} {dim}D, n = {n}, drift in {RELEASES} releases");
+            outcomes.push(Outcome::at_most(case, drift, TOLERANCE));
+        }
+    }
+    Ok(outcomes)
+}
+
+/// Relative changes of mass, linear and angular momentum.
+fn drifts<D: Dim>(n: usize, releases: usize) -> Result<[f64; 3]> {
+    let mut body = ball::<D>(n, material(), Grading::Graded)?;
+    arrange(&mut body, |[x, y, z]| {
+        let third = if D::N == 3 { 0.3 * x } else { 0.0 };
+        ([x * 1.05, y * 0.95, z], [1.0 + 2.0 * y, 0.5 - x + z, third])
+    });
+    let (mass, before) = (body.total_mass(), body.momentum());
+    let mut random = Random::new(n as u64);
+    for release in 0..releases {
+        let mut at: Point = [0; 3];
+        at.iter_mut()
+            .take(D::N)
+            .for_each(|k| *k = random.below(n as i32));
+        let axis = random.below(D::N as i32) as usize;
+        let far = (0..D::CORNERS).filter(|octant| octant >> axis & 1 == 1);
+        let side = far.fold(0, |mask, octant| mask | 1 << octant);
+        body.release(&[(at, side)])?;
+        if release % BETWEEN_STEPS == 0 {
+            body.advance(body.longest_substep() as f32, [0.0; 3]);
+        }
+    }
+    let change = body.momentum().less(before);
+    Ok([
+        (body.total_mass() / mass - 1.0).abs(),
+        length(change.linear) / length(before.linear),
+        length(change.angular) / length(before.angular),
+    ])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_hundred_releases_leave_the_momentum() {
+        let drifts = drifts::<Dim3>(8, 100).unwrap();
+        assert!(drifts.iter().all(|&drift| drift <= TOLERANCE), "{drifts:?}");
+    }
+}

@@ -1,0 +1,173 @@
+//! The patch test: under uniform strain no inner node may feel a force, whatever the shape and cuts.
+
+use super::random::Random;
+use crate::report::{Outcome, Progress};
+use anyhow::Result;
+use fuwafuwa::dim::{neighbourhood, points_in};
+use fuwafuwa::law::{Elasticity, Law, forces};
+use fuwafuwa::pyramid::{Grading, Pyramid};
+use fuwafuwa::sharing::Sharing;
+use fuwafuwa::{Dim, Dim2, Dim3, Mesh, Point, VoxelGrid};
+
+/// Largest residual of the default law, relative to stress times the face of a voxel.
+const LIMIT: f64 = 1e-5;
+
+/// How many random shapes are tried in the plane and in space.
+#[derive(Copy, Clone, Debug)]
+struct Shapes {
+    plane: u64,
+    space: u64,
+}
+
+/// What the command line runs.
+const FULL: Shapes = Shapes {
+    plane: 1000,
+    space: 400,
+};
+
+/// Worst residual of both laws over random cut shapes.
+pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+    check_shapes(FULL, progress)
+}
+
+fn check_shapes(shapes: Shapes, progress: &Progress) -> Result<Vec<Outcome>> {
+    progress.expect(shapes.plane + shapes.space);
+    let mut outcomes = check_dim::<Dim2>(shapes.plane, 6..20, progress)?;
+    outcomes.extend(check_dim::<Dim3>(shapes.space, 6..11, progress)?);
+    Ok(outcomes)
+}
+
+fn check_dim<D: Dim>(
+    shapes: u64,
+    sizes: std::ops::Range<i32>,
+    progress: &Progress,
+) -> Result<Vec<Outcome>> {
+    let laws = [Law::PatchExact, Law::Endo2004];
+    let mut worst = [0.0f64; 2];
+    for seed in 0..shapes {
+        let n = sizes.start + seed as i32 % (sizes.end - sizes.start);
+        let mut random = Random::new(seed + 1);
+        if let Some(grid) = random_shape::<D>(&mut random, n) {
+            let mut sharing = Sharing::new(&grid);
+            for _ in 0..1 + random.below(5) {
+                random_cut(&mut sharing, &mut random, n);
+            }
+            let mesh = Mesh::grade(
+                &grid,
+                &sharing,
+                &Pyramid::new(&grid, &sharing, Grading::Graded),
+            )?;
+            for (worst, law) in worst.iter_mut().zip(laws) {
+                *worst = worst.max(residual(&mesh, &sharing, law)?);
+            }
+        }
+        progress.step();
+    }
+    let case = |law: &str| format!("patch {}D, {shapes} shapes, {law}", D::N);
+    Ok(vec![
+        Outcome::at_most(case("default law"), worst[0], LIMIT),
+        Outcome::shown(case("the paper's law"), worst[1]),
+    ])
+}
+
+/// Worst force on an inner node under a uniform strain, relative to stress times a voxel's face.
+fn residual<D: Dim>(mesh: &Mesh<D>, sharing: &Sharing<D>, law: Law) -> Result<f64> {
+    let elasticity = Elasticity::new(1000.0, 0.3)?;
+    let strain = [[1.12, 0.07, 0.0], [-0.21, 0.91, 0.05], [0.0, 0.11, 1.04]];
+    let deformed = |at: Point| {
+        let mut x = [0.0; 3];
+        for (i, x) in x.iter_mut().enumerate().take(D::N) {
+            *x = (0..D::N).map(|j| strain[i][j] * f64::from(at[j])).sum();
+        }
+        x
+    };
+    let mut sums = vec![[0.0; 3]; mesh.node_capacity()];
+    for (_, element) in mesh.elements() {
+        let at = |&node: &u32| deformed(mesh.node(node).at);
+        let positions: Vec<_> = element.nodes.iter().map(at).collect();
+        let size = f64::from(element.cell.width());
+        let all = forces(law, elasticity, mesh.stencil(element), size, &positions);
+        for (&node, force) in element.nodes.iter().zip(all) {
+            for (sum, force) in sums[node as usize].iter_mut().zip(force) {
+                *sum += force;
+            }
+        }
+    }
+    let stress = 0.2 * elasticity.young;
+    let mut worst = 0.0f64;
+    for (id, node) in mesh.nodes() {
+        if node.group == D::ALL_CORNERS && !sharing.is_front(node.at) {
+            for force in sums[id as usize] {
+                // f64::max would drop a NaN.
+                let force = if force.is_nan() { f64::INFINITY } else { force };
+                worst = worst.max(force.abs() / stress);
+            }
+        }
+    }
+    Ok(worst)
+}
+
+/// A union of balls and boxes less one ball, of one or two materials; `None` when nothing is left.
+fn random_shape<D: Dim>(random: &mut Random, n: i32) -> Option<VoxelGrid<D>> {
+    let parts: Vec<(Point, i32, bool)> = (0..4)
+        .map(|_| {
+            let at = [random.below(n), random.below(n), random.below(n)];
+            (at, n / 6 + random.below(n / 3), random.below(2) == 0)
+        })
+        .collect();
+    let inside = |part: &(Point, i32, bool), at: Point| {
+        let away = (0..D::N).map(|axis| (at[axis] - part.0[axis]).abs());
+        if part.2 {
+            away.max().is_some_and(|distance| distance < part.1)
+        } else {
+            away.map(|k| k * k).sum::<i32>() < part.1 * part.1
+        }
+    };
+    let two_materials = random.below(3) == 0;
+    let extent = n as usize;
+    let size = [extent, extent, if D::N == 3 { extent } else { 1 }];
+    VoxelGrid::from_fn(size, 1.0, |at| {
+        let solid = parts[..3].iter().any(|part| inside(part, at)) && !inside(&parts[3], at);
+        u8::from(solid) * (1 + u8::from(two_materials && at[0] > n / 2))
+    })
+    .ok()
+}
+
+/// Releases a few single points or whole rectangles, as a crack or a knife would.
+fn random_cut<D: Dim>(sharing: &mut Sharing<D>, random: &mut Random, n: i32) {
+    let axis = random.below(D::N as i32) as usize;
+    let side = (0..D::CORNERS).fold(0u8, |mask, octant| {
+        mask | ((octant >> axis & 1) as u8) << octant
+    });
+    let (mut low, mut high) = ([0; 3], [0; 3]);
+    let reach = if random.below(2) == 0 { 1 } else { n };
+    for k in 0..D::N {
+        low[k] = random.below(n + 1);
+        high[k] = (low[k] + random.below(reach)).min(n);
+    }
+    high[axis] = low[axis];
+    let mut around = Vec::new();
+    for at in points_in(low, high) {
+        if sharing.release(at, side) {
+            around.extend(neighbourhood::<D>(at, 1));
+        }
+    }
+    sharing.normalise(around);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_default_law_passes_and_the_papers_does_not() {
+        let shapes = Shapes {
+            plane: 40,
+            space: 20,
+        };
+        let outcomes = check_shapes(shapes, &Progress::new()).unwrap();
+        assert_eq!(outcomes.len(), 4);
+        assert!(outcomes.iter().all(|outcome| outcome.pass != Some(false)));
+        assert!(outcomes[1].value > LIMIT && outcomes[3].value > LIMIT);
+    }
+}

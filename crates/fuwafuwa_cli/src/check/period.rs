@@ -1,0 +1,127 @@
+//! Period and energy: a squashed ball rings freely, graded against uniform, and rings on.
+
+use super::motion::{arrange, at_rest, ball, material};
+use super::{energy, parallel};
+use crate::report::{Outcome, Progress};
+use anyhow::{Result, ensure};
+use fuwafuwa::pyramid::Grading;
+use fuwafuwa::{Body, Dim, Dim2, Dim3};
+use std::ops::RangeInclusive;
+
+/// Dimensions and voxels across of the bodies.
+const BODIES: [(usize, usize); 5] = [(2, 16), (2, 64), (3, 16), (2, 128), (3, 32)];
+/// Largest deviation from the uniform body.
+const TOLERANCE: f64 = 0.03;
+/// Share of the energy that may be left in the end.
+const KEPT: RangeInclusive<f64> = 0.95..=1.02;
+/// How much of its height a body is squashed by.
+const SQUASH: f32 = 0.08;
+/// How long it rings [s].
+const DURATION: f64 = 5.0;
+/// Energies are averaged over the last seconds, for they waver from step to step.
+const LAST: f64 = 0.5;
+
+/// Period of graded bodies relative to that of uniform ones, and how much energy both keep.
+pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+    let found = parallel::each(&BODIES, progress, |&(dim, n)| match dim {
+        2 => rings::<Dim2>(n, progress),
+        _ => rings::<Dim3>(n, progress),
+    })?;
+    let mut outcomes = Vec::new();
+    for ((dim, n), [graded, uniform]) in BODIES.iter().zip(found) {
+        outcomes.push(Outcome::near(
+            format!(
+                "period {dim}D, n = {n}, graded / uniform ({:.1} ms)",
+                1e3 * uniform.period
+            ),
+            graded.period / uniform.period,
+            1.0,
+            TOLERANCE,
+        ));
+        outcomes.push(Outcome::within(
+            format!("energy {dim}D, n = {n}, kept after {DURATION} s"),
+            graded.kept,
+            KEPT,
+        ));
+    }
+    Ok(outcomes)
+}
+
+/// How a body rang.
+#[derive(Copy, Clone, Debug)]
+struct Ring {
+    /// [s]
+    period: f64,
+    /// Share of the energy that is left in the end.
+    kept: f64,
+}
+
+fn rings<D: Dim>(n: usize, progress: &Progress) -> Result<[Ring; 2]> {
+    Ok([
+        ring::<D>(n, Grading::Graded, progress)?,
+        ring::<D>(n, Grading::Uniform, progress)?,
+    ])
+}
+
+fn ring<D: Dim>(n: usize, grading: Grading, progress: &Progress) -> Result<Ring> {
+    let mut body = ball::<D>(n, material(), grading)?;
+    let bulge = 1.0 + SQUASH / (D::N - 1) as f32;
+    arrange(&mut body, |[x, y, z]| {
+        ([x * bulge, y * (1.0 - SQUASH), z * bulge], [0.0; 3])
+    });
+    let steps = (DURATION / body.longest_substep()).ceil() as usize;
+    let duration = DURATION / steps as f64;
+    let last = steps - (LAST / duration) as usize;
+    let start = energy::of_body(&body);
+    let (mut squash, mut crossings) = (squash_of(&body), Vec::new());
+    let (mut sum, mut count) = (0.0, 0.0);
+    for step in 0..steps {
+        body.advance(duration as f32, [0.0; 3]);
+        progress.look();
+        let now = squash_of(&body);
+        if squash * now < 0.0 {
+            crossings.push((step as f64 + squash / (squash - now)) * duration);
+        }
+        squash = now;
+        if step >= last && step % 8 == 0 {
+            sum += energy::of_body(&body) + body.kinetic_energy();
+            count += 1.0;
+        }
+    }
+    ensure!(
+        crossings.len() > 4,
+        "the body of {n} voxels across does not ring"
+    );
+    // The first swings are the cleanest: later on other modes have run out of step.
+    let halves = (crossings.len() - 1).min(8);
+    Ok(Ring {
+        period: 2.0 * (crossings[halves] - crossings[0]) / halves as f64,
+        kept: sum / count / start,
+    })
+}
+
+/// How far a body is squashed: its height at rest against its height now, weighed by mass.
+fn squash_of<D: Dim>(body: &Body<D>) -> f64 {
+    let (mut sum, mut whole) = (0.0, 0.0);
+    for (id, _) in body.mesh().nodes() {
+        let (rest, (at, _, mass)) = (f64::from(at_rest(body, id)[1]), body.node_state(id));
+        sum += f64::from(mass) * rest * (rest - f64::from(at[1]));
+        whole += f64::from(mass) * rest * rest;
+    }
+    sum / whole
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_small_disc_rings_like_its_voxels() {
+        let [graded, uniform] = rings::<Dim2>(16, &Progress::new()).unwrap();
+        assert!(
+            (graded.period / uniform.period - 1.0).abs() < TOLERANCE,
+            "{graded:?} {uniform:?}"
+        );
+        assert!(KEPT.contains(&graded.kept) && KEPT.contains(&uniform.kept));
+    }
+}

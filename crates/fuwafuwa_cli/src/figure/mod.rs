@@ -1,0 +1,152 @@
+//! The figures of the paper, drawn from live data.
+
+mod disc;
+mod remodel;
+mod sequence;
+
+use crate::painter::{Painter, Role, Sample, film};
+use anyhow::{Context, Result};
+use clap::ValueEnum;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use tiny_skia::Pixmap;
+
+/// Draw the figures of the paper from live data, each as SVG and PNG.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Which figure.
+    #[arg(value_enum)]
+    which: Which,
+    /// Folder for the files; it is made when it does not exist.
+    #[arg(long)]
+    out: PathBuf,
+}
+
+/// Which figure to draw.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, ValueEnum)]
+enum Which {
+    /// A graded disc, elements by level; and a ball cut open.
+    #[value(name = "1")]
+    Levels,
+    /// The levels of the look-up table.
+    #[value(name = "2")]
+    Table,
+    /// The phases of remodelling.
+    #[value(name = "3")]
+    Phases,
+    /// When a child is generated.
+    #[value(name = "4")]
+    Conditions,
+    /// Children generated and parents rebuilt, before and after a release.
+    #[value(name = "5")]
+    Children,
+    /// A cutting sequence, in the plane and in space, also as films.
+    #[value(name = "6")]
+    Sequence,
+    /// All of them.
+    All,
+}
+
+impl Which {
+    fn wants(self, figure: Self) -> bool {
+        self == figure || self == Self::All
+    }
+}
+
+/// Draws into a folder and prints the files written.
+pub fn run(arguments: &Arguments) -> Result<ExitCode> {
+    for path in write(arguments.which, &arguments.out)? {
+        println!("{}", path.display());
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Draws into a folder; returns the files written.
+fn write(which: Which, folder: &Path) -> Result<Vec<PathBuf>> {
+    std::fs::create_dir_all(folder)
+        .with_context(|| format!("cannot make the folder {}", folder.display()))?;
+    let mut files = Files {
+        folder,
+        written: Vec::new(),
+    };
+    if which.wants(Which::Levels) {
+        files.figure("figure_1", &disc::elements()?)?;
+        files.figure("figure_1_ball", &disc::opened_ball()?)?;
+    }
+    if which.wants(Which::Table) {
+        files.figure("figure_2", &disc::table()?)?;
+    }
+    if which.wants(Which::Phases) {
+        files.figure("figure_3", &remodel::phases()?)?;
+    }
+    if which.wants(Which::Conditions) {
+        files.figure("figure_4", &remodel::conditions()?)?;
+    }
+    if which.wants(Which::Children) {
+        files.figure("figure_5", &remodel::children()?)?;
+    }
+    if which.wants(Which::Sequence) {
+        let (strip, frames) = sequence::disc()?;
+        files.figure("figure_6", &strip)?;
+        files.film("figure_6", &frames)?;
+        let (strip, frames) = sequence::ball()?;
+        files.figure("figure_6_ball", &strip)?;
+        files.film("figure_6_ball", &frames)?;
+    }
+    Ok(files.written)
+}
+
+/// The levels of a legend.
+fn level_entries(levels: u8) -> Vec<(Sample, &'static str)> {
+    const NAMES: [&str; 6] = [
+        "level 0", "level 1", "level 2", "level 3", "level 4", "level 5",
+    ];
+    let sample = |level| Sample::Area(Role::Level(level), Role::Edge);
+    (0..levels).map(sample).zip(NAMES).collect()
+}
+
+/// A folder that is being filled.
+struct Files<'a> {
+    folder: &'a Path,
+    written: Vec<PathBuf>,
+}
+
+impl Files<'_> {
+    fn figure(&mut self, name: &str, painter: &Painter) -> Result<()> {
+        self.write(name, "svg", painter.svg()?.as_bytes())?;
+        self.write(name, "png", &painter.png()?)
+    }
+
+    fn film(&mut self, name: &str, frames: &[Pixmap]) -> Result<()> {
+        self.write(name, "gif", &film::gif(frames, sequence::HUNDREDTHS)?)
+    }
+
+    fn write(&mut self, name: &str, extension: &str, bytes: &[u8]) -> Result<()> {
+        let path = self.folder.join(name).with_extension(extension);
+        std::fs::write(&path, bytes).with_context(|| format!("cannot write {}", path.display()))?;
+        self.written.push(path);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_are_written_and_not_empty() {
+        let folder = tempfile::tempdir().unwrap();
+        for which in [
+            Which::Table,
+            Which::Phases,
+            Which::Conditions,
+            Which::Children,
+        ] {
+            let written = write(which, folder.path()).unwrap();
+            assert_eq!(written.len(), 2);
+            for path in written {
+                assert!(std::fs::metadata(&path).unwrap().len() > 1000, "{path:?}");
+            }
+        }
+    }
+}

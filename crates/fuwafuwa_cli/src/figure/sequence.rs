@@ -1,0 +1,165 @@
+//! A body being cut: in the plane by a hand that pushes, in space by a blade.
+
+use crate::painter::solid::{Camera, Solid};
+use crate::painter::{Frame, Painter, Role, Sample, film};
+use crate::report::Progress;
+use crate::stage::{self, DrawPlane, DrawSpace};
+use anyhow::Result;
+use fuwafuwa::law::Elasticity;
+use fuwafuwa::world::TICK;
+use fuwafuwa::{
+    Blade, Body, Dim2, Dim3, Drive, Manipulator, Material, Settings, Shape, VoxelGrid, World,
+};
+use tiny_skia::Pixmap;
+
+/// How long a frame of a film is shown [1/100 s].
+pub const HUNDREDTHS: u16 = 6;
+/// Width and height of a frame [px].
+const SIZE: u32 = 400;
+/// Ticks between two frames.
+const PACE: usize = 4;
+
+/// Figure 6: a hand tears its way through a disc; the strip and the frames of the film.
+pub fn disc() -> Result<(Painter, Vec<Pixmap>)> {
+    const TICKS: usize = 200;
+    let material = Material {
+        elasticity: Elasticity::new(5000.0, 0.3)?,
+        damping: 0.3,
+        strength: 700.0,
+        toughness: 120.0,
+        ..Material::default()
+    };
+    let mut world = World::<Dim2>::new(Settings::default())?;
+    world.add_obstacle(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.6)?;
+    for (x, lean) in [(-0.13, 1.0), (1.13, -1.0)] {
+        let wall = Shape::Box {
+            centre: [x - 0.05 * lean, 0.2, 0.0],
+            half: [0.08, 0.2, 1.0],
+        };
+        world.add_obstacle(wall, 0.4)?;
+    }
+    world.add_body(Body::new(VoxelGrid::ball(40, 1.0)?, &[material])?);
+    let mut hand = Manipulator::new([0.46, 1.2, 0.0], 0.07);
+    hand.drive = Drive::Kinematic;
+    let hand = world.add_manipulator(hand)?;
+
+    let progress = Progress::new();
+    progress.expect(TICKS as u64);
+    let (mut elements, mut skins) = (Vec::new(), Vec::new());
+    for tick in 0..TICKS {
+        if tick % PACE == 0 {
+            elements.push(plane_frame(&world, tick, stage::plane_elements)?);
+            skins.push(plane_frame(&world, tick, stage::plane_skin)?);
+        }
+        let way = (tick as f32 / (TICKS as f32 * 0.8)).min(1.0);
+        world.set_goal(hand, [0.46 + 0.05 * way, 1.2 - 1.1 * way, 0.0]);
+        world.step();
+        progress.step();
+    }
+    let mut strip = film::strip(&moments(&elements, &[0.0, 0.42, 0.5, 0.57, 0.68, 1.0]), 3)?;
+    strip.extend(64);
+    let mut entries = super::level_entries(5);
+    entries.push((Sample::Line(Role::Crack), "torn"));
+    let y = strip.size()[1] as f32 - 50.0;
+    strip.legend(y, &entries);
+    let beside = |(elements, skin)| film::strip(&[elements, skin], 2)?.pixels();
+    let frames = elements.into_iter().zip(skins).map(beside);
+    Ok((strip, frames.collect::<Result<_>>()?))
+}
+
+/// Figure 6 in space: a blade runs through a ball that lies on the floor, and its halves part.
+/// The strip shows the skin above and a section through the elements below, the film the skin.
+pub fn ball() -> Result<(Painter, Vec<Pixmap>)> {
+    const TICKS: usize = 108;
+    const ACROSS: usize = 24;
+    let material = Material {
+        elasticity: Elasticity::new(12_000.0, 0.3)?,
+        damping: 0.4,
+        strength: f32::INFINITY,
+        ..Material::default()
+    };
+    let mut world = World::<Dim3>::new(Settings::default())?;
+    world.add_obstacle(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 1.0)?;
+    let low = -1.0 / ACROSS as f32;
+    let body = Body::new(VoxelGrid::ball(ACROSS, 1.0)?, &[material])?;
+    world.add_body(body.moved([0.0, low, 0.0]));
+    let progress = Progress::new();
+    progress.expect(TICKS as u64);
+    let (mut skins, mut sections) = (Vec::new(), Vec::new());
+    for tick in 0..TICKS {
+        if tick % PACE == 0 {
+            let way = tick as f32 / TICKS as f32;
+            let depth = 1.2 * ((way - 0.1) / 0.6).clamp(0.0, 1.0);
+            let blade = Blade {
+                from: [0.51, 1.0, -0.5],
+                across: [0.0, -depth, 0.0],
+                along: [0.0, 0.0, 2.0],
+            };
+            world.cut(0, &blade);
+            skins.push(space_frame(&world, tick, stage::space_skin)?);
+            sections.push(space_frame(&world, tick, draw_section)?);
+        }
+        world.step();
+        progress.step();
+    }
+    let at = [0.0, 0.42, 0.74, 1.0];
+    let mut both = moments(&skins, &at);
+    both.extend(moments(&sections, &at));
+    let mut strip = film::strip(&both, at.len())?;
+    strip.extend(64);
+    let mut entries = vec![
+        (Sample::Area(Role::Skin, Role::Skin), "skin"),
+        (Sample::Area(Role::Fresh, Role::Fresh), "cut"),
+    ];
+    entries.extend(super::level_entries(3));
+    let y = strip.size()[1] as f32 - 50.0;
+    strip.legend(y, &entries);
+    Ok((strip, skins))
+}
+
+/// Elements whose cells lie behind the middle of the body, at rest.
+fn draw_section(solid: &mut Solid, body: &Body<Dim3>) {
+    let middle = body.grid().size()[2] / 2;
+    stage::space_elements(solid, body, |view| {
+        let element = body.mesh().element(view.id);
+        element.is_some_and(|element| element.cell.first_voxel()[2] < middle)
+    });
+}
+
+fn plane_frame(world: &World<Dim2>, tick: usize, draw: DrawPlane) -> Result<Pixmap> {
+    const UNIT: f32 = 285.0;
+    let mut painter = Painter::new(SIZE, SIZE);
+    let frame = Frame {
+        origin: [0.5 * (SIZE as f32 - UNIT), SIZE as f32 - 34.0],
+        unit: UNIT,
+    };
+    stage::plane(&mut painter, frame, world, draw);
+    write_time(&mut painter, tick);
+    painter.pixels()
+}
+
+fn space_frame(world: &World<Dim3>, tick: usize, draw: DrawSpace) -> Result<Pixmap> {
+    let mut solid = Solid::new(Camera {
+        eye: [1.5, 2.0, 3.7],
+        target: [0.5, 0.42, 0.5],
+        across: 2.3,
+    });
+    stage::space(&mut solid, world, draw);
+    let mut painter = Painter::new(SIZE, SIZE);
+    painter.image([0.0; 2], solid.pixels(SIZE, SIZE)?);
+    write_time(&mut painter, tick);
+    painter.pixels()
+}
+
+fn write_time(painter: &mut Painter, tick: usize) {
+    let seconds = format!("{:.1} s", tick as f32 * TICK);
+    painter.text([16.0, 16.0], 14.0, Role::Ink, &seconds);
+}
+
+/// Some of the frames, each given by its share of the way from the first to the last.
+fn moments(frames: &[Pixmap], at: &[f32]) -> Vec<Pixmap> {
+    let last = (frames.len() - 1) as f32;
+    at.iter()
+        .map(|way| frames[(way * last).round() as usize].clone())
+        .collect()
+}

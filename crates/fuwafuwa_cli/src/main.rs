@@ -1,0 +1,64 @@
+//! Counts, figures and checks of the fuwafuwa library on the command line.
+//!
+//! ```text
+//! fuwafuwa count --dim 3 --shape ball --n 16 32 64
+//! fuwafuwa figure all --out figures
+//! fuwafuwa check all
+//! ```
+//!
+//! Each subcommand is a module with its own `Arguments` and `run`.
+
+mod check;
+mod count;
+mod figure;
+mod painter;
+mod report;
+mod stage;
+
+use anyhow::Result;
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// Counts, figures and checks of graded soft bodies.
+#[derive(Parser)]
+#[command(name = "fuwafuwa", version)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Count(count::Arguments),
+    Figure(figure::Arguments),
+    Check(check::Arguments),
+}
+
+fn main() -> Result<ExitCode> {
+    match Arguments::parse().command {
+        Command::Count(arguments) => count::run(&arguments),
+        Command::Figure(arguments) => figure::run(&arguments),
+        Command::Check(arguments) => check::run(&arguments),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn values_out_of_range_are_refused() {
+        let refused = |line: &str| Arguments::try_parse_from(line.split(' ')).is_err();
+        assert!(refused("fuwafuwa count --dim 4"));
+        assert!(refused("fuwafuwa count --n 2"));
+        assert!(refused("fuwafuwa count --n 2000"));
+        assert!(refused("fuwafuwa figure 7 --out x"));
+        assert!(!refused("fuwafuwa count --dim 2 --shape cube --n 3 1024"));
+    }
+}

@@ -1,0 +1,232 @@
+//! Paints segments, polygons and letters that have a role and no colour: see [`theme`].
+//!
+//! A [`Painter`] is a list of shapes; it becomes a drawing ([`svg`]), an image ([`raster`]) or a
+//! frame of a film ([`film`]), the same in all of them. Bodies in space are painted by [`solid`]
+//! into an image that lies on the paper like any other shape.
+
+pub mod film;
+pub mod letters;
+pub mod raster;
+mod shadow;
+pub mod solid;
+pub mod svg;
+pub mod theme;
+
+use std::rc::Rc;
+pub use theme::Role;
+use tiny_skia::Pixmap;
+
+/// A place on the paper [px], y downwards.
+pub type Spot = [f32; 2];
+
+/// Where places of the plane, y upwards, fall on the paper.
+#[derive(Copy, Clone, Debug)]
+pub struct Frame {
+    /// Where the origin falls.
+    pub origin: Spot,
+    /// Pixels a unit.
+    pub unit: f32,
+}
+
+impl Frame {
+    /// The spot of a place; its third coordinate does not count.
+    pub fn spot(self, at: [f32; 3]) -> Spot {
+        let [x, y] = self.origin;
+        [x + at[0] * self.unit, y - at[1] * self.unit]
+    }
+}
+
+/// One thing on the paper.
+#[derive(Clone, Debug)]
+enum Shape {
+    /// A filled outline.
+    Area { outline: Vec<Spot>, role: Role },
+    /// A line through spots, joined at the end when it is closed.
+    Line {
+        spots: Vec<Spot>,
+        closed: bool,
+        width: f32,
+        role: Role,
+    },
+    /// A filled disc.
+    Dot { at: Spot, radius: f32, role: Role },
+    /// An image with its top left at a spot.
+    Image { at: Spot, pixels: Rc<Pixmap> },
+}
+
+/// Shapes on paper, the last one on top.
+#[derive(Clone, Debug)]
+pub struct Painter {
+    width: u32,
+    height: u32,
+    shapes: Vec<Shape>,
+}
+
+impl Painter {
+    /// Its width and height [px].
+    pub fn size(&self) -> [u32; 2] {
+        [self.width, self.height]
+    }
+
+    /// More paper at the bottom.
+    pub fn extend(&mut self, by: u32) {
+        self.height += by;
+    }
+
+    /// Empty paper of a size [px].
+    pub fn new(width: u32, height: u32) -> Self {
+        Self {
+            width,
+            height,
+            shapes: Vec::new(),
+        }
+    }
+
+    /// Adds a filled outline without an edge.
+    pub fn area(&mut self, outline: Vec<Spot>, role: Role) {
+        self.shapes.push(Shape::Area { outline, role });
+    }
+
+    /// Adds a filled outline with an edge of a width [px].
+    pub fn polygon(&mut self, outline: Vec<Spot>, role: Role, edge: Role, width: f32) {
+        self.area(outline.clone(), role);
+        self.ring(outline, width, edge);
+    }
+
+    /// Adds a filled rectangle with an edge.
+    pub fn rectangle(&mut self, low: Spot, size: Spot, role: Role, edge: Role, width: f32) {
+        self.polygon(rectangle(low, size), role, edge, width);
+    }
+
+    /// Adds an open line.
+    pub fn line(&mut self, spots: Vec<Spot>, width: f32, role: Role) {
+        self.shapes.push(Shape::Line {
+            spots,
+            closed: false,
+            width,
+            role,
+        });
+    }
+
+    /// Adds a closed line.
+    pub fn ring(&mut self, spots: Vec<Spot>, width: f32, role: Role) {
+        self.shapes.push(Shape::Line {
+            spots,
+            closed: true,
+            width,
+            role,
+        });
+    }
+
+    /// Adds a disc.
+    pub fn dot(&mut self, at: Spot, radius: f32, role: Role) {
+        self.shapes.push(Shape::Dot { at, radius, role });
+    }
+
+    /// Adds a disc with a pale ring that sets it off.
+    pub fn bright_dot(&mut self, at: Spot, radius: f32, role: Role) {
+        self.dot(at, radius * 1.45, Role::Paper);
+        self.dot(at, radius, role);
+    }
+
+    /// Adds a cross with a pale rim that sets it off.
+    pub fn cross(&mut self, at: Spot, reach: f32, role: Role) {
+        for (width, role) in [(1.1 * reach, Role::Paper), (0.55 * reach, role)] {
+            for side in [-reach, reach] {
+                let ends = [[at[0] - reach, at[1] - side], [at[0] + reach, at[1] + side]];
+                self.line(ends.to_vec(), width, role);
+            }
+        }
+    }
+
+    /// Adds a line of text; `at` is the top left of its first capital, `height` that of a capital.
+    pub fn text(&mut self, at: Spot, height: f32, role: Role, text: &str) {
+        for spots in letters::lines(at, height, text) {
+            self.line(spots, 0.15 * height, role);
+        }
+    }
+
+    /// Adds an image with its top left at a spot.
+    pub fn image(&mut self, at: Spot, pixels: Pixmap) {
+        let pixels = Rc::new(pixels);
+        self.shapes.push(Shape::Image { at, pixels });
+    }
+
+    /// Adds a row of samples with their names in the middle of the paper, as a legend.
+    pub fn legend(&mut self, y: f32, entries: &[(Sample, &str)]) {
+        let wide: f32 = entries.iter().map(|(_, name)| entry_width(name)).sum();
+        let x = 0.5 * (self.width as f32 - wide + BETWEEN_ENTRIES);
+        self.entries([x, y], entries);
+    }
+
+    /// Adds a row of samples with their names from `at` on.
+    pub fn entries(&mut self, at: Spot, entries: &[(Sample, &str)]) {
+        let mut x = at[0];
+        for &(sample, name) in entries {
+            let middle = [x + 0.5 * SIZE, at[1] + 0.5 * SIZE];
+            match sample {
+                Sample::Area(role, edge) => {
+                    self.rectangle([x, at[1]], [SIZE; 2], role, edge, 1.6);
+                }
+                Sample::Dot(role) => self.bright_dot(middle, 4.6, role),
+                Sample::Cross(role) => self.cross(middle, 5.0, role),
+                Sample::Line(role) => {
+                    let ends = [[x, middle[1]], [x + SIZE, middle[1]]];
+                    self.line(ends.to_vec(), 4.0, role);
+                }
+            }
+            self.text([x + SIZE + 10.0, at[1] + 3.5], 15.0, Role::Ink, name);
+            x += entry_width(name);
+        }
+    }
+}
+
+/// Width of a sample in a legend [px].
+const SIZE: f32 = 22.0;
+const BETWEEN_ENTRIES: f32 = 26.0;
+
+fn entry_width(name: &str) -> f32 {
+    SIZE + 10.0 + letters::width(15.0, name) + BETWEEN_ENTRIES
+}
+
+/// What stands before a name in a legend.
+#[derive(Copy, Clone, Debug)]
+pub enum Sample {
+    /// A filled square with an edge.
+    Area(Role, Role),
+    /// A dot.
+    Dot(Role),
+    /// A cross.
+    Cross(Role),
+    /// A line.
+    Line(Role),
+}
+
+/// The corners of a rectangle.
+pub fn rectangle([x, y]: Spot, size: Spot) -> Vec<Spot> {
+    let (right, bottom) = (x + size[0], y + size[1]);
+    vec![[x, y], [right, y], [right, bottom], [x, bottom]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use theme::colour;
+
+    #[test]
+    fn drawing_and_image_hold_the_same_shapes() {
+        let mut painter = Painter::new(40, 30);
+        painter.rectangle([5.0, 5.0], [20.0, 20.0], Role::Hand, Role::Ink, 1.0);
+        painter.bright_dot([30.0, 15.0], 3.0, Role::Added);
+        painter.text([2.0, 2.0], 6.0, Role::Ink, "level 0");
+        let [red, green, blue] = colour(Role::Hand);
+        let named = format!("fill=\"#{red:02x}{green:02x}{blue:02x}\"");
+        assert!(painter.svg().unwrap().contains(&named));
+        let pixels = Pixmap::decode_png(&painter.png().unwrap()).unwrap();
+        let inside = pixels.pixel(15, 18).unwrap();
+        assert_eq!(
+            [inside.red(), inside.green(), inside.blue()],
+            [red, green, blue]
+        );
+    }
+}

@@ -1,0 +1,107 @@
+//! The painter's shapes as pixels.
+
+use super::theme::colour;
+use super::{Painter, Role, Shape, Spot};
+use anyhow::{Context, Result};
+use tiny_skia::{
+    Color, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, PixmapPaint, Stroke,
+    Transform,
+};
+
+impl Painter {
+    /// The shapes as pixels.
+    ///
+    /// # Errors
+    /// When the paper or a shape has no area.
+    pub fn pixels(&self) -> Result<Pixmap> {
+        let mut pixels = Pixmap::new(self.width, self.height).context("the picture has no area")?;
+        let [red, green, blue] = colour(Role::Paper);
+        pixels.fill(Color::from_rgba8(red, green, blue, 255));
+        for shape in &self.shapes {
+            paint(&mut pixels, shape)?;
+        }
+        Ok(pixels)
+    }
+
+    /// The shapes as the bytes of a PNG file.
+    ///
+    /// # Errors
+    /// As [`Painter::pixels`].
+    pub fn png(&self) -> Result<Vec<u8>> {
+        Ok(self.pixels()?.encode_png()?)
+    }
+}
+
+fn paint(pixels: &mut Pixmap, shape: &Shape) -> Result<()> {
+    let place = Transform::identity();
+    match shape {
+        Shape::Area { outline, role } => {
+            let path = path_of(outline, true)?;
+            pixels.fill_path(&path, &brush(*role), FillRule::EvenOdd, place, None);
+        }
+        Shape::Line { spots, .. } if spots.windows(2).all(|pair| pair[0] == pair[1]) => {
+            let Shape::Line { width, role, .. } = shape else {
+                return Ok(());
+            };
+            dot(pixels, spots[0], 0.5 * width, *role)?;
+        }
+        Shape::Line {
+            spots,
+            closed,
+            width,
+            role,
+        } => {
+            let stroke = Stroke {
+                width: *width,
+                line_cap: LineCap::Round,
+                line_join: LineJoin::Round,
+                ..Stroke::default()
+            };
+            let path = path_of(spots, *closed)?;
+            pixels.stroke_path(&path, &brush(*role), &stroke, place, None);
+        }
+        Shape::Dot { at, radius, role } => dot(pixels, *at, *radius, *role)?,
+        Shape::Image { at, pixels: image } => {
+            let [x, y] = at.map(|k| k.round() as i32);
+            pixels.draw_pixmap(
+                x,
+                y,
+                image.as_ref().as_ref(),
+                &PixmapPaint::default(),
+                place,
+                None,
+            );
+        }
+    }
+    Ok(())
+}
+
+fn dot(pixels: &mut Pixmap, [x, y]: Spot, radius: f32, role: Role) -> Result<()> {
+    let circle = PathBuilder::from_circle(x, y, radius).context("a dot has no size")?;
+    let place = Transform::identity();
+    pixels.fill_path(&circle, &brush(role), FillRule::Winding, place, None);
+    Ok(())
+}
+
+fn path_of(spots: &[Spot], closed: bool) -> Result<Path> {
+    let mut builder = PathBuilder::new();
+    for (index, [x, y]) in spots.iter().enumerate() {
+        if index == 0 {
+            builder.move_to(*x, *y);
+        } else {
+            builder.line_to(*x, *y);
+        }
+    }
+    if closed {
+        builder.close();
+    }
+    builder.finish().context("a shape has no area")
+}
+
+fn brush(role: Role) -> Paint<'static> {
+    let [red, green, blue] = colour(role);
+    let mut paint = Paint::default();
+    paint.set_color_rgba8(red, green, blue, 255);
+    paint.anti_alias = true;
+    paint
+}

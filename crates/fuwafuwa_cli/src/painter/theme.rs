@@ -1,0 +1,100 @@
+//! What has which colour, and nothing else.
+//!
+//! The levels run from coral through cream to blue, a scale on which neighbours differ in lightness
+//! or along blue-yellow, so that few eyes confuse them. Added and removed are the blue and the
+//! vermilion of [Okabe 2008], and differ in shape besides.
+
+/// Red, green, blue.
+pub type Colour = [u8; 3];
+
+/// What is painted.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// What everything is painted on.
+    Paper,
+    /// Letters and outlines.
+    Ink,
+    /// Letters that matter less.
+    Faded,
+    /// Guide lines.
+    Guide,
+    /// A cell of the pyramid that owns no element.
+    HandedOn,
+    /// An element of a level, 0 = finest.
+    Level(u8),
+    /// The edge of an element.
+    Edge,
+    /// A node.
+    Node,
+    /// A node in the middle of an edge or a face.
+    MidNode,
+    /// What is new.
+    Added,
+    /// What is gone, or about to go.
+    Removed,
+    /// What is being pointed at.
+    Marked,
+    /// The sides of a crack.
+    Crack,
+    /// The outside of a body.
+    Skin,
+    /// What was inside before the body tore.
+    Fresh,
+    /// A piece of a single voxel.
+    Crumb,
+    /// Something rigid that never moves.
+    Obstacle,
+    /// The rigid hand.
+    Hand,
+    /// What bodies stand on, in space.
+    Floor,
+}
+
+const LEVELS: [Colour; 6] = [
+    [0xE8, 0x7A, 0x63],
+    [0xF5, 0xB0, 0x83],
+    [0xFB, 0xE3, 0xAE],
+    [0xC3, 0xE1, 0xD9],
+    [0x8C, 0xBF, 0xD1],
+    [0x6A, 0x97, 0xBF],
+];
+
+/// The colour of a role.
+pub fn colour(role: Role) -> Colour {
+    match role {
+        Role::Paper => [0xFF, 0xFD, 0xFA],
+        Role::Ink => [0x3D, 0x3A, 0x4B],
+        Role::Faded => [0x8C, 0x87, 0x93],
+        Role::Guide => [0xE9, 0xE4, 0xE0],
+        Role::HandedOn => [0xF3, 0xEF, 0xEB],
+        Role::Level(level) => LEVELS[usize::from(level).min(LEVELS.len() - 1)],
+        Role::Edge => [0x7D, 0x5A, 0x5A],
+        Role::Node => [0x4E, 0x45, 0x52],
+        Role::MidNode => [0x2F, 0x6D, 0xA8],
+        Role::Added => [0x00, 0x72, 0xB2],
+        Role::Removed | Role::Crack => [0xD5, 0x3E, 0x00],
+        Role::Marked => [0x2B, 0x27, 0x38],
+        Role::Skin => [0xF2, 0x9C, 0x8C],
+        Role::Fresh => [0xFB, 0xDD, 0xA2],
+        Role::Crumb => [0xF6, 0xBE, 0x92],
+        Role::Obstacle => [0xA9, 0xAF, 0xBC],
+        Role::Hand => [0x4A, 0x76, 0xA8],
+        Role::Floor => [0xF1, 0xED, 0xE7],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neighbouring_levels_can_be_told_apart() {
+        for level in 0..5 {
+            let (a, b) = (colour(Role::Level(level)), colour(Role::Level(level + 1)));
+            let apart: i32 = (0..3)
+                .map(|k| (i32::from(a[k]) - i32::from(b[k])).abs())
+                .sum();
+            assert!(apart > 70, "levels {level} and {}: {apart}", level + 1);
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! How results are shown: aligned tables, outcomes of checks, and a bar for the slow ones.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde::Serialize;
+use std::ops::RangeInclusive;
+use std::time::{Duration, Instant};
+
+/// A check that is faster than this shows no bar.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// One measured value of a check.
+#[derive(Clone, Debug, Serialize)]
+pub struct Outcome {
+    /// The check and its case.
+    pub case: String,
+    /// What was measured.
+    pub value: f64,
+    /// What the value has to fulfil.
+    pub wanted: String,
+    /// Whether it does; `None` where the value is shown for comparison only.
+    pub pass: Option<bool>,
+}
+
+impl Outcome {
+    /// A value that must not differ from `ideal` by more than `tolerance`.
+    pub fn near(case: String, value: f64, ideal: f64, tolerance: f64) -> Self {
+        Self {
+            case,
+            value,
+            wanted: format!("{ideal} +- {tolerance}"),
+            pass: Some((value - ideal).abs() <= tolerance),
+        }
+    }
+
+    /// A value that must lie in a range.
+    pub fn within(case: String, value: f64, range: RangeInclusive<f64>) -> Self {
+        Self {
+            case,
+            value,
+            wanted: format!("{} to {}", range.start(), range.end()),
+            pass: Some(range.contains(&value)),
+        }
+    }
+
+    /// A value that must not exceed a limit; one that is not a number does.
+    pub fn at_most(case: String, value: f64, limit: f64) -> Self {
+        Self {
+            case,
+            value,
+            wanted: format!("<= {limit:e}"),
+            pass: Some(value <= limit),
+        }
+    }
+
+    /// A value that is shown for comparison only.
+    pub fn shown(case: String, value: f64) -> Self {
+        Self {
+            case,
+            value,
+            wanted: "for comparison".into(),
+            pass: None,
+        }
+    }
+}
+
+/// A bar on the error stream that stays away while a check is quick.
+pub struct Progress {
+    start: Instant,
+    bar: ProgressBar,
+}
+
+impl Progress {
+    /// A bar that counts from now.
+    pub fn new() -> Self {
+        let bar = ProgressBar::hidden();
+        if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos}/{len} {elapsed}") {
+            bar.set_style(style);
+        }
+        Self {
+            start: Instant::now(),
+            bar,
+        }
+    }
+
+    /// Announces further steps.
+    pub fn expect(&self, steps: u64) {
+        self.bar.inc_length(steps);
+    }
+
+    /// One step is done.
+    pub fn step(&self) {
+        self.bar.inc(1);
+        self.look();
+    }
+
+    /// Shows the bar once the check has taken too long; cheap enough for inner loops.
+    pub fn look(&self) {
+        if self.bar.is_hidden() && self.start.elapsed() > PATIENCE {
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+            self.bar.tick();
+        }
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// The outcomes as a table.
+pub fn outcome_table(outcomes: &[Outcome]) -> String {
+    let mut rows = vec![["check", "value", "wanted", ""].map(String::from).to_vec()];
+    for outcome in outcomes {
+        let value = if outcome.value.abs() < 1e-3 {
+            format!("{:.1e}", outcome.value)
+        } else {
+            format!("{:.4}", outcome.value)
+        };
+        let verdict = match outcome.pass {
+            Some(true) => "pass",
+            Some(false) => "FAIL",
+            None => "-",
+        };
+        rows.push(vec![
+            outcome.case.clone(),
+            value,
+            outcome.wanted.clone(),
+            verdict.into(),
+        ]);
+    }
+    table(&rows, &[false, true, false, false])
+}
+
+/// Rows under a common head, columns padded to their widest entry; `right` aligns to the right.
+pub fn table(rows: &[Vec<String>], right: &[bool]) -> String {
+    let width = |column: usize| {
+        let entries = rows.iter().filter_map(|row| row.get(column));
+        entries
+            .map(|entry| entry.chars().count())
+            .max()
+            .unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..right.len()).map(width).collect();
+    let mut text = String::new();
+    for row in rows {
+        let mut line = String::new();
+        for ((entry, &width), &right) in row.iter().zip(&widths).zip(right) {
+            line += &if right {
+                format!("{entry:>width$}  ")
+            } else {
+                format!("{entry:<width$}  ")
+            };
+        }
+        text += line.trim_end();
+        text.push('\n');
+    }
+    text
+}

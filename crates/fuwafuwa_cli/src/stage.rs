@@ -1,0 +1,301 @@
+//! Bodies and worlds on a painter: by their elements, or by their skin.
+
+use crate::painter::solid::Solid;
+use crate::painter::{Frame, Painter, Role, Spot};
+use fuwafuwa::dim::{add, corner, scale};
+use fuwafuwa::shape::{Shape, Vector};
+use fuwafuwa::stencil::slot_index;
+use fuwafuwa::vector::{cross, minus, plus, scaled};
+use fuwafuwa::view::{ElementView, Facet};
+use fuwafuwa::{Body, Dim, Dim2, Dim3, World};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// How a body of the plane is painted.
+pub type DrawPlane = fn(&mut Painter, Frame, &Body<Dim2>);
+/// How a body of space is painted.
+pub type DrawSpace = fn(&mut Solid, &Body<Dim3>);
+
+/// Corners of a bar's round end.
+const ROUND: usize = 24;
+
+/// Paints a world of the plane, each body as `draw` does.
+pub fn plane(painter: &mut Painter, frame: Frame, world: &World<Dim2>, draw: DrawPlane) {
+    for obstacle in world.obstacles() {
+        obstacle_outline(painter, frame, obstacle.shape);
+    }
+    for body in world.bodies() {
+        draw(painter, frame, body);
+    }
+    for hand in world.manipulators() {
+        let at = frame.spot(hand.position());
+        painter.dot(at, hand.radius * frame.unit + 1.5, Role::Ink);
+        painter.dot(at, hand.radius * frame.unit, Role::Hand);
+    }
+}
+
+/// Paints the elements of a body of the plane, and in another colour what is torn.
+pub fn plane_elements(painter: &mut Painter, frame: Frame, body: &Body<Dim2>) {
+    for view in body.element_views() {
+        plane_element(painter, frame, &view, 1.2);
+    }
+    plane_outlines(painter, frame, body, Role::Crack);
+}
+
+/// Paints the skin of a body of the plane.
+pub fn plane_skin(painter: &mut Painter, frame: Frame, body: &Body<Dim2>) {
+    let crumbs = crumbs(body);
+    for view in body.element_views() {
+        let is_crumb = crumbs.contains(&view.piece);
+        let role = if is_crumb { Role::Crumb } else { Role::Skin };
+        // An edge of the same colour closes the seams between elements.
+        painter.polygon(outline(frame, &view), role, role, 1.0);
+    }
+    plane_outlines(painter, frame, body, Role::Ink);
+}
+
+fn plane_outlines(painter: &mut Painter, frame: Frame, body: &Body<Dim2>, torn: Role) {
+    for line in body.outlines() {
+        let spots: Vec<Spot> = line.points.iter().map(|&at| frame.spot(at)).collect();
+        for (k, &is_fresh) in line.is_fresh.iter().enumerate() {
+            let ends = vec![spots[k], spots[(k + 1) % spots.len()]];
+            let (width, role) = if is_fresh {
+                (1.5, torn)
+            } else {
+                (2.0, Role::Ink)
+            };
+            painter.line(ends, width, role);
+        }
+    }
+}
+
+/// Paints an element of the plane with an edge of a width [px].
+pub fn plane_element(painter: &mut Painter, frame: Frame, view: &ElementView, width: f32) {
+    let role = Role::Level(view.level);
+    painter.polygon(outline(frame, view), role, Role::Edge, width);
+}
+
+/// The outline of an element on the paper.
+pub fn outline(frame: Frame, view: &ElementView) -> Vec<Spot> {
+    let ring = ring(view.level, view.children);
+    ring.iter()
+        .map(|&slot| frame.spot(view.slots[slot]))
+        .collect()
+}
+
+/// The slots around the children that an element of the plane fills, in one round.
+///
+/// Sides of the children run anticlockwise; one that another child runs the other way is inside.
+pub fn ring(level: u8, children: u8) -> Vec<usize> {
+    let mut sides = BTreeSet::new();
+    for (low, width) in blocks::<Dim2>(level, children) {
+        let round = [0, 1, 3, 2].map(|index| slot_index(add(low, scale(corner(index), width))));
+        for k in 0..4 {
+            let (from, to) = (round[k], round[(k + 1) % 4]);
+            if !sides.remove(&(to, from)) {
+                sides.insert((from, to));
+            }
+        }
+    }
+    let next: BTreeMap<usize, usize> = sides.into_iter().collect();
+    let mut round = Vec::new();
+    let Some((&start, _)) = next.iter().next() else {
+        return round;
+    };
+    let mut at = start;
+    while let Some(&to) = next.get(&at) {
+        round.push(at);
+        at = to;
+        if at == start {
+            break;
+        }
+    }
+    round
+}
+
+/// The slots that the children of an element of the plane reach.
+pub fn slots(level: u8, children: u8) -> BTreeSet<usize> {
+    let blocks = blocks::<Dim2>(level, children).into_iter();
+    let corners = |(low, width)| {
+        (0..Dim2::CORNERS).map(move |index| slot_index(add(low, scale(corner(index), width))))
+    };
+    blocks.flat_map(corners).collect()
+}
+
+/// Paints a world of space, each body as `draw` does.
+pub fn space(solid: &mut Solid, world: &World<Dim3>, draw: DrawSpace) {
+    for obstacle in world.obstacles() {
+        if let Shape::HalfSpace { normal, offset } = obstacle.shape
+            && normal[1] > 0.99
+        {
+            solid.floor(offset);
+        }
+    }
+    for body in world.bodies() {
+        draw(solid, body);
+    }
+    for hand in world.manipulators() {
+        solid.ball(hand.position(), hand.radius, Role::Hand);
+    }
+}
+
+/// Paints those elements of a body in space that are chosen.
+pub fn space_elements(
+    solid: &mut Solid,
+    body: &Body<Dim3>,
+    is_chosen: impl Fn(&ElementView) -> bool,
+) {
+    for view in body.element_views().filter(|view| is_chosen(view)) {
+        space_element(solid, &view);
+    }
+}
+
+/// Paints the skin of a body in space, its steps smoothed out, its edges kept where it is torn.
+pub fn space_skin(solid: &mut Solid, body: &Body<Dim3>) {
+    let crumbs = crumbs(body);
+    let facets: Vec<Facet> = body.facets().collect();
+    let places = smoothed(&facets);
+    let corners = |facet: &Facet| facet.nodes.map(|node| places[&node]);
+    let mut sums: BTreeMap<(u32, bool), Vector> = BTreeMap::new();
+    for facet in &facets {
+        let [a, b, c, d] = corners(facet);
+        let normal = cross(minus(c, a), minus(d, b));
+        for node in facet.nodes {
+            let sum = sums.entry((node, facet.is_fresh)).or_insert([0.0; 3]);
+            *sum = plus(*sum, normal);
+        }
+    }
+    for facet in &facets {
+        let role = match facet.is_fresh {
+            _ if crumbs.contains(&facet.piece) => Role::Crumb,
+            true => Role::Fresh,
+            false => Role::Skin,
+        };
+        let normals = facet.nodes.map(|node| sums[&(node, facet.is_fresh)]);
+        solid.smooth_quad(corners(facet), normals, role);
+    }
+}
+
+/// The nodes of a skin, each moved several times half-way to the mean of its neighbours.
+fn smoothed(facets: &[Facet]) -> BTreeMap<u32, Vector> {
+    const ROUNDS: usize = 4;
+    let corners = facets
+        .iter()
+        .flat_map(|facet| facet.nodes.into_iter().zip(facet.corners));
+    let mut places: BTreeMap<u32, Vector> = corners.collect();
+    for _ in 0..ROUNDS {
+        let mut sums: BTreeMap<u32, (Vector, f32)> = BTreeMap::new();
+        for facet in facets {
+            for k in 0..4 {
+                let sum = sums.entry(facet.nodes[k]).or_insert(([0.0; 3], 0.0));
+                sum.0 = plus(sum.0, places[&facet.nodes[(k + 1) % 4]]);
+                sum.1 += 1.0;
+            }
+        }
+        for (node, place) in &mut places {
+            let (sum, count) = sums[node];
+            *place = plus(scaled(*place, 0.5), scaled(sum, 0.5 / count));
+        }
+    }
+    places
+}
+
+/// Paints the faces of an element, and the edges where faces of different direction meet.
+fn space_element(solid: &mut Solid, view: &ElementView) {
+    let blocks = blocks::<Dim3>(view.level, view.children);
+    let mut meetings: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
+    for &(low, width) in &blocks {
+        for (axis, side) in (0..3).flat_map(|axis| (0..2).map(move |side| (axis, side))) {
+            let mut beyond = low;
+            beyond[axis] += 2 * side - 1;
+            if blocks.iter().any(|&(other, _)| other == beyond) {
+                continue;
+            }
+            let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+            let round = if side == 1 {
+                [[0, 0], [1, 0], [1, 1], [0, 1]]
+            } else {
+                [[0, 0], [0, 1], [1, 1], [1, 0]]
+            };
+            let slots = round.map(|[i, j]| {
+                let mut at = low;
+                at[axis] += side * width;
+                at[u] += i * width;
+                at[v] += j * width;
+                slot_index(at)
+            });
+            solid.quad(slots.map(|slot| view.slots[slot]), Role::Level(view.level));
+            for k in 0..4 {
+                let (a, b) = (slots[k], slots[(k + 1) % 4]);
+                meetings.entry((a.min(b), a.max(b))).or_default().push(axis);
+            }
+        }
+    }
+    for ((a, b), axes) in meetings {
+        if axes.iter().any(|&axis| axis != axes[0]) {
+            solid.segment([view.slots[a], view.slots[b]], 1.1, Role::Edge);
+        }
+    }
+}
+
+/// The blocks of slots that an element fills: their low corners and their width in slots.
+fn blocks<D: Dim>(level: u8, children: u8) -> Vec<([i32; 3], i32)> {
+    if level == 0 {
+        return vec![([0; 3], 2)];
+    }
+    let filled = (0..D::CORNERS).filter(|child| children >> child & 1 == 1);
+    filled.map(|child| (corner(child), 1)).collect()
+}
+
+/// The pieces of a single voxel.
+fn crumbs<D: Dim>(body: &Body<D>) -> BTreeSet<u32> {
+    let views = body.piece_views().into_iter();
+    views
+        .filter(|view| view.element_count == 1)
+        .map(|view| view.number)
+        .collect()
+}
+
+fn obstacle_outline(painter: &mut Painter, frame: Frame, shape: Shape) {
+    match shape {
+        Shape::HalfSpace { normal, offset } => {
+            const FAR: f32 = 1e3;
+            let on = scaled(normal, offset);
+            let along = [-normal[1], normal[0], 0.0];
+            let deep = scaled(normal, -FAR);
+            let ends = [scaled(along, -FAR), scaled(along, FAR)].map(|by| plus(on, by));
+            let round = [ends[0], ends[1], plus(ends[1], deep), plus(ends[0], deep)];
+            painter.area(round.map(|at| frame.spot(at)).to_vec(), Role::Obstacle);
+        }
+        Shape::Box { centre, half } => {
+            let signs = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+            let round = signs.map(|[x, y]| plus(centre, [x * half[0], y * half[1], 0.0]));
+            painter.area(round.map(|at| frame.spot(at)).to_vec(), Role::Obstacle);
+        }
+        Shape::Capsule { from, to, radius } => {
+            let along = (to[1] - from[1]).atan2(to[0] - from[0]);
+            let round = (0..=2 * ROUND).map(|k| {
+                let (end, start) = if k <= ROUND { (to, 0) } else { (from, 1) };
+                let turn = (k - start) as f32 / ROUND as f32 - 0.5;
+                let angle = along + turn * std::f32::consts::PI;
+                frame.spot(plus(end, [radius * angle.cos(), radius * angle.sin(), 0.0]))
+            });
+            painter.area(round.collect(), Role::Obstacle);
+        }
+        Shape::Ball { centre, radius } => {
+            painter.dot(frame.spot(centre), radius * frame.unit, Role::Obstacle);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_l_has_its_six_corners_in_the_outline() {
+        let round = ring(1, 0b0111);
+        assert!(round.contains(&slot_index([1, 1, 0])) && !round.contains(&slot_index([2, 2, 0])));
+        assert_eq!(round.len(), 8, "two of them in the middle of a side");
+        assert_eq!(ring(0, 0b1111).len(), 4);
+    }
+}
