@@ -10,6 +10,7 @@ mod period;
 mod random;
 mod sag;
 mod spin;
+mod statics;
 
 use crate::report::{self, Outcome, Progress};
 use anyhow::Result;

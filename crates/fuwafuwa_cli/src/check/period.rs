@@ -6,6 +6,7 @@ use crate::report::{Outcome, Progress};
 use anyhow::{Result, ensure};
 use fuwafuwa::pyramid::Grading;
 use fuwafuwa::{Body, Dim, Dim2, Dim3};
+use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 
 /// Dimensions and voxels across of the bodies.
@@ -73,16 +74,16 @@ fn ring<D: Dim>(n: usize, grading: Grading, progress: &Progress) -> Result<Ring>
     let duration = DURATION / steps as f64;
     let last = steps - (LAST / duration) as usize;
     let start = energy::of_body(&body);
-    let (mut squash, mut crossings) = (squash_of(&body), Vec::new());
+    let (mut signal, mut crossings) = (vec![squash_of(&body)], Vec::new());
     let (mut sum, mut count) = (0.0, 0.0);
     for step in 0..steps {
         body.advance(duration as f32, [0.0; 3]);
         progress.look();
-        let now = squash_of(&body);
-        if squash * now < 0.0 {
-            crossings.push((step as f64 + squash / (squash - now)) * duration);
+        let (before, now) = (signal[step], squash_of(&body));
+        signal.push(now);
+        if before * now < 0.0 {
+            crossings.push((step as f64 + before / (before - now)) * duration);
         }
-        squash = now;
         if step >= last && step % 8 == 0 {
             sum += energy::of_body(&body) + body.kinetic_energy();
             count += 1.0;
@@ -92,12 +93,41 @@ fn ring<D: Dim>(n: usize, grading: Grading, progress: &Progress) -> Result<Ring>
         crossings.len() > 4,
         "the body of {n} voxels across does not ring"
     );
-    // The first swings are the cleanest: later on other modes have run out of step.
-    let halves = (crossings.len() - 1).min(8);
+    let halves = crossings.len() - 1;
+    let about = 2.0 * (crossings[halves] - crossings[0]) / halves as f64;
     Ok(Ring {
-        period: 2.0 * (crossings[halves] - crossings[0]) / halves as f64,
+        period: strongest_period(&signal, duration, about),
         kept: sum / count / start,
     })
+}
+
+/// The period near `about` [s] that is strongest in a signal with a value every `duration` [s].
+///
+/// A window that starts and ends at 0 keeps the other modes of the body apart from this one
+/// [Harris 1978, the Hann window].
+fn strongest_period(signal: &[f64], duration: f64, about: f64) -> f64 {
+    let count = signal.len() as f64;
+    let strength = |period: f64| {
+        let (mut real, mut imaginary) = (0.0, 0.0);
+        for (k, value) in signal.iter().enumerate() {
+            let window = 1.0 - (TAU * k as f64 / count).cos();
+            let (sine, cosine) = (TAU * k as f64 * duration / period).sin_cos();
+            real += window * value * cosine;
+            imaginary += window * value * sine;
+        }
+        real * real + imaginary * imaginary
+    };
+    let (mut low, mut high) = (0.9 * about, 1.1 * about);
+    // Thirds of an interval with a single peak.
+    for _ in 0..40 {
+        let (a, b) = ((2.0 * low + high) / 3.0, (low + 2.0 * high) / 3.0);
+        if strength(a) < strength(b) {
+            low = a;
+        } else {
+            high = b;
+        }
+    }
+    0.5 * (low + high)
 }
 
 /// How far a body is squashed: its height at rest against its height now, weighed by mass.
@@ -114,6 +144,16 @@ fn squash_of<D: Dim>(body: &Body<D>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_period_is_found_beside_a_stronger_trend() {
+        let value = |k: usize| {
+            let t = k as f64 * 0.002;
+            (TAU * t / 0.3).cos() + 0.5 * (TAU * t / 0.17).sin() + 0.2
+        };
+        let signal: Vec<f64> = (0..2500).map(value).collect();
+        assert!((strongest_period(&signal, 0.002, 0.295) - 0.3).abs() < 1e-4);
+    }
 
     #[test]
     fn a_small_disc_rings_like_its_voxels() {

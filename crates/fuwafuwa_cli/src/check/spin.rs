@@ -9,7 +9,7 @@ use fuwafuwa::world::TICK;
 use fuwafuwa::{Dim, Dim2, Dim3, Material, Settings, World};
 
 /// Dimensions, voxels across, and damping of the bodies.
-const BODIES: [(usize, usize, f32); 4] = [(2, 32, 0.0), (3, 12, 0.0), (3, 24, 0.0), (3, 24, 0.2)];
+const BODIES: [(usize, usize, f32); 4] = [(2, 32, 0.0), (2, 32, 0.08), (3, 24, 0.0), (3, 24, 0.08)];
 /// Share of the angular momentum that must be left.
 const KEPT: f64 = 0.999;
 /// How long a body spins [s].
