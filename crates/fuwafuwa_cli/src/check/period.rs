@@ -156,8 +156,8 @@ mod tests {
     }
 
     #[test]
-    fn a_small_disc_rings_like_its_voxels() {
-        let [graded, uniform] = rings::<Dim2>(16, &Progress::new()).unwrap();
+    fn a_small_ball_rings_like_its_voxels() {
+        let [graded, uniform] = rings::<Dim3>(8, &Progress::new()).unwrap();
         assert!(
             (graded.period / uniform.period - 1.0).abs() < TOLERANCE,
             "{graded:?} {uniform:?}"
