@@ -4,6 +4,7 @@
 //! fuwafuwa count --dim 3 --shape ball --n 16 32 64
 //! fuwafuwa figure all --out figures
 //! fuwafuwa check all
+//! fuwafuwa run tear --film tear.gif
 //! ```
 //!
 //! Each subcommand is a module with its own `Arguments` and `run`.
@@ -12,7 +13,9 @@ mod check;
 mod count;
 mod figure;
 mod painter;
+mod replay;
 mod report;
+mod run;
 mod stage;
 
 use anyhow::Result;
@@ -32,13 +35,24 @@ enum Command {
     Count(count::Arguments),
     Figure(figure::Arguments),
     Check(check::Arguments),
+    Run(run::Arguments),
+    Replay(replay::Arguments),
 }
 
-fn main() -> Result<ExitCode> {
-    match Arguments::parse().command {
+fn main() -> ExitCode {
+    run(Arguments::parse()).unwrap_or_else(|error| {
+        eprintln!("error: {error:#}");
+        ExitCode::from(2)
+    })
+}
+
+fn run(arguments: Arguments) -> Result<ExitCode> {
+    match arguments.command {
         Command::Count(arguments) => count::run(&arguments),
         Command::Figure(arguments) => figure::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
+        Command::Run(arguments) => run::run(&arguments),
+        Command::Replay(arguments) => replay::run(&arguments),
     }
 }
 

@@ -7,10 +7,12 @@ mod motion;
 mod parallel;
 mod patch;
 mod period;
+mod pile;
 mod random;
 mod sag;
 mod spin;
 mod statics;
+mod tear;
 
 use crate::report::{self, Outcome, Progress};
 use anyhow::Result;
@@ -42,6 +44,10 @@ enum Which {
     Spin,
     /// Releases must leave mass and momentum as they are.
     Momentum,
+    /// Bars must break at the load their material bears, at any resolution.
+    Tear,
+    /// Dust must come to rest, and none of it be lost.
+    Pile,
     /// All of them.
     All,
 }
@@ -50,13 +56,15 @@ type Check = fn(&Progress) -> Result<Vec<Outcome>>;
 
 /// Runs the checks and prints what they found.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
-    let checks: [(Which, Check); 6] = [
+    let checks: [(Which, Check); 8] = [
         (Which::Patch, patch::check),
         (Which::Beam, beam::check),
         (Which::Sag, sag::check),
         (Which::Period, period::check),
         (Which::Spin, spin::check),
         (Which::Momentum, momentum::check),
+        (Which::Tear, tear::check),
+        (Which::Pile, pile::check),
     ];
     let mut outcomes = Vec::new();
     for (name, check) in checks {

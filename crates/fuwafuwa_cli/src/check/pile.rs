@@ -1,0 +1,110 @@
+//! Piles: dust falls into a bin and comes to rest; none of it is lost.
+
+use super::parallel;
+use crate::report::{Outcome, Progress};
+use anyhow::Result;
+use fuwafuwa::{Dim, Dim2, Dim3, World};
+use fuwafuwa_scenes::Scene;
+
+const SCENES: [&str; 2] = ["pile", "pile-3d"];
+/// How long a pile may take to come to rest [s].
+const PATIENCE: f64 = 10.0;
+/// How far a crumb may be pressed into a wall, in voxels.
+const DEPTH: f64 = 0.5;
+
+/// What became of a pile.
+struct Pile {
+    pieces: usize,
+    lost: usize,
+    /// Deepest overlap with a wall, in voxels.
+    depth: f64,
+    /// When all slept [s].
+    asleep: f64,
+}
+
+/// Drops the dust of the scenes `pile` and `pile-3d`.
+pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+    let piles = parallel::each(&SCENES, progress, |name| {
+        let scene = Scene::open(name, &[])?;
+        match scene.dim {
+            2 => fall::<Dim2>(&scene),
+            _ => fall::<Dim3>(&scene),
+        }
+    })?;
+    let mut outcomes = Vec::new();
+    for (name, pile) in SCENES.iter().zip(piles) {
+        let least = if name.ends_with("3d") { 1000.0 } else { 3000.0 };
+        let case = |what: &str| format!("{name}, {what}");
+        let (pieces, lost) = (pile.pieces as f64, pile.lost as f64);
+        outcomes.push(Outcome::within(case("pieces"), pieces, least..=f64::MAX));
+        outcomes.push(Outcome::within(case("pieces lost"), lost, 0.0..=0.0));
+        outcomes.push(Outcome::within(
+            case("voxels into a wall"),
+            pile.depth,
+            0.0..=DEPTH,
+        ));
+        outcomes.push(Outcome::within(
+            case("asleep after, s"),
+            pile.asleep,
+            0.0..=PATIENCE,
+        ));
+    }
+    Ok(outcomes)
+}
+
+fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {
+    let mut world = scene.build::<D>()?;
+    let count = |world: &World<D>| world.bodies()[0].piece_views().len();
+    let before = count(&world);
+    let mass = world.bodies()[0].total_mass();
+    let mut asleep = f64::INFINITY;
+    let mut depth = 0.0f64;
+    for tick in 0..(PATIENCE * 60.0) as usize {
+        let report = world.step();
+        anyhow::ensure!(report.quarantined == 0, "a piece went out of hand");
+        depth = depth.max(deepest(&world));
+        if world.bodies()[0]
+            .pieces()
+            .list
+            .iter()
+            .all(|piece| piece.asleep)
+        {
+            asleep = (tick + 1) as f64 / 60.0;
+            break;
+        }
+    }
+    let views = world.bodies()[0].piece_views();
+    let size = f64::from(world.bodies()[0].grid().voxel_size());
+    let outside = views.iter().filter(|view| {
+        let distance =
+            |obstacle: &fuwafuwa::world::Obstacle| obstacle.shape.distance(view.centre).0;
+        world
+            .obstacles()
+            .iter()
+            .any(|obstacle| distance(obstacle) < 0.0)
+    });
+    let kept = world.bodies()[0].total_mass() / mass;
+    anyhow::ensure!(
+        (kept - 1.0).abs() < 1e-6,
+        "mass changed to {kept} of what it was"
+    );
+    Ok(Pile {
+        pieces: views.len(),
+        lost: outside.count() + before.abs_diff(views.len()),
+        depth: depth / size,
+        asleep,
+    })
+}
+
+/// How deep the deepest node is in a wall [m].
+fn deepest<D: Dim>(world: &World<D>) -> f64 {
+    let body = &world.bodies()[0];
+    let mut deepest = 0.0f32;
+    for (id, _) in body.mesh().nodes() {
+        let at = body.node_state(id).0;
+        for obstacle in world.obstacles() {
+            deepest = deepest.max(-obstacle.shape.distance(at).0);
+        }
+    }
+    f64::from(deepest)
+}

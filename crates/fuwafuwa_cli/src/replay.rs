@@ -1,0 +1,46 @@
+//! Runs a recording again and compares the hashes.
+
+use anyhow::{Context, Result};
+use fuwafuwa::{Dim2, Dim3};
+use fuwafuwa_scenes::Recording;
+use fuwafuwa_scenes::recording::VERSION;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Run a recording again and compare its hashes; the exit code is 1 when they differ.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// A file written by `fuwafuwa run SCENE --record FILE`.
+    file: PathBuf,
+    /// Print JSON instead of a sentence.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the recording.
+pub fn run(arguments: &Arguments) -> Result<ExitCode> {
+    let name = arguments.file.display().to_string();
+    let text = std::fs::read_to_string(&arguments.file).context(name.clone())?;
+    let recording: Recording = toml::from_str(&text).context(name.clone())?;
+    anyhow::ensure!(
+        recording.version == VERSION,
+        "{name}: the recording has format {}, this program reads format {VERSION}",
+        recording.version
+    );
+    let comparison = match recording.scene.dim {
+        2 => recording.replay::<Dim2>(|_| {})?,
+        _ => recording.replay::<Dim3>(|_| {})?,
+    };
+    if arguments.json {
+        println!("{}", serde_json::to_string_pretty(&comparison)?);
+    } else {
+        match comparison.differs_at {
+            None => println!(
+                "{name}: {} ticks, the same to the last bit",
+                comparison.ticks
+            ),
+            Some(tick) => println!("{name}: differs at tick {tick} or in the second before"),
+        }
+    }
+    Ok(ExitCode::from(u8::from(comparison.differs_at.is_some())))
+}

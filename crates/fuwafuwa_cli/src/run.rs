@@ -1,0 +1,234 @@
+//! Runs a scene, films it, and records what its hands did.
+
+use crate::painter::solid::{Camera, Solid};
+use crate::painter::{Frame, Painter, film};
+use crate::report::Progress;
+use crate::stage;
+use anyhow::{Context, Result};
+use fuwafuwa::{Dim, Dim2, Dim3, World};
+use fuwafuwa_scenes::{Recording, Scene};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use tiny_skia::Pixmap;
+
+/// Width of a frame [px].
+const WIDTH: u32 = 420;
+/// Moments in a strip.
+const MOMENTS: usize = 12;
+/// Ticks between two frames of a GIF, and how long each is shown [1/100 s].
+const PACE: u64 = 3;
+const HUNDREDTHS: u16 = 5;
+
+/// Run a scene, by name or from a TOML file.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// A named scene (drop, drop-3d, squeeze, tear, tear-3d, diced, pile, pile-3d, stack) or a file.
+    scene: String,
+    /// How many ticks of 1/60 s to run; as long as the scene says when left out.
+    #[arg(long)]
+    frames: Option<u64>,
+    /// Film it: a strip of moments (.png) or an animation (.gif).
+    #[arg(long)]
+    film: Option<PathBuf>,
+    /// Write the last moment of a scene of the plane as SVG beside the film, or as SCENE.svg.
+    #[arg(long)]
+    svg: bool,
+    /// Show elements by level instead of the skin.
+    #[arg(long)]
+    elements: bool,
+    /// Replace a value of the scene, e.g. material.young=9000 or body.1.n=32; may be repeated.
+    #[arg(long = "set")]
+    changes: Vec<String>,
+    /// Write a recording that `fuwafuwa replay` runs again.
+    #[arg(long)]
+    record: Option<PathBuf>,
+    /// Print JSON instead of a table.
+    #[arg(long)]
+    json: bool,
+}
+
+/// What became of a scene.
+#[derive(Debug, Serialize)]
+struct Summary {
+    scene: String,
+    ticks: u64,
+    substeps: u32,
+    released: u32,
+    pieces: usize,
+    crumbs: usize,
+    asleep: usize,
+    quarantined: usize,
+    hash: String,
+}
+
+/// A world that can be painted.
+trait Filmed: Dim {
+    /// The world as it is now, with its view `low` to `high` [m].
+    fn painted(world: &World<Self>, scene: &Scene, elements: bool) -> Result<Painter>;
+}
+
+impl Filmed for Dim2 {
+    fn painted(world: &World<Self>, scene: &Scene, elements: bool) -> Result<Painter> {
+        let [low, high] = scene.view;
+        let unit = WIDTH as f32 / (high[0] - low[0]);
+        let height = (unit * (high[1] - low[1])).round().clamp(50.0, 2000.0);
+        let mut painter = Painter::new(WIDTH, height as u32);
+        let frame = Frame {
+            origin: [-low[0] * unit, height + low[1] * unit],
+            unit,
+        };
+        let draw = if elements {
+            stage::plane_elements
+        } else {
+            stage::plane_skin
+        };
+        stage::plane(&mut painter, frame, world, draw);
+        Ok(painter)
+    }
+}
+
+impl Filmed for Dim3 {
+    fn painted(world: &World<Self>, scene: &Scene, elements: bool) -> Result<Painter> {
+        let [low, high] = scene.view;
+        let middle = [0, 1, 2].map(|axis: usize| 0.5 * (low[axis] + high[axis]));
+        let across = high[0] - low[0];
+        let mut solid = Solid::new(Camera {
+            eye: [
+                middle[0] + 1.4 * across,
+                middle[1] + 0.9 * across,
+                middle[2] + 2.0 * across,
+            ],
+            target: middle,
+            across: 1.15 * across,
+        });
+        if elements {
+            stage::space(&mut solid, world, |solid, body| {
+                stage::space_elements(solid, body, |_| true);
+            });
+        } else {
+            stage::space(&mut solid, world, stage::space_skin);
+        }
+        let mut painter = Painter::new(WIDTH, WIDTH);
+        painter.image([0.0; 2], solid.pixels(WIDTH, WIDTH)?);
+        Ok(painter)
+    }
+}
+
+/// Runs the scene.
+pub fn run(arguments: &Arguments) -> Result<ExitCode> {
+    let scene = Scene::open(&arguments.scene, &arguments.changes)?;
+    match scene.dim {
+        2 => run_in::<Dim2>(&scene, arguments),
+        _ => run_in::<Dim3>(&scene, arguments),
+    }
+}
+
+fn run_in<D: Filmed>(scene: &Scene, arguments: &Arguments) -> Result<ExitCode> {
+    anyhow::ensure!(
+        scene.view[0][0] < scene.view[1][0] && scene.view[0][1] < scene.view[1][1],
+        "{}: view: the low corner {:?} must lie below the high one {:?}",
+        arguments.scene,
+        scene.view[0],
+        scene.view[1]
+    );
+    let ticks = arguments.frames.unwrap_or(scene.ticks());
+    let is_gif = match &arguments.film {
+        Some(path) => film_is_gif(path)?,
+        None => false,
+    };
+    let every = if is_gif {
+        PACE
+    } else {
+        (ticks / MOMENTS as u64).max(1)
+    };
+    let progress = Progress::new();
+    progress.expect(ticks);
+    let mut frames: Vec<Pixmap> = Vec::new();
+    let mut failure = None;
+    let mut last: Option<World<D>> = None;
+    let (mut released, mut tick) = (0, 0);
+    let recording = Recording::of::<D>(scene, ticks, |world| {
+        tick += 1;
+        progress.step();
+        let events = world.events().iter();
+        released += events
+            .filter(|event| matches!(event, fuwafuwa::Event::Released { .. }))
+            .count();
+        if arguments.film.is_some() && tick % every == 0 {
+            let painted = D::painted(world, scene, arguments.elements);
+            match painted.and_then(|painter| painter.pixels()) {
+                Ok(pixels) => frames.push(pixels),
+                Err(error) => failure = Some(error),
+            }
+        }
+        if tick == ticks {
+            last = Some(world.clone());
+        }
+    })?;
+    if let Some(error) = failure {
+        return Err(error);
+    }
+    let world = last.context("--frames must be at least 1")?;
+    if let Some(path) = &arguments.film {
+        let bytes = if is_gif {
+            film::gif(&frames, HUNDREDTHS)?
+        } else {
+            film::strip(&frames, 4)?.png()?
+        };
+        write(path, &bytes)?;
+    }
+    if arguments.svg {
+        let beside = arguments
+            .film
+            .clone()
+            .unwrap_or(PathBuf::from(&arguments.scene));
+        let painter = D::painted(&world, scene, arguments.elements)?;
+        write(&beside.with_extension("svg"), painter.svg()?.as_bytes())?;
+    }
+    if let Some(path) = &arguments.record {
+        write(path, toml::to_string(&recording)?.as_bytes())?;
+    }
+    let pieces = || world.bodies().iter().flat_map(|body| body.piece_views());
+    let summary = Summary {
+        scene: arguments.scene.clone(),
+        ticks,
+        substeps: world.substeps(),
+        released: released as u32,
+        pieces: pieces().count(),
+        crumbs: pieces().filter(|piece| piece.element_count == 1).count(),
+        asleep: pieces().filter(|piece| piece.asleep).count(),
+        quarantined: pieces().filter(|piece| piece.quarantined).count(),
+        hash: format!("{:016x}", world.hash()),
+    };
+    if arguments.json {
+        println!("{}", serde_json::to_string_pretty(&summary)?);
+    } else {
+        println!(
+            "{}: {} ticks of {} substeps, {} releases, {} pieces ({} crumbs, {} asleep), hash {}",
+            summary.scene,
+            summary.ticks,
+            summary.substeps,
+            summary.released,
+            summary.pieces,
+            summary.crumbs,
+            summary.asleep,
+            summary.hash
+        );
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn film_is_gif(path: &Path) -> Result<bool> {
+    match path.extension().and_then(|end| end.to_str()) {
+        Some("png") => Ok(false),
+        Some("gif") => Ok(true),
+        _ => anyhow::bail!("{}: a film ends in .png or .gif", path.display()),
+    }
+}
+
+fn write(path: &Path, bytes: &[u8]) -> Result<()> {
+    std::fs::write(path, bytes).with_context(|| path.display().to_string())?;
+    eprintln!("{}", path.display());
+    Ok(())
+}
