@@ -3,7 +3,9 @@
 #![deny(unsafe_code)]
 #![warn(missing_docs)]
 #![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
+#![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
 
+pub mod import;
 pub mod recording;
 pub mod scene;
 
