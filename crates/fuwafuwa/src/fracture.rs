@@ -41,6 +41,8 @@ pub struct Failure {
 pub struct Rests {
     /// Lattice points and for how much longer they rest [s].
     points: Vec<(Point, f32)>,
+    /// Rounds so far.
+    rounds: u32,
 }
 
 /// How long a node has to be overstrained by half before it gives way [s]. Shorter: knocks shatter
@@ -57,8 +59,9 @@ const REST_REACH: i32 = 2;
 const REST_VOXELS: f64 = 4.0;
 
 impl Rests {
-    /// Lets time pass [s].
+    /// Lets a round of some time pass [s].
     pub fn pass(&mut self, duration: f32) {
+        self.rounds = self.rounds.wrapping_add(1);
         self.points.retain_mut(|(_, left)| {
             *left -= duration;
             *left > 0.0
@@ -93,11 +96,16 @@ pub fn failures<D: Dim>(body: &mut Body<D>, rests: &mut Rests, duration: f32) ->
             continue;
         }
         let node = id as usize;
+        // What is not damaged yet is looked at in every other round.
+        if body.damage[node] == 0.0 && (id ^ rests.rounds) & 1 == 1 {
+            continue;
+        }
         // No cut can bear more than half of what all elements pull together.
         let pull: f32 = body.blocks.parts_on(id).map(length).sum();
         let failure = (0.5 * pull > bearable).then(|| worst_cut(body, id));
         let Some(failure) = failure.flatten() else {
-            body.damage[node] *= 1.0 - (duration / (4.0 * DAMAGE_TIME)).min(1.0);
+            let healed = body.damage[node] - duration / (4.0 * DAMAGE_TIME);
+            body.damage[node] = healed.max(0.0);
             continue;
         };
         let over = (failure.excess - 1.0).min(3.0);

@@ -108,7 +108,7 @@ pub struct Nearby {
 /// Slack of a skin, in voxels, and in seconds at the speed it has: larger means longer lists,
 /// smaller more lists.
 const SKIN_SLACK: f32 = 0.3;
-const SLACK_TIME: f32 = 1.0 / 60.0;
+const SLACK_TIME: f32 = 1.0 / 120.0;
 /// The most slack that a fast skin gets, in voxels.
 const MOST_SLACK: f32 = 8.0;
 /// Slack of the list of nodes, in voxels.
@@ -159,7 +159,7 @@ impl Nearby {
         }
         if !self.nodes_are_good {
             let speed = fastest(bodies).max(hand_speed);
-            self.node_slack = NODE_SLACK * size + 2.0 * speed * SLACK_TIME;
+            self.node_slack = NODE_SLACK * size + 4.0 * speed * SLACK_TIME;
             self.find_node_pairs(bodies, colliders, self.node_slack + MARGIN * size);
             self.made_at.clone_from(&self.centres);
             self.hand_travel = 0.0;
@@ -319,9 +319,12 @@ impl Skin {
     }
 
     fn shares_node<D: Dim>(&self, other: &Self) -> bool {
+        if self.piece != other.piece || self.body != other.body {
+            return false;
+        }
         let near = (0..D::N).all(|axis| (self.cell[axis] - other.cell[axis]).abs() <= 1);
         let has = |node: &u32| other.nodes[..D::CORNERS].contains(node);
-        self.body == other.body && near && self.nodes[..D::CORNERS].iter().any(has)
+        near && self.nodes[..D::CORNERS].iter().any(has)
     }
 }
 

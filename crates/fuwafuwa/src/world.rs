@@ -19,8 +19,8 @@ use std::fmt;
 pub const TICK: f32 = 1.0 / 60.0;
 /// Substeps in a tick at the least: a force-feedback stick wants its force 960 times a second.
 pub const LEAST_SUBSTEPS: u32 = 16;
-/// Cracks are looked for this many times in a tick: 480 times a second.
-const FRACTURE_ROUNDS: u32 = 8;
+/// Cracks are looked for this many times in a tick: 240 times a second.
+const FRACTURE_ROUNDS: u32 = 4;
 /// Swings are damped this many times in a tick: 240 times a second.
 const DAMPING_ROUNDS: u32 = 4;
 /// A piece of one voxel does not roll on what it touches; its spin dies at this rate [1/s].

@@ -63,8 +63,8 @@ fn golden_hashes() {
         hash_of_paper_law::<Dim3>(8),
     ];
     let golden = [
-        0xe25e_a030_c973_e033,
-        0xca2f_c125_a9d4_28da,
+        0x9576_dc59_d99f_819f,
+        0xb2ae_1279_708a_84a2,
         0x775d_299f_5f07_6c29,
         0xcd90_5528_0621_f6b7,
     ];

@@ -9,6 +9,7 @@
 //!
 //! Each subcommand is a module with its own `Arguments` and `run`.
 
+mod bench;
 mod check;
 mod count;
 mod figure;
@@ -32,6 +33,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    Bench(bench::Arguments),
     Count(count::Arguments),
     Figure(figure::Arguments),
     Check(check::Arguments),
@@ -48,6 +50,7 @@ fn main() -> ExitCode {
 
 fn run(arguments: Arguments) -> Result<ExitCode> {
     match arguments.command {
+        Command::Bench(arguments) => bench::run(&arguments),
         Command::Count(arguments) => count::run(&arguments),
         Command::Figure(arguments) => figure::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),

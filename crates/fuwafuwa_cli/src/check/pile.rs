@@ -36,7 +36,7 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
         let least = if name.ends_with("3d") { 1000.0 } else { 3000.0 };
         let case = |what: &str| format!("{name}, {what}");
         let (pieces, lost) = (pile.pieces as f64, pile.lost as f64);
-        outcomes.push(Outcome::within(case("pieces"), pieces, least..=f64::MAX));
+        outcomes.push(Outcome::within(case("pieces"), pieces, least..=1e6));
         outcomes.push(Outcome::within(case("pieces lost"), lost, 0.0..=0.0));
         outcomes.push(Outcome::within(
             case("voxels into a wall"),

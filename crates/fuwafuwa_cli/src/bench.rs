@@ -1,0 +1,266 @@
+//! Measures speed and memory. Machines are shared and noisy: everything that is compared runs in
+//! turns in one run, and medians and ratios are what counts.
+
+use crate::report::{Progress, table};
+use anyhow::Result;
+use clap::ValueEnum;
+use fuwafuwa::law::Law;
+use fuwafuwa::pyramid::Grading;
+use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, Settings, Shape, VoxelGrid, World};
+use fuwafuwa_scenes::Scene;
+use serde::Serialize;
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// Measure speed and memory, in this run and on this machine.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Time the ticks of a scene, by name or file, instead of the usual list.
+    #[arg(long)]
+    scene: Option<String>,
+    /// With --against: space dimensions.
+    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u8).range(2..=3))]
+    dim: u8,
+    /// With --against: voxels across.
+    #[arg(long, default_value_t = 128, value_parser = clap::value_parser!(u16).range(8..=512))]
+    n: u16,
+    /// What to compare a swinging ball with.
+    #[arg(long, value_enum)]
+    against: Option<Rival>,
+    /// Print JSON instead of a table.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Copy, Clone, Debug, PartialEq, Eq, ValueEnum)]
+enum Rival {
+    /// The same body with elements of single voxels everywhere.
+    Uniform,
+}
+
+/// One thing measured.
+#[derive(Clone, Debug, Serialize)]
+struct Measure {
+    what: String,
+    unit: &'static str,
+    median: f64,
+    best: f64,
+    worst: f64,
+}
+
+/// Measures, and prints what it found.
+pub fn run(arguments: &Arguments) -> Result<ExitCode> {
+    let progress = Progress::new();
+    let measures = match (&arguments.scene, arguments.against) {
+        (Some(name), _) => vec![scene(name, &progress)?],
+        (None, Some(Rival::Uniform)) => against_uniform(arguments, &progress)?,
+        (None, None) => usual(&progress)?,
+    };
+    drop(progress);
+    if arguments.json {
+        println!("{}", serde_json::to_string_pretty(&measures)?);
+        return Ok(ExitCode::SUCCESS);
+    }
+    let head = ["", "median", "best", "worst", ""]
+        .map(String::from)
+        .to_vec();
+    let mut rows = vec![head];
+    for measure in &measures {
+        rows.push(vec![
+            measure.what.clone(),
+            format!("{:.2}", measure.median),
+            format!("{:.2}", measure.best),
+            format!("{:.2}", measure.worst),
+            measure.unit.into(),
+        ]);
+    }
+    print!("{}", table(&rows, &[false, true, true, true, false]));
+    Ok(ExitCode::SUCCESS)
+}
+
+fn usual(progress: &Progress) -> Result<Vec<Measure>> {
+    progress.expect(15);
+    let mut measures = Vec::new();
+    let mut add = |measure: Result<Measure>| -> Result<()> {
+        measures.push(measure?);
+        progress.step();
+        Ok(())
+    };
+    add(element_time::<Dim2>(128))?;
+    add(element_time::<Dim3>(32))?;
+    add(element_time::<Dim3>(64))?;
+    for n in [64, 128, 256, 512] {
+        add(release_time(n))?;
+    }
+    for name in ["drop", "drop-3d", "tear", "diced", "pile", "tear-3d"] {
+        add(scene(name, &Progress::new()))?;
+    }
+    add(resting_ball(64))?;
+    add(memory())?;
+    Ok(measures)
+}
+
+/// A free body that swings: element pass and node pass together.
+fn element_time<D: Dim>(n: usize) -> Result<Measure> {
+    let mut body = swinging::<D>(n, Grading::Graded)?;
+    let elements = body.mesh().element_count() as f64;
+    let times = timed(400, || body.advance(1.0 / 7680.0, [0.0; 3]));
+    let what = format!("{}D ball n = {n}, an element and substep", D::N);
+    Ok(measure(what, "ns", times, 1e9 / elements))
+}
+
+/// Releases in a disc, each at a fresh place near its rim.
+fn release_time(n: usize) -> Result<Measure> {
+    let grid = VoxelGrid::<Dim2>::ball(n, 1.0)?;
+    let mut body = Body::new(grid, &[Material::default()])?;
+    // Where the surface crosses every third column, counted from the lower left of the disc.
+    let mut places = Vec::new();
+    for x in (n / 4..3 * n / 4).step_by(3) {
+        let lowest = (0..n).find(|&y| body.grid().is_solid([x as i32, y as i32, 0]));
+        places.extend(lowest.map(|y| [x as i32, y as i32, 0]));
+    }
+    let mut times = Vec::new();
+    for at in places {
+        let start = Instant::now();
+        body.release(&[(at, 0b1010)])?;
+        times.push(start.elapsed().as_secs_f64());
+    }
+    let what = format!("2D disc n = {n}, one release and remodel");
+    Ok(measure(what, "us", times, 1e6))
+}
+
+/// The ticks of a scene.
+fn scene(name: &str, progress: &Progress) -> Result<Measure> {
+    let scene = Scene::open(name, &[])?;
+    match scene.dim {
+        2 => scene_in::<Dim2>(name, &scene, progress),
+        _ => scene_in::<Dim3>(name, &scene, progress),
+    }
+}
+
+fn scene_in<D: Dim>(name: &str, scene: &Scene, progress: &Progress) -> Result<Measure> {
+    let mut world = scene.build::<D>()?;
+    progress.expect(scene.ticks());
+    let mut times = Vec::new();
+    for tick in 0..scene.ticks() {
+        for (hand, goal) in scene.goals(tick).into_iter().enumerate() {
+            world.set_goal(hand, goal);
+        }
+        let start = Instant::now();
+        world.step();
+        times.push(start.elapsed().as_secs_f64());
+        progress.step();
+    }
+    let pieces: usize = world
+        .bodies()
+        .iter()
+        .map(|body| body.pieces().list.len())
+        .sum();
+    let what = format!("scene {name}, a tick; {pieces} pieces in the end");
+    Ok(measure(what, "ms", times, 1e3))
+}
+
+/// A soft ball on the floor, with contact, before it falls asleep.
+fn resting_ball(n: usize) -> Result<Measure> {
+    let mut world = World::<Dim3>::new(Settings::default())?;
+    world.add_obstacle(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.5)?;
+    world.add_body(Body::new(VoxelGrid::ball(n, 1.0)?, &[Material::default()])?);
+    let times = timed(60, || {
+        world.step();
+    });
+    Ok(measure(
+        format!("3D ball n = {n} on the floor, a tick"),
+        "ms",
+        times,
+        1e3,
+    ))
+}
+
+/// What the process has taken at the most, after a ball of 128 voxels was made and moved.
+fn memory() -> Result<Measure> {
+    let mut body = swinging::<Dim3>(128, Grading::Graded)?;
+    body.advance(1e-4, [0.0; 3]);
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    let kilobytes = line.and_then(|line| line.trim().trim_end_matches(" kB").parse().ok());
+    let peak: f64 = kilobytes.unwrap_or(f64::NAN);
+    let what = "3D ball n = 128, peak memory of this run".to_string();
+    Ok(measure(what, "MB", vec![peak / 1024.0], 1.0))
+}
+
+/// A swinging ball, graded and uniform, a tick's worth of substeps of each in turns.
+fn against_uniform(arguments: &Arguments, progress: &Progress) -> Result<Vec<Measure>> {
+    match arguments.dim {
+        2 => against_uniform_in::<Dim2>(arguments.n.into(), progress),
+        _ => against_uniform_in::<Dim3>(arguments.n.into(), progress),
+    }
+}
+
+fn against_uniform_in<D: Dim>(n: usize, progress: &Progress) -> Result<Vec<Measure>> {
+    const ROUNDS: usize = 40;
+    let mut graded = swinging::<D>(n, Grading::Graded)?;
+    let mut uniform = swinging::<D>(n, Grading::Uniform)?;
+    let duration = graded.longest_substep() as f32;
+    let tick = |body: &mut Body<D>| {
+        let start = Instant::now();
+        for _ in 0..16 {
+            body.advance(duration, [0.0; 3]);
+        }
+        start.elapsed().as_secs_f64()
+    };
+    let (mut ours, mut theirs, mut ratios) = (Vec::new(), Vec::new(), Vec::new());
+    progress.expect(ROUNDS as u64);
+    for _ in 0..ROUNDS {
+        let (own, other) = (tick(&mut graded), tick(&mut uniform));
+        ours.push(own);
+        theirs.push(other);
+        ratios.push(other / own);
+        progress.step();
+    }
+    let named = |what: &str, body: &Body<D>| {
+        let elements = body.mesh().element_count();
+        format!(
+            "{}D ball n = {n}, {what}, {elements} elements, 16 substeps",
+            D::N
+        )
+    };
+    Ok(vec![
+        measure(named("graded", &graded), "ms", ours, 1e3),
+        measure(named("uniform", &uniform), "ms", theirs, 1e3),
+        measure("uniform / graded".into(), "times", ratios, 1.0),
+    ])
+}
+
+/// A ball 1 m across, stretched a little so that it swings.
+fn swinging<D: Dim>(n: usize, grading: Grading) -> Result<Body<D>> {
+    let grid = VoxelGrid::ball(n, 1.0)?;
+    let mut body = Body::with(grid, &[Material::default()], Law::PatchExact, grading)?;
+    let nodes: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
+    for id in nodes {
+        let ([x, y, z], ..) = body.node_state(id);
+        body.set_node_state(id, [1.05 * x, y, z], [0.0; 3]);
+    }
+    Ok(body)
+}
+
+fn timed(count: usize, mut run: impl FnMut()) -> Vec<f64> {
+    (0..count)
+        .map(|_| {
+            let start = Instant::now();
+            run();
+            start.elapsed().as_secs_f64()
+        })
+        .collect()
+}
+
+fn measure(what: String, unit: &'static str, mut values: Vec<f64>, scale: f64) -> Measure {
+    values.sort_by(f64::total_cmp);
+    let at = |place: usize| values.get(place).map_or(f64::NAN, |value| value * scale);
+    Measure {
+        what,
+        unit,
+        median: at(values.len() / 2),
+        best: at(0),
+        worst: at(values.len().saturating_sub(1)),
+    }
+}
