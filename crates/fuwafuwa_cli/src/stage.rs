@@ -6,7 +6,7 @@ use fuwafuwa::dim::{add, corner, scale};
 use fuwafuwa::shape::{Shape, Vector};
 use fuwafuwa::stencil::slot_index;
 use fuwafuwa::vector::{cross, minus, plus, scaled};
-use fuwafuwa::view::{ElementView, Facet};
+use fuwafuwa::view::{ElementView, Facet, Outline};
 use fuwafuwa::{Body, Dim, Dim2, Dim3, World};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -35,36 +35,61 @@ pub fn plane(painter: &mut Painter, frame: Frame, world: &World<Dim2>, draw: Dra
 
 /// Paints the elements of a body of the plane, and in another colour what is torn.
 pub fn plane_elements(painter: &mut Painter, frame: Frame, body: &Body<Dim2>) {
-    for view in body.element_views() {
-        plane_element(painter, frame, &view, 1.2);
-    }
-    plane_outlines(painter, frame, body, Role::Crack);
+    plane_pieces(painter, frame, body, Role::Crack, |painter, view, _| {
+        plane_element(painter, frame, view, 1.2);
+    });
 }
 
 /// Paints the skin of a body of the plane.
 pub fn plane_skin(painter: &mut Painter, frame: Frame, body: &Body<Dim2>) {
-    let crumbs = crumbs(body);
-    for view in body.element_views() {
-        let is_crumb = crumbs.contains(&view.piece);
-        let role = if is_crumb { Role::Crumb } else { Role::Skin };
-        // An edge of the same colour closes the seams between elements.
-        painter.polygon(outline(frame, &view), role, role, 1.0);
-    }
-    plane_outlines(painter, frame, body, Role::Ink);
+    plane_pieces(
+        painter,
+        frame,
+        body,
+        Role::Ink,
+        |painter, view, is_crumb| {
+            let role = if is_crumb { Role::Crumb } else { Role::Skin };
+            // An edge of the same colour closes the seams between elements.
+            painter.polygon(outline(frame, view), role, role, 1.0);
+        },
+    );
 }
 
-fn plane_outlines(painter: &mut Painter, frame: Frame, body: &Body<Dim2>, torn: Role) {
-    for line in body.outlines() {
-        let spots: Vec<Spot> = line.points.iter().map(|&at| frame.spot(at)).collect();
-        for (k, &is_fresh) in line.is_fresh.iter().enumerate() {
-            let ends = vec![spots[k], spots[(k + 1) % spots.len()]];
-            let (width, role) = if is_fresh {
-                (1.5, torn)
-            } else {
-                (2.0, Role::Ink)
-            };
-            painter.line(ends, width, role);
+/// Paints piece after piece, the small ones on top: each element by `draw`, which is told whether
+/// it is a crumb, and the outline, where it is torn as `torn`.
+fn plane_pieces(
+    painter: &mut Painter,
+    frame: Frame,
+    body: &Body<Dim2>,
+    torn: Role,
+    draw: impl Fn(&mut Painter, &ElementView, bool),
+) {
+    let mut elements: BTreeMap<u32, Vec<ElementView>> = BTreeMap::new();
+    for view in body.element_views() {
+        elements.entry(view.piece).or_default().push(view);
+    }
+    let mut pieces: Vec<(u32, Vec<ElementView>)> = elements.into_iter().collect();
+    pieces.sort_by_key(|(_, views)| std::cmp::Reverse(views.len()));
+    let outlines = body.outlines();
+    for (piece, views) in &pieces {
+        for view in views {
+            draw(painter, view, views.len() == 1);
         }
+        for line in outlines.iter().filter(|line| line.piece == *piece) {
+            plane_outline(painter, frame, line, torn);
+        }
+    }
+}
+
+fn plane_outline(painter: &mut Painter, frame: Frame, line: &Outline, torn: Role) {
+    let spots: Vec<Spot> = line.points.iter().map(|&at| frame.spot(at)).collect();
+    for (k, &is_fresh) in line.is_fresh.iter().enumerate() {
+        let ends = vec![spots[k], spots[(k + 1) % spots.len()]];
+        let (width, role) = match is_fresh {
+            true => (1.5, torn),
+            false => (2.0, Role::Ink),
+        };
+        painter.line(ends, width, role);
     }
 }
 

@@ -1,8 +1,10 @@
 //! The figures of the paper, drawn from live data.
 
+mod children;
 mod disc;
-mod remodel;
+mod phases;
 mod sequence;
+mod square;
 
 use crate::painter::{Painter, Role, Sample, film};
 use anyhow::{Context, Result};
@@ -77,13 +79,13 @@ fn write(which: Which, folder: &Path) -> Result<Vec<PathBuf>> {
         files.figure("figure_2", &disc::table()?)?;
     }
     if which.wants(Which::Phases) {
-        files.figure("figure_3", &remodel::phases()?)?;
+        files.figure("figure_3", &phases::phases()?)?;
     }
     if which.wants(Which::Conditions) {
-        files.figure("figure_4", &remodel::conditions()?)?;
+        files.figure("figure_4", &children::conditions()?)?;
     }
     if which.wants(Which::Children) {
-        files.figure("figure_5", &remodel::children()?)?;
+        files.figure("figure_5", &children::children()?)?;
     }
     if which.wants(Which::Sequence) {
         let (strip, frames) = sequence::disc()?;

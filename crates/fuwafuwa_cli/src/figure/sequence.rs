@@ -24,9 +24,9 @@ pub fn disc() -> Result<(Painter, Vec<Pixmap>)> {
     const TICKS: usize = 200;
     let material = Material {
         elasticity: Elasticity::new(5000.0, 0.3)?,
-        damping: 0.3,
-        strength: 700.0,
-        toughness: 120.0,
+        damping: 0.5,
+        strength: 1000.0,
+        toughness: 200.0,
         ..Material::default()
     };
     let mut world = World::<Dim2>::new(Settings::default())?;
@@ -39,7 +39,7 @@ pub fn disc() -> Result<(Painter, Vec<Pixmap>)> {
         world.add_obstacle(wall, 0.4)?;
     }
     world.add_body(Body::new(VoxelGrid::ball(40, 1.0)?, &[material])?);
-    let mut hand = Manipulator::new([0.46, 1.2, 0.0], 0.07);
+    let mut hand = Manipulator::new([0.46, 1.2, 0.0], 0.055);
     hand.drive = Drive::Kinematic;
     let hand = world.add_manipulator(hand)?;
 
@@ -56,7 +56,7 @@ pub fn disc() -> Result<(Painter, Vec<Pixmap>)> {
         world.step();
         progress.step();
     }
-    let mut strip = film::strip(&moments(&elements, &[0.0, 0.42, 0.5, 0.57, 0.68, 1.0]), 3)?;
+    let mut strip = film::strip(&moments(&elements, &[0.0, 0.42, 0.57, 0.62, 0.68, 1.0]), 3)?;
     strip.extend(64);
     let mut entries = super::level_entries(5);
     entries.push((Sample::Line(Role::Crack), "torn"));

@@ -4,6 +4,7 @@
 //! frame of a film ([`film`]), the same in all of them. Bodies in space are painted by [`solid`]
 //! into an image that lies on the paper like any other shape.
 
+mod canvas;
 pub mod film;
 pub mod letters;
 pub mod raster;

@@ -1,0 +1,152 @@
+//! The body of figures 3 to 5: a square of 14 voxels is cut upwards along its middle, one node at a time:
+//!
+//! ```text
+//!   ┌───────┬───────┐        A parent on each side loses the child beside the crack: first those
+//!   │   2   │   2   │        of level 1, whose children are voxels, then those of level 2, whose
+//!   │       ┆       │        children are of level 1.
+//!   └───────┃───────┘
+//! ```
+
+use crate::painter::{Frame, Painter, Role};
+use crate::stage;
+use anyhow::Result;
+use fuwafuwa::mesh::Element;
+use fuwafuwa::pyramid::Cell;
+use fuwafuwa::view::ElementView;
+use fuwafuwa::{Body, Dim, Dim2, Material, Point, VoxelGrid};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Voxels across the square and the empty rim around it, which seats it like the disc of figure 1.
+pub const ACROSS: i32 = 16;
+/// Where the crack runs.
+pub const MIDDLE: i32 = 8;
+/// The octants to the right of a lattice point.
+const RIGHT: u8 = 0b1010;
+/// How far the crack gapes on each side at its mouth, in voxels a voxel of its length.
+const GAPE: f32 = 0.16;
+
+/// The square before and after one release.
+pub struct Release {
+    /// Before.
+    pub before: Body<Dim2>,
+    /// Afterwards.
+    pub after: Body<Dim2>,
+    /// The height of the node that is released.
+    pub height: i32,
+}
+
+impl Release {
+    /// Releases the node at a height, those below it having been released before.
+    pub fn at(height: i32) -> Result<Self> {
+        let solid = 1..ACROSS - 1;
+        let size = [ACROSS as usize, ACROSS as usize, 1];
+        let grid = VoxelGrid::from_fn(size, 1.0, |at| {
+            u8::from(solid.contains(&at[0]) && solid.contains(&at[1]))
+        })?;
+        let mut before = Body::<Dim2>::new(grid, &[Material::default()])?;
+        for y in 1..height {
+            before.release(&[([MIDDLE, y, 0], RIGHT)])?;
+        }
+        let mut after = before.clone();
+        after.release(&[([MIDDLE, height, 0], RIGHT)])?;
+        gape(&mut before, height);
+        gape(&mut after, height);
+        Ok(Self {
+            before,
+            after,
+            height,
+        })
+    }
+
+    /// The same, the new crack open as well.
+    pub fn opened(&self) -> Body<Dim2> {
+        let mut body = self.after.clone();
+        gape(&mut body, self.height + 1);
+        body
+    }
+
+    /// Cells that have an element before and another one, or none, afterwards.
+    pub fn parents(&self) -> BTreeSet<Cell> {
+        let after = filled(&self.after);
+        let changed =
+            |(cell, children): (Cell, u8)| (after.get(&cell) != Some(&children)).then_some(cell);
+        filled(&self.before)
+            .into_iter()
+            .filter_map(changed)
+            .collect()
+    }
+
+    /// Cells that have an element only afterwards.
+    pub fn children(&self) -> BTreeSet<Cell> {
+        let before = filled(&self.before);
+        let cells = filled(&self.after).into_keys();
+        cells.filter(|cell| !before.contains_key(cell)).collect()
+    }
+}
+
+/// Draws the elements.
+pub fn draw(painter: &mut Painter, frame: Frame, body: &Body<Dim2>) {
+    for view in body.element_views() {
+        stage::plane_element(painter, frame, &view, 1.2);
+    }
+}
+
+/// Draws the nodes.
+pub fn draw_nodes(painter: &mut Painter, frame: Frame, body: &Body<Dim2>) {
+    for (id, _) in body.mesh().nodes() {
+        let spot = frame.spot(body.node_state(id).0);
+        painter.dot(spot, 0.1 * frame.unit, Role::Node);
+    }
+}
+
+/// Outlines the elements of some cells.
+pub fn mark(
+    painter: &mut Painter,
+    frame: Frame,
+    body: &Body<Dim2>,
+    cells: &BTreeSet<Cell>,
+    role: Role,
+) {
+    for (_, view) in views(body, cells) {
+        painter.ring(stage::outline(frame, &view), 4.0, role);
+    }
+}
+
+/// The elements of some cells, each with its view.
+pub fn views<'a>(body: &'a Body<Dim2>, cells: &BTreeSet<Cell>) -> Vec<(&'a Element, ElementView)> {
+    let pairs = body.mesh().elements().zip(body.element_views());
+    let wanted = pairs.filter(|((_, element), _)| cells.contains(&element.cell));
+    wanted.map(|((_, element), view)| (element, view)).collect()
+}
+
+/// The cells that have elements, and the children these fill.
+fn filled(body: &Body<Dim2>) -> BTreeMap<Cell, u8> {
+    let mut filled = BTreeMap::new();
+    for (_, element) in body.mesh().elements() {
+        *filled.entry(element.cell).or_insert(0) |= element.children;
+    }
+    filled
+}
+
+/// The lattice points of the nodes.
+pub fn points(body: &Body<Dim2>) -> BTreeSet<Point> {
+    body.mesh().nodes().map(|(_, node)| node.at).collect()
+}
+
+/// Opens the crack below a height like a wedge, so that it can be seen.
+fn gape(body: &mut Body<Dim2>, height: i32) {
+    let nodes: Vec<_> = body.mesh().nodes().collect();
+    for (id, node) in nodes {
+        let is_right = (0..Dim2::CORNERS)
+            .all(|octant| node.group >> octant & 1 == 0 || RIGHT >> octant & 1 == 1);
+        let side = match node.at[0] - MIDDLE {
+            0 if is_right => 1.0,
+            0 => -1.0,
+            beside => beside.signum() as f32,
+        };
+        let away = (node.at[0] - MIDDLE).abs() as f32 / MIDDLE as f32;
+        let open = GAPE * (height - node.at[1]).max(0) as f32 * (1.0 - away).max(0.0);
+        let rest = node.at.map(|k| k as f32);
+        body.set_node_state(id, [rest[0] + side * open, rest[1], 0.0], [0.0; 3]);
+    }
+}
