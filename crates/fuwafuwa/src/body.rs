@@ -5,12 +5,12 @@ use crate::grid::VoxelGrid;
 use crate::law::{Elasticity, Law};
 use crate::material::{BodyError, Material};
 use crate::mesh::{Element, Mesh};
-use crate::momentum::Momentum;
+use crate::momentum::{Momentum, RigidMotion};
 use crate::piece::Pieces;
 use crate::pyramid::{Grading, Pyramid};
 use crate::sharing::Sharing;
 use crate::solve::{Blocks, Row};
-use crate::vector::{dot, plus, scaled};
+use crate::vector::{dot, minus, plus, scaled};
 
 /// One soft object, whole or in pieces.
 #[derive(Clone, Debug)]
@@ -45,6 +45,8 @@ pub struct Body<D: Dim> {
     pub(crate) bare: Vec<u8>,
     /// Positions a moment ahead, where damped forces are evaluated.
     pub(crate) ahead: Vec<Row>,
+    /// The rigid motion of each piece, as of the last round of damping.
+    pub(crate) rigid: Vec<RigidMotion>,
 }
 
 /// The slowest swing of a whole body.
@@ -106,6 +108,7 @@ impl<D: Dim> Body<D> {
             damage: Vec::new(),
             bare: Vec::new(),
             ahead: Vec::new(),
+            rigid: Vec::new(),
             grid,
             sharing,
             pyramid,
@@ -300,7 +303,8 @@ impl<D: Dim> Body<D> {
             .kick(&self.awake, &self.lightness, duration, pull, velocity);
     }
 
-    /// Moves every awake node by its velocity, and looks `lead` seconds ahead for the next forces.
+    /// Moves every awake node by its velocity, and looks `lead` seconds ahead for the next forces,
+    /// as seen from the rigid motion of its piece: what only turns must not be braked.
     /// No node moves by more than a voxel: faster ones would turn elements inside out, and the
     /// forces would grow from substep to substep.
     pub(crate) fn drift(&mut self, duration: f32, lead: f32) {
@@ -315,7 +319,13 @@ impl<D: Dim> Body<D> {
             }
             let position = plus(self.position[node], scaled(velocity, duration));
             self.position[node] = position;
-            self.ahead[node] = plus(position, scaled(velocity, lead));
+            self.ahead[node] = position;
+            if lead > 0.0 {
+                let piece = self.pieces.of_node(id) as usize;
+                let rigid = self.rigid.get(piece).copied().unwrap_or_default();
+                let strain = minus(velocity, rigid.roughly_at(position));
+                self.ahead[node] = plus(position, scaled(strain, lead));
+            }
         }
     }
 

@@ -72,11 +72,8 @@ impl Slowing {
     }
 }
 
-/// Slows the pieces of a body down, each by its own `slowing`.
+/// Slows the pieces of a body down, each by its own `slowing`, and notes their rigid motions.
 pub fn slow_down<D: Dim>(body: &mut Body<D>, motions: &[PieceMotion], slowing: &[Slowing]) {
-    if slowing.iter().all(|slowing| *slowing == Slowing::default()) {
-        return;
-    }
     let mut spins = vec![([0.0; 3], [[0.0; 3]; 3]); motions.len()];
     for (&id, (position, velocity, mass)) in body.awake.iter().zip(body.states(&body.awake)) {
         let piece = body.pieces.of_node(id) as usize;
@@ -92,6 +89,10 @@ pub fn slow_down<D: Dim>(body: &mut Body<D>, motions: &[PieceMotion], slowing: &
             RigidMotion::of_spin(motion.velocity, motion.centre, angular, inertia)
         })
         .collect();
+    body.rigid.clone_from(&rigid);
+    if slowing.iter().all(|slowing| *slowing == Slowing::default()) {
+        return;
+    }
     for &id in &body.awake {
         let node = id as usize;
         if body.lightness[node] == 0.0 {

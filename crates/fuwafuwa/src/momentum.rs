@@ -53,7 +53,8 @@ impl Momentum {
 }
 
 /// A rigid velocity field: v(x) = `velocity` + `spin` × (x − centre).
-#[derive(Copy, Clone, Debug, PartialEq)]
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RigidMotion {
     velocity: [f64; 3],
     spin: [f64; 3],
@@ -94,6 +95,15 @@ impl RigidMotion {
             spin: solved(&inertia, *angular),
             centre,
         }
+    }
+
+    /// The velocity at a point, in single precision.
+    #[inline]
+    pub(crate) fn roughly_at(&self, position: Row) -> Row {
+        let single = |v: [f64; 3]| v.map(|k| k as f32);
+        let from = minus([position[0], position[1], position[2]], single(self.centre));
+        let [x, y, z] = plus(single(self.velocity), cross(single(self.spin), from));
+        [x, y, z, 0.0]
     }
 
     /// The velocity at a point.

@@ -36,7 +36,10 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
         let case = format!("tear {dim}D, n = {n}, {what}, load / reference");
         // The ideal load of a whole bar 1 m across; a notched one has the mean of its sisters.
         let reference = if notched {
-            let sisters = BARS.iter().zip(&loads).filter(|(bar, _)| bar.0 == dim && bar.2);
+            let sisters = BARS
+                .iter()
+                .zip(&loads)
+                .filter(|(bar, _)| bar.0 == dim && bar.2);
             let (count, sum) = sisters.fold((0.0, 0.0), |(count, sum), (_, load)| {
                 (count + 1.0, sum + load)
             });
