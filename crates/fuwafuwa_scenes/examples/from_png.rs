@@ -1,0 +1,30 @@
+//! Makes a body of a PNG silhouette and drops it.
+//!
+//! `cargo run --release -p fuwafuwa_scenes --example from_png -- drawing.png`
+
+use fuwafuwa::{Body, Dim2, Material, Settings, Shape, World};
+use fuwafuwa_scenes::import;
+use std::path::Path;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let file = std::env::args().nth(1);
+    let file = file.ok_or("name a PNG file: a drawing on white, or a sprite with alpha")?;
+    let grid = import::png(Path::new(&file), 64, 1.0 / 64.0)?;
+    println!(
+        "{} solid voxels in a grid of {:?}",
+        grid.solid_count(),
+        grid.size()
+    );
+    let mut world = World::<Dim2>::new(Settings::default())?;
+    world.add_obstacle(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.5)?;
+    world.add_body(Body::new(grid, &[Material::default()])?.moved([0.0, 0.3, 0.0]));
+    for tick in 1..=120 {
+        world.step();
+        if tick % 20 == 0 {
+            for piece in world.bodies()[0].piece_views().iter().take(4) {
+                println!("{tick:3}: piece {} at {:.2?}", piece.number, piece.centre);
+            }
+        }
+    }
+    Ok(())
+}
