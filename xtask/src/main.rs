@@ -1,5 +1,7 @@
 //! The chores of this repository, run as `cargo xtask <task>`. Plain std, so that it builds in a moment.
 
+mod wasm;
+
 use std::env;
 use std::path::Path;
 use std::process::{Command, ExitCode, Stdio};
@@ -10,7 +12,11 @@ usage: cargo xtask <task>
 tasks:
   check   formatting, lints, tests and documentation: what a change must pass
   test    all tests in debug, then the engine's tests once more in release
+  wasm    the golden scenes on wasm32 under Node; exit status 3 where that cannot be tried
   help    this text";
+
+/// Exit status where a task cannot be tried on this machine.
+const CANNOT: u8 = 3;
 
 /// Exit status for a command line that makes no sense, as shells and most tools use it.
 const BAD_USAGE: u8 = 2;
@@ -31,6 +37,7 @@ fn main() -> ExitCode {
         }
         Task::Check => run_all(CHECK),
         Task::Test => find_c_compiler().and_then(|()| run_all(TEST)),
+        Task::Wasm => wasm::run(),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
@@ -45,6 +52,7 @@ fn main() -> ExitCode {
 enum Task {
     Check,
     Test,
+    Wasm,
     Help,
 }
 
@@ -57,6 +65,7 @@ impl Task {
         match name.as_str() {
             "check" => Ok(Task::Check),
             "test" => Ok(Task::Test),
+            "wasm" => Ok(Task::Wasm),
             "help" | "--help" | "-h" => Ok(Task::Help),
             _ => Err(format!("there is no task `{name}`")),
         }
@@ -128,13 +137,10 @@ fn run_all(steps: &[Step]) -> Result<(), Failure> {
 fn run(step: &Step) -> Result<(), Failure> {
     let line = format!("cargo {}", step.arguments.join(" "));
     eprintln!("xtask: {line}");
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .parent()
-        .expect("xtask lies one folder below the root of the workspace");
     let status = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .args(step.arguments)
         .envs(step.environment.iter().copied())
-        .current_dir(root)
+        .current_dir(root())
         .status()
         .map_err(|error| Failure {
             message: format!("`{line}` could not be started: {error}"),
@@ -147,6 +153,13 @@ fn run(step: &Step) -> Result<(), Failure> {
         message: format!("`{line}` failed ({status})\n       {}", step.hint),
         code: exit_code(status.code()),
     })
+}
+
+/// The root of the workspace.
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .parent()
+        .expect("xtask lies one folder below the root of the workspace")
 }
 
 /// The status to hand on for a step that failed; 1 where it was killed or has a number that does not fit.
@@ -211,6 +224,7 @@ mod tests {
     fn one_known_task_and_nothing_else_is_a_command_line() {
         check(&["check"], Ok(Task::Check));
         check(&["test"], Ok(Task::Test));
+        check(&["wasm"], Ok(Task::Wasm));
         check(&["--help"], Ok(Task::Help));
         check(&[], Err("no task given"));
         check(&["chekc"], Err("there is no task `chekc`"));

@@ -128,8 +128,7 @@ impl<D: Dim> Body<D> {
         let states = self.mesh.nodes().map(|(id, _)| self.node_state(id));
         states
             .filter(|&(at, _, _)| is_inside(at))
-            .map(|(_, _, mass)| mass)
-            .sum()
+            .fold(0.0, |sum, (_, _, mass)| sum + mass)
     }
 
     /// All bare faces, by element.

@@ -259,8 +259,8 @@ impl Input<'_> {
     /// The materials of a model whose voxels are listed up to `end`, in our order.
     fn voxels(&mut self, size: [usize; 3], end: usize) -> Result<Vec<u8>, ImportError> {
         let count = self.number()?;
-        if count > (end - self.at) / 4 {
-            let room = (end - self.at) / 4;
+        let room = end.saturating_sub(self.at) / 4;
+        if count > room {
             return Err(self.wrong(format!("{count} voxels announced, the chunk holds {room}")));
         }
         let [width, depth, height] = size;
