@@ -14,6 +14,7 @@
 #![allow(clippy::needless_range_loop)]
 
 pub mod body;
+mod chains;
 pub mod dim;
 pub mod grid;
 pub mod law;

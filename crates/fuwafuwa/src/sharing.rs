@@ -141,8 +141,10 @@ impl<D: Dim> Sharing<D> {
             .collect();
         let dim = PhantomData;
         let mut sharing = Self { size, groups, dim };
-        let everywhere = sharing.points().collect();
-        sharing.normalise(everywhere);
+        // Faces around a full point are closed until a neighbour changes.
+        let is_partial = |&at: &Point| sharing.groups(at) != Groups::joined(D::ALL_CORNERS);
+        let partial = sharing.points().filter(is_partial).collect();
+        sharing.normalise(partial);
         sharing
     }
 
