@@ -306,7 +306,7 @@ impl<D: Dim> Body<D> {
         for &id in nodes {
             let mut mass = 0.0;
             for (element, place) in self.mesh.carriers_of(id) {
-                let material = self.grid.material(self.mesh.voxels(element)[0]);
+                let material = self.grid.material(self.mesh.first_voxel(element));
                 let density = f64::from(self.materials[material as usize - 1].density);
                 let child = half * f64::from(element.cell.width());
                 let volume = (0..D::N).fold(1.0, |volume, _| volume * child);

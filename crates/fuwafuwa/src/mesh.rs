@@ -213,6 +213,15 @@ impl<D: Dim> Mesh<D> {
         })
     }
 
+    /// The first of the voxels that an element fills.
+    pub fn first_voxel(&self, element: &Element) -> Point {
+        let child = element.children.trailing_zeros() as usize;
+        match element.cell.level {
+            0 => element.cell.at,
+            _ => element.cell.child(child).first_voxel(),
+        }
+    }
+
     /// The voxels that an element fills.
     pub fn voxels(&self, element: &Element) -> Vec<Point> {
         if element.cell.level == 0 {
@@ -285,11 +294,9 @@ impl<D: Dim> Mesh<D> {
         mut past: Option<(&Past, &mut Vec<Inheritance>)>,
     ) -> Result<bool, Defect> {
         let (cell, children) = (self.alive(id).cell, self.alive(id).children);
-        let whole = cell.level == 0;
-        let candidates = if whole {
-            cell_corners::<D>()
-        } else {
-            closure::<D>(children)
+        let candidates = match cell.level {
+            0 => cell_corners::<D>(),
+            _ => closure::<D>(children),
         };
         let mut slots = 0u32;
         let mut wanted = Vec::new();
@@ -299,7 +306,8 @@ impl<D: Dim> Mesh<D> {
                 at,
                 group: sharing.groups(at).group_of(octant),
             };
-            if whole || self.is_node(node) {
+            let is_corner = slot_at(slot).iter().all(|&k| k != 1);
+            if is_corner || self.is_node(node) {
                 slots |= 1 << slot;
                 wanted.push((node, voxel_around::<D>(at, octant)));
             }

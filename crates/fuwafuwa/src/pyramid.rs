@@ -25,11 +25,13 @@ pub struct Cell {
 
 impl Cell {
     /// Width in voxels.
+    #[inline]
     pub fn width(self) -> i32 {
         1 << self.level
     }
 
     /// The cell of the next level that contains this one.
+    #[inline]
     pub fn parent(self) -> Self {
         Self {
             level: self.level + 1,
@@ -38,6 +40,7 @@ impl Cell {
     }
 
     /// Which child of its parent this cell is.
+    #[inline]
     pub fn child_index<D: Dim>(self) -> usize {
         (0..D::N).fold(0, |index, axis| {
             index | ((self.at[axis] & 1) as usize) << axis
@@ -48,6 +51,7 @@ impl Cell {
     ///
     /// # Panics
     /// At level 0, which has no children.
+    #[inline]
     pub fn child(self, index: usize) -> Self {
         Self {
             level: self.level - 1,
@@ -56,6 +60,7 @@ impl Cell {
     }
 
     /// The voxel in its low corner.
+    #[inline]
     pub fn first_voxel(self) -> Point {
         scale(self.at, self.width())
     }
@@ -141,6 +146,7 @@ impl<D: Dim> Pyramid<D> {
     }
 
     /// Whether a cell exists: it may own an element, or have handed all its children on.
+    #[inline]
     pub fn exists(&self, cell: Cell) -> bool {
         let number = self.places.number(cell);
         number.is_some_and(|number| self.exists[number])

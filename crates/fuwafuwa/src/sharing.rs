@@ -29,6 +29,7 @@ impl Groups {
     pub const NONE: Self = Self(u32::MAX);
 
     /// All octants of `solid` in one group.
+    #[inline]
     pub fn joined(solid: u8) -> Self {
         let mut groups = Self::NONE;
         if solid != 0 {

@@ -118,7 +118,7 @@ impl<D: Dim> Blocks<D> {
         let mut touched = Vec::new();
         for (&id, rotation) in seated.iter().zip(rotations) {
             let element = mesh.element(id).expect("seated elements are alive");
-            let material = grid.material(mesh.voxels(element)[0]);
+            let material = grid.material(mesh.first_voxel(element));
             self.put_in(id, element, mesh.stencil(element), material, rotation);
             touched.extend_from_slice(&element.nodes);
         }
