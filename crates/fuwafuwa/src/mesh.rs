@@ -299,7 +299,7 @@ impl<D: Dim> Mesh<D> {
             _ => closure::<D>(children),
         };
         let mut slots = 0u32;
-        let mut wanted = Vec::new();
+        let mut nodes = Vec::with_capacity(D::CORNERS);
         for slot in (0..D::SLOTS).filter(|slot| candidates >> slot & 1 == 1) {
             let (at, octant) = seat_of::<D>(cell, children, slot);
             let node = Node {
@@ -307,21 +307,18 @@ impl<D: Dim> Mesh<D> {
                 group: sharing.groups(at).group_of(octant),
             };
             let is_corner = slot_at(slot).iter().all(|&k| k != 1);
-            if is_corner || self.is_node(node) {
-                slots |= 1 << slot;
-                wanted.push((node, voxel_around::<D>(at, octant)));
+            if !is_corner && !self.is_node(node) {
+                continue;
             }
-        }
-        let mut nodes = Vec::with_capacity(wanted.len());
-        for (node, voxel) in wanted {
-            let (node_id, is_new) = self.node_id(node, sharing.index(node.at));
+            let (node_id, is_new) = self.node_id(node, sharing.index(at));
             if let (true, Some((past, inherited))) = (is_new, &mut past) {
-                let from = past.shares(self, voxel, node.at)?;
+                let from = past.shares(self, voxel_around::<D>(at, octant), at)?;
                 inherited.push(Inheritance {
                     node: node_id,
                     from,
                 });
             }
+            slots |= 1 << slot;
             nodes.push(node_id);
         }
         let stencil = self.class(children, slots)?;

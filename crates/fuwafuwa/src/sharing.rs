@@ -209,8 +209,11 @@ impl<D: Dim> Sharing<D> {
         if groups == Groups::NONE {
             return false;
         }
-        groups != Groups::joined(D::ALL_CORNERS)
-            || faces_around::<D>().any(|(octant, axis)| !self.is_closed(at, octant, axis))
+        let full = Groups::joined(D::ALL_CORNERS);
+        // Where everything around is together no face is open: true of most points of a body.
+        let is_near_a_gap = || neighbourhood::<D>(at, 1).any(|near| self.groups(near) != full);
+        let is_open = |(octant, axis)| !self.is_closed(at, octant, axis);
+        groups != full || is_near_a_gap() && faces_around::<D>().any(is_open)
     }
 
     /// Splits the groups at `at` into what lies in the octants of `side` and what does not.
