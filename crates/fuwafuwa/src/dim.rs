@@ -82,8 +82,16 @@ pub fn voxel_around<D: Dim>(at: Point, octant: usize) -> Point {
 
 /// All points of the box `low..=high`, the first axis running fastest.
 pub fn points_in(low: Point, high: Point) -> impl Iterator<Item = Point> {
-    (low[2]..=high[2]).flat_map(move |z| {
-        (low[1]..=high[1]).flat_map(move |y| (low[0]..=high[0]).map(move |x| [x, y, z]))
+    let mut next = (0..3).all(|axis| low[axis] <= high[axis]).then_some(low);
+    std::iter::from_fn(move || {
+        let mut at = next?;
+        let found = at;
+        next = (0..3).find_map(|axis| {
+            let more = at[axis] < high[axis];
+            at[axis] = if more { at[axis] + 1 } else { low[axis] };
+            more.then_some(at)
+        });
+        Some(found)
     })
 }
 

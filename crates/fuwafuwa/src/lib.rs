@@ -15,6 +15,7 @@
 
 pub mod blade;
 pub mod body;
+mod chains;
 mod contact;
 mod damping;
 pub mod dim;
@@ -36,7 +37,6 @@ pub mod sharing;
 pub mod snapshot;
 pub mod solve;
 pub mod stencil;
-mod table;
 mod touch;
 pub mod vector;
 pub mod view;

@@ -9,7 +9,7 @@
 //! at the released point, and the walk ends at the first level where nothing new appears. The cost
 //! of a cut goes with what it touches, not with the body.
 
-use crate::dim::{Dim, Point, add, corner, neighbourhood, scale, voxel_around};
+use crate::dim::{Dim, Point, add, corner, neighbourhood, points_in, scale, voxel_around};
 use crate::grid::VoxelGrid;
 use crate::sharing::Sharing;
 use std::marker::PhantomData;
@@ -26,11 +26,13 @@ pub struct Cell {
 
 impl Cell {
     /// Width in voxels.
+    #[inline]
     pub fn width(self) -> i32 {
         1 << self.level
     }
 
     /// The cell of the next level that contains this one.
+    #[inline]
     pub fn parent(self) -> Self {
         Self {
             level: self.level + 1,
@@ -39,6 +41,7 @@ impl Cell {
     }
 
     /// Which child of its parent this cell is.
+    #[inline]
     pub fn child_index<D: Dim>(self) -> usize {
         (0..D::N).fold(0, |index, axis| {
             index | ((self.at[axis] & 1) as usize) << axis
@@ -49,6 +52,7 @@ impl Cell {
     ///
     /// # Panics
     /// At level 0, which has no children.
+    #[inline]
     pub fn child(self, index: usize) -> Self {
         Self {
             level: self.level - 1,
@@ -57,8 +61,53 @@ impl Cell {
     }
 
     /// The voxel in its low corner.
+    #[inline]
     pub fn first_voxel(self) -> Point {
         scale(self.at, self.width())
+    }
+}
+
+/// A number for every place that a cell can take, level by level: the shape of tables over cells.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Places {
+    /// Of each level: cells on each axis, and the number of the first one.
+    levels: Vec<(Point, usize)>,
+    count: usize,
+}
+
+impl Places {
+    /// The places in a grid of `size` voxels, up to one cell that holds them all.
+    fn new(mut size: Point) -> Self {
+        let mut places = Self {
+            levels: Vec::new(),
+            count: 0,
+        };
+        loop {
+            places.levels.push((size, places.count));
+            places.count += size
+                .iter()
+                .map(|&extent| extent as usize)
+                .product::<usize>();
+            if size == [1; 3] {
+                return places;
+            }
+            size = size.map(|extent| (extent + 1) / 2);
+        }
+    }
+
+    /// How many places there are.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The number of a cell; `None` outside the grid.
+    #[inline]
+    pub fn number(&self, cell: Cell) -> Option<usize> {
+        let &(size, first) = self.levels.get(cell.level as usize)?;
+        let inside = (0..3).all(|axis| cell.at[axis] >= 0 && cell.at[axis] < size[axis]);
+        let [x, y, z] = cell.at.map(|k| k as usize);
+        inside.then(|| first + (z * size[1] as usize + y) * size[0] as usize + x)
     }
 }
 
@@ -76,50 +125,32 @@ pub enum Grading {
     Coarse,
 }
 
-/// Which cells exist, level by level.
+/// Which cells exist.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Pyramid<D: Dim> {
-    levels: Vec<Table>,
+    places: Places,
     grading: Grading,
-    dim: PhantomData<D>,
-}
-
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct Table {
-    size: Point,
     exists: Vec<bool>,
-}
-
-impl Table {
-    fn index(&self, at: Point) -> Option<usize> {
-        let inside = (0..3).all(|axis| at[axis] >= 0 && at[axis] < self.size[axis]);
-        inside.then(|| ((at[2] * self.size[1] + at[1]) * self.size[0] + at[0]) as usize)
-    }
+    dim: PhantomData<D>,
 }
 
 impl<D: Dim> Pyramid<D> {
     /// The cells of a body from scratch.
     pub fn new(grid: &VoxelGrid<D>, sharing: &Sharing<D>, grading: Grading) -> Self {
+        let places = Places::new(grid.size());
+        let mut exists = vec![false; places.count()];
+        // The topmost cell always exists, so that every voxel is owned.
+        if let [.., top] = &mut exists[1..] {
+            *top = true;
+        }
         let mut pyramid = Self {
-            levels: Vec::new(),
+            places,
             grading,
+            exists,
             dim: PhantomData,
         };
-        let mut size = grid.size();
-        loop {
-            let count = size.iter().map(|&extent| extent as usize).product();
-            let top = size == [1; 3];
-            // The topmost cell always exists, so that every voxel is owned.
-            let exists = vec![top && !pyramid.levels.is_empty(); count];
-            pyramid.levels.push(Table { size, exists });
-            if top {
-                break;
-            }
-            size = size.map(|extent| (extent + 1) / 2);
-        }
         pyramid.refine(grid, sharing, sharing.points());
         pyramid
     }
@@ -129,27 +160,21 @@ impl<D: Dim> Pyramid<D> {
         self.grading
     }
 
-    /// Number of cells of a level on each axis, whether they exist or not.
-    ///
-    /// # Panics
-    /// When there is no such level.
-    pub fn size(&self, level: u8) -> Point {
-        self.levels[level as usize].size
-    }
-
     /// Number of levels, the topmost included.
     pub fn level_count(&self) -> usize {
-        self.levels.len()
+        self.places.levels.len()
+    }
+
+    /// The places of its cells.
+    pub fn places(&self) -> &Places {
+        &self.places
     }
 
     /// Whether a cell exists: it may own an element, or have handed all its children on.
+    #[inline]
     pub fn exists(&self, cell: Cell) -> bool {
-        let table = self.levels.get(cell.level as usize);
-        table.is_some_and(|table| {
-            table
-                .index(cell.at)
-                .is_some_and(|index| table.exists[index])
-        })
+        let number = self.places.number(cell);
+        number.is_some_and(|number| self.exists[number])
     }
 
     /// The children that a cell fills itself: solid, and no cells of their own.
@@ -183,7 +208,7 @@ impl<D: Dim> Pyramid<D> {
         loop {
             let parent = cell.parent();
             assert!(
-                (parent.level as usize) < self.levels.len(),
+                (parent.level as usize) < self.level_count(),
                 "the topmost cell exists"
             );
             if self.exists(parent) {
@@ -195,8 +220,8 @@ impl<D: Dim> Pyramid<D> {
 
     /// All cells of a level that exist, in memory order.
     pub fn cells(&self, level: u8) -> impl Iterator<Item = Cell> + '_ {
-        let size = self.levels[level as usize].size;
-        crate::dim::points_in([0; 3], size.map(|extent| extent - 1))
+        let (size, _) = self.places.levels[level as usize];
+        points_in([0; 3], size.map(|extent| extent - 1))
             .map(move |at| Cell { level, at })
             .filter(|&cell| self.exists(cell))
     }
@@ -212,7 +237,7 @@ impl<D: Dim> Pyramid<D> {
         let mut born = Vec::new();
         let mut layer: Vec<Cell> = Vec::new();
         let everywhere = self.grading == Grading::Uniform;
-        let is_coarse = self.grading == Grading::Coarse && self.levels.len() > 1;
+        let is_coarse = self.grading == Grading::Coarse && self.level_count() > 1;
         for at in changed.filter(|&at| everywhere || is_fine(grid, sharing, at)) {
             for voxel in (0..D::CORNERS).map(|octant| voxel_around::<D>(at, octant)) {
                 let finest = Cell {
@@ -248,13 +273,8 @@ impl<D: Dim> Pyramid<D> {
 
     /// Makes a cell exist; false when it did already or lies outside the pyramid.
     fn add(&mut self, cell: Cell) -> bool {
-        let Some(table) = self.levels.get_mut(cell.level as usize) else {
-            return false;
-        };
-        let Some(index) = table.index(cell.at) else {
-            return false;
-        };
-        !std::mem::replace(&mut table.exists[index], true)
+        let number = self.places.number(cell);
+        number.is_some_and(|number| !std::mem::replace(&mut self.exists[number], true))
     }
 }
 

@@ -30,6 +30,7 @@ impl Groups {
     pub const NONE: Self = Self(u32::MAX);
 
     /// All octants of `solid` in one group.
+    #[inline]
     pub fn joined(solid: u8) -> Self {
         let mut groups = Self::NONE;
         if solid != 0 {
@@ -144,8 +145,10 @@ impl<D: Dim> Sharing<D> {
             .collect();
         let dim = PhantomData;
         let mut sharing = Self { size, groups, dim };
-        let everywhere = sharing.points().collect();
-        sharing.normalise(everywhere);
+        // Faces around a full point are closed until a neighbour changes.
+        let is_partial = |&at: &Point| sharing.groups(at) != Groups::joined(D::ALL_CORNERS);
+        let partial = sharing.points().filter(is_partial).collect();
+        sharing.normalise(partial);
         sharing
     }
 
@@ -214,8 +217,11 @@ impl<D: Dim> Sharing<D> {
         if groups == Groups::NONE {
             return false;
         }
-        groups != Groups::joined(D::ALL_CORNERS)
-            || faces_around::<D>().any(|(octant, axis)| !self.is_closed(at, octant, axis))
+        let full = Groups::joined(D::ALL_CORNERS);
+        // Where everything around is together no face is open: true of most points of a body.
+        let is_near_a_gap = || neighbourhood::<D>(at, 1).any(|near| self.groups(near) != full);
+        let is_open = |(octant, axis)| !self.is_closed(at, octant, axis);
+        groups != full || is_near_a_gap() && faces_around::<D>().any(is_open)
     }
 
     /// Splits the groups at `at` into what lies in the octants of `side` and what does not.

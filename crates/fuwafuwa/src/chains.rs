@@ -1,0 +1,87 @@
+//! Short lists of ids, one for each place of a table: which elements a cell has, which nodes a point.
+//!
+//! A place keeps the first id of its list and every id the next one, so that a list costs no
+//! memory of its own and is found without a search.
+
+const END: u32 = u32::MAX;
+
+/// A list of ids for every place; an id is in one list at most.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Chains {
+    /// The first id of each place.
+    first: Vec<u32>,
+    /// The id after each id.
+    next: Vec<u32>,
+}
+
+impl Chains {
+    /// Empty lists for `places` places.
+    pub fn new(places: usize) -> Self {
+        Self {
+            first: vec![END; places],
+            next: Vec::new(),
+        }
+    }
+
+    /// The ids of a place, in the order in which they came.
+    #[inline]
+    pub fn at(&self, place: usize) -> impl Iterator<Item = u32> + '_ {
+        let mut id = self.first[place];
+        std::iter::from_fn(move || {
+            let found = (id != END).then_some(id)?;
+            id = self.next[found as usize];
+            Some(found)
+        })
+    }
+
+    /// Puts an id, which is in no list, at the end of the list of a place.
+    pub fn append(&mut self, place: usize, id: u32) {
+        let end = self.next.len().max(id as usize + 1);
+        self.next.resize(end, END);
+        self.next[id as usize] = END;
+        *self.link(place, END) = id;
+    }
+
+    /// Takes an id out of the list of a place.
+    ///
+    /// # Panics
+    /// When it is not there.
+    pub fn remove(&mut self, place: usize, id: u32) {
+        let after = self.next[id as usize];
+        *self.link(place, id) = after;
+    }
+
+    /// Where the list of a place names `id`.
+    fn link(&mut self, place: usize, id: u32) -> &mut u32 {
+        let (mut before, mut here) = (END, self.first[place]);
+        while here != id {
+            (before, here) = (here, self.next[here as usize]);
+        }
+        if before == END {
+            &mut self.first[place]
+        } else {
+            &mut self.next[before as usize]
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ids_keep_their_order_and_come_back() {
+        let mut chains = Chains::new(2);
+        for id in [4, 0, 2] {
+            chains.append(1, id);
+        }
+        chains.append(0, 1);
+        chains.remove(1, 0);
+        assert_eq!(chains.at(1).collect::<Vec<_>>(), [4, 2]);
+        chains.append(0, 0);
+        chains.remove(1, 4);
+        assert_eq!(chains.at(0).collect::<Vec<_>>(), [1, 0]);
+        assert_eq!(chains.at(1).collect::<Vec<_>>(), [2]);
+    }
+}
