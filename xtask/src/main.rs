@@ -117,7 +117,14 @@ const TEST: &[Step] = &[
         hint: "a test failed or did not compile, see above",
     },
     Step {
-        arguments: &["test", "--package", "fuwafuwa", "--release"],
+        arguments: &[
+            "test",
+            "--package",
+            "fuwafuwa",
+            "--release",
+            "--features",
+            "serde,parallel",
+        ],
         environment: &[],
         hint: "passes in debug but not in release: look for work done inside a debug_assert!",
     },

@@ -35,6 +35,10 @@ pub const LANES: usize = 8;
 /// Blocks that go through the three loops of the kernel together: their scratch fits the L1 cache.
 const GROUP: usize = 16;
 
+/// Blocks from which on several threads are worth their meeting.
+#[cfg(feature = "parallel")]
+const LEAST_PARALLEL: usize = 256;
+
 const VACANT: u32 = u32::MAX;
 const ALL_LANES: u8 = u8::MAX;
 
@@ -116,35 +120,128 @@ impl Home {
     }
 }
 
-/// The stencils of all blocks.
-struct Numbers<'a> {
-    same: &'a [f32],
+/// What all blocks read.
+#[derive(Copy, Clone)]
+struct Shared<'a> {
+    law: Law,
+    moduli: &'a [Moduli],
+    numbers: &'a [f32],
     pooled: &'a [Eight],
+    nodes: &'a [u32],
+}
+
+/// Some blocks, and the forces that they write, the first of which has the number `first`.
+struct Group<'a> {
+    blocks: &'a mut [Block],
+    forces: &'a mut [Row],
+    first: usize,
+    shared: Shared<'a>,
 }
 
 impl Block {
+    /// Where its forces end.
+    fn end(&self) -> usize {
+        self.first as usize + self.node_count as usize * LANES
+    }
+
     /// Its stencil: one for all lanes, or else one for each.
     #[inline(always)]
-    fn stencil<'a>(&self, numbers: &Numbers<'a>) -> (&'a [f32], &'a [Eight]) {
+    fn stencil<'a>(&self, shared: &Shared<'a>) -> (&'a [f32], &'a [Eight]) {
         let places = self.stencil as usize..(self.stencil + self.numbers) as usize;
         match self.home {
             Home::Plain(_) => (&[], &[]),
-            Home::Class(..) => (&numbers.same[places], &[]),
-            Home::Pool(..) => (&[], &numbers.pooled[places]),
+            Home::Class(..) => (&shared.numbers[places], &[]),
+            Home::Pool(..) => (&[], &shared.pooled[places]),
         }
     }
 
+    /// What the kernel works on; `first` is the number of the first of the forces.
     #[inline(always)]
-    fn seats<'a>(&'a mut self, nodes: &'a [u32], forces: &'a mut [Row]) -> Seats<'a> {
-        let first = self.first as usize;
-        let places = first..first + self.node_count as usize * LANES;
+    fn seats<'a>(
+        &'a mut self,
+        shared: &Shared<'a>,
+        forces: &'a mut [Row],
+        first: usize,
+    ) -> Seats<'a> {
+        let places = self.first as usize..self.end();
         Seats {
-            nodes: &nodes[places.clone()],
+            nodes: &shared.nodes[places.clone()],
             half_size: &self.half_size,
             rotation: &mut self.rotation,
-            forces: &mut forces[places],
+            forces: &mut forces[places.start - first..places.end - first],
         }
     }
+}
+
+/// The forces of the blocks of a group that are awake.
+#[inline(always)]
+fn evaluate_group<D: Dim, L: Lanes>(group: Group, position: &[Row]) {
+    let Group {
+        blocks,
+        forces: rows,
+        first,
+        shared,
+    } = group;
+    let law = shared.law;
+    let mut scratch = [Scratch::EMPTY; GROUP];
+    for (block, scratch) in blocks.iter_mut().zip(&mut scratch) {
+        if block.asleep == ALL_LANES {
+            continue;
+        }
+        let (home, stencil) = (block.home, block.stencil(&shared));
+        let seats = block.seats(&shared, rows, first);
+        match (home, stencil) {
+            (Home::Plain(_), _) => plain_gradient::<D, L>(position, &seats, scratch),
+            (_, (same, [])) => gradient::<D, L>(&Same(same), position, &seats, scratch),
+            (_, (_, mixed)) => gradient::<D, L>(&Mixed(mixed), position, &seats, scratch),
+        }
+    }
+    for (block, scratch) in blocks.iter_mut().zip(&mut scratch) {
+        if block.asleep == ALL_LANES {
+            continue;
+        }
+        let moduli = &shared.moduli[block.home.material() as usize - 1];
+        let mut seats = block.seats(&shared, rows, first);
+        stress::<D, L>(law, moduli, &mut seats, scratch);
+    }
+    for (block, scratch) in blocks.iter_mut().zip(&scratch) {
+        if block.asleep == ALL_LANES {
+            continue;
+        }
+        let (home, stencil) = (block.home, block.stencil(&shared));
+        let moduli = &shared.moduli[home.material() as usize - 1];
+        let seats = &mut block.seats(&shared, rows, first);
+        match (home, stencil) {
+            (Home::Plain(_), _) => plain_forces::<D, L>(moduli, position, seats, scratch),
+            (_, (same, [])) => {
+                forces::<D, L>(law, moduli, &Same(same), position, seats, scratch);
+            }
+            (_, (_, mixed)) => {
+                forces::<D, L>(law, moduli, &Mixed(mixed), position, seats, scratch);
+            }
+        }
+    }
+}
+
+/// As [`evaluate_group`], compiled for AVX2.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn evaluate_group_wide<D: Dim>(group: Group, position: &[Row]) {
+    evaluate_group::<D, lanes::Wide>(group, position);
+}
+
+/// The forces of a group, by the widest lanes the machine has.
+fn evaluate_best<D: Dim>(group: Group, position: &[Row]) {
+    #[cfg(target_arch = "x86_64")]
+    if std::arch::is_x86_feature_detected!("avx2") {
+        // SAFETY: the machine has AVX2; the function is safe code otherwise.
+        #[allow(unsafe_code)]
+        unsafe {
+            evaluate_group_wide::<D>(group, position);
+        }
+        return;
+    }
+    evaluate_group::<D, Portable>(group, position);
 }
 
 impl<D: Dim> Blocks<D> {
@@ -212,74 +309,59 @@ impl<D: Dim> Blocks<D> {
 
     /// Computes the forces of all elements that are awake, at the given node positions [m].
     pub fn evaluate(&mut self, position: &[Row]) {
-        #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the machine has AVX2; the function is safe code otherwise.
-            #[allow(unsafe_code)]
-            unsafe {
-                self.evaluate_avx2(position);
-            }
+        #[cfg(feature = "parallel")]
+        if self.blocks.len() >= LEAST_PARALLEL {
+            use rayon::prelude::*;
+            let groups: Vec<Group> = self.groups().collect();
+            let groups = groups.into_par_iter().with_min_len(8);
+            groups.for_each(|group| evaluate_best::<D>(group, position));
             return;
         }
-        self.evaluate_in::<Portable>(position);
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn evaluate_avx2(&mut self, position: &[Row]) {
-        self.evaluate_in::<lanes::Wide>(position);
-    }
-
-    #[inline(always)]
-    fn evaluate_in<L: Lanes>(&mut self, position: &[Row]) {
-        let mut scratch = [Scratch::EMPTY; GROUP];
-        let law = self.law;
-        for group in self.blocks.chunks_mut(GROUP) {
-            let numbers = Numbers {
-                same: &self.numbers,
-                pooled: &self.pooled,
-            };
-            for (block, scratch) in group.iter_mut().zip(&mut scratch) {
-                if block.asleep == ALL_LANES {
-                    continue;
-                }
-                let home = block.home;
-                let stencil = block.stencil(&numbers);
-                let seats = block.seats(&self.nodes, &mut self.forces);
-                match (home, stencil) {
-                    (Home::Plain(_), _) => plain_gradient::<D, L>(position, &seats, scratch),
-                    (_, (same, [])) => gradient::<D, L>(&Same(same), position, &seats, scratch),
-                    (_, (_, mixed)) => gradient::<D, L>(&Mixed(mixed), position, &seats, scratch),
-                }
-            }
-            for (block, scratch) in group.iter_mut().zip(&mut scratch) {
-                if block.asleep == ALL_LANES {
-                    continue;
-                }
-                let moduli = &self.moduli[block.home.material() as usize - 1];
-                let mut seats = block.seats(&self.nodes, &mut self.forces);
-                stress::<D, L>(law, moduli, &mut seats, scratch);
-            }
-            for (block, scratch) in group.iter_mut().zip(&scratch) {
-                if block.asleep == ALL_LANES {
-                    continue;
-                }
-                let home = block.home;
-                let moduli = &self.moduli[home.material() as usize - 1];
-                let stencil = block.stencil(&numbers);
-                let mut seats = block.seats(&self.nodes, &mut self.forces);
-                let seats = &mut seats;
-                match (home, stencil) {
-                    (Home::Plain(_), _) => plain_forces::<D, L>(moduli, position, seats, scratch),
-                    (_, (same, [])) => {
-                        forces::<D, L>(law, moduli, &Same(same), position, seats, scratch);
-                    }
-                    (_, (_, mixed)) => {
-                        forces::<D, L>(law, moduli, &Mixed(mixed), position, seats, scratch);
-                    }
-                }
-            }
+        for group in self.groups() {
+            evaluate_best::<D>(group, position);
         }
+    }
+
+    #[cfg(test)]
+    fn evaluate_portable(&mut self, position: &[Row]) {
+        for group in self.groups() {
+            evaluate_group::<D, Portable>(group, position);
+        }
+    }
+
+    /// The blocks in groups that share nothing that is written: on any number of threads the same
+    /// bits come out.
+    fn groups(&mut self) -> impl Iterator<Item = Group<'_>> {
+        let Self {
+            law,
+            moduli,
+            numbers,
+            pooled,
+            nodes,
+            ..
+        } = self;
+        let shared = Shared {
+            law: *law,
+            moduli,
+            numbers,
+            pooled,
+            nodes,
+        };
+        let mut forces = &mut self.forces[..];
+        let mut first = 0;
+        self.blocks.chunks_mut(GROUP).map(move |blocks| {
+            // Blocks stand in the order of their forces.
+            let end = blocks.last().map_or(first, Block::end);
+            let (own, rest) = std::mem::take(&mut forces).split_at_mut(end - first);
+            let group = Group {
+                blocks,
+                forces: own,
+                first,
+                shared,
+            };
+            (forces, first) = (rest, end);
+            group
+        })
     }
 
     /// The force [N] on a node, as of the last evaluation.
@@ -594,7 +676,7 @@ mod tests {
         }
         for _ in 0..3 {
             wide.evaluate(&position);
-            portable.evaluate_in::<Portable>(&position);
+            portable.evaluate_portable(&position);
         }
         for (id, _) in mesh.nodes() {
             let bits = |blocks: &Blocks<D>| blocks.force_on(id).map(f32::to_bits);

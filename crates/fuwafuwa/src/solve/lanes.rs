@@ -135,7 +135,7 @@ mod wide {
     /// Eight numbers in an AVX register.
     ///
     /// SAFETY of every function here: they need AVX, and are only reached from
-    /// `Blocks::evaluate_avx2`, which is called after the machine was asked for AVX2. Loads and
+    /// `evaluate_group_wide` in `solve`, which is called after the machine was asked for AVX2. Loads and
     /// stores go through references to arrays of the right length and need no alignment.
     #[derive(Copy, Clone)]
     pub struct Wide(__m256);
