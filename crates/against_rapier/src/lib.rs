@@ -1,0 +1,275 @@
+//! The soft bodies of [Rapier](https://rapier.rs) 0.36 on the scenes with which fuwafuwa is compared.
+//!
+//! A body 1 m wide, made of the same voxels as fuwafuwa's, falls on a plane. The time of every frame is taken, and the
+//! *peak squash*, how flat the body gets: a solver with a fixed number of iterations is softer than its material
+//! says, and the more so the finer the body, so that times compare only where the squash is the same
+//! ([`drop_at_squash`]).
+//!
+//! # How Rapier is set up
+//!
+//! On one thread (without its feature `parallel`), with the solver that its documentation calls the cheap one,
+//! constraints swept once and three times more in each substep. Everything not listed is Rapier's default.
+//!
+//! | setting | is | because |
+//! | --- | --- | --- |
+//! | cells in 2D | corotational triangles, 2 a voxel | take Young's modulus and Poisson's ratio, and cost the least there |
+//! | cells in 3D | 5 tetrahedra a voxel, each a volume constraint, and springs on their edges | at equal squash a third to a quarter of the time of corotational tetrahedra; Poisson's ratio then follows from the lattice of springs and is about 0.2 |
+//! | damping | none | the material has none; Rapier's own (critical) damping makes the body softer still |
+//! | contact skin | a tenth of a voxel | the pieces of a cut body lie closer than Rapier's half voxel; and Rapier adds up to four substeps by itself while the body hits faster than a skin a substep: with the thin skin it does so in time, and the median frame at equal squash takes 20 to 50 % less than without the additions |
+//! | sleep | off | every frame is a frame of a moving body |
+//! | floor | a half-space | |
+//!
+//! Two features of Rapier are left out: `simd8`, since only its rigid bodies are solved several lanes at a time (four,
+//! without being asked) and its soft bodies by scalar code, whose times `-C target-cpu=native` did not change either; and
+//! `fem`, an implicit solver that is cheaper in the air but far dearer on the floor, where each contact costs a solve
+//! over the whole body. At 7 to 9 % of squash and with 32 voxels in 2D a frame on the floor took it 41 ms, against 10;
+//! with 64 voxels 390 ms, against 70.
+//!
+//! Times are of `PhysicsWorld::step` alone. A frame in the air costs about as much as one at rest on the floor; in the
+//! frames of an impact Rapier adds its substeps, so besides the median a high percentile is worth a look.
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+// Units stand in brackets: [m].
+#![allow(rustdoc::broken_intra_doc_links)]
+
+mod mesh;
+mod squash;
+mod tear;
+mod world;
+
+use std::fmt;
+
+use fuwafuwa::{BuildError, Dim2, Dim3, VoxelGrid};
+
+pub use squash::{AtSquash, drop_at_squash};
+pub use tear::{Tear, Torn, tear_disc};
+
+use mesh::Simplices;
+use world::{Falling, Law, plane, space};
+
+/// Width of the body [m], empty voxels at the rim included.
+const WIDTH: f32 = 1.0;
+/// Length of a frame [s].
+const FRAME: f32 = 1.0 / 60.0;
+
+/// A soft disc or ball, 1 m wide, that falls on a plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drop {
+    /// Voxels across the body.
+    pub n: usize,
+    /// Young's modulus [Pa]; in 2D of a body 1 m thick.
+    pub young: f32,
+    /// Poisson's ratio, from 0 up to but not including 0.5. Without effect in 3D, see the crate's documentation.
+    pub poisson: f32,
+    /// Density [kg/m³].
+    pub density: f32,
+    /// Gap between the body and the plane at the start [m].
+    pub height: f32,
+    /// Acceleration of free fall [m/s²].
+    pub gravity: f32,
+    /// Coefficient of friction between the body and the plane, and between pieces of the body.
+    pub friction: f32,
+    /// Frames of 1/60 s to run.
+    pub frames: usize,
+    /// Substeps of the solver in each frame, to which Rapier adds up to 4 while the body hits fast. Its default is 4;
+    /// more make the body stiffer and cost as much more.
+    pub substeps: usize,
+}
+
+impl Default for Drop {
+    /// The stiff scene: a body of 4·10⁵ Pa falls 1 m, and should be squashed by 7 to 8 %.
+    fn default() -> Self {
+        Self {
+            n: 32,
+            young: 4e5,
+            poisson: 0.3,
+            density: 100.0,
+            height: 1.0,
+            gravity: 9.81,
+            friction: 0.5,
+            frames: 300,
+            substeps: 4,
+        }
+    }
+}
+
+/// How a fall went.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// Time that each frame took [ms].
+    pub milliseconds: Vec<f64>,
+    /// 1 − least height / rest height of the body, over all frames.
+    pub peak_squash: f64,
+    /// Whether every node stayed at a finite place.
+    pub finite: bool,
+}
+
+/// Why a scene could not be run.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Error {
+    /// The body could not be made.
+    Shape(BuildError),
+    /// A field of the scene has a value that makes no sense.
+    Scene {
+        /// Its name.
+        field: &'static str,
+        /// What would have made sense.
+        expected: &'static str,
+    },
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Error::Shape(error) => write!(formatter, "the body cannot be made: {error}"),
+            Error::Scene { field, expected } => {
+                write!(formatter, "`{field}` of the scene has to be {expected}")
+            }
+        }
+    }
+}
+
+impl std::error::Error for Error {}
+
+impl From<BuildError> for Error {
+    fn from(error: BuildError) -> Self {
+        Error::Shape(error)
+    }
+}
+
+/// What a scene gives, or why it could not be run.
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// Lets a disc fall, in 2D.
+///
+/// # Errors
+/// [`Error`] when the scene makes no sense.
+pub fn drop_disc(scene: &Drop) -> Result<Outcome> {
+    Ok(fall(disc(scene)?, scene.frames))
+}
+
+/// Lets a ball fall, in 3D.
+///
+/// # Errors
+/// [`Error`] when the scene makes no sense.
+pub fn drop_ball(scene: &Drop) -> Result<Outcome> {
+    scene.check()?;
+    let mesh = Simplices::tetrahedra(&VoxelGrid::<Dim3>::ball(scene.n, WIDTH)?);
+    let law = Law::springs(scene, mesh.voxel_size);
+    Ok(fall(space::World::new(&mesh, scene, law), scene.frames))
+}
+
+fn disc(scene: &Drop) -> Result<plane::World> {
+    scene.check()?;
+    let mesh = Simplices::triangles(&VoxelGrid::<Dim2>::ball(scene.n, WIDTH)?);
+    Ok(plane::World::new(&mesh, scene, Law::Corotational))
+}
+
+fn fall(mut world: impl Falling, frames: usize) -> Outcome {
+    let rest = world.span();
+    let mut least = rest.height();
+    let mut finite = true;
+    let milliseconds = (0..frames)
+        .map(|_| {
+            let time = world.timed_step();
+            let span = world.span();
+            finite &= span.finite;
+            least = least.min(span.height());
+            time
+        })
+        .collect();
+    Outcome {
+        milliseconds,
+        peak_squash: 1.0 - f64::from(least) / f64::from(rest.height()),
+        finite,
+    }
+}
+
+impl Drop {
+    fn check(&self) -> Result<()> {
+        let positive = |value: f32| value > 0.0 && value.is_finite();
+        let not_negative = |value: f32| value >= 0.0 && value.is_finite();
+        let above_zero = "above 0 and finite";
+        let from_zero = "0 or more, and finite";
+        for (field, holds, expected) in [
+            ("young", positive(self.young), above_zero),
+            ("density", positive(self.density), above_zero),
+            ("gravity", positive(self.gravity), above_zero),
+            ("height", not_negative(self.height), from_zero),
+            ("friction", not_negative(self.friction), from_zero),
+            (
+                "poisson",
+                (0.0..0.5).contains(&self.poisson),
+                "from 0 to below 0.5",
+            ),
+            ("substeps", self.substeps > 0, "at least 1"),
+            ("frames", self.frames > 0, "at least 1"),
+        ] {
+            if !holds {
+                return Err(Error::Scene { field, expected });
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn small() -> Drop {
+        Drop {
+            n: 8,
+            height: 0.1,
+            frames: 30,
+            ..Drop::default()
+        }
+    }
+
+    #[test]
+    fn a_disc_and_a_ball_are_squashed_by_the_floor_and_stay_whole() {
+        for drop in [drop_disc, drop_ball] {
+            let outcome = drop(&small()).expect("the scene makes sense");
+            assert_eq!(outcome.milliseconds.len(), 30);
+            assert!(outcome.finite);
+            assert!(
+                (0.005..0.15).contains(&outcome.peak_squash),
+                "{}",
+                outcome.peak_squash
+            );
+        }
+    }
+
+    #[test]
+    fn more_substeps_make_a_stiffer_body() {
+        let squash = |substeps| {
+            let scene = Drop {
+                n: 16,
+                substeps,
+                ..small()
+            };
+            drop_disc(&scene)
+                .expect("the scene makes sense")
+                .peak_squash
+        };
+        assert!(squash(16) < squash(1));
+    }
+
+    #[test]
+    fn a_scene_without_sense_is_refused_by_name() {
+        let scene = Drop {
+            poisson: 0.5,
+            ..small()
+        };
+        let error = drop_disc(&scene).expect_err("a Poisson's ratio of 0.5");
+        assert_eq!(
+            error.to_string(),
+            "`poisson` of the scene has to be from 0 to below 0.5"
+        );
+        let empty = Drop { n: 0, ..small() };
+        assert_eq!(
+            drop_ball(&empty).err(),
+            Some(Error::Shape(BuildError::Empty))
+        );
+    }
+}

@@ -1,0 +1,209 @@
+//! From voxels to the triangles and tetrahedra that Rapier's soft bodies are made of.
+
+use fuwafuwa::dim::{add, corner};
+use fuwafuwa::{Dim, Dim2, Dim3, Point, VoxelGrid};
+
+/// Simplices with `K` corners that fill the solid voxels of a grid, without gaps or overlaps.
+pub struct Simplices<const K: usize> {
+    /// Edge length of a voxel [m].
+    pub voxel_size: f32,
+    /// The nodes [m], the middle of the grid at the origin, but the lowest node at height 0.
+    pub positions: Vec<[f32; 3]>,
+    /// Share of each node in the volume (2D: area) of the voxels around it [m³ or m²].
+    pub volumes: Vec<f32>,
+    /// The corners of each simplex.
+    pub cells: Vec<[u32; K]>,
+}
+
+/// Diagonals alternate from voxel to voxel, so that the body has no grain.
+///
+/// ```text
+///   ┌────┬────┐
+///   │  ╱ │ ╲  │
+///   │ ╱  │  ╲ │
+///   └────┴────┘
+///    even odd
+/// ```
+const TRIANGLES: [&[[usize; 3]]; 2] = [&[[0, 1, 3], [0, 3, 2]], &[[0, 1, 2], [1, 3, 2]]];
+
+/// Five tetrahedra, mirrored from voxel to voxel, so that the diagonals of a face agree from both sides: the same as
+/// in Rapier's own `SoftBodyBuilder::cuboid`.
+const TETRAHEDRA: [&[[usize; 4]]; 2] = [
+    &[
+        [0, 3, 5, 6],
+        [1, 0, 3, 5],
+        [2, 0, 3, 6],
+        [4, 0, 5, 6],
+        [7, 3, 5, 6],
+    ],
+    &[
+        [1, 2, 4, 7],
+        [0, 1, 2, 4],
+        [3, 1, 2, 7],
+        [5, 1, 4, 7],
+        [6, 2, 4, 7],
+    ],
+];
+
+impl Simplices<3> {
+    /// Two triangles a voxel.
+    pub fn triangles(grid: &VoxelGrid<Dim2>) -> Self {
+        Self::fill(grid, TRIANGLES)
+    }
+}
+
+impl Simplices<4> {
+    /// Five tetrahedra a voxel.
+    pub fn tetrahedra(grid: &VoxelGrid<Dim3>) -> Self {
+        Self::fill(grid, TETRAHEDRA)
+    }
+}
+
+impl<const K: usize> Simplices<K> {
+    /// `splits` are those of voxels with an even and with an odd sum of coordinates.
+    fn fill<D: Dim>(grid: &VoxelGrid<D>, splits: [&[[usize; K]]; 2]) -> Self {
+        let voxel_size = grid.voxel_size();
+        let share = voxel_size.powi(D::N as i32) / D::CORNERS as f32;
+        let mut nodes = Nodes::new(grid.size());
+        let (mut volumes, mut cells) = (Vec::new(), Vec::new());
+        for voxel in grid.voxels().filter(|&voxel| grid.is_solid(voxel)) {
+            let corners: Vec<u32> = (0..D::CORNERS)
+                .map(|index| nodes.at(add(voxel, corner(index))))
+                .collect();
+            volumes.resize(nodes.points.len(), 0.0);
+            corners
+                .iter()
+                .for_each(|&node| volumes[node as usize] += share);
+            let odd = voxel.iter().sum::<i32>() & 1;
+            cells.extend(
+                splits[odd as usize]
+                    .iter()
+                    .map(|cell| cell.map(|k| corners[k])),
+            );
+        }
+        let lowest = nodes.points.iter().map(|point| point[1]).min().unwrap_or(0);
+        let middle = grid.size().map(|extent| extent as f32 * 0.5);
+        let place = |point: &Point| {
+            let [x, y, z] = *point;
+            [
+                x as f32 - middle[0],
+                (y - lowest) as f32,
+                z as f32 - middle[2],
+            ]
+            .map(|k| k * voxel_size)
+        };
+        Self {
+            voxel_size,
+            positions: nodes.points.iter().map(place).collect(),
+            volumes,
+            cells,
+        }
+    }
+}
+
+/// The lattice points in use, numbered in the order in which they were first asked for.
+struct Nodes {
+    size: Point,
+    /// The number of each lattice point, or [`u32::MAX`].
+    numbers: Vec<u32>,
+    points: Vec<Point>,
+}
+
+impl Nodes {
+    fn new(voxels: Point) -> Self {
+        let size = voxels.map(|extent| extent + 1);
+        Self {
+            size,
+            numbers: vec![u32::MAX; size.iter().map(|&extent| extent as usize).product()],
+            points: Vec::new(),
+        }
+    }
+
+    fn at(&mut self, point: Point) -> u32 {
+        let place = (point[2] * self.size[1] + point[1]) * self.size[0] + point[0];
+        let number = &mut self.numbers[place as usize];
+        if *number == u32::MAX {
+            *number = self.points.len() as u32;
+            self.points.push(point);
+        }
+        *number
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn simplices_fill_the_voxels() {
+        let disc = VoxelGrid::<Dim2>::ball(16, 1.0).expect("a disc of 16 voxels");
+        let triangles = Simplices::triangles(&disc);
+        assert_eq!(triangles.cells.len(), 2 * disc.solid_count());
+        let area: f32 = triangles
+            .cells
+            .iter()
+            .map(|cell| area(&triangles.positions, cell))
+            .sum();
+        let shares: f32 = triangles.volumes.iter().sum();
+        let expected = disc.solid_count() as f32 / 256.0;
+        assert!((area - expected).abs() < 1e-4, "{area} is not {expected}");
+        assert!(
+            (shares - expected).abs() < 1e-4,
+            "{shares} is not {expected}"
+        );
+
+        let ball = VoxelGrid::<Dim3>::ball(8, 1.0).expect("a ball of 8 voxels");
+        let tetrahedra = Simplices::tetrahedra(&ball);
+        let volume: f32 = tetrahedra
+            .cells
+            .iter()
+            .map(|cell| volume(&tetrahedra.positions, cell))
+            .sum();
+        let expected = ball.solid_count() as f32 / 512.0;
+        assert!(
+            (volume - expected).abs() < 1e-4,
+            "{volume} is not {expected}"
+        );
+    }
+
+    /// The side of a tetrahedron that two voxels share has to be the same triangle for both.
+    #[test]
+    fn tetrahedra_of_neighbours_agree_on_the_diagonal_between_them() {
+        let pair = VoxelGrid::<Dim3>::from_fn([2, 1, 1], 1.0, |_| 1).expect("two voxels");
+        let mesh = Simplices::tetrahedra(&pair);
+        let on_the_border = |cell: &[u32; 4]| {
+            let mut side: Vec<u32> = cell
+                .iter()
+                .copied()
+                .filter(|&k| mesh.positions[k as usize][0] == 0.0)
+                .collect();
+            side.sort_unstable();
+            (side.len() == 3).then_some(side)
+        };
+        let mut sides: Vec<Vec<u32>> = mesh.cells.iter().filter_map(on_the_border).collect();
+        sides.sort();
+        assert_eq!(sides.len(), 4);
+        assert_eq!((&sides[0], &sides[2]), (&sides[1], &sides[3]));
+    }
+
+    fn difference(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
+        [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+    }
+
+    fn area(positions: &[[f32; 3]], cell: &[u32; 3]) -> f32 {
+        let [a, b, c] = cell.map(|k| positions[k as usize]);
+        let (u, v) = (difference(b, a), difference(c, a));
+        (u[0] * v[1] - u[1] * v[0]).abs() / 2.0
+    }
+
+    fn volume(positions: &[[f32; 3]], cell: &[u32; 4]) -> f32 {
+        let [a, b, c, d] = cell.map(|k| positions[k as usize]);
+        let (u, v, w) = (difference(b, a), difference(c, a), difference(d, a));
+        let cross = [
+            u[1] * v[2] - u[2] * v[1],
+            u[2] * v[0] - u[0] * v[2],
+            u[0] * v[1] - u[1] * v[0],
+        ];
+        (cross[0] * w[0] + cross[1] * w[1] + cross[2] * w[2]).abs() / 6.0
+    }
+}
