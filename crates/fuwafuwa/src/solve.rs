@@ -17,7 +17,7 @@ use crate::grid::VoxelGrid;
 use crate::law::{Elasticity, Law};
 use crate::mesh::{Element, Mesh};
 use crate::stencil::Stencil;
-use crate::vector::plus;
+use crate::vector::{plus, scaled};
 use kernel::{
     Eight, Mixed, Moduli, Same, Scratch, Seats, forces, gradient, numbers, numbers_a_node,
     plain_forces, plain_gradient, stress,
@@ -33,7 +33,7 @@ pub type Row = [f32; 4];
 pub const LANES: usize = 8;
 
 /// Blocks that go through the three loops of the kernel together: their scratch fits the L1 cache.
-const GROUP: usize = 16;
+const GROUP: usize = 8;
 
 /// Blocks from which on several threads are worth their meeting.
 #[cfg(feature = "parallel")]
@@ -62,20 +62,13 @@ pub struct Blocks<D: Dim> {
     pooled: Vec<Eight>,
     /// Block and lane of each element, by id; the block is [`VACANT`] while it has none.
     seats: Vec<(u32, u8)>,
-    /// Where the forces on each node stand: places in `forces`, by id.
-    slots: Vec<Slots>,
+    /// Where the forces on each node stand, by id: places in `forces`, one an element, in the order
+    /// of the octants; 0, where no force is, for those that are fewer.
+    slots: Vec<[u32; 8]>,
     /// The nodes of all blocks: node k of lane l at k · LANES + l after the block's first.
     nodes: Vec<u32>,
     forces: Vec<Row>,
     dim: PhantomData<D>,
-}
-
-/// Places of the forces on a node: one an element, eight at most, in the order of the octants.
-#[derive(Copy, Clone, Debug, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct Slots {
-    places: [u32; 8],
-    count: u8,
 }
 
 #[derive(Clone, Debug)]
@@ -173,9 +166,16 @@ impl Block {
     }
 }
 
+/// A scratch for each block of a group.
+type Desk = [Scratch; GROUP];
+
+fn desk() -> Desk {
+    [Scratch::EMPTY; GROUP]
+}
+
 /// The forces of the blocks of a group that are awake.
 #[inline(always)]
-fn evaluate_group<D: Dim, L: Lanes>(group: Group, position: &[Row]) {
+fn evaluate_group<D: Dim, L: Lanes>(group: Group, position: &[Row], scratch: &mut Desk) {
     let Group {
         blocks,
         forces: rows,
@@ -183,8 +183,7 @@ fn evaluate_group<D: Dim, L: Lanes>(group: Group, position: &[Row]) {
         shared,
     } = group;
     let law = shared.law;
-    let mut scratch = [Scratch::EMPTY; GROUP];
-    for (block, scratch) in blocks.iter_mut().zip(&mut scratch) {
+    for (block, scratch) in blocks.iter_mut().zip(&mut *scratch) {
         if block.asleep == ALL_LANES {
             continue;
         }
@@ -196,7 +195,7 @@ fn evaluate_group<D: Dim, L: Lanes>(group: Group, position: &[Row]) {
             (_, (_, mixed)) => gradient::<D, L>(&Mixed(mixed), position, &seats, scratch),
         }
     }
-    for (block, scratch) in blocks.iter_mut().zip(&mut scratch) {
+    for (block, scratch) in blocks.iter_mut().zip(&mut *scratch) {
         if block.asleep == ALL_LANES {
             continue;
         }
@@ -204,7 +203,7 @@ fn evaluate_group<D: Dim, L: Lanes>(group: Group, position: &[Row]) {
         let mut seats = block.seats(&shared, rows, first);
         stress::<D, L>(law, moduli, &mut seats, scratch);
     }
-    for (block, scratch) in blocks.iter_mut().zip(&scratch) {
+    for (block, scratch) in blocks.iter_mut().zip(&*scratch) {
         if block.asleep == ALL_LANES {
             continue;
         }
@@ -212,12 +211,12 @@ fn evaluate_group<D: Dim, L: Lanes>(group: Group, position: &[Row]) {
         let moduli = &shared.moduli[home.material() as usize - 1];
         let seats = &mut block.seats(&shared, rows, first);
         match (home, stencil) {
-            (Home::Plain(_), _) => plain_forces::<D, L>(moduli, position, seats, scratch),
+            (Home::Plain(_), _) => plain_forces::<D, L>(moduli, seats, scratch),
             (_, (same, [])) => {
-                forces::<D, L>(law, moduli, &Same(same), position, seats, scratch);
+                forces::<D, L>(law, moduli, &Same(same), seats, scratch);
             }
             (_, (_, mixed)) => {
-                forces::<D, L>(law, moduli, &Mixed(mixed), position, seats, scratch);
+                forces::<D, L>(law, moduli, &Mixed(mixed), seats, scratch);
             }
         }
     }
@@ -226,22 +225,22 @@ fn evaluate_group<D: Dim, L: Lanes>(group: Group, position: &[Row]) {
 /// As [`evaluate_group`], compiled for AVX2.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn evaluate_group_wide<D: Dim>(group: Group, position: &[Row]) {
-    evaluate_group::<D, lanes::Wide>(group, position);
+fn evaluate_group_wide<D: Dim>(group: Group, position: &[Row], scratch: &mut Desk) {
+    evaluate_group::<D, lanes::Wide>(group, position, scratch);
 }
 
 /// The forces of a group, by the widest lanes the machine has.
-fn evaluate_best<D: Dim>(group: Group, position: &[Row]) {
+fn evaluate_best<D: Dim>(group: Group, position: &[Row], scratch: &mut Desk) {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx2") {
         // SAFETY: the machine has AVX2; the function is safe code otherwise.
         #[allow(unsafe_code)]
         unsafe {
-            evaluate_group_wide::<D>(group, position);
+            evaluate_group_wide::<D>(group, position, scratch);
         }
         return;
     }
-    evaluate_group::<D, Portable>(group, position);
+    evaluate_group::<D, Portable>(group, position, scratch);
 }
 
 impl<D: Dim> Blocks<D> {
@@ -262,8 +261,8 @@ impl<D: Dim> Blocks<D> {
             pooled: Vec::new(),
             seats: Vec::new(),
             slots: Vec::new(),
-            nodes: Vec::new(),
-            forces: Vec::new(),
+            nodes: vec![VACANT; LANES],
+            forces: vec![[0.0; 4]; LANES],
             dim: PhantomData,
         }
     }
@@ -290,7 +289,7 @@ impl<D: Dim> Blocks<D> {
             let stencil = mesh.stencil(newcomers[0].element);
             self.put_in(material, class, stencil, newcomers);
         }
-        self.slots.resize(mesh.node_capacity(), Slots::default());
+        self.slots.resize(mesh.node_capacity(), [0; 8]);
         let elements = seated.iter().filter_map(|&id| mesh.element(id));
         let mut touched: Vec<u32> = elements
             .flat_map(|element| element.nodes.iter().copied())
@@ -298,10 +297,9 @@ impl<D: Dim> Blocks<D> {
         touched.sort_unstable();
         touched.dedup();
         for node in touched {
-            let mut slots = Slots::default();
-            for id in mesh.carrier_ids(node) {
-                slots.places[slots.count as usize] = self.slot(id, node);
-                slots.count += 1;
+            let mut slots = [0; 8];
+            for (place, id) in slots.iter_mut().zip(mesh.carrier_ids(node)) {
+                *place = self.slot(id, node);
             }
             self.slots[node as usize] = slots;
         }
@@ -314,18 +312,22 @@ impl<D: Dim> Blocks<D> {
             use rayon::prelude::*;
             let groups: Vec<Group> = self.groups().collect();
             let groups = groups.into_par_iter().with_min_len(8);
-            groups.for_each(|group| evaluate_best::<D>(group, position));
+            groups.for_each_init(desk, |scratch, group| {
+                evaluate_best::<D>(group, position, scratch);
+            });
             return;
         }
+        let mut scratch = desk();
         for group in self.groups() {
-            evaluate_best::<D>(group, position);
+            evaluate_best::<D>(group, position, &mut scratch);
         }
     }
 
     #[cfg(test)]
     fn evaluate_portable(&mut self, position: &[Row]) {
+        let mut scratch = desk();
         for group in self.groups() {
-            evaluate_group::<D, Portable>(group, position);
+            evaluate_group::<D, Portable>(group, position, &mut scratch);
         }
     }
 
@@ -347,8 +349,8 @@ impl<D: Dim> Blocks<D> {
             pooled,
             nodes,
         };
-        let mut forces = &mut self.forces[..];
-        let mut first = 0;
+        let mut forces = &mut self.forces[LANES..];
+        let mut first = LANES;
         self.blocks.chunks_mut(GROUP).map(move |blocks| {
             // Blocks stand in the order of their forces.
             let end = blocks.last().map_or(first, Block::end);
@@ -367,16 +369,16 @@ impl<D: Dim> Blocks<D> {
     /// The force [N] on a node, as of the last evaluation.
     #[inline]
     pub fn force_on(&self, node: u32) -> Row {
-        self.parts_on(node).fold([0.0; 4], plus)
+        Portable::sum(&self.forces, &self.slots[node as usize], D::CORNERS)
     }
 
     /// The forces [N] of the elements on a node, in the order of the octants around it, as of the
     /// last evaluation.
     #[inline]
     pub fn parts_on(&self, node: u32) -> impl Iterator<Item = Row> + '_ {
-        let slots = &self.slots[node as usize];
-        let places = &slots.places[..slots.count as usize];
-        places.iter().map(|&place| self.forces[place as usize])
+        let places = self.slots[node as usize].iter();
+        let places = places.take_while(|&&place| place != 0);
+        places.map(|&place| self.forces[place as usize])
     }
 
     /// The rotation of an element as of the last evaluation, by rows.
@@ -415,18 +417,46 @@ impl<D: Dim> Blocks<D> {
         gravity: Row,
         velocity: &mut [Row],
     ) {
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx2") {
+            // SAFETY: the machine has AVX2; the function is safe code otherwise.
+            #[allow(unsafe_code)]
+            return unsafe { self.kick_wide(nodes, lightness, duration, gravity, velocity) };
+        }
+        self.kick_by::<Portable>(nodes, lightness, duration, gravity, velocity);
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn kick_wide(
+        &self,
+        nodes: &[u32],
+        lightness: &[f32],
+        duration: f32,
+        gravity: Row,
+        velocity: &mut [Row],
+    ) {
+        self.kick_by::<lanes::Wide>(nodes, lightness, duration, gravity, velocity);
+    }
+
+    #[inline(always)]
+    fn kick_by<L: Lanes>(
+        &self,
+        nodes: &[u32],
+        lightness: &[f32],
+        duration: f32,
+        gravity: Row,
+        velocity: &mut [Row],
+    ) {
         for &id in nodes {
             let node = id as usize;
             let lightness = lightness[node];
             if lightness == 0.0 {
                 continue;
             }
-            let force = self.force_on(id);
-            let velocity = &mut velocity[node];
-            for axis in 0..4 {
-                let acceleration = force[axis] * lightness + gravity[axis];
-                velocity[axis] += duration * acceleration;
-            }
+            let force = L::sum(&self.forces, &self.slots[node], D::CORNERS);
+            let acceleration = plus(scaled(force, lightness), gravity);
+            velocity[node] = plus(velocity[node], scaled(acceleration, duration));
         }
     }
 

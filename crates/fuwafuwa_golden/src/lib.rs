@@ -21,7 +21,7 @@ pub const SCENES: [Scene; 4] = [
     (
         "torn ball",
         || hash_of_torn_world::<Dim3>(16),
-        0x1d6c_feef_aa1e_61e1,
+        0x83c0_4146_0db2_5c03,
     ),
     (
         "disc, law of the paper",

@@ -97,6 +97,8 @@ type Matrix<L> = [[L; 3]; 3];
 /// What passes from one loop over some blocks to the next.
 #[derive(Copy, Clone)]
 pub struct Scratch {
+    /// Positions of the nodes from the first of them.
+    x: [[Eight; 3]; 27],
     f: [[Eight; 3]; 3],
     moment: [[Eight; 3]; 3],
     centre: [Eight; 3],
@@ -106,6 +108,7 @@ pub struct Scratch {
 
 impl Scratch {
     pub const EMPTY: Self = Self {
+        x: [[[0.0; LANES]; 3]; 27],
         f: [[[0.0; LANES]; 3]; 3],
         moment: [[[0.0; LANES]; 3]; 3],
         centre: [[0.0; LANES]; 3],
@@ -125,6 +128,7 @@ pub fn plain_gradient<D: Dim, L: Lanes>(position: &[Row], seats: &Seats, scratch
         let at = L::gather(position, places(seats.nodes, node));
         for i in 0..D::N {
             x[node][i] = at[i] - origin[i];
+            x[node][i].store(&mut scratch.x[node][i]);
         }
     }
     for i in 0..D::N {
@@ -159,6 +163,9 @@ pub fn gradient<D: Dim, L: Lanes>(
     let count = seats.nodes.len() / LANES;
     let a_node = numbers_a_node::<D>();
     let origin = L::gather(position, places(seats.nodes, 0));
+    for i in 0..D::N {
+        zero.store(&mut scratch.x[0][i]);
+    }
     let mut f = [[zero; 3]; 3];
     let mut moment = [[zero; 3]; 3];
     let mut centre = [zero; 3];
@@ -168,6 +175,7 @@ pub fn gradient<D: Dim, L: Lanes>(
         let mut x = [zero; 3];
         for i in 0..D::N {
             x[i] = at[i] - origin[i];
+            x[i].store(&mut scratch.x[node][i]);
             centre[i] = centre[i] + x[i] * w;
         }
         for j in 0..D::N {
@@ -218,22 +226,16 @@ pub fn stress<D: Dim, L: Lanes>(
 
 /// Third loop: the forces of plain cells.
 #[inline(always)]
-pub fn plain_forces<D: Dim, L: Lanes>(
-    moduli: &Moduli,
-    position: &[Row],
-    seats: &mut Seats,
-    scratch: &Scratch,
-) {
+pub fn plain_forces<D: Dim, L: Lanes>(moduli: &Moduli, seats: &mut Seats, scratch: &Scratch) {
     let half = L::load(seats.half_size);
     let (stiffness, area) = scales::<D, L>(moduli, half);
     let bend = stiffness * half;
-    let origin = L::gather(position, places(seats.nodes, 0));
     let mut force = [[L::splat(0.0); 3]; 8];
-    for node in 0..D::CORNERS {
-        let at = L::gather(position, places(seats.nodes, node));
-        for i in 0..D::N {
-            let centre = L::load(&scratch.centre[i]);
-            force[node][i] = stiffness * (centre - (at[i] - origin[i]));
+    for i in 0..D::N {
+        let centre = L::load(&scratch.centre[i]);
+        force[0][i] = stiffness * centre;
+        for node in 1..D::CORNERS {
+            force[node][i] = stiffness * (centre - L::load(&scratch.x[node][i]));
         }
     }
     for i in 0..D::N {
@@ -271,7 +273,6 @@ pub fn forces<D: Dim, L: Lanes>(
     law: Law,
     moduli: &Moduli,
     stencils: &impl Stencils<L>,
-    position: &[Row],
     seats: &mut Seats,
     scratch: &Scratch,
 ) {
@@ -308,14 +309,13 @@ pub fn forces<D: Dim, L: Lanes>(
             }
         }
     }
-    let origin = L::gather(position, places(seats.nodes, 0));
     for node in 0..count {
-        let at = L::gather(position, places(seats.nodes, node));
         let spring = stiffness * stencils.get(a_node * node + 2 * D::N);
         let mut force = [zero; 3];
         for i in 0..D::N {
             let centre = L::load(&scratch.centre[i]);
-            force[i] = spring * (centre - (at[i] - origin[i]));
+            let x = L::load(&scratch.x[node][i]);
+            force[i] = spring * (centre - x);
         }
         for j in 0..D::N {
             let b = stencils.get(a_node * node + j);
@@ -426,7 +426,14 @@ fn turn_in_space<L: Lanes>(f: &Matrix<L>, q: [L; 4]) -> [L; 4] {
         }
     }
     let t = (L::splat(3.0) * norm).sqrt() + L::splat(1e-6);
-    let axial = [s[2][1] - s[1][2], s[0][2] - s[2][0], s[1][0] - s[0][1]];
+    // Numbers below 1e-12 are rounded away: at rest their products would be subnormal, and slow.
+    let rounder = L::splat(1e-5);
+    let settled = |value: L| (value + rounder) - rounder;
+    let axial = [
+        settled(s[2][1] - s[1][2]),
+        settled(s[0][2] - s[2][0]),
+        settled(s[1][0] - s[0][1]),
+    ];
     let (a, d, g) = (t - s[0][0], t - s[1][1], t - s[2][2]);
     let b = zero - half * (s[0][1] + s[1][0]);
     let c = zero - half * (s[0][2] + s[2][0]);

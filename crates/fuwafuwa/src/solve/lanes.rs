@@ -4,6 +4,7 @@
 //! machine has AVX2. Every operation works within a lane and rounds once, so their bits agree.
 
 use super::{LANES, Row};
+use crate::vector::plus;
 use std::ops::{Add, Div, Mul, Sub};
 
 /// One number for each element of a block.
@@ -26,6 +27,8 @@ pub trait Lanes:
     fn gather(rows: &[Row], places: &[u32; LANES]) -> [Self; 3];
     /// Eight rows from three columns, the fourth number 0.
     fn scatter(columns: [Self; 3], rows: &mut [Row; LANES]);
+    /// The sum of the rows at the first `count` places, in their order.
+    fn sum(rows: &[Row], places: &[u32; LANES], count: usize) -> Row;
 }
 
 /// Eight numbers in an array.
@@ -98,6 +101,15 @@ impl Lanes for Portable {
             ];
         }
     }
+
+    #[inline(always)]
+    fn sum(rows: &[Row], places: &[u32; LANES], count: usize) -> Row {
+        let mut sum = rows[places[0] as usize];
+        for &place in &places[1..count] {
+            sum = plus(sum, rows[place as usize]);
+        }
+        sum
+    }
 }
 
 macro_rules! portable_operator {
@@ -135,8 +147,8 @@ mod wide {
     /// Eight numbers in an AVX register.
     ///
     /// SAFETY of every function here: they need AVX, and are only reached from
-    /// `evaluate_group_wide` in `solve`, which is called after the machine was asked for AVX2. Loads and
-    /// stores go through references to arrays of the right length and need no alignment.
+    /// `evaluate_group_wide` and `kick_wide` in `solve`, which are called after the machine was asked for
+    /// AVX2. Loads and stores go through references to arrays of the right length and need no alignment.
     #[derive(Copy, Clone)]
     pub struct Wide(__m256);
 
@@ -177,8 +189,9 @@ mod wide {
 
         #[inline(always)]
         fn gather(rows: &[Row], places: &[u32; LANES]) -> [Self; 3] {
-            let row = |lane: usize| &rows[places[lane] as usize];
             unsafe {
+                check(rows, places);
+                let row = |lane: usize| rows.get_unchecked(places[lane] as usize);
                 let (a, b) = (pair(row(0), row(4)), pair(row(1), row(5)));
                 let (c, d) = (pair(row(2), row(6)), pair(row(3), row(7)));
                 let (ab, cd) = (_mm256_unpacklo_ps(a, b), _mm256_unpacklo_ps(c, d));
@@ -210,6 +223,35 @@ mod wide {
                     _mm_storeu_ps(rows[lane + LANES / 2].as_mut_ptr(), high);
                 }
             }
+        }
+
+        #[inline(always)]
+        fn sum(rows: &[Row], places: &[u32; LANES], count: usize) -> Row {
+            let mut total = [0.0; 4];
+            unsafe {
+                check(rows, places);
+                let row = |k: usize| rows.get_unchecked(places[k] as usize).as_ptr();
+                let mut sum = _mm_loadu_ps(row(0));
+                for k in 1..count {
+                    sum = _mm_add_ps(sum, _mm_loadu_ps(row(k)));
+                }
+                _mm_storeu_ps(total.as_mut_ptr(), sum);
+            }
+            total
+        }
+    }
+
+    /// Panics when one of the places is not among the rows: one comparison for all eight.
+    #[inline(always)]
+    unsafe fn check(rows: &[Row], places: &[u32; LANES]) {
+        unsafe {
+            // An opaque load: of a plain one the compiler would take the places out of the
+            // register again, one by one, where loading each is cheaper.
+            let wanted = _mm256_lddqu_si256(places.as_ptr().cast());
+            let last = _mm256_set1_epi32(rows.len() as i32 - 1);
+            let greatest = _mm256_max_epu32(wanted, last);
+            let within = _mm256_cmpeq_epi32(greatest, last);
+            assert!(!rows.is_empty() && _mm256_movemask_epi8(within) == -1);
         }
     }
 
