@@ -31,7 +31,7 @@ pub const SCENES: [Scene; 4] = [
     (
         "ball, law of the paper",
         || hash_of_paper_law::<Dim3>(8),
-        0x6ffc_f29b_6b4d_c134,
+        0xb99e_47bc_dfe8_75de,
     ),
 ];
 
