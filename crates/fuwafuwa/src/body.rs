@@ -309,6 +309,8 @@ impl<D: Dim> Body<D> {
     /// forces would grow from substep to substep.
     pub(crate) fn drift(&mut self, duration: f32, lead: f32) {
         let top_speed = self.grid.voxel_size() / duration;
+        let pieces = self.pieces.list.len();
+        self.rigid.resize(pieces, RoughMotion::default());
         for &id in &self.awake {
             let node = id as usize;
             let mut velocity = self.velocity[node];
@@ -322,8 +324,7 @@ impl<D: Dim> Body<D> {
             self.ahead[node] = position;
             if lead > 0.0 {
                 let piece = self.pieces.of_node(id) as usize;
-                let rigid = self.rigid.get(piece).copied().unwrap_or_default();
-                let strain = minus(velocity, rigid.at(position));
+                let strain = minus(velocity, self.rigid[piece].at(position));
                 self.ahead[node] = plus(position, scaled(strain, lead));
             }
         }

@@ -7,8 +7,8 @@
 
 use crate::body::Body;
 use crate::dim::Dim;
-use crate::momentum::{Momentum, RigidMotion};
-use crate::vector::{dot, minus, plus, scaled};
+use crate::momentum::RigidMotion;
+use crate::vector::{cross, dot, minus, plus, scaled};
 
 /// The motion of one piece.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
@@ -25,26 +25,69 @@ pub struct PieceMotion {
     pub nodes: u32,
     /// Whether some of its nodes are held and on the move: it cannot rest.
     pub is_driven: bool,
+    /// Angular momentum about the centre [kg m²/s].
+    angular: [f64; 3],
+    /// Σ m x xᵀ about the centre [kg m²].
+    spread: [[f64; 3]; 3],
+}
+
+impl PieceMotion {
+    /// Adds a node at x from `origin`, still without regard to the centre.
+    fn add(&mut self, x: [f64; 3], velocity: [f64; 3], mass: f64) {
+        let (moment, impulse) = (scaled(x, mass), scaled(velocity, mass));
+        self.mass += mass;
+        self.nodes += 1;
+        self.centre = plus(self.centre, moment);
+        self.velocity = plus(self.velocity, impulse);
+        self.speed_squared += dot(impulse, velocity);
+        self.angular = plus(self.angular, cross(x, impulse));
+        for i in 0..3 {
+            self.spread[i] = plus(self.spread[i], scaled(x, moment[i]));
+        }
+    }
+
+    /// From sums about `origin` to what the fields say.
+    fn finish(&mut self, origin: [f64; 3]) {
+        let share = 1.0 / self.mass;
+        let (from, impulse) = (scaled(self.centre, share), self.velocity);
+        self.velocity = scaled(impulse, share);
+        self.speed_squared *= share;
+        self.angular = minus(self.angular, cross(from, impulse));
+        for i in 0..3 {
+            let moment = scaled(from, self.mass * from[i]);
+            self.spread[i] = minus(self.spread[i], moment);
+        }
+        self.centre = plus(origin, from);
+    }
+
+    /// The rigid motion with the same momentum.
+    fn rigid(&self) -> RigidMotion {
+        let squared = self.spread[0][0] + self.spread[1][1] + self.spread[2][2];
+        let mut inertia = self.spread.map(|row| scaled(row, -1.0));
+        (0..3).for_each(|k| inertia[k][k] += squared);
+        RigidMotion::of_spin(self.velocity, self.centre, &self.angular, &inertia)
+    }
 }
 
 /// The motions of all pieces, by number; those asleep have no mass here.
 pub fn motions<D: Dim>(body: &Body<D>) -> Vec<PieceMotion> {
     let mut motions = vec![PieceMotion::default(); body.pieces.list.len()];
+    // A node of the piece itself: far from the world's origin the sums would lose digits.
+    let mut origins = vec![[0.0; 3]; motions.len()];
     for (&id, (position, velocity, mass)) in body.awake.iter().zip(body.states(&body.awake)) {
-        let motion = &mut motions[body.pieces.of_node(id) as usize];
-        let (x, v, mass) = (wide(position), wide(velocity), f64::from(mass));
-        motion.mass += mass;
-        motion.centre = plus(motion.centre, scaled(x, mass));
-        motion.velocity = plus(motion.velocity, scaled(v, mass));
-        motion.speed_squared += mass * dot(v, v);
-        motion.nodes += 1;
+        let piece = body.pieces.of_node(id) as usize;
+        let (motion, origin) = (&mut motions[piece], &mut origins[piece]);
+        let x = wide(position);
+        if motion.nodes == 0 {
+            *origin = x;
+        }
+        motion.add(minus(x, *origin), wide(velocity), f64::from(mass));
         motion.is_driven |= body.lightness[id as usize] == 0.0 && velocity != [0.0; 4];
     }
-    for motion in motions.iter_mut().filter(|motion| motion.mass > 0.0) {
-        let share = 1.0 / motion.mass;
-        motion.centre = scaled(motion.centre, share);
-        motion.velocity = scaled(motion.velocity, share);
-        motion.speed_squared *= share;
+    for (motion, origin) in motions.iter_mut().zip(origins) {
+        if motion.nodes > 0 {
+            motion.finish(origin);
+        }
     }
     motions
 }
@@ -74,39 +117,29 @@ impl Slowing {
 
 /// Slows the pieces of a body down, each by its own `slowing`, and notes their rigid motions.
 pub fn slow_down<D: Dim>(body: &mut Body<D>, motions: &[PieceMotion], slowing: &[Slowing]) {
-    let mut spins = vec![([0.0; 3], [[0.0; 3]; 3]); motions.len()];
-    for (&id, (position, velocity, mass)) in body.awake.iter().zip(body.states(&body.awake)) {
-        let piece = body.pieces.of_node(id) as usize;
-        let x = minus(wide(position), motions[piece].centre);
-        let v = minus(wide(velocity), motions[piece].velocity);
-        let (angular, inertia) = &mut spins[piece];
-        Momentum::add_spin(angular, inertia, x, v, f64::from(mass));
-    }
-    let rigid: Vec<RigidMotion> = motions
-        .iter()
-        .zip(&spins)
-        .map(|(motion, (angular, inertia))| {
-            RigidMotion::of_spin(motion.velocity, motion.centre, angular, inertia)
-        })
-        .collect();
+    let rigid: Vec<RigidMotion> = motions.iter().map(PieceMotion::rigid).collect();
     body.rigid.clear();
     body.rigid.extend(rigid.iter().map(RigidMotion::roughly));
     if slowing.iter().all(|slowing| *slowing == Slowing::default()) {
         return;
     }
+    // Of the motion of the centre 1 − drag is kept, of the spin about it and of the motion within
+    // the piece what spin and swing leave of that: v ← kept v + pace(x).
+    let paces: Vec<_> = rigid
+        .iter()
+        .zip(slowing)
+        .map(|(rigid, &Slowing { swing, spin, drag })| {
+            let kept = 1.0 - drag;
+            let pace = rigid.times(f64::from(kept * swing), f64::from(kept * (swing - spin)));
+            (kept * (1.0 - swing), pace.roughly())
+        })
+        .collect();
     for &id in &body.awake {
         let node = id as usize;
-        if body.lightness[node] == 0.0 {
-            continue;
-        }
-        let piece = body.pieces.of_node(id) as usize;
-        let Slowing { swing, spin, drag } = slowing[piece];
-        let own = motions[piece].velocity.map(|k| k as f32);
-        let whole = rigid[piece].at(body.position[node]).map(|k| k as f32);
-        for axis in 0..D::N {
-            let turning = (whole[axis] - own[axis]) * (1.0 - spin);
-            let within = (body.velocity[node][axis] - whole[axis]) * (1.0 - swing);
-            body.velocity[node][axis] = (own[axis] + turning + within) * (1.0 - drag);
+        if body.lightness[node] != 0.0 {
+            let (kept, pace) = &paces[body.pieces.of_node(id) as usize];
+            let velocity = &mut body.velocity[node];
+            *velocity = plus(scaled(*velocity, *kept), pace.at(body.position[node]));
         }
     }
 }

@@ -32,24 +32,6 @@ impl Momentum {
             angular: minus(self.angular, other.angular),
         }
     }
-
-    /// Adds a point at `x` from the centre to an angular momentum and an inertia.
-    pub(crate) fn add_spin(
-        angular: &mut [f64; 3],
-        inertia: &mut [[f64; 3]; 3],
-        x: [f64; 3],
-        velocity: [f64; 3],
-        mass: f64,
-    ) {
-        *angular = plus(*angular, scaled(cross(x, velocity), mass));
-        let squared = dot(x, x);
-        for i in 0..3 {
-            inertia[i][i] += mass * squared;
-            for j in 0..3 {
-                inertia[i][j] -= mass * x[i] * x[j];
-            }
-        }
-    }
 }
 
 /// A rigid velocity field: v(x) = `velocity` + `spin` × (x − centre).
@@ -60,22 +42,24 @@ pub struct RigidMotion {
     centre: [f64; 3],
 }
 
-/// A [`RigidMotion`] in single precision.
+/// A [`RigidMotion`] in single precision, as an affine map.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct RoughMotion {
-    velocity: [f32; 3],
-    spin: [f32; 3],
-    centre: [f32; 3],
+    velocity: Row,
+    centre: Row,
+    /// The columns of spin × .
+    spin: [Row; 3],
 }
 
 impl RoughMotion {
     /// The velocity at a point.
     #[inline(always)]
     pub fn at(&self, position: Row) -> Row {
-        let from = minus([position[0], position[1], position[2]], self.centre);
-        let [x, y, z] = plus(self.velocity, cross(self.spin, from));
-        [x, y, z, 0.0]
+        let from = minus(position, self.centre);
+        let mut velocity = plus(self.velocity, scaled(self.spin[0], from[0]));
+        velocity = plus(velocity, scaled(self.spin[1], from[1]));
+        plus(velocity, scaled(self.spin[2], from[2]))
     }
 }
 
@@ -87,10 +71,13 @@ impl RigidMotion {
         centre: [f64; 3],
         wanted: Momentum,
     ) -> Self {
-        let (mut unused, mut inertia, mut total) = ([0.0; 3], [[0.0; 3]; 3], 0.0);
+        let (mut inertia, mut total) = ([[0.0; 3]; 3], 0.0);
         for (position, mass) in points {
             let (x, mass) = (from_centre(position, centre), f64::from(mass));
-            Momentum::add_spin(&mut unused, &mut inertia, x, [0.0; 3], mass);
+            for i in 0..3 {
+                inertia[i][i] += mass * dot(x, x);
+                inertia[i] = minus(inertia[i], scaled(x, mass * x[i]));
+            }
             total += mass;
         }
         let velocity = scaled(wanted.linear, 1.0 / total);
@@ -115,13 +102,23 @@ impl RigidMotion {
         }
     }
 
+    /// The same with a share of its velocity and another of its spin.
+    pub(crate) fn times(&self, velocity: f64, spin: f64) -> Self {
+        Self {
+            velocity: scaled(self.velocity, velocity),
+            spin: scaled(self.spin, spin),
+            centre: self.centre,
+        }
+    }
+
     /// The same in single precision.
     pub(crate) fn roughly(&self) -> RoughMotion {
-        let single = |v: [f64; 3]| v.map(|k| k as f32);
+        let row = |[x, y, z]: [f64; 3]| [x as f32, y as f32, z as f32, 0.0];
+        let [x, y, z] = self.spin;
         RoughMotion {
-            velocity: single(self.velocity),
-            spin: single(self.spin),
-            centre: single(self.centre),
+            velocity: row(self.velocity),
+            centre: row(self.centre),
+            spin: [row([0.0, z, -y]), row([-z, 0.0, x]), row([y, -x, 0.0])],
         }
     }
 

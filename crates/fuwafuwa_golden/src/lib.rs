@@ -16,12 +16,12 @@ pub const SCENES: [Scene; 4] = [
     (
         "torn disc",
         || hash_of_torn_world::<Dim2>(32),
-        0xf64b_2e64_3179_5c15,
+        0x56a3_9cd1_fa11_9341,
     ),
     (
         "torn ball",
         || hash_of_torn_world::<Dim3>(16),
-        0x83c0_4146_0db2_5c03,
+        0xe38c_39a0_84b1_47d4,
     ),
     (
         "disc, law of the paper",
@@ -31,7 +31,7 @@ pub const SCENES: [Scene; 4] = [
     (
         "ball, law of the paper",
         || hash_of_paper_law::<Dim3>(8),
-        0xb99e_47bc_dfe8_75de,
+        0xd10e_eec9_d1d8_aeb1,
     ),
 ];
 
