@@ -5,9 +5,11 @@
 
 use crate::body::Body;
 use crate::dim::{Dim, Point, voxel_around};
-use crate::mesh::Defect;
+use crate::mesh::{Defect, Element};
+use crate::pyramid::Grading;
 use crate::shape::Vector;
 use crate::sharing::faces_around;
+use crate::stencil::slot_at;
 use crate::vector::{cross, dot, minus, plus, scaled};
 use std::collections::BTreeSet;
 
@@ -51,12 +53,24 @@ impl Blade {
     }
 }
 
+/// What a cut did.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CutReport {
+    /// Where shared nodes were released [m].
+    pub released: Vec<Vector>,
+    /// Numbers of the pieces that came off.
+    pub parted: Vec<u32>,
+}
+
 impl<D: Dim> Body<D> {
-    /// Cuts along a blade; returns how many nodes were released and the pieces that came off.
+    /// Cuts along a blade.
     ///
     /// # Errors
     /// A [`Defect`] when the mesh breaks: a fault of this library.
-    pub fn cut(&mut self, blade: &Blade) -> Result<(usize, Vec<u32>), Defect> {
+    pub fn cut(&mut self, blade: &Blade) -> Result<CutReport, Defect> {
+        if self.pyramid.grading() == Grading::Coarse {
+            return Ok(CutReport::default());
+        }
         let opened = self.faces_across(blade);
         let mut points: BTreeSet<Point> = BTreeSet::new();
         for &(voxel, axis) in &opened {
@@ -68,8 +82,10 @@ impl<D: Dim> Body<D> {
         for &at in &points {
             releases.extend(self.sides(at, &opened).into_iter().map(|side| (at, side)));
         }
+        let places = releases.iter().filter_map(|&(at, _)| self.place_of(at));
+        let released = places.collect();
         let parted = self.release(&releases)?;
-        Ok((releases.len(), parted))
+        Ok(CutReport { released, parted })
     }
 
     /// Cuts all voxels apart: nothing is left but dust. Returns the pieces that came off.
@@ -86,23 +102,10 @@ impl<D: Dim> Body<D> {
     fn faces_across(&self, blade: &Blade) -> BTreeSet<(Point, usize)> {
         let mut middles = vec![None; self.grid.voxels().count()];
         for (_, element) in self.mesh.elements() {
-            let (centre, gradient) = self.deformation(element);
-            let stencil = self.mesh.stencil(element);
-            let size = self.grid.voxel_size();
-            let half = 0.5 * size * element.cell.width() as f32;
-            // The slot in the low corner of the cell, as seen from the volume centroid at rest.
-            let first = stencil.slots[0] as usize;
-            let steps = crate::stencil::slot_at(first).map(|k| k as f32 * half);
-            let origin = minus(scaled(stencil.offsets[0].map(|k| k as f32), half), steps);
+            let carry = self.carry(element);
             for voxel in self.mesh.voxels(element) {
-                let low = element.cell.first_voxel();
-                let mut rest = origin;
-                for axis in 0..D::N {
-                    rest[axis] += ((voxel[axis] - low[axis]) as f32 + 0.5) * size;
-                }
-                let middle = [0, 1, 2].map(|row: usize| centre[row] + dot(gradient[row], rest));
-                let flat = if D::N == 2 { 0.0 } else { middle[2] };
-                middles[self.grid.index(voxel)] = Some([middle[0], middle[1], flat]);
+                let middle = carry(voxel.map(|k| k as f32 + 0.5));
+                middles[self.grid.index(voxel)] = Some(middle);
             }
         }
         let mut crossed = BTreeSet::new();
@@ -123,6 +126,36 @@ impl<D: Dim> Body<D> {
             }
         }
         crossed
+    }
+
+    /// Where a lattice point is now [m], as one of the elements around it carries it.
+    fn place_of(&self, at: Point) -> Option<Vector> {
+        let voxels = (0..D::CORNERS).map(|octant| voxel_around::<D>(at, octant));
+        let owner = { voxels }.find_map(|voxel| self.mesh.owner(voxel))?;
+        Some(self.carry(self.mesh.element(owner)?)(at.map(|k| k as f32)))
+    }
+
+    /// Where an element takes a place of the undeformed body, given in voxels: its affine motion [m].
+    fn carry(&self, element: &Element) -> impl Fn(Vector) -> Vector + use<D> {
+        let (centre, gradient) = self.deformation(element);
+        let stencil = self.mesh.stencil(element);
+        let size = self.grid.voxel_size();
+        let half = 0.5 * size * element.cell.width() as f32;
+        // The slot in the low corner of the cell, as seen from the volume centroid at rest.
+        let steps = slot_at(stencil.slots[0] as usize).map(|k| k as f32 * half);
+        let origin = minus(scaled(stencil.offsets[0].map(|k| k as f32), half), steps);
+        let low = element.cell.first_voxel().map(|k| k as f32);
+        move |place| {
+            let mut rest = origin;
+            for axis in 0..D::N {
+                rest[axis] += (place[axis] - low[axis]) * size;
+            }
+            let mut carried = [0.0; 3];
+            for axis in 0..D::N {
+                carried[axis] = centre[axis] + dot(gradient[axis], rest);
+            }
+            carried
+        }
     }
 
     /// The octants at a point that still hang together when the given faces are open: one mask for

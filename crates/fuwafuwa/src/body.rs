@@ -1,10 +1,10 @@
-//! One soft object: its voxels, how they hang together, and the state of its nodes.
+//! One soft thing: its voxels, how they hang together, and the state of its nodes.
 
 use crate::dim::{Dim, Point, voxel_around};
 use crate::grid::VoxelGrid;
 use crate::law::{Elasticity, Law};
 use crate::material::{BodyError, Material};
-use crate::mesh::{Element, Mesh};
+use crate::mesh::{Element, Mesh, Node};
 use crate::momentum::{Momentum, RoughMotion};
 use crate::piece::Pieces;
 use crate::pyramid::{Grading, Pyramid};
@@ -12,7 +12,7 @@ use crate::sharing::Sharing;
 use crate::solve::{Blocks, Row};
 use crate::vector::{dot, minus, plus, scaled};
 
-/// One soft object, whole or in pieces.
+/// One soft thing, whole or in pieces.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
@@ -25,7 +25,7 @@ pub struct Body<D: Dim> {
     pub(crate) pieces: Pieces,
     law: Law,
     materials: Vec<Material>,
-    swing: Swing,
+    blend: Blend,
     /// By what its stiffness was lowered so that the substep bears it; 1 = not at all.
     softening: f64,
     /// Position [m], velocity [m/s] and mass [kg] of each node, by id.
@@ -49,14 +49,18 @@ pub struct Body<D: Dim> {
     pub(crate) rigid: Vec<RoughMotion>,
 }
 
-/// The slowest swing of a whole body.
+/// What the materials of its voxels come to in a body as a whole.
 #[derive(Copy, Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct Swing {
-    /// Damping ratio.
-    ratio: f64,
-    /// ω = π √(Y/ρ) / width [1/s].
+struct Blend {
+    /// Damping ratio of the slowest swing, the mean over the voxels.
+    damping: f64,
+    /// Its ω = π √(Y/ρ) / width [1/s].
     slow: f64,
+    /// Friction, the mean over the voxels.
+    friction: f32,
+    /// The fastest pressure wave of a material that is in use [m/s].
+    fastest_wave: f64,
 }
 
 impl<D: Dim> Body<D> {
@@ -69,7 +73,7 @@ impl<D: Dim> Body<D> {
         Self::with(grid, materials, Law::default(), Grading::default())
     }
 
-    /// As [`Body::new`], with a law and a grading of choice ([`Grading::Coarse`] cannot be cut).
+    /// As [`Body::new`], with a law and a grading of choice ([`Grading::Coarse`] neither tears nor can be cut).
     ///
     /// # Errors
     /// As [`Body::new`].
@@ -94,7 +98,7 @@ impl<D: Dim> Body<D> {
             blocks: Blocks::new(law, &elasticities(materials, 1.0), grid.voxel_size()),
             pieces: Pieces::new(&mesh),
             law,
-            swing: Swing::of(&grid, materials),
+            blend: Blend::of(&grid, materials),
             materials: materials.to_vec(),
             softening: 1.0,
             position: Vec::new(),
@@ -125,11 +129,13 @@ impl<D: Dim> Body<D> {
         body.weigh(&all);
         let voxels: Vec<Point> = body.grid.voxels().collect();
         body.expose(&voxels);
-        body.find_fronts(&all);
+        if grading != Grading::Coarse {
+            body.find_fronts(&all);
+        }
         Ok(body)
     }
 
-    /// The same body elsewhere.
+    /// The same body, moved `by` [m]. What is then no place is quarantined in its first tick.
     pub fn moved(mut self, by: [f32; 3]) -> Self {
         for row in self.position.iter_mut().chain(&mut self.ahead) {
             for axis in 0..D::N {
@@ -163,6 +169,17 @@ impl<D: Dim> Body<D> {
         self.lightness[id as usize] = 0.0;
     }
 
+    /// Ends what [`Body::hold`] began.
+    ///
+    /// # Panics
+    /// When the id was never used.
+    pub fn let_go(&mut self, id: u32) {
+        self.held[id as usize] = false;
+        if !self.pieces.sleeps(id) {
+            self.lightness[id as usize] = 1.0 / self.mass[id as usize];
+        }
+    }
+
     /// The voxels it was made from.
     pub fn grid(&self) -> &VoxelGrid<D> {
         &self.grid
@@ -188,7 +205,10 @@ impl<D: Dim> Body<D> {
         &self.materials
     }
 
-    /// The material of an element.
+    /// The material of an element of its own.
+    ///
+    /// # Panics
+    /// When the element is of another body.
     pub fn material(&self, element: &Element) -> &Material {
         let voxel = self.mesh.first_voxel(element);
         &self.materials[self.grid.material(voxel) as usize - 1]
@@ -207,7 +227,11 @@ impl<D: Dim> Body<D> {
         )
     }
 
-    /// Places a node at `position` [m] with `velocity` [m/s]; what is not finite is refused.
+    /// Places a node at `position` [m] with `velocity` [m/s]. Returns false, and changes nothing,
+    /// when a number is not finite.
+    ///
+    /// # Panics
+    /// When the id was never used.
     pub fn set_node_state(&mut self, id: u32, position: [f32; 3], velocity: [f32; 3]) -> bool {
         let finite = position.iter().chain(&velocity).all(|k| k.is_finite());
         if finite {
@@ -253,8 +277,8 @@ impl<D: Dim> Body<D> {
     /// A lead of τ damps its slowest swing by τω/2; the fast swing of a single voxel allows τ ≤ (2.8/Ω² − h²) / 2h, of which
     /// a part is kept back.
     pub(crate) fn damping(&self, duration: f32) -> (f32, f32) {
-        let Swing { ratio, slow } = self.swing;
-        let slow = slow * self.softening.sqrt();
+        let ratio = self.blend.damping;
+        let slow = self.blend.slow * self.softening.sqrt();
         let (step, longest) = (f64::from(duration), self.longest_substep());
         let fast = 2.0 * 0.6 / longest;
         let most = 0.7 * (2.8 / (fast * fast) - step * step) / (2.0 * step);
@@ -265,13 +289,12 @@ impl<D: Dim> Body<D> {
 
     /// Friction of its skin.
     pub(crate) fn friction(&self) -> f32 {
-        self.materials[0].friction
+        self.blend.friction
     }
 
     /// The longest substep that its stiffest material bears [s]: 0.6 s / c.
     pub fn longest_substep(&self) -> f64 {
-        let fastest = self.materials.iter().map(Material::wave_speed);
-        let fastest = fastest.fold(0.0, f64::max) * self.softening.sqrt();
+        let fastest = self.blend.fastest_wave * self.softening.sqrt();
         0.6 * f64::from(self.grid.voxel_size()) / fastest
     }
 
@@ -360,25 +383,32 @@ impl<D: Dim> Body<D> {
         self.awake_is_stale = true;
     }
 
+    /// The lattice point and the position [m] of every node, by id; no position where there is none.
+    pub(crate) fn places(&self) -> Vec<(Point, Row)> {
+        let place = |(id, &row): (usize, &Row)| match self.mesh.is_alive(id as u32) {
+            true => (self.mesh.node(id as u32).at, row),
+            false => ([0; 3], [f32::NAN; 4]),
+        };
+        self.position.iter().enumerate().map(place).collect()
+    }
+
     /// Puts pieces with a node that is not finite, or faster than `top_speed` [m/s], back to where
     /// they were and to sleep for good; returns their numbers.
-    pub(crate) fn quarantine(&mut self, before: &[Row], top_speed: f32) -> Vec<u32> {
+    pub(crate) fn quarantine(&mut self, before: &[(Point, Row)], top_speed: f32) -> Vec<u32> {
         let mut marked = vec![false; self.pieces.list.len()];
         for &id in &self.awake {
             let velocity = self.velocity[id as usize];
             let speed = dot(velocity, velocity);
-            let at = self.position[id as usize];
-            let sane = speed <= top_speed * top_speed && at.iter().all(|k| k.is_finite());
+            let sane = speed <= top_speed * top_speed && is_finite(self.position[id as usize]);
             marked[self.pieces.of_node(id) as usize] |= !sane;
         }
         if !marked.contains(&true) {
             return Vec::new();
         }
-        for (id, _) in self.mesh.nodes() {
-            if marked[self.pieces.of_node(id) as usize] {
-                let rest = before.get(id as usize).copied().unwrap_or([0.0; 4]);
-                self.position[id as usize] = rest;
-            }
+        let nodes: Vec<(u32, Node)> = self.mesh.nodes().collect();
+        let nodes = nodes.into_iter();
+        for (id, node) in nodes.filter(|&(id, _)| marked[self.pieces.of_node(id) as usize]) {
+            self.position[id as usize] = self.place_before(id, node.at, before);
         }
         self.set_asleep(&marked, true);
         let numbers = (0..marked.len() as u32).filter(|&piece| marked[piece as usize]);
@@ -387,6 +417,28 @@ impl<D: Dim> Body<D> {
             self.pieces.list[piece as usize].quarantined = true;
         }
         numbers
+    }
+
+    /// Where a node was. One that is new, or whose id was another's, is put beside the nearest that
+    /// was anywhere, and to its place at rest when nothing was.
+    fn place_before(&self, id: u32, at: Point, before: &[(Point, Row)]) -> Row {
+        let apart = |point: Point| [0, 1, 2].map(|axis: usize| at[axis] - point[axis]);
+        let squared = |(point, _): &&(Point, Row)| {
+            apart(*point)
+                .map(|k| i64::from(k) * i64::from(k))
+                .iter()
+                .sum::<i64>()
+        };
+        let was_sane = |(_, row): &&(Point, Row)| is_finite(*row);
+        let known = before.get(id as usize).filter(|(point, _)| *point == at);
+        let nearest = || before.iter().filter(was_sane).min_by_key(squared);
+        let (point, row) = known
+            .filter(was_sane)
+            .or_else(nearest)
+            .copied()
+            .unwrap_or_default();
+        let [x, y, z] = apart(point).map(|k| k as f32 * self.grid.voxel_size());
+        plus(row, [x, y, z, 0.0])
     }
 
     /// Brings the list of moving nodes up to date.
@@ -507,7 +559,7 @@ fn elasticities(materials: &[Material], softening: f64) -> Vec<Elasticity> {
     materials.iter().map(soft).collect()
 }
 
-impl Swing {
+impl Blend {
     fn of<D: Dim>(grid: &VoxelGrid<D>, materials: &[Material]) -> Self {
         let mut counts = vec![0.0; materials.len()];
         for number in grid.voxels().map(|voxel| grid.material(voxel)) {
@@ -516,9 +568,14 @@ impl Swing {
             }
         }
         let total: f64 = counts.iter().sum();
+        let used = || {
+            counts
+                .iter()
+                .zip(materials)
+                .filter(|(count, _)| **count > 0.0)
+        };
         let mean = |of: &dyn Fn(&Material) -> f64| {
-            let weighted = counts.iter().zip(materials);
-            weighted
+            used()
                 .map(|(count, material)| count * of(material))
                 .sum::<f64>()
                 / total
@@ -526,9 +583,12 @@ impl Swing {
         let young = mean(&|material| material.elasticity.young);
         let density = mean(&|material| f64::from(material.density));
         let width = f64::from(grid.voxel_size()) * root(total, D::N);
+        let waves = used().map(|(_, material)| material.wave_speed());
         Self {
-            ratio: mean(&|material| f64::from(material.damping)),
+            damping: mean(&|material| f64::from(material.damping)),
             slow: std::f64::consts::PI * (young / density).sqrt() / width,
+            friction: mean(&|material| f64::from(material.friction)) as f32,
+            fastest_wave: waves.fold(0.0, f64::max),
         }
     }
 }
@@ -541,6 +601,10 @@ fn root(of: f64, order: usize) -> f64 {
         root -= (power * root - of) / (order as f64 * power);
     }
     root
+}
+
+fn is_finite(row: Row) -> bool {
+    row.iter().all(|k| k.is_finite())
 }
 
 fn three(row: Row) -> [f32; 3] {

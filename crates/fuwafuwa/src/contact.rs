@@ -348,9 +348,10 @@ impl Impulse {
     }
 }
 
-/// Whether a contact may matter in this substep: it overlaps, or will if nothing is done.
+/// Whether a contact may matter in this substep: it overlaps, or will if nothing is done. What is not
+/// finite touches nothing, so that it spoils nothing else.
 fn is_close(gap: f32, approach: f32, size: f32, duration: f32) -> bool {
-    gap + 1.5 * duration * approach.min(0.0) < 0.05 * size
+    approach.is_finite() && gap + 1.5 * duration * approach.min(0.0) < 0.05 * size
 }
 
 fn for_each<T>(rows: &mut [T], backwards: bool, mut solve: impl FnMut(&mut T)) {

@@ -3,11 +3,14 @@
 use crate::dim::{Dim, Point, points_in};
 use std::fmt;
 use std::marker::PhantomData;
+use std::ops::RangeInclusive;
 
 /// Most voxels on one axis of a grid.
 pub const MAX_EXTENT: usize = 1024;
 /// Most voxels in the box of a grid, solid or not.
 pub const MAX_VOXELS: usize = 1 << 26;
+/// Edge lengths that a voxel can have [m]: with others, volumes and places leave single precision.
+pub const VOXEL_SIZES: RangeInclusive<f32> = 1e-6..=1e3;
 
 /// Why a body or a grid could not be made.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,7 +29,12 @@ pub enum BuildError {
         /// Values that were given.
         found: usize,
     },
-    /// The edge length of a voxel [m] is not a positive, finite number.
+    /// A grid of the plane has more than one layer.
+    NotFlat {
+        /// Layers asked for.
+        layers: usize,
+    },
+    /// The edge length of a voxel [m] is not one of [`VOXEL_SIZES`].
     BadVoxelSize(f32),
 }
 
@@ -44,8 +52,16 @@ impl fmt::Display for BuildError {
             }
             Self::BadVoxelSize(size) => write!(
                 f,
-                "the voxel size {size} m is not a positive, finite number"
+                "the voxel size {size} m is not between {} and {} m",
+                VOXEL_SIZES.start(),
+                VOXEL_SIZES.end()
             ),
+            Self::NotFlat { layers } => {
+                write!(
+                    f,
+                    "a grid of the plane has one layer of voxels, not {layers}"
+                )
+            }
         }
     }
 }
@@ -67,7 +83,8 @@ impl<D: Dim> VoxelGrid<D> {
     /// A grid of `size` voxels of edge length `voxel_size` [m], each given by `material` (0 = empty).
     ///
     /// # Errors
-    /// [`BuildError`] when the grid is too large or empty, or the voxel size is not positive and finite.
+    /// [`BuildError`] when the grid is too large, not flat in 2D or empty, or the voxel size is not one
+    /// of [`VOXEL_SIZES`].
     pub fn from_fn(
         size: [usize; 3],
         voxel_size: f32,
@@ -178,16 +195,18 @@ impl<D: Dim> VoxelGrid<D> {
         if size.contains(&0) {
             return Err(BuildError::Empty);
         }
-        let flat = D::N == 3 || size[2] == 1;
+        if D::N == 2 && size[2] != 1 {
+            return Err(BuildError::NotFlat { layers: size[2] });
+        }
         let fits = size.iter().all(|&extent| extent <= MAX_EXTENT);
-        if !flat || !fits || size.iter().product::<usize>() > MAX_VOXELS {
+        if !fits || size.iter().product::<usize>() > MAX_VOXELS {
             return Err(BuildError::TooLarge { size });
         }
         Ok(size.map(|extent| extent as i32))
     }
 
     fn checked(size: Point, voxel_size: f32, materials: Vec<u8>) -> Result<Self, BuildError> {
-        if !(voxel_size.is_finite() && voxel_size > 0.0) {
+        if !VOXEL_SIZES.contains(&voxel_size) {
             return Err(BuildError::BadVoxelSize(voxel_size));
         }
         if materials.iter().all(|&m| m == 0) {
@@ -217,10 +236,12 @@ mod tests {
         let short = VoxelGrid::<Dim2>::from_materials([2, 2, 1], 1.0, vec![1; 3]);
         let (expected, found) = (4, 3);
         assert_eq!(short, Err(BuildError::WrongLength { expected, found }));
-        assert!(matches!(
-            VoxelGrid::<Dim2>::cube(2, f32::NAN),
-            Err(BuildError::BadVoxelSize(_))
-        ));
+        for width in [f32::NAN, f32::INFINITY, 0.0, -1.0, 1e-9, 1e9] {
+            let odd = VoxelGrid::<Dim2>::cube(2, width);
+            assert!(matches!(odd, Err(BuildError::BadVoxelSize(_))), "{width}");
+        }
+        let deep = VoxelGrid::<Dim2>::from_fn([4, 4, 2], 1.0, |_| 1);
+        assert_eq!(deep, Err(BuildError::NotFlat { layers: 2 }));
     }
 
     #[test]

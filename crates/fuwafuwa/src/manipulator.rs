@@ -8,6 +8,10 @@ use crate::shape::{Shape, Vector};
 use crate::vector::{length, minus, plus, scaled};
 use std::fmt;
 
+/// Hands and goals further from the origin than this on an axis [m] are refused, like those that
+/// are no place at all: single precision has no millimetres out there, and no such speeds.
+pub const FARTHEST: f32 = 1e6;
+
 /// How a manipulator follows its goal.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -16,11 +20,12 @@ pub enum Drive {
     Kinematic,
     /// It is pulled by a spring and a damper and stopped by what it touches.
     Coupled {
-        /// Mass of the hand [kg]; about 2. Lighter is livelier, and rougher to feel.
+        /// Mass of the hand, 1e-6 to 1e6 [kg]; about 2. Lighter is livelier, and rougher to feel.
         mass: f32,
-        /// Stiffness of the spring [N/m]; about 3000. More than mass / substep² is unstable.
+        /// Stiffness of the spring [N/m]; about 3000. What is more than a quarter of
+        /// mass / substep² counts as that much.
         stiffness: f32,
-        /// Damping ratio; about 0.9. Below 0.5 the hand swings around its goal.
+        /// Damping ratio, up to 10; about 0.9. Below 0.5 the hand swings around its goal.
         damping: f32,
         /// The strongest pull of the coupling [N]; infinite = no limit.
         limit: f32,
@@ -52,6 +57,8 @@ pub struct Manipulator {
     pub(crate) position: Vector,
     /// [m/s]
     pub(crate) velocity: Vector,
+    /// Where it was at the start of the tick [m].
+    pub(crate) position_before: Vector,
     /// Where it is to go [m].
     pub(crate) goal: Vector,
     /// Where the goal was at the end of the last tick [m], and how fast it moves [m/s].
@@ -98,6 +105,7 @@ impl Manipulator {
             drive: Drive::default(),
             position,
             velocity: [0.0; 3],
+            position_before: position,
             goal: position,
             goal_before: position,
             goal_velocity: [0.0; 3],
@@ -115,22 +123,30 @@ impl Manipulator {
     /// # Errors
     /// [`BadManipulator`] names the first field that is out of range.
     pub fn check(&self) -> Result<(), BadManipulator> {
-        let positive = |field, k: f32| {
-            let expected = "positive";
-            (k > 0.0)
-                .then_some(())
-                .ok_or(BadManipulator { field, expected })
+        let within = |field, k: f32, low: f32, high: f32, expected| {
+            let good = k >= low && k <= high;
+            good.then_some(()).ok_or(BadManipulator { field, expected })
         };
-        let finite = self.position.iter().all(|k| k.is_finite());
-        let (field, expected) = ("position", "finite");
-        finite
+        let (tiny, huge) = (f32::MIN_POSITIVE, f32::MAX);
+        let is_place = is_place(self.position);
+        let (field, expected) = ("position", "within 1e6 m of the origin");
+        is_place
             .then_some(())
             .ok_or(BadManipulator { field, expected })?;
-        positive("radius", self.radius)?;
-        let (field, expected) = ("friction", "0 or more");
-        (self.friction >= 0.0)
-            .then_some(())
-            .ok_or(BadManipulator { field, expected })?;
+        within(
+            "radius",
+            self.radius,
+            tiny,
+            FARTHEST,
+            "positive, at most 1e6 m",
+        )?;
+        within(
+            "friction",
+            self.friction,
+            0.0,
+            huge,
+            "0 or more, and finite",
+        )?;
         match self.drive {
             Drive::Kinematic => Ok(()),
             Drive::Coupled {
@@ -139,10 +155,10 @@ impl Manipulator {
                 damping,
                 limit,
             } => {
-                positive("mass", mass)?;
-                positive("stiffness", stiffness)?;
-                positive("damping", damping)?;
-                positive("limit", limit)
+                within("mass", mass, 1e-6, 1e6, "1e-6 to 1e6 kg")?;
+                within("stiffness", stiffness, tiny, huge, "positive and finite")?;
+                within("damping", damping, tiny, 10.0, "positive, at most 10")?;
+                within("limit", limit, tiny, f32::INFINITY, "positive")
             }
         }
     }
@@ -185,13 +201,21 @@ impl Manipulator {
 
     /// Takes up the goal at the start of a tick of `duration` [s]: it moves there evenly.
     pub(crate) fn start_tick(&mut self, duration: f32) {
+        self.position_before = self.position;
         self.goal_velocity = scaled(minus(self.goal, self.goal_before), 1.0 / duration);
         self.reactions.clear();
     }
 
-    /// The goal stands still at the end of a tick.
+    /// The goal stands still at the end of a tick. A hand that was thrown out of the world is back
+    /// where it was, at rest.
     pub(crate) fn end_tick(&mut self) {
         self.goal_before = self.goal;
+        let is_finite = self.velocity.iter().all(|k| k.is_finite());
+        if !is_finite || !is_place(self.position) {
+            self.position = self.position_before;
+            self.velocity = [0.0; 3];
+            self.reactions.fill(Reaction::default());
+        }
     }
 
     /// Pulls the hand towards its goal for `duration` [s].
@@ -231,4 +255,9 @@ impl Manipulator {
     pub(crate) fn drift(&mut self, duration: f32) {
         self.position = plus(self.position, scaled(self.velocity, duration));
     }
+}
+
+/// Whether a hand or its goal may be there.
+pub(crate) fn is_place(at: Vector) -> bool {
+    at.iter().all(|k| k.abs() <= FARTHEST)
 }

@@ -181,10 +181,14 @@ impl Pieces {
         turn
     }
 
-    /// Makes a piece of the given elements.
+    /// Makes a piece of the given elements: asleep or stopped, like the one they were of.
     fn split_off<D: Dim>(&mut self, mesh: &Mesh<D>, elements: &[u32]) -> u32 {
         let number = self.list.len() as u32;
-        self.list.push(Piece::default());
+        let whole = &self.list[self.of_element[elements[0] as usize] as usize];
+        self.list.push(Piece {
+            still: 0.0,
+            ..whole.clone()
+        });
         for &id in elements {
             self.of_element[id as usize] = number;
             let element = mesh.element(id).expect("searches find live elements");

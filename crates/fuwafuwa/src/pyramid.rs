@@ -121,7 +121,8 @@ pub enum Grading {
     /// Single voxels everywhere: the reference that graded bodies are measured against.
     Uniform,
     /// Two voxels wide at the surface, every lattice point there a node: the variant that the
-    /// paper counts [Endo 2004, §3.1]. It cannot be cut.
+    /// paper counts [Endo 2004, §3.1]. For counting and comparing: it does not tear, cannot be cut,
+    /// and has no skin to be drawn or touched by other bodies.
     Coarse,
 }
 

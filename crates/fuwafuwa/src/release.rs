@@ -4,17 +4,22 @@ use crate::body::Body;
 use crate::dim::{Dim, Point, neighbourhood, voxel_around};
 use crate::mesh::{Defect, Inheritance, Remodelled};
 use crate::momentum::{Momentum, RigidMotion, centre_of};
+use crate::pyramid::Grading;
 use crate::solve::Row;
 use std::collections::BTreeMap;
 
 impl<D: Dim> Body<D> {
     /// Releases the sharing of nodes at lattice points, each between the octants of its mask and
     /// the rest, and remodels around them [Endo 2004, §3.2]. Positions and velocities pass over;
-    /// linear and angular momentum are kept. Returns the pieces that came off.
+    /// linear and angular momentum are kept. Returns the pieces that came off. Nothing happens to a
+    /// body of [`Grading::Coarse`].
     ///
     /// # Errors
     /// A [`Defect`] when the mesh breaks: a fault of this library.
     pub fn release(&mut self, at: &[(Point, u8)]) -> Result<Vec<u32>, Defect> {
+        if self.pyramid.grading() == Grading::Coarse {
+            return Ok(Vec::new());
+        }
         let mut changed: Vec<Point> = Vec::new();
         for &(point, side) in at {
             if self.sharing.release(point, side) {

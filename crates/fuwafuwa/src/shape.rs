@@ -3,6 +3,7 @@
 //! The same shapes serve both dimensions. In 2D the third coordinate is 0 everywhere, so that a
 //! ball is a disc and a capsule a bar with round ends.
 
+use crate::dim::Dim;
 use crate::vector::{dot, length, minus, plus, scaled};
 use std::fmt;
 
@@ -24,7 +25,7 @@ pub enum Shape {
     Box {
         /// Its middle [m].
         centre: Vector,
-        /// Half of its width on each axis [m]; the third one does not count in 2D.
+        /// Half of its width on each axis [m]; in 2D the third one does not count.
         half: Vector,
     },
     /// All points within `radius` of a segment: a bar with round ends.
@@ -126,6 +127,38 @@ impl Shape {
                 let (distance, normal) = away(minus(point, centre));
                 (distance - radius, normal)
             }
+        }
+    }
+
+    /// The shape as a world of `D` sees it: in the plane third coordinates do not count, so that
+    /// nothing is pushed out of the plane.
+    pub(crate) fn seen_in<D: Dim>(self) -> Self {
+        if D::N == 3 {
+            return self;
+        }
+        let flat = |[x, y, _]: Vector| [x, y, 0.0];
+        match self {
+            Self::HalfSpace { normal, .. } if normal[2] == 0.0 => self,
+            Self::HalfSpace { normal, offset } => {
+                let steepness = length(flat(normal));
+                Self::HalfSpace {
+                    normal: scaled(flat(normal), 1.0 / steepness),
+                    offset: offset / steepness,
+                }
+            }
+            Self::Box { centre, half } => Self::Box {
+                centre: flat(centre),
+                half: [half[0], half[1], f32::MAX],
+            },
+            Self::Capsule { from, to, radius } => Self::Capsule {
+                from: flat(from),
+                to: flat(to),
+                radius,
+            },
+            Self::Ball { centre, radius } => Self::Ball {
+                centre: flat(centre),
+                radius,
+            },
         }
     }
 

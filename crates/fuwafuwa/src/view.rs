@@ -118,8 +118,9 @@ impl<D: Dim> Body<D> {
         views
     }
 
-    /// The mass of all nodes inside a region [kg].
+    /// The mass of all nodes inside a region [kg]; in the plane its third coordinates do not count.
     pub fn mass_inside(&self, region: &Shape) -> f32 {
+        let region = region.seen_in::<D>();
         self.mass_where(|at| region.distance(at).0 < 0.0)
     }
 

@@ -1,13 +1,13 @@
 //! Everything together, and time: [`World::step`] is the program.
 
-use crate::blade::Blade;
+use crate::blade::{Blade, CutReport};
 use crate::body::Body;
 use crate::contact::{Contacts, Hit};
 use crate::damping::{PieceMotion, Slowing, motions, slow_down};
-use crate::dim::Dim;
+use crate::dim::{Dim, Point};
 use crate::event::{Event, StepReport, With};
 use crate::fracture::{Failure, Rests, failures};
-use crate::manipulator::{BadManipulator, Manipulator};
+use crate::manipulator::{BadManipulator, Manipulator, is_place};
 use crate::rest::{fall_asleep, wake};
 use crate::shape::{BadShape, Shape, Vector};
 use crate::solve::Row;
@@ -28,8 +28,8 @@ const CRUMB_SPIN_LOSS: f32 = 20.0;
 /// Slow pieces that touch something lose their last motion at this rate [1/s], below this speed [m/s].
 const SETTLING: f32 = 2.0;
 const SETTLING_SPEED: f64 = 0.1;
-/// Nothing moves faster than this [m/s]: half a voxel a substep is far less, but a node thrown out
-/// by a violent start may come back.
+/// A piece with a node faster than this [m/s] has gone out of hand. Bodies of voxels narrower than a
+/// metre cannot: no node moves by more than a voxel in a substep.
 const TOP_SPEED: f32 = 1000.0;
 
 /// What holds for the whole world.
@@ -78,7 +78,7 @@ pub enum Refused {
     },
     /// A shape is not one.
     Shape(BadShape),
-    /// Friction is negative or not a number.
+    /// Friction is negative or not finite.
     Friction(f32),
     /// A manipulator cannot be.
     Manipulator(BadManipulator),
@@ -91,7 +91,9 @@ impl fmt::Display for Refused {
                 write!(f, "the setting {field} must be {expected}")
             }
             Self::Shape(bad) => bad.fmt(f),
-            Self::Friction(friction) => write!(f, "friction {friction} must be 0 or more"),
+            Self::Friction(friction) => {
+                write!(f, "friction {friction} must be 0 or more, and finite")
+            }
             Self::Manipulator(bad) => bad.fmt(f),
         }
     }
@@ -165,13 +167,15 @@ impl<D: Dim> World<D> {
         self.bodies.len() - 1
     }
 
-    /// Puts a rigid shape into the world; returns its place among the obstacles.
+    /// Puts a rigid shape into the world; returns its place among the obstacles. In the plane its
+    /// third coordinates do not count.
     ///
     /// # Errors
-    /// [`Refused`] when the shape is not one or friction is negative.
+    /// [`Refused`] when the shape is not one, or friction is negative or not finite.
     pub fn add_obstacle(&mut self, shape: Shape, friction: f32) -> Result<usize, Refused> {
+        let shape = shape.seen_in::<D>();
         shape.check().map_err(Refused::Shape)?;
-        if friction.is_nan() || friction < 0.0 {
+        if !(0.0..=f32::MAX).contains(&friction) {
             return Err(Refused::Friction(friction));
         }
         self.obstacles.push(Obstacle { shape, friction });
@@ -184,25 +188,30 @@ impl<D: Dim> World<D> {
     ///
     /// # Errors
     /// [`Refused::Manipulator`] when a field of it is out of range.
-    pub fn add_manipulator(&mut self, manipulator: Manipulator) -> Result<usize, Refused> {
+    pub fn add_manipulator(&mut self, mut manipulator: Manipulator) -> Result<usize, Refused> {
         manipulator.check().map_err(Refused::Manipulator)?;
+        let hand = &mut manipulator;
+        for vector in [&mut hand.position, &mut hand.goal, &mut hand.goal_before] {
+            vector[D::N..].fill(0.0);
+        }
         self.manipulators.push(manipulator);
         self.nearby.expire();
         Ok(self.manipulators.len() - 1)
     }
 
-    /// Sends a hand to a goal [m], where it is to be at the end of the next tick; a goal that is
-    /// not finite is refused.
+    /// Sends a hand to a goal [m], where it is to be at the end of the next tick. Returns false,
+    /// and leaves the goal as it is, when that is no place or one beyond
+    /// [`FARTHEST`](crate::manipulator::FARTHEST).
     ///
     /// # Panics
     /// When there is no such manipulator.
     pub fn set_goal(&mut self, manipulator: usize, goal: Vector) -> bool {
-        let finite = goal.iter().all(|k| k.is_finite());
-        if finite {
+        let good = is_place(goal);
+        if good {
             let hand = &mut self.manipulators[manipulator];
             hand.goal[..D::N].copy_from_slice(&goal[..D::N]);
         }
-        finite
+        good
     }
 
     /// Lets a tick pass.
@@ -214,11 +223,7 @@ impl<D: Dim> World<D> {
             substeps,
             ..StepReport::default()
         };
-        let before: Vec<Vec<Row>> = self
-            .bodies
-            .iter()
-            .map(|body| body.position.clone())
-            .collect();
+        let before: Vec<Vec<(Point, Row)>> = self.bodies.iter().map(Body::places).collect();
         self.start_tick();
         for substep in 0..substeps {
             if is_due(substep, substeps, FRACTURE_ROUNDS) {
@@ -238,22 +243,23 @@ impl<D: Dim> World<D> {
     }
 
     /// Cuts a body along a blade at once, whatever it bears; returns how many nodes were released.
-    /// What came off stands among the events until the next tick.
+    /// They and what came off stand among the events until the next tick.
     ///
     /// # Panics
     /// When there is no such body.
     pub fn cut(&mut self, body: usize, blade: &Blade) -> usize {
-        let hits: Vec<Hit> = (0..self.bodies[body].pieces.list.len() as u32)
-            .map(|piece| (body as u32, piece))
-            .collect();
-        self.wake(&hits);
+        let pieces = self.pieces_of(body);
+        self.wake(&pieces);
         let cut = self.bodies[body].cut(blade);
-        let (released, parted) = cut.expect("a release leaves the mesh whole");
-        let body = body as u32;
-        let events = parted.iter().map(|&piece| Event::Parted { body, piece });
-        self.events.extend(events);
+        let CutReport { released, parted } = cut.expect("a release leaves the mesh whole");
+        let (body, energy) = (body as u32, 0.0);
+        let places = released.iter();
+        let releases = places.map(|&at| Event::Released { body, at, energy });
+        self.events.extend(releases);
+        let parts = parted.iter().map(|&piece| Event::Parted { body, piece });
+        self.events.extend(parts);
         self.nearby.expire();
-        released
+        released.len()
     }
 
     /// Its settings.
@@ -266,13 +272,48 @@ impl<D: Dim> World<D> {
         &self.bodies
     }
 
-    /// A body, to be changed from outside: held, thrown, cut.
+    /// A body, to be changed from outside: held, placed, cut. All of it wakes. Another body in its
+    /// place would not be softened: remove the one and add the other.
     ///
     /// # Panics
     /// When there is no such body.
     pub fn body_mut(&mut self, body: usize) -> &mut Body<D> {
+        let pieces = self.pieces_of(body);
+        self.wake(&pieces);
         self.nearby.expire();
         &mut self.bodies[body]
+    }
+
+    /// Takes a body out of the world; the places of those after it move down by one. Everything
+    /// wakes: it may have leant on it.
+    ///
+    /// # Panics
+    /// When there is no such body.
+    pub fn remove_body(&mut self, body: usize) -> Body<D> {
+        self.rests.remove(body);
+        let removed = self.bodies.remove(body);
+        self.start_contacts_anew();
+        removed
+    }
+
+    /// Takes a rigid shape out of the world, as [`World::remove_body`].
+    ///
+    /// # Panics
+    /// When there is no such obstacle.
+    pub fn remove_obstacle(&mut self, obstacle: usize) -> Obstacle {
+        let removed = self.obstacles.remove(obstacle);
+        self.start_contacts_anew();
+        removed
+    }
+
+    /// Takes a hand out of the world, as [`World::remove_body`].
+    ///
+    /// # Panics
+    /// When there is no such manipulator.
+    pub fn remove_manipulator(&mut self, manipulator: usize) -> Manipulator {
+        let removed = self.manipulators.remove(manipulator);
+        self.start_contacts_anew();
+        removed
     }
 
     /// The rigid shapes.
@@ -324,6 +365,21 @@ impl<D: Dim> World<D> {
             }
         }
         hash
+    }
+
+    /// All pieces of a body.
+    fn pieces_of(&self, body: usize) -> Vec<Hit> {
+        let pieces = 0..self.bodies[body].pieces.list.len() as u32;
+        pieces.map(|piece| (body as u32, piece)).collect()
+    }
+
+    /// Forgets what touched what, for things have other places now, and wakes all.
+    fn start_contacts_anew(&mut self) {
+        self.nearby = Nearby::default();
+        let all: Vec<Hit> = (0..self.bodies.len())
+            .flat_map(|body| self.pieces_of(body))
+            .collect();
+        self.wake(&all);
     }
 
     fn start_tick(&mut self) {
@@ -433,7 +489,7 @@ impl<D: Dim> World<D> {
     }
 
     /// Stops pieces that went out of hand where they were before the tick, for good.
-    fn quarantine(&mut self, before: &[Vec<Row>], report: &mut StepReport) {
+    fn quarantine(&mut self, before: &[Vec<(Point, Row)>], report: &mut StepReport) {
         for (place, body) in self.bodies.iter_mut().enumerate() {
             body.refresh_awake();
             for piece in body.quarantine(&before[place], TOP_SPEED) {
@@ -512,23 +568,21 @@ impl<D: Dim> World<D> {
     fn touching(&self) -> Vec<Vec<bool>> {
         let none = |body: &Body<D>| vec![false; body.pieces.list.len()];
         let mut touching: Vec<Vec<bool>> = self.bodies.iter().map(none).collect();
-        for pair in self
-            .nearby
-            .node_pairs
-            .iter()
-            .filter(|pair| pair.impulse.pressed > 0.0)
-        {
-            let piece = self.bodies[pair.body as usize].pieces.of_node(pair.node);
-            touching[pair.body as usize][piece as usize] = true;
+        let mut mark = |body: u32, piece: Option<u32>| {
+            // The lists are of the last substep: another body may stand here since.
+            let piece = piece.and_then(|piece| touching[body as usize].get_mut(piece as usize));
+            piece.into_iter().for_each(|touches| *touches = true);
+        };
+        let nodes = self.nearby.node_pairs.iter();
+        for pair in nodes.filter(|pair| pair.impulse.pressed > 0.0) {
+            let body = &self.bodies[pair.body as usize];
+            let is_known = (pair.node as usize) < body.mesh.node_capacity();
+            mark(pair.body, is_known.then(|| body.pieces.of_node(pair.node)));
         }
-        for pair in self
-            .nearby
-            .skin_pairs
-            .iter()
-            .filter(|pair| pair.impulse.pressed > 0.0)
-        {
+        let skins = self.nearby.skin_pairs.iter();
+        for pair in skins.filter(|pair| pair.impulse.pressed > 0.0) {
             for skin in pair.skins.map(|skin| &self.nearby.skins[skin as usize]) {
-                touching[skin.body as usize][skin.piece as usize] = true;
+                mark(skin.body, Some(skin.piece));
             }
         }
         touching

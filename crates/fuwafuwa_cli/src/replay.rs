@@ -1,9 +1,8 @@
 //! Runs a recording again and compares the hashes.
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use fuwafuwa::{Dim2, Dim3};
 use fuwafuwa_scenes::Recording;
-use fuwafuwa_scenes::recording::VERSION;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -20,13 +19,7 @@ pub struct Arguments {
 /// Runs the recording.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     let name = arguments.file.display().to_string();
-    let text = std::fs::read_to_string(&arguments.file).context(name.clone())?;
-    let recording: Recording = toml::from_str(&text).context(name.clone())?;
-    anyhow::ensure!(
-        recording.version == VERSION,
-        "{name}: the recording has format {}, this program reads format {VERSION}",
-        recording.version
-    );
+    let recording = Recording::open(&arguments.file)?;
     let comparison = match recording.scene.dim {
         2 => recording.replay::<Dim2>(|_| {})?,
         _ => recording.replay::<Dim3>(|_| {})?,

@@ -137,8 +137,12 @@ fn run_in<D: Filmed>(scene: &Scene, arguments: &Arguments) -> Result<ExitCode> {
         Some(path) => film_is_gif(path)?,
         None => false,
     };
+    anyhow::ensure!(ticks > 0, "--frames must be at least 1");
+    for path in arguments.film.iter().chain(&arguments.record) {
+        check_folder(path)?;
+    }
     let every = if is_gif {
-        PACE
+        PACE.min(ticks)
     } else {
         (ticks / MOMENTS as u64).max(1)
     };
@@ -169,7 +173,7 @@ fn run_in<D: Filmed>(scene: &Scene, arguments: &Arguments) -> Result<ExitCode> {
     if let Some(error) = failure {
         return Err(error);
     }
-    let world = last.context("--frames must be at least 1")?;
+    let world = last.context("the scene has no ticks")?;
     if let Some(path) = &arguments.film {
         let bytes = if is_gif {
             film::gif(&frames, HUNDREDTHS)?
@@ -227,8 +231,59 @@ fn film_is_gif(path: &Path) -> Result<bool> {
     }
 }
 
+/// Better to hear of a missing folder before a long run than after it.
+fn check_folder(path: &Path) -> Result<()> {
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    let exists = folder.is_none_or(Path::is_dir);
+    anyhow::ensure!(exists, "{}: there is no such folder", path.display());
+    Ok(())
+}
+
 fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     std::fs::write(path, bytes).with_context(|| path.display().to_string())?;
     eprintln!("{}", path.display());
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Arguments for a small disc, filmed to a file in a folder.
+    fn filmed(frames: u64, film: PathBuf) -> Arguments {
+        Arguments {
+            scene: "drop".into(),
+            frames: Some(frames),
+            film: Some(film),
+            svg: false,
+            elements: false,
+            changes: vec!["body.n=8".into()],
+            record: None,
+            json: false,
+        }
+    }
+
+    #[test]
+    fn the_shortest_run_has_a_film() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["film.gif", "film.png"] {
+            let path = folder.path().join(name);
+            run(&filmed(1, path.clone())).unwrap();
+            assert!(std::fs::metadata(path).unwrap().len() > 100, "{name}");
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_written_is_refused_before_the_run() {
+        let refused = |frames, film: &str| {
+            let error = run(&filmed(frames, film.into())).unwrap_err();
+            error.to_string()
+        };
+        // So long a run would never end.
+        assert!(refused(u64::MAX, "nowhere/film.gif").contains("no such folder"));
+        assert!(refused(u64::MAX, "film.mp4").contains(".png or .gif"));
+        assert!(refused(0, "film.gif").contains("at least 1"));
+    }
 }

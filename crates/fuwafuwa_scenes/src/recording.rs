@@ -1,11 +1,15 @@
 //! What hands did in a scene, tick by tick, so that it can be run again and compared.
 
-use crate::scene::Scene;
+use crate::scene::{Scene, SceneError};
 use fuwafuwa::{Dim, World};
 use serde::{Deserialize, Serialize};
+use std::io::{self, Read};
+use std::path::Path;
 
 /// Number of the format; it changes when an older recording would run differently.
 pub const VERSION: u32 = 1;
+/// Most bytes of a recording that are read: some hours of two hands.
+pub const MAX_BYTES: u64 = 1 << 26;
 
 /// A scene, the goals of its hands at each tick, and the hashes they led to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -23,6 +27,35 @@ pub struct Recording {
     pub hashes: Vec<String>,
 }
 
+/// Why a recording could not be read.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordingError {
+    /// The file cannot be read.
+    #[error("{name}: {reason}")]
+    File {
+        /// The file.
+        name: String,
+        /// Why.
+        reason: io::Error,
+    },
+    /// The text is not that of a recording.
+    #[error("{name}: {reason}")]
+    Text {
+        /// The file.
+        name: String,
+        /// Line, field, and what was expected.
+        reason: String,
+    },
+    /// It was made by another version of this library.
+    #[error("{name}: the recording has format {found}, this library reads format {VERSION}")]
+    Version {
+        /// The file.
+        name: String,
+        /// The format it has.
+        found: u32,
+    },
+}
+
 /// What came of running a recording again.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Comparison {
@@ -33,16 +66,39 @@ pub struct Comparison {
 }
 
 impl Recording {
+    /// The recording in a file.
+    ///
+    /// # Errors
+    /// [`RecordingError`] when the file cannot be read, holds no recording, or one of another format.
+    pub fn open(path: &Path) -> Result<Self, RecordingError> {
+        let name = path.display().to_string();
+        let text = match read(path) {
+            Ok(text) => text,
+            Err(reason) => return Err(RecordingError::File { name, reason }),
+        };
+        let recording: Self = match toml::from_str(&text) {
+            Ok(recording) => recording,
+            Err(error) => {
+                let reason = error.to_string().trim_end().into();
+                return Err(RecordingError::Text { name, reason });
+            }
+        };
+        match recording.version {
+            VERSION => Ok(recording),
+            found => Err(RecordingError::Version { name, found }),
+        }
+    }
+
     /// Records a scene with the goals of its own hands, for so many ticks. `watch` sees the world
     /// after each.
     ///
     /// # Errors
-    /// [`crate::SceneError`] when the scene cannot be built.
+    /// [`SceneError`] when the scene cannot be built.
     pub fn of<D: Dim>(
         scene: &Scene,
         ticks: u64,
         mut watch: impl FnMut(&World<D>),
-    ) -> Result<Self, crate::SceneError> {
+    ) -> Result<Self, SceneError> {
         let mut world = scene.build::<D>()?;
         let (mut goals, mut hashes) = (Vec::new(), Vec::new());
         for tick in 0..ticks {
@@ -67,11 +123,11 @@ impl Recording {
     /// Runs it again and compares the hashes.
     ///
     /// # Errors
-    /// [`crate::SceneError`] when the scene in it cannot be built.
+    /// [`SceneError`] when the scene in it cannot be built.
     pub fn replay<D: Dim>(
         &self,
         mut watch: impl FnMut(&World<D>),
-    ) -> Result<Comparison, crate::SceneError> {
+    ) -> Result<Comparison, SceneError> {
         let mut world = self.scene.build::<D>()?;
         let mut hashes = self.hashes.iter();
         let mut differs_at = None;
@@ -91,6 +147,17 @@ impl Recording {
             differs_at,
         })
     }
+}
+
+/// The text of a file: what has no end is none.
+fn read(path: &Path) -> io::Result<String> {
+    let mut text = String::new();
+    let mut file = std::fs::File::open(path)?.take(MAX_BYTES + 1);
+    if file.read_to_string(&mut text)? as u64 > MAX_BYTES {
+        let reason = format!("longer than {MAX_BYTES} bytes, the most that are read");
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, reason));
+    }
+    Ok(text)
 }
 
 fn send<D: Dim>(world: &mut World<D>, goals: &[[f32; 3]]) {
@@ -120,5 +187,13 @@ mod tests {
         assert_eq!(read.replay::<Dim2>(|_| {}).unwrap().differs_at, None);
         read.goals[30][0][0] += 0.01;
         assert!(read.replay::<Dim2>(|_| {}).unwrap().differs_at.is_some());
+    }
+
+    #[test]
+    fn what_is_no_recording_is_refused_with_its_name() {
+        let refused = |name: &str| Recording::open(Path::new(name)).unwrap_err().to_string();
+        assert!(refused("nowhere").starts_with("nowhere: "));
+        let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
+        assert!(refused(manifest).starts_with(&format!("{manifest}: ")));
     }
 }
