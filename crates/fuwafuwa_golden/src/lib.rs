@@ -16,12 +16,12 @@ pub const SCENES: [Scene; 4] = [
     (
         "torn disc",
         || hash_of_torn_world::<Dim2>(32),
-        0xf64b_2e64_3179_5c15,
+        0xb7e1_9791_1222_ec12,
     ),
     (
         "torn ball",
         || hash_of_torn_world::<Dim3>(16),
-        0x1d6c_feef_aa1e_61e1,
+        0x015f_2bcc_99e2_fd06,
     ),
     (
         "disc, law of the paper",
