@@ -19,8 +19,8 @@ pub trait Dim: Copy + Clone + Debug + Default + PartialEq + Eq + Send + Sync + '
     const SLOTS: usize = 3usize.pow(Self::N as u32);
     /// The mask with a bit for every corner.
     const ALL_CORNERS: u8 = ((1u16 << Self::CORNERS) - 1) as u8;
-    /// Stiffness of the hourglass modes relative to Young's modulus. Derived so that a beam one
-    /// element thick bends exactly: 1/3 in the plane, 1/6 in space.
+    /// Stiffness of the hourglass modes of a whole cell relative to Young's modulus. Derived so
+    /// that a beam one element thick bends exactly: 1/3 in the plane, 1/6 in space.
     const HOURGLASS: f64;
 }
 

@@ -9,9 +9,10 @@
 //! F = (1/V) Σ x_i b_iᵀ      R = its rotation      J = det F
 //! P = 2μ (F − R) + λ (tr RᵀF − d) R − k_J max(0, J_min − J) cof F
 //! h_i = x_i − c − F r_i     S = Σ w_i h_i r_iᵀ     (c, r_i about the volume centroid)
-//! f_i = −P b_i − k (w_i h_i − S b_i / V)           k = α Y s^(d−2),  w_i = 2^d V_i / s^d
+//! f_i = −P b_i − k (w_i h_i − S b_i / V)           k = α β Y s^(d−2),  w_i = 2^d V_i / s^d
 //! ```
 //!
+//! α makes a whole cell bend as it should, β does so for other classes: [`Stencil::hourglass`].
 //! In 2D this is plane strain, for 1 m of depth: the same formulas with F₃₃ = R₃₃ = 1.
 
 use crate::dim::Dim;
@@ -183,7 +184,8 @@ fn patch_exact<D: Dim>(
     for (k, &h) in hourglass.iter().enumerate() {
         add_outer(&mut skew, h, offset(k));
     }
-    let stiffness = D::HOURGLASS * elasticity.young * (2..D::N).fold(1.0, |scale, _| scale * size);
+    let hourglass_modulus = D::HOURGLASS * stencil.hourglass * elasticity.young;
+    let stiffness = (2..D::N).fold(hourglass_modulus, |stiffness, _| stiffness * size);
     (0..positions.len())
         .map(|k| {
             let b = gradient(k);

@@ -4,6 +4,7 @@
 //! voxel at a front point, or where materials meet, is a cell of level 0; a cell of level l exists
 //! when it contains or touches a cell of level l − 1. A cell fills those of its children that are
 //! solid and do not exist as cells themselves, and every face-connected part of them is one element.
+//! All cells of the topmost level exist: it ends the growth of elements at an eighth of the grid.
 //!
 //! Cracks only grow, so cells only come into being: a release is followed upwards from the voxels
 //! at the released point, and the walk ends at the first level where nothing new appears. The cost
@@ -76,9 +77,19 @@ pub struct Places {
     count: usize,
 }
 
+/// No cell is wider than this share of the longest axis of its grid, but for small levels.
+///
+/// The mass of an element of width H lies in its nodes, so its second moment ∫ x² dm comes out too
+/// large by H²/6 per mass: however fine the voxels, a disc that is graded up to H = D/4 rings 3 %
+/// too slowly. With D/8 it is 1 %, for a dozen elements more.
+const WIDEST: i32 = 8;
+/// Up to this level cells may be wider than that, for a small body would not be graded at all.
+const SMALL_LEVEL: usize = 2;
+
 impl Places {
-    /// The places in a grid of `size` voxels, up to one cell that holds them all.
+    /// The places in a grid of `size` voxels, up to the widest cells that may be.
     fn new(mut size: Point) -> Self {
+        let longest = size[0].max(size[1]).max(size[2]);
         let mut places = Self {
             levels: Vec::new(),
             count: 0,
@@ -89,7 +100,8 @@ impl Places {
                 .iter()
                 .map(|&extent| extent as usize)
                 .product::<usize>();
-            if size == [1; 3] {
+            let next = places.levels.len();
+            if size == [1; 3] || next > SMALL_LEVEL && WIDEST << next > longest {
                 return places;
             }
             size = size.map(|extent| (extent + 1) / 2);
@@ -142,9 +154,9 @@ impl<D: Dim> Pyramid<D> {
     pub fn new(grid: &VoxelGrid<D>, sharing: &Sharing<D>, grading: Grading) -> Self {
         let places = Places::new(grid.size());
         let mut exists = vec![false; places.count()];
-        // The topmost cell always exists, so that every voxel is owned.
-        if let [.., top] = &mut exists[1..] {
-            *top = true;
+        // The topmost cells always exist, so that every voxel is owned.
+        if let [_, .., (_, first)] = places.levels[..] {
+            exists[first..].fill(true);
         }
         let mut pyramid = Self {
             places,
@@ -210,7 +222,7 @@ impl<D: Dim> Pyramid<D> {
             let parent = cell.parent();
             assert!(
                 (parent.level as usize) < self.level_count(),
-                "the topmost cell exists"
+                "the topmost cells exist"
             );
             if self.exists(parent) {
                 return (parent, cell.child_index::<D>());

@@ -671,7 +671,11 @@ fn numbers_of<D: Dim>(law: Law, stencil: &Stencil<D>) -> Vec<f32> {
     };
     let last = all.len() - 1;
     all[last - 1] = (1.0 / volume) as f32;
-    all[last] = (stencil.volume * D::N as f64 / total) as f32;
+    let stiffness = match law {
+        Law::PatchExact => stencil.hourglass,
+        Law::Endo2004 => stencil.volume * D::N as f64 / total,
+    };
+    all[last] = stiffness as f32;
     all
 }
 

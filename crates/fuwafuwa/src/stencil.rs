@@ -81,6 +81,8 @@ pub struct Stencil<D: Dim> {
     pub volumes: Vec<f64>,
     /// Number of children it fills.
     pub volume: f64,
+    /// Stiffness of its hourglass modes relative to that of a plain cell: see [`Stencil::new`].
+    pub hourglass: f64,
     dim: PhantomData<D>,
 }
 
@@ -92,6 +94,8 @@ impl<D: Dim> Stencil<D> {
     /// between: the centre to the face centres, a face centre to its edge middles, an edge middle
     /// to its ends. The rule sees a face's own pattern only, so that both sides of a shared face
     /// agree: that is what makes a graded mesh pass the patch test.
+    ///
+    /// Hourglass modes are as stiff as pure bending asks for: the softest way to bend decides.
     ///
     /// # Errors
     /// [`MissingCorner`] when a share ends on a corner slot without a node.
@@ -133,7 +137,7 @@ impl<D: Dim> Stencil<D> {
             }
         }
         let offset = |&slot: &u8| [0, 1, 2].map(|axis: usize| at(slot)[axis] - centroid[axis]);
-        Ok(Self {
+        let mut stencil = Self {
             children,
             offsets: slots.iter().map(offset).collect(),
             gradients: slots.iter().map(|&slot| gradients[slot as usize]).collect(),
@@ -143,8 +147,67 @@ impl<D: Dim> Stencil<D> {
                 .collect(),
             slots,
             volume,
+            hourglass: 1.0,
             dim: PhantomData,
-        })
+        };
+        stencil.hourglass = stencil.least_bending();
+        Ok(stencil)
+    }
+
+    /// How much stiffer than in a plain cell hourglass modes must be to store the energy of pure
+    /// bending; the least over all ways to bend, so that the element is too stiff for none.
+    ///
+    /// Bending along axis a towards axis b is u = x_a x_b e_a − ½ x_a² e_b. Without lateral
+    /// contraction its energy is Y/2 ∫ x_b² dV, and the hourglass term of [`crate::law`] stores
+    /// k/2 Σ V_i |h_i|². A plain cell has Σ V_i |h_i|² = V = 3 ∫ x_b² dV. Where mid nodes take volume
+    /// from the corners, or children are gone, the sum is a smaller part of the integral.
+    fn least_bending(&self) -> f64 {
+        let mut least = f64::INFINITY;
+        for towards in 0..D::N {
+            let due = 3.0 * self.second_moment(towards);
+            for along in (0..D::N).filter(|&along| along != towards) {
+                let bent = |r: &Vector64| {
+                    let mut moved = [0.0; 3];
+                    moved[along] = r[along] * r[towards];
+                    moved[towards] = -0.5 * r[along] * r[along];
+                    moved
+                };
+                let moved: Vec<Vector64> = self.offsets.iter().map(bent).collect();
+                least = least.min(due / self.not_affine(&moved));
+            }
+        }
+        least
+    }
+
+    /// ∫ x² dV of the children along an axis, about the centroid.
+    fn second_moment(&self, axis: usize) -> f64 {
+        let sides = (0..D::CORNERS).filter(|child| self.children >> child & 1 == 1);
+        let sides: Vec<f64> = sides.map(|child| (child >> axis & 1) as f64).collect();
+        let mean = sides.iter().sum::<f64>() / self.volume;
+        let parts = sides.iter().map(|side| (side - mean) * (side - mean));
+        parts.sum::<f64>() + self.volume / 12.0
+    }
+
+    /// Σ V_i |h_i|² of a motion of the nodes.
+    fn not_affine(&self, moved: &[Vector64]) -> f64 {
+        let (mut slope, mut mean) = ([[0.0; 3]; 3], [0.0; 3]);
+        for (k, u) in moved.iter().enumerate() {
+            for i in 0..D::N {
+                mean[i] += u[i] * self.volumes[k] / self.volume;
+                for j in 0..D::N {
+                    slope[i][j] += u[i] * self.gradients[k][j] / self.volume;
+                }
+            }
+        }
+        let mut sum = 0.0;
+        for (k, u) in moved.iter().enumerate() {
+            for i in 0..D::N {
+                let turned: f64 = (0..D::N).map(|j| slope[i][j] * self.offsets[k][j]).sum();
+                let h = u[i] - mean[i] - turned;
+                sum += self.volumes[k] * h * h;
+            }
+        }
+        sum
     }
 
     /// Whether this is a whole cell with nodes in its corners only.
@@ -215,6 +278,27 @@ mod tests {
         for children in [0b0111_1111, 0b0000_1111, 0b0001_0111, 0b0110_1111] {
             check_gradient_is_exact::<Dim3>(children, closure::<Dim3>(children));
         }
+    }
+
+    /// The stiffness of hourglass modes in classes that can be worked out by hand.
+    #[test]
+    fn hourglass_modes_are_as_stiff_as_bending_asks_for() {
+        fn check<D: Dim>(children: u8, slots: u32, expected: f64) {
+            let stencil = Stencil::<D>::new(children, slots).unwrap();
+            assert!((stencil.hourglass - expected).abs() < 1e-12, "{stencil:?}");
+        }
+        let (square, cube) = (cell_corners::<Dim2>(), cell_corners::<Dim3>());
+        check::<Dim2>(15, square, 1.0);
+        check::<Dim3>(255, cube, 1.0);
+        // A lone child is a plain cell of half the width: h goes with the square of it, x does not.
+        check::<Dim2>(1, closure::<Dim2>(1), 4.0);
+        check::<Dim3>(1, closure::<Dim3>(1), 4.0);
+        // All edge middles: corners keep a quarter of the volume, and x² makes up 15/256 of it.
+        let middles = [[1, 0, 0], [0, 1, 0], [2, 1, 0], [1, 2, 0]];
+        let all = middles
+            .iter()
+            .fold(square, |all, &at| all | 1 << slot_index(at));
+        check::<Dim2>(15, all, 4.0 / (1.0 + 15.0 / 64.0));
     }
 
     #[test]

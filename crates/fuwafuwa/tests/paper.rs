@@ -23,14 +23,25 @@ fn mesh_of<D: Dim>(grid: &VoxelGrid<D>, grading: Grading) -> Mesh<D> {
 #[test]
 fn element_count_grows_with_the_surface() {
     let count = |n| graded(&VoxelGrid::<Dim3>::ball(n, 1.0).unwrap()).element_count();
-    // The counts of an independent prototype.
-    assert_eq!((count(32), count(48)), (5_048, 12_368));
+    // An independent prototype has 5,048 and 12,368: it lets elements grow wider than an eighth.
+    assert_eq!((count(32), count(48)), (5_048, 12_520));
     let disc = |n| graded(&VoxelGrid::<Dim2>::ball(n, 1.0).unwrap()).element_count() as f64;
     let growth = disc(128) / disc(64);
     assert!(
         (1.9..2.2).contains(&growth),
         "doubling n doubles a ring: {growth}"
     );
+}
+
+/// However large the body, its elements stay small against it: their mass lies in their nodes.
+#[test]
+fn elements_are_at_most_an_eighth_of_the_body_wide() {
+    for n in [32, 64, 100, 256] {
+        let mesh = graded(&VoxelGrid::<Dim2>::ball(n, 1.0).unwrap());
+        let widths = mesh.elements().map(|(_, element)| element.cell.width());
+        let widest = widths.max().unwrap() as usize;
+        assert!(widest * 8 <= n && widest * 16 > n, "n = {n}: {widest}");
+    }
 }
 
 /// §3.1: counted by each element for itself, n³ voxels have 8n³ vertices; graded from two voxels

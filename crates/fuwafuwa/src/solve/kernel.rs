@@ -57,7 +57,7 @@ impl Moduli {
 }
 
 /// Numbers of a stencil: for each node b, w r and w, then the upper half of W, 1/V and the
-/// stiffness of [`Law::Endo2004`]. `get` reads one of them, for all lanes or for each.
+/// stiffness: of the hourglass modes, or of [`Law::Endo2004`]. `get` reads one of them, for all lanes or for each.
 pub trait Stencils<L: Lanes> {
     fn get(&self, index: usize) -> L;
 }
@@ -282,8 +282,10 @@ pub fn forces<D: Dim, L: Lanes>(
     let half = L::load(seats.half_size);
     let (mut pull, mut shear) = ([[zero; 3]; 3], [[zero; 3]; 3]);
     let stiffness;
+    let own_stiffness = stencils.get(numbers::<D>(count) - 1);
     if law == Law::PatchExact {
-        let (spring, area) = scales::<D, L>(moduli, half);
+        let (plain_spring, area) = scales::<D, L>(moduli, half);
+        let spring = plain_spring * own_stiffness;
         let inverse_volume = stencils.get(numbers::<D>(count) - 2);
         let (bend, skew) = (spring * half, spring * inverse_volume);
         stiffness = spring;
@@ -302,7 +304,7 @@ pub fn forces<D: Dim, L: Lanes>(
         }
     } else {
         let rest = if D::N == 2 { L::splat(1.0) } else { half };
-        stiffness = L::splat(moduli.young) * stencils.get(numbers::<D>(count) - 1) * rest;
+        stiffness = L::splat(moduli.young) * own_stiffness * rest;
         for i in 0..D::N {
             for j in 0..D::N {
                 pull[i][j] = stiffness * half * L::load(&scratch.stress[i][j]);

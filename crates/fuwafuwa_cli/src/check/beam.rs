@@ -79,7 +79,7 @@ impl Beam {
             &sharing,
             &Pyramid::new(&grid, &sharing, Grading::Graded),
         )?;
-        let statics = Statics::new(&mesh, elasticity, |node| node.at[0] == 0);
+        let statics = Statics::new(&mesh, elasticity, |node, _| node.at[0] == 0);
         let load = self.load(&mesh);
         let guess = self.guess(&mesh, elasticity);
         let moved = statics.solve(&load, guess, progress)?;

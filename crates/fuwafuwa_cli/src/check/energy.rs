@@ -61,7 +61,8 @@ fn of_element<D: Dim>(
         let h = minus(at, affine);
         stencil.volumes[k] * dot(h, h)
     };
-    let stiffness = D::HOURGLASS * elasticity.young * (2..D::N).fold(1.0, |scale, _| scale * size);
+    let hourglass_modulus = D::HOURGLASS * stencil.hourglass * elasticity.young;
+    let stiffness = (2..D::N).fold(hourglass_modulus, |stiffness, _| stiffness * size);
     let hourglass: f64 = positions.iter().enumerate().map(swerve).sum();
     volume * density + 0.5 * stiffness * hourglass
 }

@@ -4,6 +4,9 @@
 //! another disc than one of many, and stands on another foot: what is compared is the placing of
 //! elements and nothing else. The weight is small, so the law is linearised at rest; the sag that
 //! is shown is that for a game's material and a gravity of 1 m/s².
+//!
+//! The uniform body has by far the most elements, but each side of it mirrors the other: a half of
+//! the disc and a quarter of the ball, whose nodes stay in the planes of the cuts, sag as the whole.
 
 use super::motion::material;
 use super::parallel;
@@ -24,16 +27,26 @@ const TOLERANCE: f64 = 0.02;
 /// Sag of graded bodies relative to that of uniform ones.
 pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     let discs = DISCS.map(|n| (2, n));
-    let mut cases: Vec<(usize, usize)> = discs.into_iter().chain(BALLS.map(|n| (3, n))).collect();
+    let bodies: Vec<(usize, usize)> = discs.into_iter().chain(BALLS.map(|n| (3, n))).collect();
+    let gradings = [Grading::Graded, Grading::Uniform];
+    let mut cases: Vec<_> = bodies
+        .iter()
+        .flat_map(|&body| gradings.map(|grading| (body, grading)))
+        .collect();
     // The slowest last.
-    cases.sort_by_key(|&(dim, n)| n.pow(dim as u32) * n);
-    let found = parallel::each(&cases, progress, |&(dim, n)| match dim {
-        2 => sags::<Dim2>(n, progress),
-        _ => sags::<Dim3>(n, progress),
+    cases.sort_by_key(|&((dim, n), _)| n.pow(dim as u32) * n);
+    let found = parallel::each(&cases, progress, |&((dim, n), grading)| match dim {
+        2 => sag::<Dim2>(n, grading, progress),
+        _ => sag::<Dim3>(n, grading, progress),
     })?;
-    let mut outcomes: Vec<((usize, usize), Outcome)> = Vec::new();
-    for (&(dim, n), [graded, uniform]) in cases.iter().zip(found) {
-        let outcome = Outcome::near(
+    let sags: Vec<_> = cases.into_iter().zip(found).collect();
+    let sag_of = |body, grading| {
+        let case = sags.iter().find(|(case, _)| *case == (body, grading));
+        case.expect("every body was solved in both gradings").1
+    };
+    let outcome = |&(dim, n): &(usize, usize)| {
+        let [graded, uniform] = gradings.map(|grading| sag_of((dim, n), grading));
+        Outcome::near(
             format!(
                 "sag {dim}D, n = {n}, graded / uniform ({:.2} mm)",
                 1e3 * uniform
@@ -41,30 +54,43 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
             graded / uniform,
             1.0,
             TOLERANCE,
-        );
-        outcomes.push(((dim, n), outcome));
-    }
-    outcomes.sort_by_key(|&(case, _)| case);
-    Ok(outcomes.into_iter().map(|(_, outcome)| outcome).collect())
+        )
+    };
+    Ok(bodies.iter().map(outcome).collect())
 }
 
-fn sags<D: Dim>(n: usize, progress: &Progress) -> Result<[f64; 2]> {
-    Ok([
-        sag::<D>(n, Grading::Graded, progress)?,
-        sag::<D>(n, Grading::Uniform, progress)?,
-    ])
-}
-
-/// How far the top sinks [m].
+/// How far the top sinks [m]; `n` is even.
 fn sag<D: Dim>(n: usize, grading: Grading, progress: &Progress) -> Result<f64> {
+    match grading {
+        Grading::Uniform => sag_between::<D>(n, grading, n as i32 / 2, progress),
+        _ => sag_between::<D>(n, grading, 0, progress),
+    }
+}
+
+/// As [`sag`], by the part of the body that lies beyond `mirror` on each level axis. Nodes in a
+/// mirror stay in it; where it is 0 nothing of the body reaches it.
+fn sag_between<D: Dim>(
+    n: usize,
+    grading: Grading,
+    mirror: i32,
+    progress: &Progress,
+) -> Result<f64> {
     let material = material();
-    let grid = VoxelGrid::<D>::ball(n, 1.0)?;
+    let whole = VoxelGrid::<D>::ball(n, 1.0)?;
+    let level_axes = (0..D::N).filter(|&axis| axis != 1);
+    let size = whole.size().map(|extent| extent as usize);
+    let grid = VoxelGrid::<D>::from_fn(size, whole.voxel_size(), |at| {
+        let is_beyond = level_axes.clone().all(|axis| at[axis] >= mirror);
+        u8::from(is_beyond) * whole.material(at)
+    })?;
     let sharing = Sharing::new(&grid);
     let mesh = Mesh::grade(&grid, &sharing, &Pyramid::new(&grid, &sharing, grading))?;
     let heights: Vec<i32> = mesh.nodes().map(|(_, node)| node.at[1]).collect();
     let lowest = heights.iter().copied().min().unwrap_or(0);
     let highest = heights.iter().copied().max().unwrap_or(0);
-    let statics = Statics::new(&mesh, material.elasticity, |node| node.at[1] == lowest);
+    let statics = Statics::new(&mesh, material.elasticity, |node, axis| {
+        node.at[1] == lowest || axis != 1 && node.at[axis] == mirror
+    });
     let mut load = vec![0.0; mesh.node_capacity() * D::N];
     for (_, element) in mesh.elements() {
         let half = 0.5 * f64::from(element.cell.width());
@@ -76,11 +102,17 @@ fn sag<D: Dim>(n: usize, grading: Grading, progress: &Progress) -> Result<f64> {
     }
     let still = vec![0.0; load.len()];
     let moved = statics.solve(&load, still, progress)?;
-    let top = mesh.nodes().filter(|(_, node)| node.at[1] == highest);
-    let sunk: Vec<f64> = top.map(|(id, _)| -moved[id as usize * D::N + 1]).collect();
+    let (mut sunk, mut count) = (0.0, 0.0);
+    for (id, node) in mesh.nodes().filter(|(_, node)| node.at[1] == highest) {
+        // A node off the mirrors stands for its images too.
+        let images = level_axes.clone().filter(|&axis| node.at[axis] != mirror);
+        let weight = images.fold(1.0, |weight, _| 2.0 * weight);
+        sunk -= weight * moved[id as usize * D::N + 1];
+        count += weight;
+    }
     // In voxels: a load grows with their volume, a stiffness with their width in space only.
     let voxel = f64::from(grid.voxel_size());
-    Ok(sunk.iter().sum::<f64>() / sunk.len() as f64 * voxel * voxel)
+    Ok(sunk / count * voxel * voxel)
 }
 
 #[cfg(test)]
@@ -89,7 +121,22 @@ mod tests {
 
     #[test]
     fn a_small_disc_sags_like_its_voxels() {
-        let [graded, uniform] = sags::<Dim2>(16, &Progress::new()).unwrap();
+        let progress = Progress::new();
+        let [graded, uniform] =
+            [Grading::Graded, Grading::Uniform].map(|grading| sag::<Dim2>(16, grading, &progress));
+        let (graded, uniform) = (graded.unwrap(), uniform.unwrap());
         assert!(uniform > 1e-3 && (graded / uniform - 1.0).abs() < TOLERANCE);
+    }
+
+    #[test]
+    fn a_part_between_mirrors_sags_like_the_whole() {
+        fn check<D: Dim>(n: usize) {
+            let between =
+                |mirror| sag_between::<D>(n, Grading::Uniform, mirror, &Progress::new()).unwrap();
+            let (whole, part) = (between(0), between(n as i32 / 2));
+            assert!((part / whole - 1.0).abs() < 1e-6, "{part} of {whole}");
+        }
+        check::<Dim2>(16);
+        check::<Dim3>(8);
     }
 }

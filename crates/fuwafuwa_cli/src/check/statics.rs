@@ -37,16 +37,17 @@ struct Part {
 }
 
 impl Statics {
-    /// The body of a mesh.
+    /// The body of a mesh; `is_held` tells whether a node is held along an axis.
     pub fn new<D: Dim>(
         mesh: &Mesh<D>,
         elasticity: Elasticity,
-        is_held: impl Fn(Node) -> bool,
+        is_held: impl Fn(Node, usize) -> bool,
     ) -> Self {
         let mut held = vec![true; mesh.node_capacity() * D::N];
         for (id, node) in mesh.nodes() {
-            let free = id as usize * D::N;
-            held[free..free + D::N].fill(is_held(node));
+            for axis in 0..D::N {
+                held[id as usize * D::N + axis] = is_held(node, axis);
+            }
         }
         let mut classes = BTreeMap::new();
         let mut elements = Vec::new();
