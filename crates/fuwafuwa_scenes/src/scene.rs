@@ -102,7 +102,7 @@ pub struct Scene {
 }
 
 /// The scenes that come along.
-pub const NAMED: [(&str, &str); 9] = [
+pub const NAMED: [(&str, &str); 11] = [
     ("drop", include_str!("../scenes/drop.toml")),
     ("drop-3d", include_str!("../scenes/drop-3d.toml")),
     ("squeeze", include_str!("../scenes/squeeze.toml")),
@@ -112,6 +112,8 @@ pub const NAMED: [(&str, &str); 9] = [
     ("pile", include_str!("../scenes/pile.toml")),
     ("pile-3d", include_str!("../scenes/pile-3d.toml")),
     ("stack", include_str!("../scenes/stack.toml")),
+    ("core", include_str!("../scenes/core.toml")),
+    ("ring-3d", include_str!("../scenes/ring-3d.toml")),
 ];
 
 impl Scene {

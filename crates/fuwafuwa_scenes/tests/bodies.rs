@@ -113,6 +113,32 @@ part = [{ paint = 3, half_space = { normal = [1, 0, 0], point = [0.5, 0.0, 0.0] 
     assert_eq!(picture(&bodies[1]), ["21", "21"]);
 }
 
+#[test]
+fn a_crack_does_not_enter_what_is_unbreakable() {
+    // Coarser than it comes along and weaker around the core, so that it is soon torn.
+    let changes = [
+        "body.n=32",
+        "material.1.strength=500",
+        "material.1.toughness=80",
+    ];
+    let scene = Scene::open("core", &changes.map(String::from)).unwrap();
+    let mut world = scene.build::<Dim2>().unwrap();
+    let mut released = 0;
+    for tick in 0..80 {
+        world.set_goal(0, scene.goals(tick)[0]);
+        released += world.step().released;
+    }
+    assert!(released > 50, "{released}");
+    let views = world.bodies()[0].element_views();
+    let mut of_core: Vec<u32> = views
+        .filter(|view| view.material == 2)
+        .map(|view| view.piece)
+        .collect();
+    of_core.sort_unstable();
+    of_core.dedup();
+    assert_eq!(of_core.len(), 1, "in one piece");
+}
+
 /// A folder of its own for a test, with a scene in it.
 fn folder(name: &str, scene: &str) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);

@@ -120,6 +120,11 @@ pub struct PartText {
 impl MaterialText {
     pub(super) fn material(&self) -> Material {
         let usual = Material::default();
+        // Infinite strength alone would let a crack in from a weaker neighbour.
+        let borne = |given: Option<f32>, usual| match self.unbreakable {
+            true => f32::INFINITY,
+            false => given.unwrap_or(usual),
+        };
         Material {
             elasticity: Elasticity {
                 young: self.young.unwrap_or(usual.elasticity.young),
@@ -128,11 +133,8 @@ impl MaterialText {
             density: self.density.unwrap_or(usual.density),
             damping: self.damping.unwrap_or(usual.damping),
             friction: self.friction.unwrap_or(usual.friction),
-            strength: match self.unbreakable {
-                true => f32::INFINITY,
-                false => self.strength.unwrap_or(usual.strength),
-            },
-            toughness: self.toughness.unwrap_or(usual.toughness),
+            strength: borne(self.strength, usual.strength),
+            toughness: borne(self.toughness, usual.toughness),
         }
     }
 
