@@ -1,9 +1,12 @@
 //! Which voxels are solid, and of which material: the shape that a body starts from.
 
 use crate::dim::{Dim, Point, points_in};
+use crate::shape::Vector;
 use std::fmt;
 use std::marker::PhantomData;
 use std::ops::RangeInclusive;
+
+mod form;
 
 /// Most voxels on one axis of a grid.
 pub const MAX_EXTENT: usize = 1024;
@@ -116,31 +119,45 @@ impl<D: Dim> VoxelGrid<D> {
         Self::checked(size, voxel_size, materials)
     }
 
-    /// The disc (2D) or ball (3D) that fills a grid of `n` voxels across `diameter` metres.
+    /// As [`VoxelGrid::from_fn`], from the place of a voxel's centre: its distance [m] from the
+    /// grid's low corner, in 2D with 0 for the third coordinate. Signed distances become voxels here:
     ///
-    /// A voxel is solid when its centre lies within the radius less half a voxel, so that the
-    /// outermost layer stays inside the box.
+    /// ```
+    /// use fuwafuwa::{Dim3, Shape, VoxelGrid};
     ///
-    /// # Errors
-    /// As [`VoxelGrid::from_fn`]; `n` below 3 leaves nothing solid.
-    pub fn ball(n: usize, diameter: f32) -> Result<Self, BuildError> {
-        let centre = n as f32 * 0.5;
-        let radius = centre - 0.5;
-        Self::from_fn(Self::cube_size(n), diameter / n as f32, |at| {
-            let squared: f32 = at[..D::N]
-                .iter()
-                .map(|&k| (k as f32 + 0.5 - centre) * (k as f32 + 0.5 - centre))
-                .sum();
-            u8::from(squared < radius * radius)
-        })
-    }
-
-    /// The square (2D) or cube (3D) of `n` voxels across `width` metres.
+    /// let ball = |radius| Shape::Ball { centre: [0.5; 3], radius };
+    /// let (shell, core) = (ball(0.45), ball(0.2));
+    /// let grid = VoxelGrid::<Dim3>::from_centres([32; 3], 1.0 / 32.0, |at| {
+    ///     match (shell.distance(at).0 < 0.0, core.distance(at).0 < 0.0) {
+    ///         (_, true) => 2,
+    ///         (true, false) => 1,
+    ///         (false, false) => 0,
+    ///     }
+    /// })?;
+    /// assert_eq!(grid.material([16; 3]), 2);
+    /// # Ok::<(), fuwafuwa::BuildError>(())
+    /// ```
     ///
     /// # Errors
     /// As [`VoxelGrid::from_fn`].
-    pub fn cube(n: usize, width: f32) -> Result<Self, BuildError> {
-        Self::from_fn(Self::cube_size(n), width / n as f32, |_| 1)
+    pub fn from_centres(
+        size: [usize; 3],
+        voxel_size: f32,
+        mut material: impl FnMut(Vector) -> u8,
+    ) -> Result<Self, BuildError> {
+        Self::from_fn(size, voxel_size, |voxel| {
+            material(Self::centre(voxel, voxel_size))
+        })
+    }
+
+    /// The centre of a voxel [m] from the low corner of a grid of such voxels; the third coordinate
+    /// is 0 in 2D.
+    pub fn centre(voxel: Point, voxel_size: f32) -> Vector {
+        let mut centre = [0.0; 3];
+        for axis in 0..D::N {
+            centre[axis] = (voxel[axis] as f32 + 0.5) * voxel_size;
+        }
+        centre
     }
 
     /// Voxels on each axis; 1 on the third axis in 2D.
@@ -185,10 +202,6 @@ impl<D: Dim> VoxelGrid<D> {
     #[inline]
     pub fn index(&self, voxel: Point) -> usize {
         ((voxel[2] * self.size[1] + voxel[1]) * self.size[0] + voxel[0]) as usize
-    }
-
-    fn cube_size(n: usize) -> [usize; 3] {
-        [n, n, if D::N == 3 { n } else { 1 }]
     }
 
     fn checked_size(size: [usize; 3]) -> Result<Point, BuildError> {
@@ -245,11 +258,13 @@ mod tests {
     }
 
     #[test]
-    fn a_ball_keeps_the_count_of_its_voxels() {
-        // Counts of the prototypes: 15,408 voxels at n = 32 in 3D.
-        assert_eq!(
-            VoxelGrid::<Dim3>::ball(32, 1.0).unwrap().solid_count(),
-            15_408
-        );
+    fn a_shape_is_solid_where_the_centres_of_voxels_are_inside() {
+        use crate::shape::Shape;
+        let (centre, radius) = ([0.5; 3], 0.3);
+        let inside = |at| u8::from(Shape::Ball { centre, radius }.distance(at).0 < 0.0);
+        let grid = VoxelGrid::<Dim3>::from_centres([5; 3], 0.2, inside).unwrap();
+        assert_eq!(grid.solid_count(), 19, "a cube of 3 without its 8 corners");
+        let centre = VoxelGrid::<Dim2>::centre([1, 2, 0], 2.0);
+        assert_eq!(centre, [3.0, 5.0, 0.0]);
     }
 }

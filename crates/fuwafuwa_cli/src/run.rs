@@ -23,7 +23,8 @@ const HUNDREDTHS: u16 = 5;
 /// Run a scene, by name or from a TOML file.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// A named scene (drop, drop-3d, squeeze, tear, tear-3d, diced, pile, pile-3d, stack) or a file.
+    /// A named scene (drop, drop-3d, squeeze, tear, tear-3d, diced, pile, pile-3d, stack, core,
+    /// ring-3d) or a file.
     scene: String,
     /// How many ticks of 1/60 s to run; as long as the scene says when left out.
     #[arg(long)]
@@ -125,13 +126,6 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
 }
 
 fn run_in<D: Filmed>(scene: &Scene, arguments: &Arguments) -> Result<ExitCode> {
-    anyhow::ensure!(
-        scene.view[0][0] < scene.view[1][0] && scene.view[0][1] < scene.view[1][1],
-        "{}: view: the low corner {:?} must lie below the high one {:?}",
-        arguments.scene,
-        scene.view[0],
-        scene.view[1]
-    );
     let ticks = arguments.frames.unwrap_or(scene.ticks());
     let is_gif = match &arguments.film {
         Some(path) => film_is_gif(path)?,

@@ -48,7 +48,10 @@ pub fn plane_skin(painter: &mut Painter, frame: Frame, body: &Body<Dim2>) {
         body,
         Role::Ink,
         |painter, view, is_crumb| {
-            let role = if is_crumb { Role::Crumb } else { Role::Skin };
+            let role = match view.material {
+                1 if is_crumb => Role::Crumb,
+                number => Role::Material(number),
+            };
             // An edge of the same colour closes the seams between elements.
             painter.polygon(outline(frame, view), role, role, 1.0);
         },
@@ -177,6 +180,13 @@ pub fn space_elements(
 /// Paints the skin of a body in space, its steps smoothed out, its edges kept where it is torn.
 pub fn space_skin(solid: &mut Solid, body: &Body<Dim3>) {
     let crumbs = crumbs(body);
+    let inner: BTreeMap<u32, u8> = match body.materials() {
+        [_] => BTreeMap::new(),
+        _ => body
+            .element_views()
+            .map(|view| (view.id, view.material))
+            .collect(),
+    };
     let facets: Vec<Facet> = body.facets().collect();
     let places = smoothed(&facets);
     let corners = |facet: &Facet| facet.nodes.map(|node| places[&node]);
@@ -191,6 +201,9 @@ pub fn space_skin(solid: &mut Solid, body: &Body<Dim3>) {
     }
     for facet in &facets {
         let role = match facet.is_fresh {
+            _ if inner.get(&facet.element).is_some_and(|&number| number > 1) => {
+                Role::Material(inner[&facet.element])
+            }
             _ if crumbs.contains(&facet.piece) => Role::Crumb,
             true => Role::Fresh,
             false => Role::Skin,

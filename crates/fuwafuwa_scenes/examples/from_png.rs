@@ -9,7 +9,8 @@ use std::path::Path;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let file = std::env::args().nth(1);
     let file = file.ok_or("name a PNG file: a drawing on white, or a sprite with alpha")?;
-    let grid = import::png(Path::new(&file), 64, 1.0 / 64.0)?;
+    let grid = import::png(Path::new(&file), 64, 1.0 / 64.0);
+    let grid = grid.map_err(|error| error.to_string())?;
     println!(
         "{} solid voxels in a grid of {:?}",
         grid.solid_count(),

@@ -9,7 +9,8 @@ use std::path::Path;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let file = std::env::args().nth(1);
     let file = file.ok_or("name a .vox file")?;
-    let grid = import::vox(Path::new(&file), 1.0 / 32.0)?;
+    let grid = import::vox(Path::new(&file), 1.0 / 32.0);
+    let grid = grid.map_err(|error| error.to_string())?;
     println!(
         "{} solid voxels in a grid of {:?}",
         grid.solid_count(),

@@ -36,8 +36,10 @@ pub enum Role {
     Marked,
     /// The sides of a crack.
     Crack,
-    /// The outside of a body.
+    /// The outside of a body, and in the plane its first material.
     Skin,
+    /// A material of a body, 1 for its first.
+    Material(u8),
     /// What was inside before the body tore.
     Fresh,
     /// A piece of a single voxel.
@@ -59,6 +61,14 @@ const LEVELS: [Colour; 6] = [
     [0x6A, 0x97, 0xBF],
 ];
 
+/// Of a body's second material and those after it, which begin again when they are used up.
+const MATERIALS: [Colour; 4] = [
+    [0xB5, 0x5D, 0x6B],
+    [0xF6, 0xCE, 0x8A],
+    [0x8F, 0xB8, 0x9B],
+    [0x8C, 0xA6, 0xC9],
+];
+
 /// The colour of a role.
 pub fn colour(role: Role) -> Colour {
     match role {
@@ -74,7 +84,8 @@ pub fn colour(role: Role) -> Colour {
         Role::Added => [0x00, 0x72, 0xB2],
         Role::Removed | Role::Crack => [0xD5, 0x3E, 0x00],
         Role::Marked => [0x2B, 0x27, 0x38],
-        Role::Skin => [0xF2, 0x9C, 0x8C],
+        Role::Skin | Role::Material(0..=1) => [0xF2, 0x9C, 0x8C],
+        Role::Material(number) => MATERIALS[usize::from(number - 2) % MATERIALS.len()],
         Role::Fresh => [0xFB, 0xDD, 0xA2],
         Role::Crumb => [0xF6, 0xBE, 0x92],
         Role::Obstacle => [0xA9, 0xAF, 0xBC],

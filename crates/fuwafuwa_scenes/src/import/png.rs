@@ -1,0 +1,274 @@
+//! PNG: a drawing or a sprite becomes a flat shape.
+
+use super::{Colours, Complaint, ImportError, Place, Problem, in_file, name_of, no_grid, read};
+use super::{check_length, unexpected};
+use ::png::{Decoder, DecodingError, Limits, Transformations};
+use fuwafuwa::grid::MAX_EXTENT;
+use fuwafuwa::{Dim2, VoxelGrid};
+use std::io::{Cursor, ErrorKind};
+use std::path::Path;
+
+/// Most pixels on a side of a picture; decoded, the largest takes 64 MiB.
+pub const MAX_PIXELS: u32 = 4096;
+
+/// Most bytes that the decoder may take for its own tables and rows.
+const DECODER_BYTES: usize = 1 << 24;
+
+/// The most that deflate, the compression in PNG, makes of one byte.
+const MOST_INFLATED: usize = 1032;
+
+/// A decoded picture.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    file: String,
+    size: [usize; 2],
+    /// Red, green, blue and alpha, row by row from the top.
+    pixels: Vec<[u8; 4]>,
+}
+
+/// The silhouette in a PNG file, with voxels of edge length `voxel_size` [m], at most `across` of
+/// them on its longer side; see [`Picture::grid`].
+///
+/// # Errors
+/// [`ImportError`] names the file, the place in it, and what was expected there.
+pub fn png(path: &Path, across: usize, voxel_size: f32) -> Result<VoxelGrid<Dim2>, ImportError> {
+    Picture::open(path)?.grid(across, voxel_size, &Colours::default())
+}
+
+/// As [`png()`], from the bytes of a file; `file` names them in errors.
+///
+/// # Errors
+/// As [`png()`].
+pub fn png_bytes(
+    file: &str,
+    bytes: &[u8],
+    across: usize,
+    voxel_size: f32,
+) -> Result<VoxelGrid<Dim2>, ImportError> {
+    Picture::decode(file, bytes)?.grid(across, voxel_size, &Colours::default())
+}
+
+impl Picture {
+    /// The picture in a PNG file, of any kind; of an animated one the image that still viewers show.
+    ///
+    /// # Errors
+    /// [`ImportError`] when the file cannot be read or is longer than [`super::MAX_FILE_BYTES`], when
+    /// it is damaged or cut short, or has more than [`MAX_PIXELS`] on a side.
+    pub fn open(path: &Path) -> Result<Self, ImportError> {
+        Self::decode(&name_of(path), &read(path)?)
+    }
+
+    /// As [`Picture::open`], from the bytes of a file; `file` names them in errors.
+    ///
+    /// # Errors
+    /// As [`Picture::open`].
+    pub fn decode(file: &str, bytes: &[u8]) -> Result<Self, ImportError> {
+        in_file(file, check_length(bytes))?;
+        let mut cursor = Cursor::new(bytes);
+        let outcome = decode(&mut cursor).unwrap_or_else(|error| {
+            let place = Place::Byte(cursor.position() as usize);
+            let found = match error {
+                DecodingError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => {
+                    "the end of the file".into()
+                }
+                error => error.to_string(),
+            };
+            Err(unexpected(place, "a PNG picture", found))
+        });
+        let (size, pixels) = in_file(file, outcome)?;
+        let file = file.into();
+        Ok(Self { file, size, pixels })
+    }
+
+    /// Its width and height [pixels].
+    pub fn size(&self) -> [usize; 2] {
+        self.size
+    }
+
+    /// The shape in it, with voxels of edge length `voxel_size` [m]. The top row is the highest.
+    ///
+    /// Which pixels are solid, and of which material:
+    /// - When `colours` names any, a pixel is of the material of the nearest colour, and empty when
+    ///   that is 0 or the pixel is more than half transparent (alpha below 128).
+    /// - Otherwise all are of material 1. If any pixel is more than half transparent, it is a sprite,
+    ///   and the others are solid.
+    /// - If none is, it is a drawing on white paper, and the dark pixels are solid: those with a
+    ///   luminance below 128 of 255 (ITU-R BT.709, of the values as stored).
+    ///
+    /// A picture with more than `across` pixels on its longer side is scaled down to that many voxels. A
+    /// voxel is solid when at least half of what it covers is, and of the material of which it covers
+    /// most, the lowest of several. A smaller picture keeps its pixels.
+    ///
+    /// # Errors
+    /// [`ImportError`] when `across` is not 1 to [`MAX_EXTENT`], when nothing is solid, when colours
+    /// are named by palette index, or when the engine takes no voxels of that size.
+    pub fn grid(
+        &self,
+        across: usize,
+        voxel_size: f32,
+        colours: &Colours,
+    ) -> Result<VoxelGrid<Dim2>, ImportError> {
+        in_file(&self.file, self.try_grid(across, voxel_size, colours))
+    }
+
+    fn try_grid(
+        &self,
+        across: usize,
+        voxel_size: f32,
+        colours: &Colours,
+    ) -> Result<VoxelGrid<Dim2>, Complaint> {
+        if !(1..=MAX_EXTENT).contains(&across) {
+            let expected = format!("1 to {MAX_EXTENT} voxels across");
+            return Err(unexpected(Place::File, expected, across.to_string()));
+        }
+        if let Some(index) = colours.indices.keys().next() {
+            let found = format!("the palette index {index}");
+            let expected = "red, green and blue for each material of a picture";
+            return Err(unexpected(Place::File, expected, found));
+        }
+        let rule = Rule::of(self, colours);
+        let materials: Vec<u8> = self.pixels.iter().map(|&pixel| rule.judge(pixel)).collect();
+
+        let [width, height] = self.size;
+        let [columns, rows] = scaled(self.size, across);
+        let highest = materials.iter().max().copied().unwrap_or(0);
+        let mut areas = vec![0; 1 + usize::from(highest)];
+        VoxelGrid::from_fn([columns, rows, 1], voxel_size, |[x, y, _]| {
+            areas.fill(0);
+            for (row, high) in covered(height, rows, rows - 1 - y as usize) {
+                for (column, wide) in covered(width, columns, x as usize) {
+                    areas[usize::from(materials[row * width + column])] += high * wide;
+                }
+            }
+            largest(&areas)
+        })
+        .map_err(|error| no_grid(error, rule.sought()))
+    }
+}
+
+/// What decides about a pixel.
+enum Rule<'a> {
+    Colour(&'a Colours),
+    Alpha,
+    Dark,
+}
+
+impl<'a> Rule<'a> {
+    fn of(picture: &Picture, colours: &'a Colours) -> Self {
+        if !colours.named.is_empty() {
+            return Self::Colour(colours);
+        }
+        let is_sprite = picture.pixels.iter().any(|&pixel| !is_opaque(pixel));
+        if is_sprite { Self::Alpha } else { Self::Dark }
+    }
+
+    /// The material of a pixel, 0 where it is not solid.
+    fn judge(&self, pixel: [u8; 4]) -> u8 {
+        let [red, green, blue, _] = pixel;
+        match self {
+            Self::Colour(_) if !is_opaque(pixel) => 0,
+            Self::Colour(colours) => colours.nearest([red, green, blue]).unwrap_or(0),
+            Self::Alpha => u8::from(is_opaque(pixel)),
+            Self::Dark => u8::from(is_dark(pixel)),
+        }
+    }
+
+    fn sought(&self) -> &'static str {
+        match self {
+            Self::Colour(_) => "pixel with an alpha of 128 or more whose colour is not empty",
+            Self::Alpha => "pixel with an alpha of 128 or more",
+            Self::Dark => "pixel with a luminance below 128",
+        }
+    }
+}
+
+fn is_opaque(pixel: [u8; 4]) -> bool {
+    pixel[3] >= 128
+}
+
+/// Whether a pixel on white paper is dark.
+fn is_dark(pixel: [u8; 4]) -> bool {
+    const WHITE: u32 = 255 * 10_000;
+    let [red, green, blue, alpha] = pixel.map(u32::from);
+    let luminance = 2126 * red + 7152 * green + 722 * blue;
+    let shade = (WHITE - luminance) * alpha / 255;
+    WHITE - shade < 128 * 10_000
+}
+
+type Pixels = ([usize; 2], Vec<[u8; 4]>);
+
+fn decode(cursor: &mut Cursor<&[u8]>) -> Result<Result<Pixels, Complaint>, DecodingError> {
+    let length = cursor.get_ref().len();
+    let limits = Limits {
+        bytes: DECODER_BYTES,
+    };
+    let mut decoder = Decoder::new_with_limits(cursor, limits);
+    decoder.set_transformations(Transformations::normalize_to_color8() | Transformations::ALPHA);
+    decoder.set_ignore_text_chunk(true);
+    decoder.set_ignore_iccp_chunk(true);
+    let header = decoder.read_header_info()?;
+    let (width, height) = header.size();
+    let place = Place::Chunk(*b"IHDR", 8);
+    if width.max(height) > MAX_PIXELS {
+        let too_large = Problem::TooLarge {
+            what: "pixels on a side",
+            found: width.max(height).into(),
+            limit: MAX_PIXELS.into(),
+        };
+        return Ok(Err((place, too_large)));
+    }
+    // Before memory is taken: a file of a few bytes cannot hold a large picture.
+    let needed = header.raw_bytes().div_ceil(MOST_INFLATED);
+    if needed > length {
+        let expected = format!("at least {needed} bytes for {width} x {height} pixels");
+        return Ok(Err(unexpected(place, expected, format!("{length}"))));
+    }
+
+    let mut reader = decoder.read_info()?;
+    let length = reader.output_buffer_size();
+    let mut channels = vec![0; length.ok_or(DecodingError::LimitsExceeded)?];
+    let frame = reader.next_frame(&mut channels)?;
+    // To the end, so that a file cut short behind the last row is found out as well.
+    reader.finish()?;
+    let pixels = channels[..frame.buffer_size()]
+        .chunks_exact(frame.color_type.samples())
+        .map(|pixel| match *pixel {
+            [grey, alpha] => [grey, grey, grey, alpha],
+            [red, green, blue, alpha] => [red, green, blue, alpha],
+            _ => unreachable!("the decoder was told to add alpha"),
+        });
+    let size = [frame.width as usize, frame.height as usize];
+    Ok(Ok((size, pixels.collect())))
+}
+
+/// The size in voxels, the sides in proportion as closely as whole voxels allow.
+fn scaled(size: [usize; 2], across: usize) -> [usize; 2] {
+    let longer = size[0].max(size[1]);
+    let across = across.min(longer);
+    size.map(|side| ((2 * side * across + longer) / (2 * longer)).max(1))
+}
+
+/// The pixels that voxel `index` of `voxels` covers on an axis of `pixels`, each with how much of it
+/// is covered, in units of a pixel divided by `voxels`: whole numbers, so that areas are exact.
+///
+/// ```text
+///   3 pixels   ├─────┼─────┼─────┤      covered(3, 2, 0): all of pixel 0 (2), half of pixel 1 (1)
+///   2 voxels   ├────────┼────────┤
+/// ```
+fn covered(pixels: usize, voxels: usize, index: usize) -> impl Iterator<Item = (usize, u64)> {
+    let (low, high) = (index * pixels, (index + 1) * pixels);
+    (low / voxels..high.div_ceil(voxels)).map(move |pixel| {
+        let part = high.min((pixel + 1) * voxels) - low.max(pixel * voxels);
+        (pixel, part as u64)
+    })
+}
+
+/// The material of a voxel that covers so much of each, of nothing first.
+fn largest(areas: &[u64]) -> u8 {
+    let solid: u64 = areas[1..].iter().sum();
+    if solid == 0 || solid < areas[0] {
+        return 0;
+    }
+    let most = (1..areas.len()).min_by_key(|&material| std::cmp::Reverse(areas[material]));
+    most.map_or(0, |material| material as u8)
+}

@@ -1,0 +1,301 @@
+//! MagicaVoxel's .vox: a model becomes a solid shape.
+//!
+//! ```text
+//!   "VOX " version                       every number is 4 bytes, the lowest first
+//!   MAIN  length, length of children     every chunk: name, two lengths, contents, children
+//!    ├─ SIZE  x y z                      ┐ once for
+//!    ├─ XYZI  count {x y z index}…       ┘ each model
+//!    ├─ RGBA  256 × {red green blue alpha}, of palette index 1 first
+//!    └─ PACK, nTRN, MATL, …              passed over
+//! ```
+//!
+//! The crate `dot_vox` reads the format too, but it recurses on nested chunks, so that a small
+//! hostile file overflows the stack, and it drops damaged chunks without a word.
+
+use super::{Colours, Complaint, ImportError, Place, Problem, in_file, name_of, no_grid, read};
+use super::{check_length, unexpected};
+use fuwafuwa::{Dim3, VoxelGrid};
+use std::path::Path;
+
+/// Most voxels on an axis of a model: the format gives each coordinate a byte.
+pub const MAX_VOXELS_ACROSS: u32 = 256;
+
+/// Versions of the format: 150 for years, 200 since MagicaVoxel 0.99.7. What is read here is the same.
+const VERSIONS: std::ops::RangeInclusive<u32> = 150..=200;
+
+/// A model, on our axes.
+#[derive(Clone, Debug)]
+pub struct Model {
+    file: String,
+    size: [usize; 3],
+    /// Palette indices, 0 where it is empty, the first axis running fastest.
+    voxels: Vec<u8>,
+    /// Red, green and blue, of palette index 1 first.
+    palette: Option<Vec<[u8; 3]>>,
+}
+
+/// The first model in a MagicaVoxel file, with voxels of edge length `voxel_size` [m], the palette
+/// index of each as its material; see [`Model::grid`].
+///
+/// # Errors
+/// [`ImportError`] names the file, the place in it, and what was expected there.
+pub fn vox(path: &Path, voxel_size: f32) -> Result<VoxelGrid<Dim3>, ImportError> {
+    Model::open(path)?.grid(voxel_size, &Colours::default())
+}
+
+/// As [`vox()`], from the bytes of a file; `file` names them in errors.
+///
+/// # Errors
+/// As [`vox()`].
+pub fn vox_bytes(
+    file: &str,
+    bytes: &[u8],
+    voxel_size: f32,
+) -> Result<VoxelGrid<Dim3>, ImportError> {
+    Model::decode(file, bytes)?.grid(voxel_size, &Colours::default())
+}
+
+impl Model {
+    /// The first model in a MagicaVoxel file. Where the scene in the file puts it is passed over.
+    ///
+    /// MagicaVoxel's z points upwards, and ours is y, so that a model is turned and not mirrored:
+    ///
+    /// ```text
+    ///   MagicaVoxel   z           y  ours        x ← x
+    ///                 │  y        │              y ← z
+    ///                 │ ╱         │              z ← size of y − 1 − y
+    ///                 └── x       └── x
+    ///                            ╱
+    ///                           z
+    /// ```
+    ///
+    /// # Errors
+    /// [`ImportError`] when the file cannot be read or is longer than [`super::MAX_FILE_BYTES`], or when
+    /// it is damaged, cut short, or has more than [`MAX_VOXELS_ACROSS`].
+    pub fn open(path: &Path) -> Result<Self, ImportError> {
+        Self::decode(&name_of(path), &read(path)?)
+    }
+
+    /// As [`Model::open`], from the bytes of a file; `file` names them in errors.
+    ///
+    /// # Errors
+    /// As [`Model::open`].
+    pub fn decode(file: &str, bytes: &[u8]) -> Result<Self, ImportError> {
+        let model = check_length(bytes).and_then(|()| Self::try_decode(file, bytes));
+        in_file(file, model)
+    }
+
+    /// Voxels on each of our axes, empty layers included.
+    pub fn size(&self) -> [usize; 3] {
+        self.size
+    }
+
+    /// Its shape, with voxels of edge length `voxel_size` [m].
+    ///
+    /// Without `colours` the palette index of a voxel, 1 to 255 as stored in the file, is the number of
+    /// its material. Otherwise it is what `colours` says for the index, or else for the nearest colour.
+    ///
+    /// # Errors
+    /// [`ImportError`] when nothing is solid, when `colours` says nothing for an index, or when the
+    /// engine takes no voxels of that size.
+    pub fn grid(&self, voxel_size: f32, colours: &Colours) -> Result<VoxelGrid<Dim3>, ImportError> {
+        in_file(&self.file, self.try_grid(voxel_size, colours))
+    }
+
+    fn try_grid(&self, voxel_size: f32, colours: &Colours) -> Result<VoxelGrid<Dim3>, Complaint> {
+        let mut is_used = [false; 256];
+        for &index in &self.voxels {
+            is_used[usize::from(index)] = true;
+        }
+        let mut materials = [0; 256];
+        for index in (1..=u8::MAX).filter(|&index| is_used[usize::from(index)]) {
+            materials[usize::from(index)] = self.material(index, colours)?;
+        }
+        let voxels = self.voxels.iter();
+        let voxels = voxels.map(|&index| materials[usize::from(index)]).collect();
+        VoxelGrid::from_materials(self.size, voxel_size, voxels)
+            .map_err(|error| no_grid(error, "solid voxel in the first model"))
+    }
+
+    fn material(&self, index: u8, colours: &Colours) -> Result<u8, Complaint> {
+        if let Some(&material) = colours.indices.get(&index) {
+            return Ok(material);
+        }
+        if colours.named.is_empty() {
+            let all_are_materials = colours.indices.is_empty();
+            return all_are_materials.then_some(index).ok_or_else(|| {
+                let expected = format!("a material for the palette index {index}");
+                unexpected(Place::File, expected, "none")
+            });
+        }
+        let palette = self.palette.as_ref().ok_or_else(|| {
+            let expected = "a chunk RGBA with the colours that are asked for";
+            unexpected(Place::File, expected, "none: name palette indices instead")
+        })?;
+        let nearest = colours.nearest(palette[usize::from(index) - 1]);
+        Ok(nearest.expect("at least one colour is named"))
+    }
+
+    fn try_decode(name: &str, bytes: &[u8]) -> Result<Self, Complaint> {
+        let mut file = Bytes { bytes, at: 0 };
+        let word = file.word("the letters \"VOX \"")?;
+        if word != *b"VOX " {
+            let found = format!("\"{}\"", word.escape_ascii());
+            return Err(unexpected(Place::Byte(0), "the letters \"VOX \"", found));
+        }
+        let version = file.number("the version")?;
+        if !VERSIONS.contains(&version) {
+            let expected = format!("a version from {} to {}", VERSIONS.start(), VERSIONS.end());
+            return Err(unexpected(Place::Byte(4), expected, version.to_string()));
+        }
+        let main = file.chunk()?;
+        if main.name != *b"MAIN" {
+            let found = main.name.escape_ascii().to_string();
+            return Err(unexpected(Place::Byte(8), "the chunk MAIN", found));
+        }
+
+        let (mut size, mut voxels, mut palette) = (None, None, None);
+        let mut chunks = main.children;
+        while !chunks.bytes.is_empty() {
+            let chunk = chunks.chunk()?;
+            match &chunk.name {
+                b"SIZE" if size.is_none() => size = Some(chunk.size()?),
+                b"XYZI" if voxels.is_none() => {
+                    let none = || unexpected(chunk.place, "a chunk SIZE before it", "none");
+                    voxels = Some(chunk.voxels(size.ok_or_else(none)?)?);
+                }
+                b"RGBA" => palette = Some(chunk.palette()?),
+                _ => {}
+            }
+        }
+        let end = Place::Byte(chunks.at);
+        let none = || unexpected(end, "a model of chunks SIZE and XYZI", "no more chunks");
+        let ([width, depth, height], voxels) = size.zip(voxels).ok_or_else(none)?;
+        Ok(Self {
+            file: name.into(),
+            size: [width, height, depth],
+            voxels,
+            palette,
+        })
+    }
+}
+
+/// A part of a file that is read from its front; `at` is where that stands in the file.
+#[derive(Clone, Copy)]
+struct Bytes<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+struct Chunk<'a> {
+    name: [u8; 4],
+    place: Place,
+    contents: Bytes<'a>,
+    children: Bytes<'a>,
+}
+
+impl<'a> Bytes<'a> {
+    /// The next `count` bytes, which hold `what`.
+    fn take(&mut self, count: usize, what: &str) -> Result<Self, Complaint> {
+        let Some((taken, rest)) = self.bytes.split_at_checked(count) else {
+            let expected = format!("{count} bytes for {what}");
+            let found = self.bytes.len().to_string();
+            return Err(unexpected(Place::Byte(self.at), expected, found));
+        };
+        let at = self.at;
+        *self = Self {
+            bytes: rest,
+            at: at + count,
+        };
+        Ok(Self { bytes: taken, at })
+    }
+
+    fn word(&mut self, what: &str) -> Result<[u8; 4], Complaint> {
+        let word = self.take(4, what)?.bytes;
+        Ok(word.try_into().expect("four bytes were taken"))
+    }
+
+    fn number(&mut self, what: &str) -> Result<u32, Complaint> {
+        self.word(what).map(u32::from_le_bytes)
+    }
+
+    fn chunk(&mut self) -> Result<Chunk<'a>, Complaint> {
+        let at = self.at;
+        let name = self.word("the name of a chunk")?;
+        let length = self.number("the length of a chunk")?;
+        let length_of_children = self.number("the length of the children of a chunk")?;
+        let title = name.escape_ascii();
+        Ok(Chunk {
+            name,
+            place: Place::Chunk(name, at),
+            contents: self.take(length as usize, &format!("the chunk {title}"))?,
+            children: self.take(
+                length_of_children as usize,
+                &format!("the children of the chunk {title}"),
+            )?,
+        })
+    }
+}
+
+impl Chunk<'_> {
+    /// That the contents are as long as they should be for `what`.
+    fn check_length(&self, expected: u64, what: &str) -> Result<(), Complaint> {
+        let found = self.contents.bytes.len() as u64;
+        let expected_text = format!("{expected} bytes for {what}");
+        let wrong = unexpected(self.place, expected_text, found.to_string());
+        (found == expected).then_some(()).ok_or(wrong)
+    }
+
+    /// The size of a model, on the axes of the file.
+    fn size(&self) -> Result<[usize; 3], Complaint> {
+        self.check_length(12, "a size on three axes")?;
+        let mut contents = self.contents;
+        let mut size = [0; 3];
+        for extent in &mut size {
+            let found = contents.number("a size")?;
+            if found == 0 {
+                let expected = format!("1 to {MAX_VOXELS_ACROSS} voxels on an axis");
+                return Err(unexpected(self.place, expected, "0"));
+            }
+            if found > MAX_VOXELS_ACROSS {
+                let too_large = Problem::TooLarge {
+                    what: "voxels on an axis",
+                    found: found.into(),
+                    limit: MAX_VOXELS_ACROSS.into(),
+                };
+                return Err((self.place, too_large));
+            }
+            *extent = found as usize;
+        }
+        Ok(size)
+    }
+
+    /// The palette indices in a model of `size` on the axes of the file, in our order on our axes. A
+    /// voxel that is given twice has the later index.
+    fn voxels(&self, size: [usize; 3]) -> Result<Vec<u8>, Complaint> {
+        let mut contents = self.contents;
+        let count = contents.number("the number of voxels")?;
+        self.check_length(4 + 4 * u64::from(count), &format!("{count} voxels"))?;
+        let [width, depth, height] = size;
+        let mut voxels = vec![0; width * depth * height];
+        for (number, voxel) in contents.bytes.chunks_exact(4).enumerate() {
+            let place = Place::Byte(contents.at + 4 * number);
+            let [x, y, z] = [voxel[0], voxel[1], voxel[2]].map(usize::from);
+            if x >= width || y >= depth || z >= height {
+                let expected = format!("a voxel in the box of {width} x {depth} x {height}");
+                return Err(unexpected(place, expected, format!("({x}, {y}, {z})")));
+            }
+            if voxel[3] == 0 {
+                return Err(unexpected(place, "a palette index from 1 to 255", "0"));
+            }
+            voxels[((depth - 1 - y) * height + z) * width + x] = voxel[3];
+        }
+        Ok(voxels)
+    }
+
+    fn palette(&self) -> Result<Vec<[u8; 3]>, Complaint> {
+        self.check_length(1024, "256 colours")?;
+        let colours = self.contents.bytes.chunks_exact(4);
+        Ok(colours.map(|k| [k[0], k[1], k[2]]).collect())
+    }
+}

@@ -1,0 +1,261 @@
+//! Bodies and materials as they are written down.
+
+use super::error::{Wrong, require, require_vector};
+use super::grid;
+use super::rigid::{BallText, BoxText, CapsuleText, HalfSpaceText};
+use fuwafuwa::law::{Elasticity, Law};
+use fuwafuwa::pyramid::Grading;
+use fuwafuwa::{Blade, Body, BodyError, Dim, Material, VoxelGrid};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// A material as it is written down: what is not named is that of [`Material::default`].
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MaterialText {
+    /// Young's modulus [Pa].
+    pub young: Option<f64>,
+    /// Poisson ratio.
+    pub poisson: Option<f64>,
+    /// [kg/m³]
+    pub density: Option<f32>,
+    /// Damping ratio.
+    pub damping: Option<f32>,
+    /// Friction between pieces.
+    pub friction: Option<f32>,
+    /// [Pa]
+    pub strength: Option<f32>,
+    /// [Pa √m]
+    pub toughness: Option<f32>,
+    /// Whether it never tears.
+    #[serde(default)]
+    pub unbreakable: bool,
+}
+
+/// A body as it is written down. It needs a `shape` or a `file`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BodyText {
+    /// What fills its grid.
+    pub shape: Option<Form>,
+    /// In place of a shape: a silhouette (.png, in 2D) or a model of MagicaVoxel (.vox, in 3D). A path
+    /// is taken from the folder of the scene.
+    pub file: Option<PathBuf>,
+    /// Voxels across; of a silhouette at most so many, of a model it is not asked.
+    pub n: Option<usize>,
+    /// Width of the grid [m]; with a file, of its longest side.
+    #[serde(default = "one")]
+    pub width: f32,
+    /// Of a box or an empty grid: voxels on each axis in terms of `n`, e.g. [3.0, 1.0, 1.0].
+    #[serde(default = "unit_proportions")]
+    pub proportions: [f32; 3],
+    /// The number of its material, 1 when left out; not for models and where `colours` are named.
+    pub material: Option<u8>,
+    /// The number of the material of each colour of the file (`"#d04030" = 2`, the nearest counts) or
+    /// palette index of a model (`"79" = 2`); 0 leaves it out. Without it a model's palette indices
+    /// are numbers of materials.
+    #[serde(default)]
+    pub colours: BTreeMap<String, u8>,
+    /// Changes to the grid, in their order.
+    #[serde(default)]
+    pub part: Vec<PartText>,
+    /// Its low corner [m].
+    #[serde(default)]
+    pub at: [f32; 3],
+    /// [m/s]
+    #[serde(default)]
+    pub velocity: [f32; 3],
+    /// Cut along planes this far apart on every axis [m].
+    pub diced: Option<f32>,
+    /// Cut into single voxels.
+    #[serde(default)]
+    pub crumbled: bool,
+    /// Elements of single voxels everywhere, for comparison.
+    #[serde(default)]
+    pub uniform: bool,
+    /// The elastic force of the paper instead of the patch-exact one.
+    #[serde(default)]
+    pub paper_law: bool,
+}
+
+/// What fills a grid.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Form {
+    /// A disc or a ball.
+    Ball,
+    /// A box.
+    Box,
+    /// A ring, in 3D a torus, with a hole of half its width.
+    Ring,
+    /// A heart, its point down.
+    Heart,
+    /// A flower of five petals.
+    Flower,
+    /// Nothing: parts fill it.
+    Empty,
+}
+
+/// A change to the voxels whose centres lie in a shape: either `fill` or `paint`, and one of the
+/// shapes, in metres from the low corner of the body.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PartText {
+    /// The number of the material that fills the shape; 0 empties it.
+    pub fill: Option<u8>,
+    /// The number of the material that what is solid in the shape becomes.
+    pub paint: Option<u8>,
+    /// Everything below a plane.
+    pub half_space: Option<HalfSpaceText>,
+    /// Middle and half widths [m].
+    #[serde(rename = "box")]
+    pub boxed: Option<BoxText>,
+    /// A bar with round ends.
+    pub capsule: Option<CapsuleText>,
+    /// A ball.
+    pub ball: Option<BallText>,
+}
+
+impl MaterialText {
+    pub(super) fn material(&self) -> Material {
+        let usual = Material::default();
+        // Infinite strength alone would let a crack in from a weaker neighbour.
+        let borne = |given: Option<f32>, usual| match self.unbreakable {
+            true => f32::INFINITY,
+            false => given.unwrap_or(usual),
+        };
+        Material {
+            elasticity: Elasticity {
+                young: self.young.unwrap_or(usual.elasticity.young),
+                poisson: self.poisson.unwrap_or(usual.elasticity.poisson),
+            },
+            density: self.density.unwrap_or(usual.density),
+            damping: self.damping.unwrap_or(usual.damping),
+            friction: self.friction.unwrap_or(usual.friction),
+            strength: borne(self.strength, usual.strength),
+            toughness: borne(self.toughness, usual.toughness),
+        }
+    }
+
+    /// Checks the material of this text.
+    pub(super) fn check(&self) -> Result<(), Wrong> {
+        let material = self.material();
+        let Elasticity { young, poisson } = material.elasticity;
+        let good = young > 0.0 && young.is_finite();
+        let expected = format!("expected a positive number of pascals, found {young}");
+        require(good, "young", expected)?;
+        let expected = format!("expected 0 to 0.45, found {poisson}");
+        require((0.0..=0.45).contains(&poisson), "poisson", expected)?;
+        material.check(0).map_err(|error| match error {
+            BodyError::BadMaterial {
+                field,
+                given,
+                expected,
+                ..
+            } => Wrong::new(field, format!("expected {expected}, found {given}")),
+            error => Wrong::new("young", error),
+        })
+    }
+}
+
+impl BodyText {
+    pub(super) fn build<D: Dim>(&self, materials: &[Material]) -> Result<Body<D>, Wrong> {
+        require_vector(D::N, "at", self.at)?;
+        require_vector(D::N, "velocity", self.velocity)?;
+        let (grid, materials) = of_its_own(grid::of(self)?, materials)?;
+        self.check_diced(grid.voxel_size())?;
+        let law = match self.paper_law {
+            true => Law::Endo2004,
+            false => Law::PatchExact,
+        };
+        let grading = match self.uniform {
+            true => Grading::Uniform,
+            false => Grading::Graded,
+        };
+        let broken = |reason: String| Wrong::new("shape", reason);
+        let body = Body::with(grid, &materials, law, grading);
+        let mut body = body.map_err(|error| broken(error.to_string()))?;
+        if self.crumbled {
+            body.crumble().map_err(|error| broken(error.to_string()))?;
+        }
+        if let Some(spacing) = self.diced {
+            for blade in grid_of_blades(&body, spacing) {
+                let cut = body.cut(&blade);
+                cut.map_err(|error| broken(error.to_string()))?;
+            }
+        }
+        Ok(body.moved(self.at).thrown(self.velocity))
+    }
+
+    fn check_diced(&self, voxel_size: f32) -> Result<(), Wrong> {
+        let spacing = self.diced.unwrap_or(voxel_size);
+        let expected = format!("expected a voxel, {voxel_size} m, or more, found {spacing}");
+        require(spacing >= voxel_size, "diced", expected)
+    }
+}
+
+/// A grid with those materials alone that are in it, numbered anew: the engine takes the substep of a
+/// body from the stiffest material that it is given, and the friction of its skin from the first.
+fn of_its_own<D: Dim>(
+    grid: VoxelGrid<D>,
+    materials: &[Material],
+) -> Result<(VoxelGrid<D>, Vec<Material>), Wrong> {
+    let mut is_used = [false; 256];
+    for voxel in grid.voxels() {
+        is_used[usize::from(grid.material(voxel))] = true;
+    }
+    let (mut numbers, mut own) = ([0; 256], Vec::new());
+    for number in (1..256).filter(|&number| is_used[number]) {
+        let material = materials.get(number - 1).ok_or_else(|| {
+            let count = materials.len();
+            let reason = format!("voxels are of material {number}, the scene has 1 to {count}");
+            Wrong::new("material", reason)
+        })?;
+        own.push(*material);
+        numbers[number] = own.len() as u8;
+    }
+    let size = grid.size().map(|extent| extent as usize);
+    let grid = VoxelGrid::from_fn(size, grid.voxel_size(), |voxel| {
+        numbers[usize::from(grid.material(voxel))]
+    });
+    let grid = grid.expect("only the numbers of materials are others");
+    Ok((grid, own))
+}
+
+/// Planes a distance apart on every axis, through the whole body.
+fn grid_of_blades<D: Dim>(body: &Body<D>, spacing: f32) -> Vec<Blade> {
+    let size = body
+        .grid()
+        .size()
+        .map(|k| k as f32 * body.grid().voxel_size());
+    let long = size.map(|k| 1.2 * k + 1.0);
+    let mut blades = Vec::new();
+    for axis in 0..D::N {
+        let (first, second) = ((axis + 1) % 3, (axis + 2) % 3);
+        let mut place = spacing;
+        while place < size[axis] {
+            let mut blade = Blade {
+                from: [0.0; 3],
+                across: [0.0; 3],
+                along: [0.0; 3],
+            };
+            blade.from[axis] = place;
+            blade.from[first] = -0.5;
+            blade.from[second] = -0.5;
+            blade.across[first] = long[first];
+            blade.along[second] = long[second];
+            blades.push(blade);
+            place += spacing;
+        }
+    }
+    blades
+}
+
+fn one() -> f32 {
+    1.0
+}
+
+fn unit_proportions() -> [f32; 3] {
+    [1.0; 3]
+}

@@ -1,0 +1,191 @@
+//! The grid of a body, from what a scene says about its shape.
+
+use super::body::{BodyText, Form, PartText};
+use super::error::{Wrong, require};
+use super::rigid::Shapes;
+use crate::import::{Colours, Model, Picture};
+use fuwafuwa::dim::points_in;
+use fuwafuwa::grid::MAX_EXTENT;
+use fuwafuwa::{BuildError, Dim, Dim2, Dim3, Shape, VoxelGrid};
+use std::path::Path;
+
+/// The grid of a body.
+pub(super) fn of<D: Dim>(text: &BodyText) -> Result<VoxelGrid<D>, Wrong> {
+    let good = text.width > 0.0 && text.width.is_finite();
+    let expected = format!("expected a positive number of metres, found {}", text.width);
+    require(good, "width", expected)?;
+    let mut voxels = match (text.shape, &text.file) {
+        (Some(form), None) => of_form::<D>(text, form)?,
+        (None, Some(file)) => of_file::<D>(text, file)?,
+        _ => return Err(Wrong::new("shape", "expected either a shape or a file")),
+    };
+    for (index, part) in text.part.iter().enumerate() {
+        let part = Part::of::<D>(part).map_err(|wrong| wrong.inside("part", index))?;
+        voxels.change::<D>(&part);
+    }
+    let grid = VoxelGrid::from_materials(voxels.size, voxels.voxel_size, voxels.materials);
+    grid.map_err(|error| Wrong::new("part", error))
+}
+
+/// Voxels before parts change them.
+struct Voxels {
+    size: [usize; 3],
+    voxel_size: f32,
+    materials: Vec<u8>,
+}
+
+impl Voxels {
+    /// Those of a grid, of any dimension, with what it says is solid.
+    fn of<D: Dim>(grid: &VoxelGrid<D>, voxel_size: f32, material: impl Fn(u8) -> u8) -> Self {
+        let materials = grid.voxels().map(|voxel| material(grid.material(voxel)));
+        Self {
+            size: grid.size().map(|extent| extent as usize),
+            voxel_size,
+            materials: materials.collect(),
+        }
+    }
+
+    fn change<D: Dim>(&mut self, part: &Part) {
+        let high = self.size.map(|extent| extent as i32 - 1);
+        for (voxel, material) in points_in([0; 3], high).zip(&mut self.materials) {
+            let is_meant = *material != 0 || part.fills;
+            let centre = VoxelGrid::<D>::centre(voxel, self.voxel_size);
+            if is_meant && part.shape.distance(centre).0 < 0.0 {
+                *material = part.material;
+            }
+        }
+    }
+}
+
+/// A part of a body, checked.
+struct Part {
+    shape: Shape,
+    material: u8,
+    fills: bool,
+}
+
+impl Part {
+    fn of<D: Dim>(text: &PartText) -> Result<Self, Wrong> {
+        let (material, fills) = match (text.fill, text.paint) {
+            (Some(material), None) => (material, true),
+            (None, Some(material)) => (material, false),
+            _ => return Err(Wrong::new("fill", "expected either fill or paint")),
+        };
+        let shapes = Shapes {
+            half_space: text.half_space.as_ref(),
+            boxed: text.boxed.as_ref(),
+            capsule: text.capsule.as_ref(),
+            ball: text.ball.as_ref(),
+        };
+        Ok(Self {
+            shape: shapes.only::<D>()?,
+            material,
+            fills,
+        })
+    }
+}
+
+fn of_form<D: Dim>(text: &BodyText, form: Form) -> Result<Voxels, Wrong> {
+    let expected = "only a file has colours; expected material, or parts that paint";
+    require(text.colours.is_empty(), "colours", expected)?;
+    let missing = || Wrong::new("n", "expected the number of voxels across");
+    let n = text.n.ok_or_else(missing)?;
+    check_across(n)?;
+    let any_form = matches!(form, Form::Box | Form::Empty);
+    let good = any_form || text.proportions == [1.0; 3];
+    require(good, "proportions", "only a box and an empty grid have any")?;
+    let grid = match form {
+        Form::Ball => VoxelGrid::<D>::ball(n, text.width),
+        Form::Ring => VoxelGrid::ring(n, text.width),
+        Form::Heart => VoxelGrid::heart(n, text.width),
+        Form::Flower => VoxelGrid::flower(n, text.width),
+        Form::Box | Form::Empty => {
+            let mut extent = text.proportions.map(|k| (k * n as f32).round() as usize);
+            extent[D::N..].fill(1);
+            VoxelGrid::from_fn(extent, text.width / n as f32, |_| 1)
+        }
+    };
+    let grid = grid.map_err(|error| match error {
+        BuildError::BadVoxelSize(_) => Wrong::new("width", error),
+        _ if any_form => Wrong::new("proportions", error),
+        _ => Wrong::new("n", error),
+    })?;
+    let material = text.material.unwrap_or(1);
+    Ok(Voxels::of(&grid, grid.voxel_size(), |solid| match form {
+        Form::Empty => 0,
+        _ => solid * material,
+    }))
+}
+
+fn of_file<D: Dim>(text: &BodyText, file: &Path) -> Result<Voxels, Wrong> {
+    let wrong = |error: crate::import::ImportError| Wrong::new("file", error);
+    let good = text.proportions == [1.0; 3];
+    require(good, "proportions", "a file has its own")?;
+    let ending = file.extension().and_then(|ending| ending.to_str());
+    let ending = ending.map(str::to_ascii_lowercase);
+    let colours = colours(text)?;
+    let named = !text.colours.is_empty();
+    let (found, dim) = (file.display(), D::N);
+    match (ending.as_deref(), D::N) {
+        (Some("png"), Dim2::N) => {
+            let across = text.n.unwrap_or(MAX_EXTENT);
+            check_across(across)?;
+            let both = named && text.material.is_some();
+            require(!both, "material", "the colours name the materials")?;
+            let picture = Picture::open(file).map_err(wrong)?;
+            let grid = picture.grid(across, 1.0, &colours).map_err(wrong)?;
+            let material = text.material.unwrap_or(1);
+            Ok(Voxels::of(&grid, voxel_size(text, &grid), |solid| {
+                if named { solid } else { solid * material }
+            }))
+        }
+        (Some("vox"), Dim3::N) => {
+            let expected = "a model has as many voxels as it has; expected only its width";
+            require(text.n.is_none(), "n", expected)?;
+            let expected = "the palette indices of a model are its materials, see colours";
+            require(text.material.is_none(), "material", expected)?;
+            let model = Model::open(file).map_err(wrong)?;
+            let grid = model.grid(1.0, &colours).map_err(wrong)?;
+            Ok(Voxels::of(&grid, voxel_size(text, &grid), |solid| solid))
+        }
+        _ => {
+            let reason = format!(
+                "expected .png for dim = 2 or .vox for dim = 3, found {found} for dim = {dim}"
+            );
+            Err(Wrong::new("file", reason))
+        }
+    }
+}
+
+fn check_across(n: usize) -> Result<(), Wrong> {
+    let expected = format!("expected 1 to {MAX_EXTENT} voxels across, found {n}");
+    require((1..=MAX_EXTENT).contains(&n), "n", expected)
+}
+
+/// The edge length of a voxel [m] when the longest side is to be as long as the text says.
+fn voxel_size<D: Dim>(text: &BodyText, grid: &VoxelGrid<D>) -> f32 {
+    let longest = grid.size().into_iter().max().unwrap_or(1);
+    text.width / longest as f32
+}
+
+/// `"79" = 1` and `"#d04030" = 2`, read.
+fn colours(text: &BodyText) -> Result<Colours, Wrong> {
+    let mut colours = Colours::default();
+    for (key, &material) in &text.colours {
+        let is_hex = |hex: &&str| hex.len() == 6 && hex.bytes().all(|k| k.is_ascii_hexdigit());
+        let red_green_blue = key.strip_prefix('#').filter(is_hex);
+        let number = red_green_blue.and_then(|hex| u32::from_str_radix(hex, 16).ok());
+        if let Some(number) = number {
+            let [_, red, green, blue] = number.to_be_bytes();
+            colours.named.insert([red, green, blue], material);
+        } else if let Some(index) = key.parse().ok().filter(|&index| index > 0) {
+            colours.indices.insert(index, material);
+        } else {
+            let reason = format!(
+                "expected a colour such as \"#d04030\" or a palette index from 1 to 255, found {key:?}"
+            );
+            return Err(Wrong::new("colours", reason));
+        }
+    }
+    Ok(colours)
+}

@@ -1,0 +1,272 @@
+//! What scenes say about the shapes and materials of bodies.
+
+use fuwafuwa::{Body, Dim, Dim2, Dim3};
+use fuwafuwa_scenes::{Recording, Scene, SceneError};
+use png::{BitDepth, ColorType, Encoder};
+use std::path::PathBuf;
+
+fn bodies<D: Dim>(text: &str) -> Vec<Body<D>> {
+    let scene = Scene::read("toy.toml", text, &[]).unwrap();
+    let world = scene.build::<D>();
+    world
+        .unwrap_or_else(|error| panic!("{error}"))
+        .bodies()
+        .to_vec()
+}
+
+/// The materials of a flat body, or of the middle layer of a solid one; the highest row first.
+fn picture<D: Dim>(body: &Body<D>) -> Vec<String> {
+    let grid = body.grid();
+    let [width, height, depth] = grid.size();
+    let sign = |at| char::from(b".12345"[usize::from(grid.material(at))]);
+    let row = |y| (0..width).map(|x| sign([x, y, depth / 2])).collect();
+    (0..height).rev().map(row).collect()
+}
+
+const TWO: &str = "
+[[material]]
+young = 1000.0
+friction = 0.1
+
+[[material]]
+young = 2000.0
+friction = 0.2
+
+[[material]]
+young = 3000.0
+friction = 0.3
+";
+
+#[test]
+fn parts_fill_paint_and_empty_in_their_order() {
+    let text = "
+[[body]]
+shape = \"empty\"
+n = 5
+width = 5.0
+proportions = [1.4, 1.0, 1.0]
+part = [
+    { fill = 1, box = { centre = [3.5, 2.0, 0.0], half = [2.5, 2.0, 0.0] } },
+    { paint = 2, half_space = { normal = [-1, 0, 0], point = [4.0, 0.0, 0.0] } },
+    { fill = 3, ball = { centre = [0.5, 4.5, 0.0], radius = 0.1 } },
+    { fill = 0, capsule = { from = [2.5, 1.5, 0.0], to = [4.5, 1.5, 0.0], radius = 0.2 } },
+]
+";
+    let bodies = bodies::<Dim2>(&format!("dim = 2\n{TWO}{text}"));
+    let expected = ["3......", ".11122.", ".11122.", ".1...2.", ".11122."];
+    assert_eq!(picture(&bodies[0]), expected);
+    assert_eq!(bodies[0].piece_views().len(), 2);
+    assert_eq!(bodies[0].grid().voxel_size(), 1.0);
+}
+
+#[test]
+fn a_hard_core_in_space() {
+    let text = "
+[[body]]
+shape = \"ball\"
+n = 7
+width = 7.0
+[[body.part]]
+paint = 2
+ball = { centre = [3.5, 3.5, 3.5], radius = 1.2 }
+";
+    let bodies = bodies::<Dim3>(&format!("dim = 3\n{TWO}{text}"));
+    let expected = [
+        ".......", ".11111.", ".11211.", ".12221.", ".11211.", ".11111.", ".......",
+    ];
+    assert_eq!(picture(&bodies[0]), expected);
+}
+
+#[test]
+fn every_form_can_be_built() {
+    for form in ["ball", "box", "ring", "heart", "flower"] {
+        let body = format!("[[body]]\nshape = \"{form}\"\nn = 16\n");
+        let flat = bodies::<Dim2>(&format!("dim = 2\n{body}"));
+        let solid = bodies::<Dim3>(&format!("dim = 3\n{body}"));
+        assert!(flat[0].grid().solid_count() > 60, "{form}");
+        assert!(solid[0].grid().solid_count() > 300, "{form}");
+    }
+}
+
+#[test]
+fn a_body_is_made_of_its_own_materials_alone() {
+    let text = "
+[[body]]
+shape = \"box\"
+n = 2
+material = 3
+[[body]]
+shape = \"box\"
+n = 2
+material = 2
+part = [{ paint = 3, half_space = { normal = [1, 0, 0], point = [0.5, 0.0, 0.0] } }]
+";
+    let bodies = bodies::<Dim2>(&format!("dim = 2\n{TWO}{text}"));
+    let young = |body: &Body<Dim2>| -> Vec<f64> {
+        let materials = body.materials().iter();
+        materials
+            .map(|material| material.elasticity.young)
+            .collect()
+    };
+    assert_eq!(young(&bodies[0]), [3000.0]);
+    assert_eq!(young(&bodies[1]), [2000.0, 3000.0]);
+    assert_eq!(picture(&bodies[1]), ["21", "21"]);
+}
+
+#[test]
+fn a_crack_does_not_enter_what_is_unbreakable() {
+    // Coarser than it comes along and weaker around the core, so that it is soon torn.
+    let changes = [
+        "body.n=32",
+        "material.1.strength=500",
+        "material.1.toughness=80",
+    ];
+    let scene = Scene::open("core", &changes.map(String::from)).unwrap();
+    let mut world = scene.build::<Dim2>().unwrap();
+    let mut released = 0;
+    for tick in 0..80 {
+        world.set_goal(0, scene.goals(tick)[0]);
+        released += world.step().released;
+    }
+    assert!(released > 50, "{released}");
+    let views = world.bodies()[0].element_views();
+    let mut of_core: Vec<u32> = views
+        .filter(|view| view.material == 2)
+        .map(|view| view.piece)
+        .collect();
+    of_core.sort_unstable();
+    of_core.dedup();
+    assert_eq!(of_core.len(), 1, "in one piece");
+}
+
+/// A folder of its own for a test, with a scene in it.
+fn folder(name: &str, scene: &str) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("scene.toml"), scene).unwrap();
+    folder
+}
+
+fn open(folder: &std::path::Path) -> Result<Scene, SceneError> {
+    Scene::open(folder.join("scene.toml").to_str().unwrap(), &[])
+}
+
+/// Red, blue and clear pixels, `r`, `b` and anything else.
+fn painting(rows: &[&str]) -> Vec<u8> {
+    let colour = |sign| match sign {
+        b'r' => [230, 20, 20, 255],
+        b'b' => [20, 20, 250, 255],
+        _ => [0; 4],
+    };
+    let samples: Vec<u8> = rows
+        .iter()
+        .flat_map(|row| row.bytes())
+        .flat_map(colour)
+        .collect();
+    let mut bytes = Vec::new();
+    let mut encoder = Encoder::new(&mut bytes, rows[0].len() as u32, rows.len() as u32);
+    encoder.set_color(ColorType::Rgba);
+    encoder.set_depth(BitDepth::Eight);
+    let mut writer = encoder.write_header().unwrap();
+    writer.write_image_data(&samples).unwrap();
+    writer.finish().unwrap();
+    bytes
+}
+
+#[test]
+fn a_picture_beside_the_scene_becomes_a_body() {
+    let scene = format!(
+        "dim = 2\n{TWO}
+[[body]]
+file = \"painting.png\"
+width = 2.0
+colours = {{ \"#ff0000\" = 2, \"#0000FF\" = 1 }}
+[[body]]
+file = \"painting.png\"
+n = 2
+material = 3
+at = [0.0, 3.0, 0.0]
+"
+    );
+    let folder = folder("picture", &scene);
+    std::fs::write(folder.join("painting.png"), painting(&["rb. ", "rrrr"])).unwrap();
+    let scene = open(&folder).unwrap();
+    let world = scene.build::<Dim2>().unwrap();
+    assert_eq!(picture(&world.bodies()[0]), ["21..", "2222"]);
+    assert_eq!(world.bodies()[0].grid().voxel_size(), 0.5);
+    assert_eq!(picture(&world.bodies()[1]), ["11"]);
+    assert_eq!(world.bodies()[1].materials()[0].friction, 0.3);
+
+    // It can be recorded, and run again from the text of the recording.
+    let recording = Recording::of::<Dim2>(&scene, 3, |_| {}).unwrap();
+    let read: Recording = toml::from_str(&toml::to_string(&recording).unwrap()).unwrap();
+    assert_eq!(read, recording);
+    assert_eq!(read.replay::<Dim2>(|_| {}).unwrap().differs_at, None);
+
+    std::fs::write(folder.join("painting.png"), b"\x89PNG no more").unwrap();
+    let error = scene.build::<Dim2>().unwrap_err().to_string();
+    assert!(
+        error.contains("scene.toml, line 16: body 1, file: "),
+        "{error}"
+    );
+    assert!(
+        error.contains("painting.png, byte 0: expected a PNG"),
+        "{error}"
+    );
+}
+
+/// A model of two voxels, one upon the other, of palette indices 79 and 80.
+const MODEL: &[u8] = b"VOX \x96\0\0\0MAIN\0\0\0\0\x30\0\0\0SIZE\x0c\0\0\0\0\0\0\0\
+    \x01\0\0\0\x01\0\0\0\x02\0\0\0XYZI\x0c\0\0\0\0\0\0\0\x02\0\0\0\0\0\0\x4f\0\0\x01\x50";
+
+#[test]
+fn a_model_beside_the_scene_becomes_a_body() {
+    let with = |colours: &str| {
+        let scene = format!("dim = 3\n{TWO}\n[[body]]\nfile = \"a.vox\"\n{colours}");
+        let folder = folder("model", &scene);
+        std::fs::write(folder.join("a.vox"), MODEL).unwrap();
+        let world = open(&folder).unwrap().build::<Dim3>();
+        world
+            .map(|world| picture(&world.bodies()[0]))
+            .map_err(|error| error.to_string())
+    };
+    let expected = ["1", "2"].map(String::from).to_vec();
+    assert_eq!(with("colours = { \"79\" = 3, \"80\" = 1 }"), Ok(expected));
+    for (fields, expected) in [
+        (
+            "",
+            ": body 1, material: voxels are of material 79, the scene has 1 to 3",
+        ),
+        (
+            "colours = { \"79\" = 3 }",
+            "expected a material for the palette index 80, found none",
+        ),
+        (
+            "colours = { \"#ff0000\" = 3 }",
+            "none: name palette indices instead",
+        ),
+        (
+            "colours = { \"0\" = 3 }",
+            "or a palette index from 1 to 255, found \"0\"",
+        ),
+        (
+            "colours = { red = 3 }",
+            "or a palette index from 1 to 255, found \"red\"",
+        ),
+        (
+            "colours = { \"#ff00\" = 3 }",
+            "or a palette index from 1 to 255, found \"#ff00\"",
+        ),
+        (
+            "n = 8",
+            "line 17: body 1, n: a model has as many voxels as it has; expected only its width",
+        ),
+        (
+            "material = 2",
+            "line 17: body 1, material: the palette indices of a model are its materials, see colours",
+        ),
+    ] {
+        let error = with(fields).unwrap_err();
+        assert!(error.ends_with(expected), "{error}\nlacks: {expected}");
+    }
+}

@@ -1,0 +1,37 @@
+//! Damage to files: what every import has to survive.
+
+use fuwafuwa::{Dim, VoxelGrid};
+use fuwafuwa_scenes::import::ImportError;
+
+/// A linear congruential generator with the constants of Knuth's MMIX: the same noise every time.
+pub struct Noise(pub u64);
+
+impl Noise {
+    pub fn below(&mut self, limit: usize) -> usize {
+        let (factor, step) = (6_364_136_223_846_793_005, 1_442_695_040_888_963_407);
+        self.0 = self.0.wrapping_mul(factor).wrapping_add(step);
+        (self.0 >> 33) as usize % limit
+    }
+
+    /// A copy with one to four bytes changed: a bit, to an extreme, or altogether.
+    pub fn damaged(&mut self, bytes: &[u8]) -> Vec<u8> {
+        let mut damaged = bytes.to_vec();
+        for _ in 0..=self.below(4) {
+            let at = self.below(bytes.len());
+            damaged[at] = match self.below(3) {
+                0 => damaged[at] ^ 1 << self.below(8),
+                1 => [0, 1, 0x7f, 0x80, 0xff][self.below(5)],
+                _ => self.below(256) as u8,
+            };
+        }
+        damaged
+    }
+}
+
+/// A damaged file may still hold a shape; if it does not, the error names the file.
+pub fn check<D: Dim>(outcome: Result<VoxelGrid<D>, ImportError>) {
+    match outcome {
+        Ok(grid) => assert!(grid.solid_count() > 0),
+        Err(error) => assert!(error.to_string().starts_with("test."), "{error}"),
+    }
+}

@@ -1,0 +1,441 @@
+//! Pictures become flat shapes, and no bytes whatever do harm.
+
+mod damage;
+
+use damage::Noise;
+use fuwafuwa::{BuildError, Dim2, VoxelGrid};
+use fuwafuwa_scenes::import::{
+    Colours, ImportError, MAX_PIXELS, Picture, Place, Problem, png, png_bytes,
+};
+use png::{BitDepth, ColorType, Encoder, Filter};
+use std::path::Path;
+
+type Setting<'a, 'b> = Encoder<'a, &'b mut Vec<u8>>;
+
+/// A PNG file of these samples.
+fn encode(
+    size: [u32; 2],
+    (colour, depth): (ColorType, BitDepth),
+    samples: &[u8],
+    set: impl Fn(&mut Setting),
+) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = Encoder::new(&mut bytes, size[0], size[1]);
+    encoder.set_color(colour);
+    encoder.set_depth(depth);
+    set(&mut encoder);
+    let mut writer = encoder.write_header().unwrap();
+    writer.write_image_data(samples).unwrap();
+    writer.finish().unwrap();
+    bytes
+}
+
+const GREY: (ColorType, BitDepth) = (ColorType::Grayscale, BitDepth::Eight);
+const COLOUR: (ColorType, BitDepth) = (ColorType::Rgba, BitDepth::Eight);
+
+fn grey(width: u32, samples: &[u8]) -> Vec<u8> {
+    let height = samples.len() as u32 / width;
+    encode([width, height], GREY, samples, |_| {})
+}
+
+/// A picture in grey, `#` black and anything else white; the first row is the top.
+fn drawing(rows: &[&str]) -> Vec<u8> {
+    let sample = |sign| if sign == b'#' { 0 } else { 255 };
+    let samples: Vec<u8> = rows
+        .iter()
+        .flat_map(|row| row.bytes())
+        .map(sample)
+        .collect();
+    grey(rows[0].len() as u32, &samples)
+}
+
+fn import(bytes: &[u8], across: usize) -> Result<VoxelGrid<Dim2>, ImportError> {
+    png_bytes("test.png", bytes, across, 0.5)
+}
+
+/// The materials of a grid, the highest row first.
+fn rows(grid: &VoxelGrid<Dim2>) -> Vec<String> {
+    let [width, height, _] = grid.size();
+    let sign = |at| char::from(b".#23456789"[usize::from(grid.material(at))]);
+    let row = |y| (0..width).map(|x| sign([x, y, 0])).collect();
+    (0..height).rev().map(row).collect()
+}
+
+fn check(bytes: &[u8], across: usize, expect: &[&str]) {
+    assert_eq!(rows(&import(bytes, across).unwrap()), expect);
+}
+
+fn complaint(bytes: &[u8]) -> String {
+    import(bytes, 8).unwrap_err().to_string()
+}
+
+#[test]
+fn the_top_row_is_the_highest() {
+    let bytes = drawing(&["##..", ".#..", "...#"]);
+    check(&bytes, 1024, &["##..", ".#..", "...#"]);
+    assert_eq!(import(&bytes, 8).unwrap().voxel_size(), 0.5);
+    assert_eq!(Picture::decode("a", &bytes).unwrap().size(), [4, 3]);
+}
+
+#[test]
+fn every_colour_type_and_depth_is_read() {
+    use BitDepth::{Eight, Four, One, Sixteen, Two};
+    use ColorType::{Grayscale, GrayscaleAlpha, Indexed, Rgb, Rgba};
+    // Two pixels each: dark and light, opaque and clear, or of a colour and of the transparent one.
+    let half = &[255, 255, 128, 0, 0, 0, 127, 255];
+    let none = |_: &mut Setting| {};
+    let palette = |encoder: &mut Setting| encoder.set_palette(vec![90, 0, 0, 255, 255, 200]);
+    let clear_palette = |encoder: &mut Setting| {
+        encoder.set_palette(vec![255, 255, 255, 0, 0, 0]);
+        encoder.set_trns(vec![255, 0]);
+    };
+    let clear_grey = |encoder: &mut Setting| encoder.set_trns(vec![0, 9]);
+    let clear_colour = |encoder: &mut Setting| encoder.set_trns(vec![0, 1, 0, 2, 0, 3]);
+    type Case<'a> = (ColorType, BitDepth, &'a [u8], &'a dyn Fn(&mut Setting));
+    let cases: [Case; 18] = [
+        (Grayscale, One, &[0b0100_0000], &none),
+        (Grayscale, Two, &[0b0111_0000], &none),
+        (Grayscale, Four, &[0x7f], &none),
+        (Grayscale, Eight, &[127, 128], &none),
+        (Grayscale, Sixteen, &[127, 255, 128, 0], &none),
+        (GrayscaleAlpha, Eight, &[255, 128, 0, 127], &none),
+        (GrayscaleAlpha, Sixteen, half, &none),
+        (Rgb, Eight, &[255, 0, 0, 0, 255, 0], &none),
+        (
+            Rgb,
+            Sixteen,
+            &[0, 0, 0, 0, 0, 0, 255, 255, 255, 255, 255, 255],
+            &none,
+        ),
+        (Rgba, Eight, &[255, 255, 255, 255, 0, 0, 0, 0], &none),
+        (Rgba, Sixteen, &[[255; 8], [0; 8]].concat(), &none),
+        (Indexed, One, &[0b0100_0000], &palette),
+        (Indexed, Two, &[0b0001_0000], &palette),
+        (Indexed, Four, &[0x01], &palette),
+        (Indexed, Eight, &[0, 1], &palette),
+        (Indexed, Eight, &[0, 1], &clear_palette),
+        (Grayscale, Eight, &[200, 9], &clear_grey),
+        (Rgb, Eight, &[3, 2, 1, 1, 2, 3], &clear_colour),
+    ];
+    for (colour, depth, samples, set) in cases {
+        let bytes = encode([2, 1], (colour, depth), samples, set);
+        let found = rows(&import(&bytes, 8).unwrap());
+        assert_eq!(found, ["#."], "{colour:?} {depth:?}");
+    }
+}
+
+/// `data` as 2 × 2 pixels in the passes of Adam7, which the encoder does not write: as raw bytes these
+/// are one row of 6 pixels, in which two pixels stand for the filters of the later passes.
+///
+/// ```text
+///   2 × 2 pixels:  0 a | 0 b | 0 c d     each pass begins each of its rows with a filter, here 0
+///   6 × 1 pixels:  0 a   0 b   0 c d
+/// ```
+fn interlaced([a, b, c, d]: [u8; 4]) -> Vec<u8> {
+    let unfiltered = |encoder: &mut Setting| encoder.set_filter(Filter::NoFilter);
+    let mut bytes = encode([6, 1], GREY, &[a, 0, b, 0, c, d], unfiltered);
+    bytes[28] = 1;
+    with_size(&bytes, [2, 2])
+}
+
+#[test]
+fn an_interlaced_picture_is_put_together() {
+    check(&interlaced([255, 0, 0, 0]), 8, &[".#", "##"]);
+    check(&interlaced([0, 0, 255, 0]), 8, &["##", ".#"]);
+}
+
+#[test]
+fn a_sprite_is_what_is_opaque_and_a_drawing_what_is_dark() {
+    let pixels = |pixels: &[[u8; 4]]| {
+        let size = [pixels.len() as u32, 1];
+        encode(size, COLOUR, pixels.as_flattened(), |_| {})
+    };
+    let (black, white) = ([0, 0, 0, 255], [255; 4]);
+    check(&pixels(&[black, white, [0, 0, 0, 127]]), 8, &["##."]);
+    // Nothing is more than half transparent: on white paper, and grey where it shines through.
+    check(&pixels(&[black, white, [0, 0, 0, 128]]), 8, &["#.#"]);
+    check(&pixels(&[black, white, [20, 20, 20, 128]]), 8, &["#.."]);
+    check(&pixels(&[[0, 0, 255, 255], [0, 255, 0, 255]]), 8, &["#."]);
+}
+
+#[test]
+fn a_large_picture_is_scaled_down() {
+    let bytes = drawing(&["##..", "#...", "####", "..##"]);
+    // Three of four, none; half, all.
+    check(&bytes, 2, &["#.", "##"]);
+    check(&bytes, 9, &["##..", "#...", "####", "..##"]);
+    // 3 pixels on 2 voxels: each has all of one pixel and half of the middle one.
+    check(&drawing(&["#.#"]), 2, &["##"]);
+    check(&drawing(&["..#"]), 2, &[".#"]);
+    check(&drawing(&[".#.", ".#.", "##."]), 2, &["..", "#."]);
+    // The sides are rounded, and a long picture keeps a row.
+    check(&drawing(&["#####"; 3]), 3, &["###", "###"]);
+    check(&drawing(&["########"]), 2, &["##"]);
+    check(&drawing(&["#"; 500]), 2, &["#", "#"]);
+}
+
+/// Red, a darker red, green and clear.
+const PAINTED: [[u8; 4]; 8] = [
+    [255, 0, 0, 255],
+    [200, 40, 40, 255],
+    [0, 255, 0, 255],
+    [0, 255, 0, 0],
+    [255, 0, 0, 255],
+    [255, 0, 0, 255],
+    [0, 200, 20, 255],
+    [255, 0, 0, 90],
+];
+
+fn painted(across: usize, named: &[([u8; 3], u8)]) -> Vec<String> {
+    let bytes = encode([4, 2], COLOUR, PAINTED.as_flattened(), |_| {});
+    let colours = Colours {
+        named: named.iter().copied().collect(),
+        ..Colours::default()
+    };
+    let picture = Picture::decode("test.png", &bytes).unwrap();
+    rows(&picture.grid(across, 1.0, &colours).unwrap())
+}
+
+#[test]
+fn a_pixel_is_of_the_material_of_the_nearest_colour() {
+    let (red, green) = ([255, 0, 0], [0, 255, 0]);
+    assert_eq!(painted(9, &[]), ["###.", "###."]);
+    assert_eq!(painted(9, &[(red, 3), (green, 2)]), ["332.", "332."]);
+    assert_eq!(painted(9, &[(red, 3), (green, 0)]), ["33..", "33.."]);
+    assert_eq!(painted(9, &[(red, 7)]), ["777.", "777."]);
+    assert_eq!(painted(2, &[(red, 3), (green, 2)]), ["32"]);
+    // Half red and a quarter green, so that red is most of what is solid.
+    assert_eq!(painted(1, &[(red, 3), (green, 2)]), ["3"]);
+}
+
+#[test]
+fn a_picture_has_no_palette_indices() {
+    let picture = Picture::decode("test.png", &drawing(&["#"])).unwrap();
+    let colours = Colours {
+        indices: [(7, 1)].into(),
+        ..Colours::default()
+    };
+    let error = picture.grid(8, 1.0, &colours).unwrap_err().to_string();
+    assert!(error.ends_with("found the palette index 7"), "{error}");
+}
+
+#[test]
+fn an_empty_picture_says_what_it_looked_for() {
+    assert_eq!(
+        complaint(&drawing(&["..", ".."])),
+        "test.png: the shape is empty: there is no pixel with a luminance below 128"
+    );
+    let clear = (ColorType::GrayscaleAlpha, BitDepth::Eight);
+    let clear = complaint(&encode([1, 1], clear, &[0, 127], |_| {}));
+    assert!(clear.ends_with("an alpha of 128 or more"), "{clear}");
+}
+
+#[test]
+fn wrong_sizes_are_refused_by_the_header() {
+    let most = MAX_PIXELS;
+    let one = drawing(&["#"]);
+    for size in [
+        [most + 1, 1],
+        [1, most + 1],
+        [1, u32::MAX >> 1],
+        [u32::MAX >> 1; 2],
+        [u32::MAX; 2],
+    ] {
+        let error = import(&with_size(&one, size), 8).unwrap_err();
+        assert_eq!(error.place, Place::Chunk(*b"IHDR", 8));
+        assert!(
+            matches!(error.problem, Problem::TooLarge { found, limit, .. }
+            if found == u64::from(size[0].max(size[1])) && limit == u64::from(most))
+        );
+    }
+    assert_eq!(
+        complaint(&with_size(&one, [most + 1, 1])),
+        "test.png, chunk IHDR at byte 8: 4097 pixels on a side are too many, the limit is 4096"
+    );
+    // What the file cannot hold, however well it is compressed.
+    assert_eq!(
+        complaint(&with_size(&one, [4096, 4096])),
+        "test.png, chunk IHDR at byte 8: expected at least 16261 bytes for 4096 x 4096 pixels, found 67"
+    );
+    assert!(complaint(&with_size(&one, [100, 100])).contains("expected a PNG picture"));
+    for size in [[0, 0], [0, 1], [1, 0]] {
+        assert!(complaint(&with_size(&one, size)).contains("expected a PNG picture"));
+    }
+    let widest = grey(most, &vec![0; most as usize]);
+    assert_eq!(import(&widest, 8).unwrap().size(), [8, 1, 1]);
+}
+
+#[test]
+fn what_the_caller_asks_for_is_checked() {
+    let bytes = drawing(&["#"]);
+    for across in [0, 1025, usize::MAX] {
+        let error = import(&bytes, across).unwrap_err().to_string();
+        let expected = format!("test.png: expected 1 to 1024 voxels across, found {across}");
+        assert_eq!(error, expected);
+    }
+    for size in [f32::NAN, -1.0, 0.0, f32::INFINITY] {
+        let error = png_bytes("test.png", &bytes, 8, size).unwrap_err();
+        let problem = error.problem;
+        assert!(matches!(
+            problem,
+            Problem::Grid(BuildError::BadVoxelSize(_))
+        ));
+    }
+}
+
+#[test]
+fn a_file_is_read_and_a_missing_one_named() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let path = folder.join("drawing.png");
+    std::fs::write(&path, drawing(&["##", "#."])).unwrap();
+    assert_eq!(rows(&png(&path, 8, 0.5).unwrap()), ["##", "#."]);
+    for unreadable in [&folder.join("no such drawing.png"), folder] {
+        let error = png(unreadable, 8, 0.5).unwrap_err();
+        assert!(matches!(error.problem, Problem::Unreadable(_)));
+        let name = unreadable.display().to_string();
+        assert!(error.to_string().starts_with(&name), "{error}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_file_without_an_end_is_not_read_to_its_end() {
+    let error = png(Path::new("/dev/zero"), 8, 0.5).unwrap_err().to_string();
+    assert!(error.contains("the limit is 134217728"), "{error}");
+}
+
+#[test]
+fn a_picture_cut_short_is_an_error_at_every_length() {
+    for bytes in samples() {
+        assert!(import(&bytes, 4).is_ok());
+        for length in 0..bytes.len() {
+            let error = import(&bytes[..length], 4).unwrap_err();
+            assert!(
+                matches!(error.problem, Problem::Unexpected { .. }),
+                "{error}"
+            );
+            let is_inside = !matches!(error.place, Place::Byte(at) if at > length);
+            assert!(is_inside, "{length}: {error}");
+        }
+    }
+    assert_eq!(
+        complaint(&drawing(&["#"])[..40]),
+        "test.png, byte 40: expected a PNG picture, found the end of the file"
+    );
+    assert_eq!(
+        complaint(b"GIF89a and more"),
+        "test.png, byte 0: expected a PNG picture, found Invalid PNG signature."
+    );
+}
+
+#[test]
+fn damaged_pictures_never_panic() {
+    let mut noise = Noise(1);
+    for bytes in samples() {
+        for _ in 0..1500 {
+            let mut broken = noise.damaged(&bytes);
+            damage::check(import(&broken, 4));
+            // Most damage ends at a wrong checksum; with right ones it goes deeper.
+            mend_checksums(&mut broken);
+            damage::check(import(&broken, 4));
+        }
+    }
+    for length in 0..500 {
+        let bytes: Vec<u8> = (0..length).map(|_| noise.below(256) as u8).collect();
+        assert!(import(&bytes, 4).is_err());
+    }
+}
+
+#[test]
+fn a_first_frame_smaller_than_the_picture_is_refused() {
+    let mut bytes = animated();
+    let control = bytes.windows(4).position(|word| word == b"fcTL").unwrap();
+    bytes[control + 8..control + 12].copy_from_slice(&1_u32.to_be_bytes());
+    mend_checksums(&mut bytes);
+    assert!(complaint(&bytes).contains("expected a PNG picture"));
+}
+
+/// One small picture of each kind that is decoded differently.
+fn samples() -> Vec<Vec<u8>> {
+    let indexed = encode(
+        [5, 3],
+        (ColorType::Indexed, BitDepth::Two),
+        &[0b0001_1000, 0, 0b1111_0000, 0, 0, 0],
+        |encoder| {
+            encoder.set_palette(vec![0, 0, 0, 255, 255, 255, 9, 9, 9, 0, 0, 0]);
+            encoder.set_trns(vec![255, 0]);
+            let (title, comment) = ("Title".into(), "Comment".into());
+            encoder.add_text_chunk(title, "a shape".into()).unwrap();
+            encoder
+                .add_ztxt_chunk(comment, "a longer text".into())
+                .unwrap();
+        },
+    );
+    let deep = (ColorType::Rgba, BitDepth::Sixteen);
+    vec![
+        drawing(&["##..", ".#..", "...#"]),
+        encode(
+            [3, 2],
+            (ColorType::Grayscale, BitDepth::One),
+            &[0, 0],
+            |_| {},
+        ),
+        encode(
+            [2, 1],
+            deep,
+            &[0, 0, 0, 0, 0, 0, 255, 255].repeat(2),
+            |_| {},
+        ),
+        indexed,
+        animated(),
+        interlaced([0; 4]),
+    ]
+}
+
+/// Two frames of 2 × 2 pixels, the first of which is the picture that still viewers show.
+fn animated() -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = Encoder::new(&mut bytes, 2, 2);
+    encoder.set_animated(2, 0).unwrap();
+    let mut writer = encoder.write_header().unwrap();
+    writer.write_image_data(&[0; 4]).unwrap();
+    writer.write_image_data(&[255; 4]).unwrap();
+    writer.finish().unwrap();
+    bytes
+}
+
+fn with_size(bytes: &[u8], size: [u32; 2]) -> Vec<u8> {
+    let mut bytes = bytes.to_vec();
+    bytes[16..20].copy_from_slice(&size[0].to_be_bytes());
+    bytes[20..24].copy_from_slice(&size[1].to_be_bytes());
+    mend_checksums(&mut bytes);
+    bytes
+}
+
+/// Makes the checksum of every chunk right, as far as the lengths of the chunks can be followed.
+fn mend_checksums(bytes: &mut [u8]) {
+    let mut at = 8;
+    while let Some(word) = bytes.get(at..at + 4) {
+        let length = u32::from_be_bytes(word.try_into().unwrap()) as usize;
+        let end = at + 8 + length;
+        if end + 4 > bytes.len() {
+            return;
+        }
+        let checksum = crc(&bytes[at + 4..end]);
+        bytes[end..end + 4].copy_from_slice(&checksum.to_be_bytes());
+        at = end + 4;
+    }
+}
+
+/// The CRC of the PNG specification, annex D, bit by bit.
+fn crc(bytes: &[u8]) -> u32 {
+    let mut remainder = u32::MAX;
+    for &byte in bytes {
+        remainder ^= u32::from(byte);
+        for _ in 0..8 {
+            let low = remainder & 1;
+            remainder = (remainder >> 1) ^ (low * 0xedb8_8320);
+        }
+    }
+    !remainder
+}

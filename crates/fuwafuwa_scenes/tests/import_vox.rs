@@ -1,0 +1,304 @@
+//! MagicaVoxel models become solid shapes, and no bytes whatever do harm.
+
+mod damage;
+
+use damage::Noise;
+use fuwafuwa::{BuildError, Dim3, VoxelGrid};
+use fuwafuwa_scenes::import::{Colours, ImportError, Model, Place, Problem, vox, vox_bytes};
+use std::path::Path;
+
+fn chunk(name: &[u8; 4], contents: &[u8], children: &[u8]) -> Vec<u8> {
+    let mut bytes = name.to_vec();
+    bytes.extend((contents.len() as u32).to_le_bytes());
+    bytes.extend((children.len() as u32).to_le_bytes());
+    bytes.extend(contents);
+    bytes.extend(children);
+    bytes
+}
+
+fn size(size: [u32; 3]) -> Vec<u8> {
+    chunk(b"SIZE", &size.map(u32::to_le_bytes).concat(), &[])
+}
+
+/// A list of voxels that claims to have `count` of them.
+fn voxels(count: usize, voxels: &[[u8; 4]]) -> Vec<u8> {
+    let contents = [&(count as u32).to_le_bytes()[..], &voxels.concat()].concat();
+    chunk(b"XYZI", &contents, &[])
+}
+
+/// A palette in which colour 1 is red, 2 is dark red, 7 is green and the others are black.
+fn palette() -> Vec<u8> {
+    let mut colours = [[0, 0, 0, 255]; 256];
+    colours[0] = [255, 0, 0, 255];
+    colours[1] = [120, 0, 0, 255];
+    colours[6] = [0, 255, 0, 255];
+    chunk(b"RGBA", colours.as_flattened(), &[])
+}
+
+fn file(version: u32, chunks: &[Vec<u8>]) -> Vec<u8> {
+    let main = chunk(b"MAIN", &[], &chunks.concat());
+    [&b"VOX "[..], &version.to_le_bytes(), &main].concat()
+}
+
+fn model(extent: [u32; 3], list: &[[u8; 4]]) -> Vec<u8> {
+    file(150, &[size(extent), voxels(list.len(), list)])
+}
+
+/// A file with much that is passed over: a second model, and chunks that nobody knows.
+fn full() -> Vec<u8> {
+    let first = [[0, 0, 0, 1], [1, 2, 3, 7], [1, 0, 0, 2], [0, 2, 0, 255]];
+    file(
+        200,
+        &[
+            chunk(b"PACK", &2_u32.to_le_bytes(), &[]),
+            chunk(b"what", b"ever", &chunk(b"SIZE", &[9; 12], &[])),
+            size([2, 3, 4]),
+            voxels(first.len(), &first),
+            size([1, 1, 1]),
+            voxels(1, &[[0, 0, 0, 9]]),
+            palette(),
+        ],
+    )
+}
+
+fn import(bytes: &[u8]) -> Result<VoxelGrid<Dim3>, ImportError> {
+    vox_bytes("test.vox", bytes, 0.25)
+}
+
+#[test]
+fn up_stays_up_and_the_front_faces_the_viewer() {
+    let grid = import(&full()).unwrap();
+    assert_eq!(grid.size(), [2, 4, 3], "x, z and y of the file");
+    assert_eq!(grid.voxel_size(), 0.25);
+    assert_eq!(grid.solid_count(), 4);
+    for (voxel, material) in [
+        ([0, 0, 2], 1),   // the corner at the origin: left, bottom, front
+        ([1, 0, 2], 2),   // one to the right
+        ([0, 0, 0], 255), // farthest along y: at the back
+        ([1, 3, 0], 7),   // and at the top
+    ] {
+        assert_eq!(grid.material(voxel), material, "{voxel:?}");
+    }
+    let twice = import(&model([1; 3], &[[0, 0, 0, 4], [0, 0, 0, 5]])).unwrap();
+    assert_eq!(twice.material([0; 3]), 5);
+}
+
+#[test]
+fn colours_and_palette_indices_become_materials() {
+    let model = Model::decode("test.vox", &full()).unwrap();
+    assert_eq!(model.size(), [2, 4, 3]);
+    let grid = |indices: &[(u8, u8)], named: &[([u8; 3], u8)]| {
+        let (indices, named) = (indices.iter().copied(), named.iter().copied());
+        let (indices, named) = (indices.collect(), named.collect());
+        let grid = model.grid(1.0, &Colours { indices, named });
+        // The voxels of index 1, 2, 7 and 255.
+        let places = [[0, 0, 2], [1, 0, 2], [1, 3, 0], [0, 0, 0]];
+        grid.map(|grid| places.map(|at| grid.material(at)))
+            .map_err(|error| error.to_string())
+    };
+    let (red, green) = ([250, 10, 10], [0, 200, 0]);
+    assert_eq!(grid(&[], &[]), Ok([1, 2, 7, 255]));
+    let every = [(1, 3), (2, 3), (7, 0), (255, 1)];
+    assert_eq!(grid(&every, &[]), Ok([3, 3, 0, 1]));
+    // Black is nearer to green here; what an index says comes first.
+    assert_eq!(grid(&[], &[(red, 1), (green, 2)]), Ok([1, 1, 2, 2]));
+    assert_eq!(grid(&[(1, 9)], &[(red, 1), (green, 2)]), Ok([9, 1, 2, 2]));
+    let lacking = grid(&[(1, 3), (2, 3), (255, 1)], &[]);
+    let expected = "test.vox: expected a material for the palette index 7, found none";
+    assert_eq!(lacking, Err(expected.into()));
+    let nothing = grid(&[], &[(red, 0)]).unwrap_err();
+    assert!(nothing.contains("no solid voxel"), "{nothing}");
+}
+
+#[test]
+fn a_model_without_a_palette_has_no_colours() {
+    let bare = Model::decode("test.vox", &model([1; 3], &[[0, 0, 0, 4]])).unwrap();
+    let colours = Colours {
+        named: [([0; 3], 1)].into(),
+        ..Colours::default()
+    };
+    let error = bare.grid(1.0, &colours).unwrap_err().to_string();
+    assert!(error.contains("expected a chunk RGBA"), "{error}");
+}
+
+#[test]
+fn the_largest_model_is_taken() {
+    let corners = [[0, 0, 0, 1], [255, 255, 255, 1]];
+    let grid = import(&model([256; 3], &corners)).unwrap();
+    assert_eq!(grid.size(), [256; 3]);
+    assert!(grid.is_solid([0, 0, 255]) && grid.is_solid([255, 255, 0]));
+}
+
+#[test]
+fn each_fault_is_told_with_its_place() {
+    let one = [[0, 0, 0, 1]];
+    let main = |lengths: [u32; 2]| {
+        let lengths = lengths.map(u32::to_le_bytes).concat();
+        [&b"VOX \x96\0\0\0MAIN"[..], &lengths].concat()
+    };
+    let cases = [
+        (
+            vec![],
+            ", byte 0: expected 4 bytes for the letters \"VOX \", found 0",
+        ),
+        (
+            b"\x89PNG1234".to_vec(),
+            ", byte 0: expected the letters \"VOX \", found \"\\x89PNG\"",
+        ),
+        (
+            file(149, &[]),
+            ", byte 4: expected a version from 150 to 200, found 149",
+        ),
+        (
+            [b"VOX \x96\0\0\0".to_vec(), size([1; 3])].concat(),
+            ", byte 8: expected the chunk MAIN, found SIZE",
+        ),
+        (
+            main([u32::MAX; 2]),
+            ", byte 20: expected 4294967295 bytes for the chunk MAIN, found 0",
+        ),
+        (
+            main([0, u32::MAX]),
+            ", byte 20: expected 4294967295 bytes for the children of the chunk MAIN, found 0",
+        ),
+        (
+            file(150, &[]),
+            ", byte 20: expected a model of chunks SIZE and XYZI, found no more chunks",
+        ),
+        (
+            file(150, &[size([1; 3])]),
+            ", byte 44: expected a model of chunks SIZE and XYZI, found no more chunks",
+        ),
+        (
+            file(150, &[voxels(1, &one), size([1; 3])]),
+            ", chunk XYZI at byte 20: expected a chunk SIZE before it, found none",
+        ),
+        (
+            file(150, &[chunk(b"SIZE", &[1; 8], &[])]),
+            ", chunk SIZE at byte 20: expected 12 bytes for a size on three axes, found 8",
+        ),
+        (
+            model([1, 0, 1], &one),
+            ", chunk SIZE at byte 20: expected 1 to 256 voxels on an axis, found 0",
+        ),
+        (
+            model([1, 1, 257], &one),
+            ", chunk SIZE at byte 20: 257 voxels on an axis are too many, the limit is 256",
+        ),
+        (
+            model([u32::MAX; 3], &one),
+            ", chunk SIZE at byte 20: 4294967295 voxels on an axis are too many, the limit is 256",
+        ),
+        (
+            model([1; 3], &[]),
+            ": the shape is empty: there is no solid voxel in the first model",
+        ),
+        (
+            file(150, &[size([1; 3]), voxels(2, &one)]),
+            ", chunk XYZI at byte 44: expected 12 bytes for 2 voxels, found 8",
+        ),
+        (
+            file(150, &[size([1; 3]), voxels(u32::MAX as usize, &one)]),
+            ", chunk XYZI at byte 44: expected 17179869184 bytes for 4294967295 voxels, found 8",
+        ),
+        (
+            file(150, &[size([1; 3]), voxels(0, &one)]),
+            ", chunk XYZI at byte 44: expected 4 bytes for 0 voxels, found 8",
+        ),
+        (
+            model([2, 3, 4], &[[0, 0, 0, 1], [2, 0, 0, 1]]),
+            ", byte 64: expected a voxel in the box of 2 x 3 x 4, found (2, 0, 0)",
+        ),
+        (
+            model([2, 3, 4], &[[0, 3, 0, 1]]),
+            ", byte 60: expected a voxel in the box of 2 x 3 x 4, found (0, 3, 0)",
+        ),
+        (
+            model([2, 3, 4], &[[0, 0, 4, 1]]),
+            ", byte 60: expected a voxel in the box of 2 x 3 x 4, found (0, 0, 4)",
+        ),
+        (
+            model([1; 3], &[[0, 0, 0, 0]]),
+            ", byte 60: expected a palette index from 1 to 255, found 0",
+        ),
+        (
+            file(
+                150,
+                &[size([1; 3]), voxels(1, &one), chunk(b"RGBA", &[0; 4], &[])],
+            ),
+            ", chunk RGBA at byte 64: expected 1024 bytes for 256 colours, found 4",
+        ),
+    ];
+    for (bytes, expected) in cases {
+        let error = import(&bytes).unwrap_err().to_string();
+        assert_eq!(error, format!("test.vox{expected}"));
+    }
+}
+
+#[test]
+fn the_voxel_size_is_checked() {
+    let error = vox_bytes("test.vox", &full(), 0.0).unwrap_err();
+    assert_eq!(error.place, Place::File);
+    let problem = error.problem;
+    assert!(matches!(
+        problem,
+        Problem::Grid(BuildError::BadVoxelSize(_))
+    ));
+}
+
+#[test]
+fn a_file_is_read_and_a_missing_one_named() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let path = folder.join("model.vox");
+    std::fs::write(&path, full()).unwrap();
+    assert_eq!(vox(&path, 1.0).unwrap().solid_count(), 4);
+    let missing = folder.join("no such model.vox");
+    let error = vox(&missing, 1.0).unwrap_err();
+    assert!(matches!(error.problem, Problem::Unreadable(_)));
+    let name = missing.display().to_string();
+    assert!(error.to_string().starts_with(&name), "{error}");
+}
+
+#[test]
+fn chunks_nested_without_end_do_not_overflow_the_stack() {
+    let levels = 200_000;
+    let mut bytes = b"VOX \x96\0\0\0".to_vec();
+    for level in 0..levels {
+        bytes.extend(b"MAIN\0\0\0\0");
+        bytes.extend((12 * (levels - 1 - level) as u32).to_le_bytes());
+    }
+    let error = import(&bytes).unwrap_err().to_string();
+    assert!(error.ends_with("found no more chunks"), "{error}");
+}
+
+#[test]
+fn a_model_cut_short_is_an_error_at_every_length() {
+    // MAIN states its length, so that every byte is missed.
+    let bytes = full();
+    for length in 0..bytes.len() {
+        match import(&bytes[..length]).unwrap_err() {
+            ImportError {
+                place: Place::Byte(at),
+                ..
+            } => assert!(at <= length),
+            error => panic!("{length}: {error}"),
+        }
+    }
+}
+
+#[test]
+fn damaged_models_never_panic() {
+    let mut noise = Noise(3);
+    // Without what is passed over at the end, so that the damage hits what counts.
+    let first = [[0, 0, 0, 1], [1, 2, 3, 7]];
+    let chunks = [size([2, 3, 4]), voxels(2, &first), chunk(b"what", b"", &[])];
+    let mut taken = 0;
+    for _ in 0..5_000 {
+        for bytes in [file(150, &chunks), model([2, 3, 4], &[[1, 2, 3, 4]])] {
+            let outcome = import(&noise.damaged(&bytes));
+            taken += usize::from(outcome.is_ok());
+            damage::check(outcome);
+        }
+    }
+    assert!(taken > 100, "some damage is harmless: {taken}");
+}

@@ -1,0 +1,364 @@
+//! Mistakes in scenes, and what is said about them: the file, the line, the field, what was expected.
+
+use fuwafuwa::{Dim2, Dim3};
+use fuwafuwa_scenes::Scene;
+
+const GOOD: &str = "dim = 2
+[[material]]
+young = 5000.0
+
+[[body]]
+shape = \"ball\"
+n = 12
+width = 1.0
+
+[[obstacle]]
+ball = { centre = [0.0, -1.0, 0.0], radius = 0.5 }
+
+[[hand]]
+radius = 0.1
+path = [[0.0, -0.3, 0.5, 0.0], [1.0, 1.2, 0.5, 0.0]]
+";
+
+fn complaint(text: &str) -> String {
+    let built = Scene::read("toy.toml", text, &[]).and_then(|scene| match scene.dim {
+        2 => scene.build::<Dim2>().map(|_| ()),
+        _ => scene.build::<Dim3>().map(|_| ()),
+    });
+    built.map_or_else(|error| error.to_string(), |()| "fine".into())
+}
+
+#[test]
+fn a_mistake_is_told_with_file_line_field_and_what_was_expected() {
+    assert_eq!(complaint(GOOD), "fine");
+    let body = "width = 1.0";
+    let obstacle = "ball = { centre = [0.0, -1.0, 0.0], radius = 0.5 }";
+    for (replaced, by, expected) in [
+        // What is no scene.
+        (
+            "dim = 2",
+            "dim = 2 3",
+            ", line 1: dim = 2 3: string values must be quoted, expected literal string",
+        ),
+        ("dim = 2", "", ": missing field `dim`"),
+        (
+            "dim = 2",
+            "dim = \"two\"",
+            ", line 1: dim = \"two\": invalid type: string \"two\", expected a whole number from 0 to 255",
+        ),
+        (
+            "[[material]]",
+            "[material]",
+            ", line 2: [material]: invalid type: a table, expected a list of them, as in [[body]]",
+        ),
+        (
+            "young",
+            "yuong",
+            ", line 3: yuong = 5000.0: unknown field `yuong`, expected one of `young`, `poisson`, `density`, `damping`, `friction`, `strength`, `toughness`, `unbreakable`",
+        ),
+        (
+            "\"ball\"",
+            "\"bal\"",
+            ", line 6: shape = \"bal\": unknown variant `bal`, expected one of `ball`, `box`, `ring`, `heart`, `flower`, `empty`",
+        ),
+        (
+            "n = 12",
+            "n = 12.5",
+            ", line 7: n = 12.5: invalid type: floating point `12.5`, expected a whole number of 0 or more",
+        ),
+        (
+            "n = 12",
+            "n = 12\nn = 13",
+            ", line 8: n = 13: duplicate key",
+        ),
+        (
+            body,
+            "at = [0.0, 1.0]",
+            ", line 8: at = [0.0, 1.0]: invalid length 2, expected an array of length 3",
+        ),
+        (
+            body,
+            "material = 300",
+            ", line 8: material = 300: invalid value: integer `300`, expected a whole number from 0 to 255",
+        ),
+        (
+            "radius = 0.1",
+            "",
+            ", line 13: [[hand]]: missing field `radius`",
+        ),
+        // What cannot be.
+        (
+            "dim = 2",
+            "dim = 4",
+            ", line 1: dim: expected 2 or 3, found 4",
+        ),
+        (
+            "dim = 2",
+            "dim = 2\ngravity = [0.0, nan, 0.0]",
+            ", line 2: gravity: expected finite numbers, found [0.0, NaN, 0.0]",
+        ),
+        (
+            "dim = 2",
+            "dim = 2\ngravity = [0.0, 0.0, 1.0]",
+            ", line 2: gravity: expected 0 for the third axis of a world with dim = 2, found [0.0, 0.0, 1.0]",
+        ),
+        (
+            "dim = 2",
+            "dim = 2\nseconds = inf",
+            ", line 2: seconds: expected 0 to 86400 s, found inf",
+        ),
+        (
+            "dim = 2",
+            "dim = 2\nmost_substeps = 4",
+            ", line 2: most_substeps: expected 16 to 1024, found 4",
+        ),
+        (
+            "dim = 2",
+            "dim = 2\ndrag = 11",
+            ", line 2: drag: expected 0 to 10, found 11",
+        ),
+        (
+            "dim = 2",
+            "dim = 2\nview = [[1, 0, 0], [0, 1, 0]]",
+            ", line 2: view: expected a low corner below a high one, found [1.0, 0.0, 0.0] and [0.0, 1.0, 0.0]",
+        ),
+        (
+            "young = 5000.0",
+            "young = -1.0",
+            ", line 3: material 1, young: expected a positive number of pascals, found -1",
+        ),
+        (
+            "young = 5000.0",
+            "poisson = 0.5",
+            ", line 3: material 1, poisson: expected 0 to 0.45, found 0.5",
+        ),
+        (
+            "young = 5000.0",
+            "density = 0",
+            ", line 3: material 1, density: expected positive and finite, found 0",
+        ),
+        (
+            "shape = \"ball\"",
+            "",
+            ", line 5: body 1, shape: expected either a shape or a file",
+        ),
+        (
+            "shape = \"ball\"",
+            "shape = \"ball\"\nfile = \"a.png\"",
+            ", line 6: body 1, shape: expected either a shape or a file",
+        ),
+        (
+            "shape = \"ball\"",
+            "file = \"a.vox\"",
+            ", line 6: body 1, file: expected .png for dim = 2 or .vox for dim = 3, found a.vox for dim = 2",
+        ),
+        (
+            "shape = \"ball\"",
+            "shape = \"empty\"",
+            ", line 5: body 1, part: the shape is empty: no voxel is solid",
+        ),
+        (
+            "n = 12",
+            "",
+            ", line 5: body 1, n: expected the number of voxels across",
+        ),
+        (
+            "n = 12",
+            "n = 0",
+            ", line 7: body 1, n: expected 1 to 1024 voxels across, found 0",
+        ),
+        (
+            "n = 12",
+            "n = 1000000000000",
+            ", line 7: body 1, n: expected 1 to 1024 voxels across, found 1000000000000",
+        ),
+        (
+            "n = 12",
+            "n = 2",
+            ", line 7: body 1, n: the shape is empty: no voxel is solid",
+        ),
+        (
+            body,
+            "width = 0",
+            ", line 8: body 1, width: expected a positive number of metres, found 0",
+        ),
+        (
+            body,
+            "width = 1e-45",
+            ", line 8: body 1, width: the voxel size 0 m is not a positive, finite number",
+        ),
+        (
+            body,
+            "proportions = [1, 2, 1]",
+            ", line 8: body 1, proportions: only a box and an empty grid have any",
+        ),
+        (
+            body,
+            "diced = 0.01",
+            ", line 8: body 1, diced: expected a voxel, 0.083333336 m, or more, found 0.01",
+        ),
+        (
+            body,
+            "material = 2",
+            ", line 8: body 1, material: voxels are of material 2, the scene has 1 to 1",
+        ),
+        (
+            body,
+            "colours = { \"#ff0000\" = 1 }",
+            ", line 8: body 1, colours: only a file has colours; expected material, or parts that paint",
+        ),
+        (
+            body,
+            "part = [{ fill = 1 }]",
+            ", line 8: body 1, part 1, shape: expected exactly one of half_space, box, capsule and ball",
+        ),
+        (
+            body,
+            "\n[[body.part]]\nball = { centre = [0, 0, 0], radius = 1 }",
+            ", line 9: body 1, part 1, fill: expected either fill or paint",
+        ),
+        (
+            body,
+            "\n[[body.part]]\nfill = 0\nball = { centre = [0, 0, 1], radius = 9 }",
+            ", line 11: body 1, part 1, ball, centre: expected 0 for the third axis of a world with dim = 2, found [0.0, 0.0, 1.0]",
+        ),
+        (
+            body,
+            "\n[[body.part]]\nfill = 0\nball = { centre = [0, 0, 0], radius = 9 }",
+            ", line 9: body 1, part: the shape is empty: no voxel is solid",
+        ),
+        (
+            obstacle,
+            "friction = 0.5",
+            ", line 10: obstacle 1, shape: expected exactly one of half_space, box, capsule and ball",
+        ),
+        (
+            obstacle,
+            "half_space = { normal = [0, 0, 0], point = [0, 0, 0] }",
+            ", line 11: obstacle 1, half_space, normal: expected a direction, found 0 on every axis",
+        ),
+        (
+            "radius = 0.5",
+            "radius = -0.5",
+            ", line 11: obstacle 1, ball, radius: expected positive and finite",
+        ),
+        (
+            obstacle,
+            "ball = { centre = [0, -1, 0], radius = 0.5 }\nfriction = nan",
+            ", line 12: obstacle 1, friction: expected 0 or more, found NaN",
+        ),
+        (
+            "radius = 0.1",
+            "radius = 0",
+            ", line 14: hand 1, radius: expected a positive number of metres, found 0",
+        ),
+        (
+            "[1.0, 1.2",
+            "[-1.0, 1.2",
+            ", line 15: hand 1, path 2: expected a time of 0 s or more, found -1",
+        ),
+        (
+            "[[0.0, -0.3, 0.5, 0.0], [1.0, 1.2, 0.5, 0.0]]",
+            "[]",
+            ", line 15: hand 1, path: expected a point [seconds, x, y, z] at least",
+        ),
+    ] {
+        let text = GOOD.replacen(replaced, by, 1);
+        assert_ne!(text, GOOD, "{replaced}");
+        assert_eq!(complaint(&text), format!("toy.toml{expected}"));
+    }
+}
+
+#[test]
+fn a_mistake_in_a_change_names_the_change() {
+    let complaint = |change: &str| {
+        let scene = Scene::read("toy.toml", GOOD, &[change.into()]);
+        let built = scene.and_then(|scene| scene.build::<Dim2>().map(|_| ()));
+        built.map_or_else(|error| error.to_string(), |()| "fine".into())
+    };
+    for (change, expected) in [
+        ("body.n=8", "fine"),
+        (
+            "body.1.part=[{ paint = 1, ball = { centre = [0, 0, 0], radius = 1 } }]",
+            "fine",
+        ),
+        ("material.young=9000", "fine"),
+        (
+            "body.n",
+            "toy.toml with body.n: \"body.n\" must be field=value",
+        ),
+        (
+            "body.n=eight",
+            "toy.toml with body.n=eight: \"eight\" in \"body.n=eight\" is not a value",
+        ),
+        (
+            "body.3.n=4",
+            "toy.toml with body.3.n=4: \"body.3.n=4\": there are 1 entries, no number 3",
+        ),
+        (
+            "body.n=0",
+            "toy.toml with body.n=0: body 1, n: expected 1 to 1024 voxels across, found 0",
+        ),
+        (
+            "body.1.colours.x=1",
+            "toy.toml with body.1.colours.x=1: body 1, colours: only a file has colours; expected material, or parts that paint",
+        ),
+        (
+            "feet.n=1",
+            "toy.toml with feet.n=1: \"feet.n=1\": there is no entry that n could be a field of",
+        ),
+        (
+            "dim.x=1",
+            "toy.toml with dim.x=1: \"dim.x=1\": x is not a field of a single value",
+        ),
+    ] {
+        assert_eq!(complaint(change), expected, "{change}");
+    }
+    let misspelt = complaint("body.nn=4");
+    assert!(
+        misspelt.starts_with("toy.toml with body.nn=4: unknown field `nn`"),
+        "{misspelt}"
+    );
+}
+
+#[test]
+fn a_change_reaches_materials_that_are_not_written_down() {
+    let bare = GOOD.replace("[[material]]\nyoung = 5000.0", "");
+    let changes = ["material.young=9000".to_string()];
+    let scene = Scene::read("toy.toml", &bare, &changes).unwrap();
+    assert_eq!(scene.materials()[0].elasticity.young, 9000.0);
+}
+
+#[test]
+fn texts_that_are_no_scenes_are_refused_briefly() {
+    let deep = 300_000;
+    for text in [
+        "x = ".to_string() + &"[".repeat(deep),
+        "x = ".to_string() + &"{a = ".repeat(deep),
+        "a.".repeat(deep) + "a = 1",
+        format!("[[{}a]]", "a.".repeat(deep)),
+        format!("dim = \"{}\"", "é".repeat(deep)),
+        "\u{0}\u{1}\u{fffd}".repeat(100),
+        String::new(),
+    ] {
+        let complaint = complaint(&text);
+        assert!(
+            complaint.len() < 1000 && complaint.starts_with("toy.toml"),
+            "{complaint}"
+        );
+    }
+    let files = [("Cargo.toml", "unknown field"), ("src", "directory")];
+    for (file, expected) in files {
+        let error = Scene::open(file, &[]).unwrap_err().to_string();
+        assert!(
+            error.starts_with(file) && error.contains(expected),
+            "{error}"
+        );
+    }
+    let unknown = Scene::open("nowhere", &[]).unwrap_err().to_string();
+    assert!(unknown.contains("the scenes are drop, "), "{unknown}");
+    if cfg!(unix) {
+        let endless = Scene::open("/dev/zero", &[]).unwrap_err().to_string();
+        assert!(endless.contains("1048576 bytes at most"), "{endless}");
+    }
+}
