@@ -126,6 +126,8 @@ const TEST: &[Step] = &[
         arguments: &[
             "test",
             "--release",
+            // Not the examples: each compiles as long as all these tests run.
+            "--tests",
             "--package",
             "fuwafuwa",
             "--package",

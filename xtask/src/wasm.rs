@@ -170,8 +170,8 @@ fn build(compiler: &Compiler) -> Result<PathBuf, Failure> {
         .join("wasm");
     let mut command = cargo();
     command
-        .args(["build", "--release", "--package", "fuwafuwa_golden"])
-        .args(["--target", TARGET])
+        .args(["rustc", "--release", "--package", "fuwafuwa_golden"])
+        .args(["--crate-type", "cdylib", "--target", TARGET])
         .env("CARGO_TARGET_DIR", root().join(&folder))
         // Flags for the native build, such as a target-cpu, make no sense here.
         .env_remove("RUSTFLAGS")
@@ -204,7 +204,7 @@ fn cannot(lacks: &[Lack], if_missing: IfMissing) -> Failure {
         .collect();
     let advice = match if_missing {
         IfMissing::Say => "On Debian, `cargo xtask wasm --install` installs that.",
-        IfMissing::Install => "Debian's packages could not be had, see above.",
+        IfMissing::Install => "What Debian's packages offer here is not enough, see above.",
     };
     Failure {
         message: format!(

@@ -3,7 +3,7 @@
 use fuwafuwa_golden::SCENES;
 
 fn check_all(how: &str) {
-    for scene in SCENES {
+    for scene in &SCENES {
         let found = (scene.run)();
         assert_eq!(found, scene.golden, "{}, {how}: {found:#018x}", scene.name);
     }
