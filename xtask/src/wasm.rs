@@ -1,112 +1,280 @@
-//! The golden scenes on wasm32, under Node.
+//! The golden scenes on wasm32, run under Node: do they end in the same bits as natively?
 //!
-//! A toolchain with the target builds them as it is. Where it has none and cannot fetch one, Debian
-//! and Ubuntu have a compiler with the sources of its library, `rustc-web` and `rust-web-src`, and
-//! a linker; the library is then built along.
+//! rustup's toolchain can build for wasm32 after `rustup target add wasm32-unknown-unknown`. Where
+//! it has not been told to, or cannot reach its server, Debian's packages do: a compiler, the
+//! sources of its standard library, which cargo then builds too, and a linker.
 
-use crate::{CANNOT, Failure, answers, exit_code, root};
-use std::path::Path;
+use crate::{CANNOT, Failure, answers, cargo, execute, root};
+use std::env;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Where Debian puts the compiler, and the sources of its library.
-const WEB_COMPILER: &str = "/usr/bin/rustc";
-const WEB_SOURCES: &str = "/usr/lib/rustlib/src/rust/library/std";
 const TARGET: &str = "wasm32-unknown-unknown";
+/// Where Debian puts its compiler. The one on the path is usually another.
+const DEBIAN_RUSTC: &str = "/usr/bin/rustc";
+/// The oldest Rust that this workspace promises to build with.
+const OLDEST: &str = env!("CARGO_PKG_RUST_VERSION");
 
-/// Builds the golden scenes, runs them, and fails when one comes out differently.
-pub fn run() -> Result<(), Failure> {
-    if !answers("node") {
-        return Err(cannot("no Node found; install nodejs"));
+/// What to do on a machine that lacks something.
+#[derive(Debug, PartialEq, Clone, Copy)]
+pub enum IfMissing {
+    /// Say what, and stop.
+    Say,
+    /// Install it, with apt-get.
+    Install,
+}
+
+/// Builds the golden scenes, runs them, and fails where one ends in other bits than it must.
+pub fn run(if_missing: IfMissing) -> Result<(), Failure> {
+    let mut found = find_compiler();
+    if if_missing == IfMissing::Install && found.is_err() {
+        // Fresh machines have stale lists, or none. An update that fails may leave good ones.
+        apt_get(&["update", "--quiet"]);
+        // Twice, because which linker fits is known only once the compiler is there.
+        for _ in 0..2 {
+            match &found {
+                Err(lacks) if install(lacks) => found = find_compiler(),
+                _ => break,
+            }
+        }
     }
-    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    let folder = root().join("target").join("wasm");
-    cargo.current_dir(root()).env("CARGO_TARGET_DIR", &folder);
-    cargo.args(["build", "--release", "--ignore-rust-version"]);
-    cargo.args(["--package", "fuwafuwa_golden", "--target", TARGET]);
-    if !has_target() {
-        let linker = prepare()?;
-        cargo.arg("-Zbuild-std=std,panic_abort");
-        cargo.env("RUSTC", WEB_COMPILER).env("RUSTC_BOOTSTRAP", "1");
-        cargo.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker);
-    }
-    start(&mut cargo)?;
-    let module = folder.join(TARGET).join("release/fuwafuwa_golden.wasm");
-    start(
-        Command::new("node")
-            .arg(root().join("xtask/golden.mjs"))
-            .arg(module),
+    let compiler = found.map_err(|lacks| cannot(&lacks, if_missing))?;
+    let module = build(&compiler)?;
+    execute(
+        Command::new("node").arg("xtask/golden.mjs").arg(module),
+        "a scene ends in other bits on wasm32: look for arithmetic beyond + - * / and sqrt, for \
+         usize, which has 32 bits there, and for lanes that sum in another order",
     )
 }
 
-/// Whether the compiler in use can build for wasm32.
-fn has_target() -> bool {
-    let output = Command::new("rustc").args(["--print", "sysroot"]).output();
-    output.is_ok_and(|output| {
-        let sysroot = String::from_utf8_lossy(&output.stdout).trim().to_string();
-        Path::new(&sysroot)
-            .join("lib/rustlib")
-            .join(TARGET)
-            .exists()
-    })
+#[derive(Debug, PartialEq)]
+enum Compiler {
+    /// The toolchain in use has the standard library for wasm32.
+    Ready,
+    /// Debian's, with this linker.
+    Debian { linker: String },
 }
 
-/// Installs what is missing, and names the linker.
-fn prepare() -> Result<String, Failure> {
-    if !(Path::new(WEB_SOURCES).exists() && find_linker().is_some()) {
-        let linkers = (14..=40).rev().map(|version| format!("lld-{version}"));
-        let linker = linkers.into_iter().find(|package| has_package(package));
-        let (Some(linker), true) = (linker, has_package("rustc-web")) else {
-            return Err(cannot(
-                "the toolchain has no wasm32 target (`rustup target add wasm32-unknown-unknown`), \
-                 and there are no Debian packages rustc-web and lld to be had",
-            ));
-        };
-        eprintln!("xtask: installing rustc-web, rust-web-src and {linker}");
-        let installed = Command::new("apt-get")
-            .args(["install", "-y", "--no-install-recommends"])
-            .args(["rustc-web", "rust-web-src", &linker])
-            .env("DEBIAN_FRONTEND", "noninteractive")
-            .status();
-        if !installed.is_ok_and(|status| status.success()) {
-            return Err(cannot("the packages could not be installed; are you root?"));
+/// What this machine lacks, and the Debian package that has it.
+#[derive(Debug, PartialEq)]
+struct Lack {
+    what: String,
+    package: String,
+}
+
+impl Lack {
+    fn new(what: impl Into<String>, package: impl Into<String>) -> Lack {
+        Lack {
+            what: what.into(),
+            package: package.into(),
         }
     }
-    find_linker().ok_or_else(|| cannot("no wasm-ld found"))
 }
 
-/// The newest linker for wasm there is.
-fn find_linker() -> Option<String> {
-    let numbered = (14..=40).rev().map(|version| format!("wasm-ld-{version}"));
-    let mut names = numbered.chain(["wasm-ld".to_string()]);
-    names.find(|name| answers(name))
-}
-
-fn has_package(name: &str) -> bool {
-    let output = Command::new("apt-cache").args(["policy", name]).output();
-    output.is_ok_and(|output| {
-        let text = String::from_utf8_lossy(&output.stdout);
-        text.contains("Candidate:") && !text.contains("Candidate: (none)")
-    })
-}
-
-fn start(command: &mut Command) -> Result<(), Failure> {
-    let line = format!("{command:?}");
-    let status = command.status().map_err(|error| Failure {
-        message: format!("{line} could not be started: {error}"),
-        code: 1,
-    })?;
-    if status.success() {
-        return Ok(());
+/// The compiler to use, or all that is missing.
+fn find_compiler() -> Result<Compiler, Vec<Lack>> {
+    let mut lacks = Vec::new();
+    if !answers("node") {
+        lacks.push(Lack::new("there is no Node on the path", "nodejs"));
     }
-    Err(Failure {
-        message: format!("{line} failed ({status})"),
-        code: exit_code(status.code()),
-    })
+    let rustc = env::var("RUSTC").unwrap_or_else(|_| "rustc".to_string());
+    let library = output_of(&rustc, &["--print", "target-libdir", "--target", TARGET]);
+    let compiler = if library.is_some_and(|path| Path::new(path.trim()).is_dir()) {
+        Ok(Compiler::Ready)
+    } else {
+        let description = output_of(DEBIAN_RUSTC, &["--version", "--verbose"]);
+        find_debian(description.as_deref(), Path::exists, answers)
+    };
+    match compiler {
+        Ok(compiler) if lacks.is_empty() => Ok(compiler),
+        Ok(_) => Err(lacks),
+        Err(more) => {
+            lacks.extend(more);
+            Err(lacks)
+        }
+    }
 }
 
-fn cannot(reason: &str) -> Failure {
+/// Debian's compiler, from what it says about itself; or all that is missing.
+fn find_debian(
+    description: Option<&str>,
+    exists: impl Fn(&Path) -> bool,
+    answers: impl Fn(&str) -> bool,
+) -> Result<Compiler, Vec<Lack>> {
+    let field = |name| {
+        let mut lines = description.unwrap_or_default().lines();
+        lines.find_map(|line| line.strip_prefix(name)?.strip_prefix(": "))
+    };
+    let (Some(release), Some(llvm)) = (field("release"), field("LLVM version")) else {
+        let what =
+            format!("the Rust toolchain cannot build for {TARGET}, and there is no {DEBIAN_RUSTC}");
+        return Err(vec![Lack::new(what, "rustc-web")]);
+    };
+    if !is_new_enough(release) {
+        let what = format!("{DEBIAN_RUSTC} is Rust {release}, this workspace needs {OLDEST}");
+        return Err(vec![Lack::new(what, "rustc-web")]);
+    }
+    let mut lacks = Vec::new();
+    let sources = format!("/usr/src/rustc-{release}/library/std");
+    if !exists(Path::new(&sources)) {
+        let what = format!("there are no sources in {sources}");
+        lacks.push(Lack::new(what, "rust-web-src"));
+    }
+    let llvm = llvm.split('.').next().unwrap_or(llvm);
+    let linker = format!("wasm-ld-{llvm}");
+    if !answers(&linker) {
+        let what = format!("there is no linker {linker}");
+        lacks.push(Lack::new(what, format!("lld-{llvm}")));
+    }
+    if lacks.is_empty() {
+        Ok(Compiler::Debian { linker })
+    } else {
+        Err(lacks)
+    }
+}
+
+/// Whether a release of Rust, such as `1.96.0`, is one that this workspace promises to build with.
+fn is_new_enough(release: &str) -> bool {
+    let numbers = |version: &str| -> Vec<u32> {
+        let parts = version.split('.');
+        parts.map_while(|part| part.parse().ok()).collect()
+    };
+    numbers(release) >= numbers(OLDEST)
+}
+
+/// Installs the packages; whether that went well.
+fn install(lacks: &[Lack]) -> bool {
+    // rustc-web conflicts with Debian's rustc and rustup: those must not go without a word.
+    let mut arguments = vec!["install", "--quiet", "--yes", "--no-remove"];
+    arguments.push("--no-install-recommends");
+    arguments.extend(lacks.iter().map(|lack| lack.package.as_str()));
+    apt_get(&arguments)
+}
+
+/// Runs apt-get; whether that went well.
+fn apt_get(arguments: &[&str]) -> bool {
+    let mut command = Command::new("apt-get");
+    command.args(arguments);
+    command.env("DEBIAN_FRONTEND", "noninteractive");
+    let outcome = execute(&mut command, "it needs Debian, root and a network");
+    if let Err(failure) = &outcome {
+        eprintln!("xtask: {}", failure.message);
+    }
+    outcome.is_ok()
+}
+
+/// Builds the scenes, in a folder of their own beside the native build. Returns where the module is.
+fn build(compiler: &Compiler) -> Result<PathBuf, Failure> {
+    let folder = env::var_os("CARGO_TARGET_DIR")
+        .map_or_else(|| PathBuf::from("target"), PathBuf::from)
+        .join("wasm");
+    let mut command = cargo();
+    command
+        .args(["rustc", "--release", "--package", "fuwafuwa_golden"])
+        .args(["--crate-type", "cdylib", "--target", TARGET])
+        .env("CARGO_TARGET_DIR", root().join(&folder))
+        // Flags for the native build, such as a target-cpu, make no sense here.
+        .env_remove("RUSTFLAGS")
+        .env_remove("CARGO_ENCODED_RUSTFLAGS");
+    if let Compiler::Debian { linker } = compiler {
+        command
+            .arg("-Zbuild-std=std,panic_abort")
+            // None: the crates behind backtraces are among the largest, and Node shows its own.
+            .arg("-Zbuild-std-features=")
+            .env("RUSTC", DEBIAN_RUSTC)
+            // Stable compilers refuse `-Z` without it.
+            .env("RUSTC_BOOTSTRAP", "1")
+            .env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker);
+    }
+    execute(&mut command, "the scenes could not be built for wasm32")?;
+    Ok(folder.join(TARGET).join("release/fuwafuwa_golden.wasm"))
+}
+
+/// What a program writes, if it runs and succeeds.
+fn output_of(program: &str, arguments: &[&str]) -> Option<String> {
+    let output = Command::new(program).args(arguments).output().ok()?;
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    output.status.success().then_some(text)
+}
+
+fn cannot(lacks: &[Lack], if_missing: IfMissing) -> Failure {
+    let lines: Vec<String> = lacks
+        .iter()
+        .map(|lack| format!("- {} (Debian: {})", lack.what, lack.package))
+        .collect();
+    let advice = match if_missing {
+        IfMissing::Say => "On Debian, `cargo xtask wasm --install` installs that.",
+        IfMissing::Install => "What Debian's packages offer here is not enough, see above.",
+    };
     Failure {
-        message: format!("the golden scenes were not run on wasm32: {reason}"),
+        message: format!(
+            "the golden scenes were NOT run on wasm32:\n{}\n{advice}\n\
+             Elsewhere: `rustup target add {TARGET}`, and Node on the path.",
+            lines.join("\n")
+        ),
         code: CANNOT,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DESCRIPTION: &str = "rustc 1.96.0\nrelease: 1.96.0\nLLVM version: 22.1.8\n";
+
+    fn check(description: Option<&str>, has: &[&str], expect: Result<&str, &[&str]>) {
+        let found = find_debian(
+            description,
+            |path| has.iter().any(|there| path == Path::new(there)),
+            |program| has.contains(&program),
+        );
+        let found = match &found {
+            Ok(Compiler::Debian { linker }) => Ok(linker.as_str()),
+            Ok(Compiler::Ready) => Ok("ready"),
+            Err(lacks) => Err(lacks.iter().map(|lack| lack.package.as_str()).collect()),
+        };
+        assert_eq!(
+            found,
+            expect.map_err(<[&str]>::to_vec),
+            "{description:?}, {has:?}"
+        );
+    }
+
+    #[test]
+    fn what_is_missing_is_named_by_its_package() {
+        let sources = "/usr/src/rustc-1.96.0/library/std";
+        let other_sources = "/usr/src/rustc-1.85.0/library/std";
+        let old = DESCRIPTION.replace("1.96", "1.85");
+        check(None, &[], Err(&["rustc-web"]));
+        check(Some(&old), &[sources, "wasm-ld-22"], Err(&["rustc-web"]));
+        check(Some(DESCRIPTION), &[sources], Err(&["lld-22"]));
+        check(
+            Some(DESCRIPTION),
+            &[other_sources, "wasm-ld-19"],
+            Err(&["rust-web-src", "lld-22"]),
+        );
+        check(
+            Some(DESCRIPTION),
+            &[sources, "wasm-ld-22"],
+            Ok("wasm-ld-22"),
+        );
+    }
+
+    #[test]
+    fn a_compiler_that_is_too_old_is_refused_with_both_versions() {
+        let old = DESCRIPTION.replace("1.96", "1.85");
+        let lacks = find_debian(Some(&old), |_| true, |_| true).unwrap_err();
+        let failure = cannot(&lacks, IfMissing::Say);
+        let said = |word| failure.message.contains(word);
+        assert!(said("1.85.0") && said(OLDEST), "{}", failure.message);
+        assert_eq!(failure.code, CANNOT);
+    }
+
+    #[test]
+    fn versions_compare_by_number() {
+        assert!(is_new_enough("1.100.0"));
+        assert!(is_new_enough("2.0.0"));
+        assert!(!is_new_enough("1.9.0"));
+        assert!(!is_new_enough("unknown"));
     }
 }
