@@ -1,0 +1,117 @@
+//! What the documents say about the code.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn architecture() -> String {
+    fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap()
+}
+
+/// The rank of each module of the engine: the lines with arrows in ARCHITECTURE.md.
+fn ranks() -> BTreeMap<String, usize> {
+    let text = architecture();
+    let start = text.find("The order is").expect("the order is told");
+    let lines = text[start..]
+        .lines()
+        .skip_while(|line| !line.starts_with("    "));
+    let order: String = lines.take_while(|line| line.starts_with("    ")).collect();
+    let groups = order.split('→').enumerate();
+    groups
+        .flat_map(|(rank, group)| {
+            group
+                .split(',')
+                .map(move |name| (name.trim().to_string(), rank))
+        })
+        .collect()
+}
+
+/// The source files of a folder and of those in it.
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.extend(sources(&path));
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+/// The modules that a source names after `crate::`, but for its tests.
+fn used(source: &str) -> Vec<String> {
+    let end = source
+        .find("#[cfg(test)]\nmod tests")
+        .unwrap_or(source.len());
+    let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    let code = source[..end]
+        .lines()
+        .filter(|line| !line.trim_start().starts_with("//"));
+    code.flat_map(|line| line.split("crate::").skip(1))
+        .map(|rest| rest.chars().take_while(|&c| is_word(c)).collect())
+        .collect()
+}
+
+#[test]
+fn a_module_knows_only_those_above_it() {
+    let ranks = ranks();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut seen = 0;
+    for path in sources(&folder) {
+        let inner = path.strip_prefix(&folder).unwrap();
+        let module = inner.iter().next().unwrap().to_str().unwrap();
+        let module = module.trim_end_matches(".rs");
+        if module == "lib" {
+            continue;
+        }
+        let rank = ranks.get(module);
+        let rank = rank.unwrap_or_else(|| panic!("ARCHITECTURE.md does not place `{module}`"));
+        seen += 1;
+        for other in used(&fs::read_to_string(&path).unwrap()) {
+            if let Some(above) = ranks.get(&other) {
+                let allowed = above < rank || other == module;
+                assert!(
+                    allowed,
+                    "{} uses `{other}`, which is not above it",
+                    inner.display()
+                );
+            }
+        }
+    }
+    assert!(
+        seen >= ranks.len(),
+        "each module has a file: {seen} of {}",
+        ranks.len()
+    );
+}
+
+#[test]
+fn what_the_documents_name_is_there() {
+    for document in [
+        "ARCHITECTURE.md",
+        "README.md",
+        "CONTRIBUTING.md",
+        "GLOSSARY.md",
+    ] {
+        let text = fs::read_to_string(root().join(document)).unwrap();
+        let quoted = text.split('`').skip(1).step_by(2);
+        let paths = quoted.filter(|word| {
+            let is_plain = !word.contains([' ', '*', ':', '<', '(']);
+            let is_ours = word.starts_with("crates/") || word.starts_with("xtask/");
+            is_plain && (is_ours || word.ends_with(".md"))
+        });
+        for path in paths {
+            assert!(
+                root().join(path).exists(),
+                "{document} names `{path}`, which is not there"
+            );
+        }
+    }
+}
