@@ -30,9 +30,10 @@ pub struct Pieces {
     of_element: Vec<u32>,
     /// By node id.
     of_node: Vec<u32>,
-    /// Scratch of [`Pieces::part`]: which search has seen each element.
+    /// Scratch of [`Pieces::part`]: which search has seen each element and node.
     seen: Vec<u32>,
-    searches: u32,
+    node_seen: Vec<u32>,
+    marked: u32,
 }
 
 /// One side of a release that is being followed.
@@ -102,6 +103,7 @@ impl Pieces {
         self.of_element.resize(mesh.element_capacity(), 0);
         self.seen.resize(mesh.element_capacity(), 0);
         self.of_node.resize(mesh.node_capacity(), 0);
+        self.node_seen.resize(mesh.node_capacity(), 0);
     }
 
     /// A new node belongs where the node it took its state from belongs.
@@ -117,31 +119,80 @@ impl Pieces {
     /// Finds out whether the elements `around` a release still hang together. Every part that does
     /// not reach the rest of its piece becomes a piece of its own; returns their numbers.
     pub fn part<D: Dim>(&mut self, mesh: &Mesh<D>, around: &[u32]) -> Vec<u32> {
-        let mut sides: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-        for &id in around {
-            sides.entry(self.of_element(id)).or_default().push(id);
+        let mut sides: BTreeMap<u32, Vec<Vec<u32>>> = BTreeMap::new();
+        for side in self.sides(mesh, around) {
+            sides
+                .entry(self.of_element(side[0]))
+                .or_default()
+                .push(side);
         }
         let mut born = Vec::new();
-        for starts in sides.values() {
+        // What hangs together right here needs no search.
+        for starts in sides.into_values().filter(|starts| starts.len() > 1) {
             self.part_one(mesh, starts, &mut born);
         }
         born
     }
 
-    /// As [`Pieces::part`], for elements of one piece.
-    fn part_one<D: Dim>(&mut self, mesh: &Mesh<D>, starts: &[u32], born: &mut Vec<u32>) {
-        let first = self.searches + 1;
-        let mut searches: Vec<Search> = Vec::new();
-        for &id in starts {
-            if self.seen[id as usize] < first {
-                let mark = first + searches.len() as u32;
-                self.seen[id as usize] = mark;
-                let next = VecDeque::from([id]);
-                let found = vec![id];
-                searches.push(Search { mark, found, next });
+    /// Some elements, sorted by which of them hang together through nodes of their own.
+    fn sides<D: Dim>(&mut self, mesh: &Mesh<D>, around: &[u32]) -> Vec<Vec<u32>> {
+        let first = self.marks(around.len());
+        // Each element points to another one of its side, the lowest to itself.
+        let mut lead: Vec<usize> = (0..around.len()).collect();
+        fn lowest(lead: &mut [usize], mut place: usize) -> usize {
+            while lead[place] != place {
+                lead[place] = lead[lead[place]];
+                place = lead[place];
+            }
+            place
+        }
+        for (place, &id) in around.iter().enumerate() {
+            let element = mesh
+                .element(id)
+                .expect("elements around a release are alive");
+            for &node in &element.nodes {
+                let seen = &mut self.node_seen[node as usize];
+                if *seen < first {
+                    *seen = first + place as u32;
+                    continue;
+                }
+                let (a, b) = (
+                    lowest(&mut lead, place),
+                    lowest(&mut lead, (*seen - first) as usize),
+                );
+                lead[a.max(b)] = a.min(b);
             }
         }
-        self.searches += searches.len() as u32;
+        let mut sides: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
+        for (place, &id) in around.iter().enumerate() {
+            let side = sides.entry(lowest(&mut lead, place)).or_default();
+            side.push(id);
+        }
+        sides.into_values().collect()
+    }
+
+    /// The first of some marks that nothing bears yet.
+    fn marks(&mut self, count: usize) -> u32 {
+        if self.marked > u32::MAX - count as u32 {
+            self.marked = 0;
+            self.seen.fill(0);
+            self.node_seen.fill(0);
+        }
+        self.marked += count as u32;
+        self.marked - count as u32 + 1
+    }
+
+    /// As [`Pieces::part`], for the sides of one piece.
+    fn part_one<D: Dim>(&mut self, mesh: &Mesh<D>, starts: Vec<Vec<u32>>, born: &mut Vec<u32>) {
+        let first = self.marks(starts.len());
+        let mut searches: Vec<Search> = Vec::new();
+        for (mark, found) in (first..).zip(starts) {
+            for &id in &found {
+                self.seen[id as usize] = mark;
+            }
+            let next = found.iter().copied().collect();
+            searches.push(Search { mark, found, next });
+        }
         let mut turn = 0;
         while searches.len() > 1 {
             turn %= searches.len();
