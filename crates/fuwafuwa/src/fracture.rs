@@ -14,7 +14,7 @@
 
 use crate::body::Body;
 use crate::dim::{Dim, Point};
-use crate::front::Front;
+use crate::front::{Cut, Front};
 use crate::material::Material;
 use crate::solve::Row;
 use crate::vector::{dot, length, minus, plus, scaled};
@@ -28,6 +28,8 @@ pub struct Failure {
     pub at: Point,
     /// The octants on one side of the crack.
     pub side: u8,
+    /// The axis across which faces open.
+    axis: usize,
     /// Tension over what the node bears.
     pub excess: f32,
     /// Elastic energy set free [J], by the tension and the volume of the node's cell.
@@ -65,15 +67,12 @@ impl Rests {
     }
 
     fn covers(&self, at: Point) -> bool {
-        self.points.iter().any(|&(point, _)| {
-            let apart = |axis: usize| (at[axis] - point[axis]).abs();
-            (0..3).all(|axis| apart(axis) <= REST_REACH)
-        })
+        self.points.iter().any(|&(point, _)| is_near(at, point))
     }
 }
 
 /// Looks at all front nodes after a time of `duration` [s]: adds up their damage, and picks those
-/// that give way now, the worst first, no two of them near each other.
+/// that give way now, the worst first, no two of them near each other but along a crack's front.
 pub fn failures<D: Dim>(body: &mut Body<D>, rests: &mut Rests, duration: f32) -> Vec<Failure> {
     rests.pass(duration);
     let weakest = body.materials().iter().map(|material| material.strength);
@@ -106,14 +105,31 @@ pub fn failures<D: Dim>(body: &mut Body<D>, rests: &mut Rests, duration: f32) ->
     let waves = body.materials().iter().map(Material::wave_speed);
     let wave = waves.fold(0.0, f64::max);
     let rest = (REST_VOXELS * f64::from(size) / wave) as f32;
-    found.retain(|failure| {
-        let free = !rests.covers(failure.at);
-        if free {
-            rests.points.push((failure.at, rest));
+    let chosen = undisturbed(found);
+    let resting = chosen.iter().map(|failure| (failure.at, rest));
+    rests.points.extend(resting);
+    chosen
+}
+
+/// Of failures, the worst first, those that no worse one near them forestalls. Neighbours in one
+/// plane stay together: they are the front of one crack, a line in space, and it moves as a whole.
+/// If they had to wait for each other, cracks would crawl, and the load would start new ones.
+fn undisturbed(found: Vec<Failure>) -> Vec<Failure> {
+    let mut chosen: Vec<Failure> = Vec::new();
+    for failure in found {
+        let forestalls = |worse: &Failure| {
+            let plane = |failure: &Failure| (failure.axis, failure.at[failure.axis]);
+            is_near(failure.at, worse.at) && plane(&failure) != plane(worse)
+        };
+        if !chosen.iter().any(forestalls) {
+            chosen.push(failure);
         }
-        free
-    });
-    found
+    }
+    chosen
+}
+
+fn is_near(a: Point, b: Point) -> bool {
+    (0..3).all(|axis| (a[axis] - b[axis]).abs() <= REST_REACH)
 }
 
 /// The cut through a front node that is overstrained most, if one is.
@@ -126,7 +142,7 @@ fn worst_cut<D: Dim>(body: &Body<D>, id: u32, front: &Front) -> Option<Failure> 
     let total = forces.into_iter().fold([0.0; 4], plus);
     // What its voxels have turned by together: found when it is asked for.
     let mut turn: Option<[[f32; 3]; 3]> = None;
-    let mut worst: Option<(f32, f32, u8)> = None;
+    let mut worst: Option<(f32, f32, Cut)> = None;
     for cut in body.fronts.cuts(front) {
         let far = octants(cut.side).fold([0.0; 4], |sum, octant| plus(sum, forces[octant]));
         let near = minus(total, far);
@@ -148,10 +164,10 @@ fn worst_cut<D: Dim>(body: &Body<D>, id: u32, front: &Front) -> Option<Failure> 
         }
         let tension = tension(pull, normal);
         if tension > least {
-            worst = Some((tension / (area * borne), tension / area, cut.side));
+            worst = Some((tension / (area * borne), tension / area, *cut));
         }
     }
-    let (excess, stress, side) = worst?;
+    let (excess, stress, cut) = worst?;
     let young = body.materials()[front.material as usize - 1]
         .elasticity
         .young as f32;
@@ -159,7 +175,8 @@ fn worst_cut<D: Dim>(body: &Body<D>, id: u32, front: &Front) -> Option<Failure> 
     Some(Failure {
         node: id,
         at: body.mesh.node(id).at,
-        side,
+        side: cut.side,
+        axis: cut.axis.into(),
         excess,
         energy: stress * stress / (2.0 * young) * volume,
     })
@@ -192,4 +209,32 @@ fn tension(pull: Row, normal: Row) -> f32 {
     let opening = dot(pull, normal);
     let shear = (dot(pull, pull) - opening * opening).max(0.0);
     (opening * opening + 0.25 * shear).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_front_of_a_crack_moves_as_a_whole() {
+        let failure = |at: Point, axis| Failure {
+            node: 0,
+            at,
+            side: 1,
+            axis,
+            excess: 2.0,
+            energy: 0.0,
+        };
+        let worst = failure([8, 8, 8], 0);
+        let along = failure([8, 9, 8], 0);
+        let found = [
+            worst,
+            failure([9, 8, 8], 0),
+            failure([8, 8, 9], 1),
+            along,
+            failure([11, 8, 8], 1),
+        ];
+        let far = found[4];
+        assert_eq!(undisturbed(found.to_vec()), [worst, along, far]);
+    }
 }

@@ -21,7 +21,7 @@ pub const SCENES: [Scene; 4] = [
     (
         "torn ball",
         || hash_of_torn_world::<Dim3>(16),
-        0x1d6c_feef_aa1e_61e1,
+        0xcead_f7bf_3fe7_062d,
     ),
     (
         "disc, law of the paper",
