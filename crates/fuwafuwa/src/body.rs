@@ -1,6 +1,7 @@
 //! One soft thing: its voxels, how they hang together, and the state of its nodes.
 
 use crate::dim::{Dim, Point, voxel_around};
+use crate::front::Fronts;
 use crate::grid::VoxelGrid;
 use crate::law::{Elasticity, Law};
 use crate::material::{BodyError, Material};
@@ -38,8 +39,8 @@ pub struct Body<D: Dim> {
     /// The nodes that move, ascending; stale after a remodelling.
     pub(crate) awake: Vec<u32>,
     pub(crate) awake_is_stale: bool,
-    /// Nodes where a crack can start or go on, ascending, and how far each is overstrained.
-    pub(crate) fronts: Vec<u32>,
+    /// Nodes where a crack can start or go on, and how far each is overstrained.
+    pub(crate) fronts: Fronts,
     pub(crate) damage: Vec<f32>,
     /// Which faces of an element of level 0 are bare: bit 2 · axis + side; by element id.
     pub(crate) bare: Vec<u8>,
@@ -108,7 +109,7 @@ impl<D: Dim> Body<D> {
             held: Vec::new(),
             awake: Vec::new(),
             awake_is_stale: true,
-            fronts: Vec::new(),
+            fronts: Fronts::default(),
             damage: Vec::new(),
             bare: Vec::new(),
             ahead: Vec::new(),
@@ -518,21 +519,16 @@ impl<D: Dim> Body<D> {
         }
     }
 
-    /// Brings the list of front nodes up to date at `nodes`.
+    /// Looks again which of `nodes` are front nodes.
     pub(crate) fn find_fronts(&mut self, nodes: &[u32]) {
-        for &id in nodes {
-            let node = self.mesh.node(id);
-            let several = node.group & (node.group - 1) != 0;
-            let alive = self.mesh.is_alive(id);
-            let is_front = alive && several && self.sharing.is_front(node.at);
-            match (self.fronts.binary_search(&id), is_front) {
-                (Ok(place), false) => {
-                    self.fronts.remove(place);
-                }
-                (Err(place), true) => self.fronts.insert(place, id),
-                _ => {}
-            }
-        }
+        let Self {
+            grid,
+            sharing,
+            mesh,
+            materials,
+            ..
+        } = self;
+        self.fronts.look(nodes, grid, sharing, mesh, materials);
     }
 
     fn is_face_closed(&self, voxel: Point, axis: usize, side: usize) -> bool {

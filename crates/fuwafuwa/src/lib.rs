@@ -21,6 +21,7 @@ mod damping;
 pub mod dim;
 pub mod event;
 mod fracture;
+mod front;
 pub mod grid;
 pub mod law;
 pub mod manipulator;

@@ -178,7 +178,7 @@ impl<D: Dim> Mesh<D> {
     /// The elements that carry a node, each with the node's place among its own, in the order of
     /// the octants around the node: an order that no numbering can change.
     pub fn carriers_of(&self, id: u32) -> impl Iterator<Item = (&Element, usize)> {
-        self.carrier_ids(id).into_iter().map(move |owner| {
+        self.carrier_ids(id).map(move |owner| {
             let element = self.alive(owner);
             let place = element.nodes.iter().position(|&node| node == id);
             (
@@ -189,14 +189,17 @@ impl<D: Dim> Mesh<D> {
     }
 
     /// The ids of the elements that carry a node, in the order of the octants around it.
-    pub fn carrier_ids(&self, id: u32) -> Vec<u32> {
+    pub fn carrier_ids(&self, id: u32) -> impl Iterator<Item = u32> + use<D> {
         let node = self.node(id);
-        let mut owners: Vec<u32> = Vec::with_capacity(D::CORNERS);
+        let (mut owners, mut count) = ([0; 8], 0);
         for octant in (0..D::CORNERS).filter(|octant| node.group >> octant & 1 == 1) {
             let owner = self.owner(voxel_around::<D>(node.at, octant));
-            owners.extend(owner.filter(|owner| !owners.contains(owner)));
+            if let Some(owner) = owner.filter(|owner| !owners[..count].contains(owner)) {
+                owners[count] = owner;
+                count += 1;
+            }
         }
-        owners
+        owners.into_iter().take(count)
     }
 
     /// Number of elements on each level, finest first.

@@ -30,16 +30,45 @@ pub struct Pieces {
     of_element: Vec<u32>,
     /// By node id.
     of_node: Vec<u32>,
-    /// Scratch of [`Pieces::part`]: which search has seen each element.
+    /// Scratch of [`Pieces::part`]: which search has seen each element and node.
     seen: Vec<u32>,
-    searches: u32,
+    node_seen: Vec<u32>,
+    marked: u32,
 }
 
 /// One side of a release that is being followed.
 struct Search {
-    mark: u32,
+    /// Its place among the sides at the start.
+    place: usize,
     found: Vec<u32>,
     next: VecDeque<u32>,
+}
+
+/// Which of some things, given by their places, have turned out to be the same.
+struct Same {
+    /// Each points to a lower one of its kind, the lowest to itself.
+    lower: Vec<usize>,
+}
+
+impl Same {
+    fn new(count: usize) -> Self {
+        let lower = (0..count).collect();
+        Self { lower }
+    }
+
+    /// The lowest of the kind of one.
+    fn lowest(&mut self, mut place: usize) -> usize {
+        while self.lower[place] != place {
+            self.lower[place] = self.lower[self.lower[place]];
+            place = self.lower[place];
+        }
+        place
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.lowest(a), self.lowest(b));
+        self.lower[a.max(b)] = a.min(b);
+    }
 }
 
 impl Pieces {
@@ -102,6 +131,7 @@ impl Pieces {
         self.of_element.resize(mesh.element_capacity(), 0);
         self.seen.resize(mesh.element_capacity(), 0);
         self.of_node.resize(mesh.node_capacity(), 0);
+        self.node_seen.resize(mesh.node_capacity(), 0);
     }
 
     /// A new node belongs where the node it took its state from belongs.
@@ -117,31 +147,69 @@ impl Pieces {
     /// Finds out whether the elements `around` a release still hang together. Every part that does
     /// not reach the rest of its piece becomes a piece of its own; returns their numbers.
     pub fn part<D: Dim>(&mut self, mesh: &Mesh<D>, around: &[u32]) -> Vec<u32> {
-        let mut sides: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-        for &id in around {
-            sides.entry(self.of_element(id)).or_default().push(id);
+        let mut sides: BTreeMap<u32, Vec<Vec<u32>>> = BTreeMap::new();
+        for side in self.sides(mesh, around) {
+            sides
+                .entry(self.of_element(side[0]))
+                .or_default()
+                .push(side);
         }
         let mut born = Vec::new();
-        for starts in sides.values() {
+        // What hangs together right here needs no search.
+        for starts in sides.into_values().filter(|starts| starts.len() > 1) {
             self.part_one(mesh, starts, &mut born);
         }
         born
     }
 
-    /// As [`Pieces::part`], for elements of one piece.
-    fn part_one<D: Dim>(&mut self, mesh: &Mesh<D>, starts: &[u32], born: &mut Vec<u32>) {
-        let first = self.searches + 1;
-        let mut searches: Vec<Search> = Vec::new();
-        for &id in starts {
-            if self.seen[id as usize] < first {
-                let mark = first + searches.len() as u32;
-                self.seen[id as usize] = mark;
-                let next = VecDeque::from([id]);
-                let found = vec![id];
-                searches.push(Search { mark, found, next });
+    /// Some elements, sorted by which of them hang together through nodes of their own.
+    fn sides<D: Dim>(&mut self, mesh: &Mesh<D>, around: &[u32]) -> Vec<Vec<u32>> {
+        let first = self.marks(around.len());
+        let mut same = Same::new(around.len());
+        for (place, &id) in around.iter().enumerate() {
+            let element = mesh
+                .element(id)
+                .expect("elements around a release are alive");
+            for &node in &element.nodes {
+                let seen = &mut self.node_seen[node as usize];
+                if *seen < first {
+                    *seen = first + place as u32;
+                    continue;
+                }
+                same.join(place, (*seen - first) as usize);
             }
         }
-        self.searches += searches.len() as u32;
+        let mut sides: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
+        for (place, &id) in around.iter().enumerate() {
+            let side = sides.entry(same.lowest(place)).or_default();
+            side.push(id);
+        }
+        sides.into_values().collect()
+    }
+
+    /// The first of some marks that nothing bears yet.
+    fn marks(&mut self, count: usize) -> u32 {
+        if self.marked > u32::MAX - count as u32 {
+            self.marked = 0;
+            self.seen.fill(0);
+            self.node_seen.fill(0);
+        }
+        self.marked += count as u32;
+        self.marked - count as u32 + 1
+    }
+
+    /// As [`Pieces::part`], for the sides of one piece.
+    fn part_one<D: Dim>(&mut self, mesh: &Mesh<D>, starts: Vec<Vec<u32>>, born: &mut Vec<u32>) {
+        let first = self.marks(starts.len());
+        let mut same = Same::new(starts.len());
+        let mut searches: Vec<Search> = Vec::new();
+        for (place, found) in starts.into_iter().enumerate() {
+            for &id in &found {
+                self.seen[id as usize] = first + place as u32;
+            }
+            let next = found.iter().copied().collect();
+            searches.push(Search { place, found, next });
+        }
         let mut turn = 0;
         while searches.len() > 1 {
             turn %= searches.len();
@@ -150,35 +218,29 @@ impl Pieces {
                 born.push(self.split_off(mesh, &alone.found));
                 continue;
             };
-            for near in neighbours(mesh, id) {
-                let mark = searches[turn].mark;
-                match self.seen[near as usize] {
-                    seen if seen == mark => {}
-                    seen if seen < first => {
-                        self.seen[near as usize] = mark;
-                        searches[turn].found.push(near);
-                        searches[turn].next.push_back(near);
+            let element = mesh.element(id).expect("searches find live elements");
+            for &node in &element.nodes {
+                let place = searches[turn].place;
+                let mark = first + place as u32;
+                let seen = std::mem::replace(&mut self.node_seen[node as usize], mark);
+                if seen >= first {
+                    turn = meet(&mut searches, turn, &mut same, (seen - first) as usize);
+                    continue;
+                }
+                for near in mesh.carrier_ids(node) {
+                    let seen = &mut self.seen[near as usize];
+                    if *seen >= first {
+                        let other = (*seen - first) as usize;
+                        turn = meet(&mut searches, turn, &mut same, other);
+                        continue;
                     }
-                    other => turn = self.join(&mut searches, turn, other),
+                    *seen = mark;
+                    searches[turn].found.push(near);
+                    searches[turn].next.push_back(near);
                 }
             }
             turn += 1;
         }
-    }
-
-    /// Adds the search marked `other` to the one at `turn`; returns where that one stands now.
-    fn join(&mut self, searches: &mut Vec<Search>, turn: usize, other: u32) -> usize {
-        let place = searches.iter().position(|search| search.mark == other);
-        let Some(place) = place else { return turn };
-        let met = searches.remove(place);
-        let turn = if place < turn { turn - 1 } else { turn };
-        let mark = searches[turn].mark;
-        for &id in &met.found {
-            self.seen[id as usize] = mark;
-        }
-        searches[turn].found.extend(met.found);
-        searches[turn].next.extend(met.next);
-        turn
     }
 
     /// Makes a piece of the given elements: asleep or stopped, like the one they were of.
@@ -198,6 +260,26 @@ impl Pieces {
         }
         number
     }
+}
+
+/// Adds the search that saw what the one at `turn` sees now, if it is another one, to it; returns
+/// where that one stands now.
+fn meet(searches: &mut Vec<Search>, turn: usize, same: &mut Same, seen_by: usize) -> usize {
+    let own = same.lowest(searches[turn].place);
+    let other = same.lowest(seen_by);
+    if own == other {
+        return turn;
+    }
+    let place = searches
+        .iter()
+        .position(|search| same.lowest(search.place) == other)
+        .expect("a search that has ended is met by nobody");
+    let met = searches.remove(place);
+    same.join(own, other);
+    let turn = if place < turn { turn - 1 } else { turn };
+    searches[turn].found.extend(met.found);
+    searches[turn].next.extend(met.next);
+    turn
 }
 
 /// The elements that share a node with one, itself included, some of them more than once.

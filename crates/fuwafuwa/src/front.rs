@@ -1,0 +1,283 @@
+//! Where a crack can start or go on, and which ways it can take there.
+//!
+//! A crack can start or go on at a *front node*: one that several voxels share where connection is
+//! not complete. The voxels hang together there by closed faces; a *cut* opens some of the faces
+//! across one axis so that they fall into two sides.
+//!
+//! ```text
+//!       A │ B      opens the faces across x: side A and side B
+//!     ────●────    what the node bears, and which cuts there are, changes only when something is
+//!       A │ B      released close by; so it is worked out then, and kept
+//! ```
+
+use crate::dim::{Dim, Point, voxel_around};
+use crate::grid::VoxelGrid;
+use crate::material::Material;
+use crate::mesh::{Mesh, Node};
+use crate::sharing::{Sharing, faces_around};
+use std::collections::BTreeMap;
+
+/// The most that chance adds to what a smooth surface bears; scatter keeps a row of equally
+/// strained nodes from bursting at once. The tip of a crack is one node: there is none to spare.
+const SCATTER: f32 = 0.4;
+/// The octants on the far side of each axis.
+const FAR: [u8; 3] = [0b1010_1010, 0b1100_1100, 0b1111_0000];
+
+/// A front node.
+#[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Front {
+    /// The octants that share the node.
+    pub group: u8,
+    /// The octants whose voxel would be set free, or left hanging by one face, if it came off alone.
+    pub crumbs: u8,
+    /// The number of the weakest material around.
+    pub material: u8,
+    /// Tension that the node bears [Pa].
+    pub borne: f32,
+    /// Which list of cuts is its own.
+    cuts: u32,
+}
+
+/// A way to part the voxels at a point: faces across `axis` are opened.
+#[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Cut {
+    /// The axis across the opened faces.
+    pub axis: u8,
+    /// The octants on the far side of the axis that come off.
+    pub side: u8,
+    /// How many faces it opens.
+    pub faces: u8,
+    /// The octants that are alone on a side of it.
+    pub lone: u8,
+}
+
+/// For each octant on the near side of each axis: whether its face across is closed.
+type Closed = [u8; 3];
+
+/// The front nodes of a body.
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Fronts {
+    /// By node id.
+    of_node: Vec<Option<Front>>,
+    /// The cuts of each pattern of closed faces, in the order in which the patterns came up.
+    cuts: Vec<Vec<Cut>>,
+    known: BTreeMap<Closed, u32>,
+}
+
+impl Fronts {
+    /// The front nodes with their ids, ascending.
+    pub fn iter(&self) -> impl Iterator<Item = (u32, &Front)> {
+        let all = self.of_node.iter().enumerate();
+        all.filter_map(|(id, front)| Some((id as u32, front.as_ref()?)))
+    }
+
+    /// All ways to part the voxels at a front node.
+    pub fn cuts(&self, front: &Front) -> &[Cut] {
+        &self.cuts[front.cuts as usize]
+    }
+
+    /// Looks again at `nodes`: all those whose elements or whose connection may have changed.
+    pub fn look<D: Dim>(
+        &mut self,
+        nodes: &[u32],
+        grid: &VoxelGrid<D>,
+        sharing: &Sharing<D>,
+        mesh: &Mesh<D>,
+        materials: &[Material],
+    ) {
+        self.of_node.resize(mesh.node_capacity(), None);
+        for &id in nodes {
+            let node = mesh.node(id);
+            let several = node.group & node.group.wrapping_sub(1) != 0;
+            let is_front = several && mesh.is_alive(id) && sharing.is_front(node.at);
+            let front = is_front.then(|| self.front(node, grid, sharing, materials));
+            self.of_node[id as usize] = front;
+        }
+    }
+
+    fn front<D: Dim>(
+        &mut self,
+        node: Node,
+        grid: &VoxelGrid<D>,
+        sharing: &Sharing<D>,
+        materials: &[Material],
+    ) -> Front {
+        let Node { at, group } = node;
+        let mut closed = [0; 3];
+        // A crack ends where some voxels still share a node, but no longer a face.
+        let mut is_tip = false;
+        for (octant, axis) in faces_around::<D>() {
+            let both = 1 << octant | 1 << (octant ^ 1 << axis);
+            if group & both == both {
+                let is_closed = sharing.is_closed(at, octant, axis);
+                closed[axis] |= u8::from(is_closed) << octant;
+                is_tip |= !is_closed;
+            }
+        }
+        let octants = (0..D::CORNERS).filter(|octant| group >> octant & 1 == 1);
+        let numbers = octants.map(|octant| grid.material(voxel_around::<D>(at, octant)));
+        let strength = |&number: &u8| materials[number as usize - 1].strength;
+        let material = numbers
+            .min_by(|a, b| strength(a).total_cmp(&strength(b)))
+            .expect("a group has voxels");
+        let weakest = &materials[material as usize - 1];
+        let borne = if is_tip {
+            weakest.toughness / grid.voxel_size().sqrt()
+        } else {
+            weakest.strength * (1.0 + SCATTER * chance(at))
+        };
+        let cuts = self.pattern::<D>(closed, group);
+        let lone = self.cuts[cuts as usize]
+            .iter()
+            .fold(0, |lone, cut| lone | cut.lone);
+        let crumbs = (0..D::CORNERS)
+            .filter(|octant| lone >> octant & 1 == 1)
+            .filter(|&octant| would_crumble(sharing, at, octant))
+            .fold(0, |crumbs, octant| crumbs | 1 << octant);
+        Front {
+            group,
+            crumbs,
+            material,
+            borne,
+            cuts,
+        }
+    }
+
+    /// The number of the list of cuts that belongs to a pattern of closed faces in a group.
+    fn pattern<D: Dim>(&mut self, closed: Closed, group: u8) -> u32 {
+        let all = &mut self.cuts;
+        *self.known.entry(closed).or_insert_with(|| {
+            all.push(cuts::<D>(closed, group).collect());
+            all.len() as u32 - 1
+        })
+    }
+}
+
+/// All ways to open the closed faces across one axis, all of them, half or a quarter, that part
+/// the group.
+fn cuts<D: Dim>(closed: Closed, group: u8) -> impl Iterator<Item = Cut> {
+    (0..D::N).flat_map(move |axis| {
+        let others = 3usize.pow(D::N as u32 - 1);
+        let mut known = [0u8; 9];
+        (0..others).filter_map(move |choice| {
+            let opened = closed[axis] & part_of::<D>(axis, choice);
+            if opened == 0 || known[..choice].contains(&opened) {
+                return None;
+            }
+            known[choice] = opened;
+            let side = side_of::<D>(closed, axis, opened)?;
+            let alone = |side: u8| if side.count_ones() == 1 { side } else { 0 };
+            Some(Cut {
+                axis: axis as u8,
+                side,
+                faces: opened.count_ones() as u8,
+                lone: alone(side) | alone(group & !side),
+            })
+        })
+    })
+}
+
+/// The octants with given places on the axes other than `axis`: digit 0 = all, 1 = near, 2 = far.
+fn part_of<D: Dim>(axis: usize, mut choice: usize) -> u8 {
+    let mut part = D::ALL_CORNERS;
+    for other in (0..D::N).filter(|&other| other != axis) {
+        part &= match choice % 3 {
+            0 => u8::MAX,
+            1 => !FAR[other],
+            _ => FAR[other],
+        };
+        choice /= 3;
+    }
+    part
+}
+
+/// What hangs together with the far sides of the opened faces, when it reaches no near side.
+fn side_of<D: Dim>(mut closed: Closed, axis: usize, opened: u8) -> Option<u8> {
+    closed[axis] &= !opened;
+    let near = opened;
+    let mut side = opened << (1 << axis);
+    loop {
+        let mut grown = side;
+        for (across, &faces) in closed.iter().enumerate().take(D::N) {
+            let step = 1 << across;
+            grown |= (side & faces) << step | (side >> step) & faces;
+        }
+        if grown & near != 0 {
+            return None;
+        }
+        if grown == side {
+            return Some(side);
+        }
+        side = grown;
+    }
+}
+
+/// Whether the voxel of an octant would be set free, or hang by one face: of the faces away from
+/// the point at most one is closed.
+fn would_crumble<D: Dim>(sharing: &Sharing<D>, at: Point, octant: usize) -> bool {
+    // The faces away from the point are seen from the voxel's opposite corner.
+    let mut corner = at;
+    for axis in 0..D::N {
+        corner[axis] += (octant >> axis & 1) as i32 * 2 - 1;
+    }
+    let seen = D::CORNERS - 1 - octant;
+    let is_held = |axis: &usize| sharing.is_closed(corner, seen, *axis);
+    (0..D::N).filter(is_held).count() <= 1
+}
+
+/// A fixed number between 0 and 1 for each lattice point.
+fn chance(at: Point) -> f32 {
+    let mix = |hash: u64, k: i32| {
+        let hash = (hash ^ u64::from(k as u32)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        hash ^ hash >> 29
+    };
+    let hash = at.iter().fold(0x5eed, |hash, &k| mix(hash, k));
+    let hash = hash.wrapping_mul(0xbf58_476d_1ce4_e5b9) >> 40;
+    hash as f32 / (1u32 << 24) as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::Body;
+    use crate::dim::{Dim2, Dim3};
+
+    /// What is kept about front nodes must be what a fresh look finds, after any releases.
+    fn check_upkeep<D: Dim>(n: usize) {
+        let grid = VoxelGrid::<D>::ball(n, 1.0).expect("a ball is not empty");
+        let mut body = Body::new(grid, &[Material::default()]).expect("the material is good");
+        let mut seed = 5u32;
+        let mut random = |below: i32| {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) as i32 % below
+        };
+        for _ in 0..60 {
+            let at = [0, 1, 2].map(|axis: usize| if axis < D::N { random(n as i32) } else { 0 });
+            let side = random(254) as u8 + 1;
+            body.release(&[(at, side)]).expect("the mesh stays whole");
+        }
+        let mut fresh = Fronts::default();
+        let nodes: Vec<u32> = body.mesh.nodes().map(|(id, _)| id).collect();
+        let materials = body.materials();
+        fresh.look(&nodes, &body.grid, &body.sharing, &body.mesh, materials);
+        let listed = |fronts: &Fronts| -> Vec<_> {
+            let all = fronts.iter();
+            all.map(|(id, front)| {
+                let cuts = fronts.cuts(front).to_vec();
+                (id, front.group, front.crumbs, front.borne, cuts)
+            })
+            .collect()
+        };
+        assert_eq!(listed(&body.fronts), listed(&fresh));
+        assert!(fresh.iter().any(|(_, front)| front.crumbs != 0));
+    }
+
+    #[test]
+    fn front_nodes_are_kept_up_to_date() {
+        check_upkeep::<Dim2>(24);
+        check_upkeep::<Dim3>(10);
+    }
+}
