@@ -1,57 +1,45 @@
-//! Comparing at equal quality: substeps are raised until the body is as stiff as its material.
+//! Comparing at equal quality: Rapier's substeps are raised until its body is as stiff as ours.
 
-use std::ops::RangeInclusive;
+use crate::side::{Side, TOLERANCE, Watched, fall};
+use crate::{Drop, FRAME, Result, WIDTH, ours, theirs};
 
-use crate::{Drop, FRAME, Outcome, Result, WIDTH};
+/// Where raising the substeps ends.
+const MOST_SUBSTEPS: usize = 128;
 
-/// How far the peak squash may be from the one wanted: 2 percentage points.
-const TOLERANCE: f64 = 0.02;
-
-/// A fall with as many substeps as the wanted squash takes.
-#[derive(Clone, Debug)]
-pub struct AtSquash {
-    /// Substeps in each frame.
-    pub substeps: usize,
-    /// The fall with that many.
-    pub outcome: Outcome,
-    /// Whether its peak squash is within 2 percentage points of the one wanted. If not, either the range was too
-    /// short, or the body is stiffer than wanted with any number of substeps.
-    pub reached: bool,
-}
-
-/// Raises the substeps, a quarter at a time, until the peak squash is within 2 percentage points of `wanted` or below
-/// that, and runs the scene with those. `fall` is [`drop_disc`](crate::drop_disc) or [`drop_ball`](crate::drop_ball);
-/// the scene's own substeps count for nothing.
+/// A body falls in both engines, a frame of fuwafuwa's and a frame of Rapier's in turns; returns fuwafuwa's side and
+/// Rapier's. Rapier gets so few substeps that its peak squash is just within 2 percentage points of ours, or below that;
+/// `trying` hears of every number that is tried before.
 ///
 /// # Errors
 /// [`Error`](crate::Error) when the scene makes no sense.
-pub fn drop_at_squash(
-    fall: fn(&Drop) -> Result<Outcome>,
+pub fn compare_drop(scene: &Drop, trying: impl FnMut(usize)) -> Result<[Side; 2]> {
+    let frames = scene.frames.min(frames_to_peak(scene));
+    let [alone] = fall([ours(scene)?], frames);
+    let substeps = enough_substeps(scene, frames, alone.peak_squash + TOLERANCE, trying)?;
+    Ok(fall([ours(scene)?, theirs(scene, substeps)?], scene.frames))
+}
+
+/// With how many substeps Rapier's body is not squashed deeper than `limit`; raised by a quarter at a time.
+fn enough_substeps(
     scene: &Drop,
-    wanted: f64,
-    substeps: RangeInclusive<usize>,
-) -> Result<AtSquash> {
-    let mut tried = Drop {
-        substeps: *substeps.start(),
-        frames: scene.frames.min(frames_to_peak(scene)),
-        ..*scene
-    };
-    while fall(&tried)?.peak_squash > wanted + TOLERANCE {
-        let raised = tried.substeps + (tried.substeps / 4).max(1);
-        if raised > *substeps.end() {
-            break;
+    frames: usize,
+    limit: f64,
+    mut trying: impl FnMut(usize),
+) -> Result<usize> {
+    let mut substeps = 1;
+    loop {
+        trying(substeps);
+        let mut watched = Watched::new(theirs(scene, substeps)?);
+        let too_soft = (0..frames).any(|_| {
+            watched.step();
+            watched.side.peak_squash > limit
+        });
+        let raised = substeps + (substeps / 4).max(1);
+        if !too_soft || raised > MOST_SUBSTEPS {
+            return Ok(substeps);
         }
-        tried.substeps = raised;
+        substeps = raised;
     }
-    let outcome = fall(&Drop {
-        frames: scene.frames,
-        ..tried
-    })?;
-    Ok(AtSquash {
-        substeps: tried.substeps,
-        reached: (outcome.peak_squash - wanted).abs() <= TOLERANCE,
-        outcome,
-    })
 }
 
 /// Frames until the first impact is over, and with it the deepest squash: the fall, the time in which sound crosses the
@@ -66,30 +54,38 @@ fn frames_to_peak(scene: &Drop) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drop_disc;
 
-    #[test]
-    fn substeps_rise_until_the_disc_is_stiff_enough() {
-        let scene = Drop {
-            n: 12,
+    fn small(dim: u8, n: usize) -> Drop {
+        Drop {
             height: 0.3,
             frames: 40,
-            ..Drop::default()
-        };
-        let soft = drop_disc(&Drop {
-            substeps: 1,
-            ..scene
-        })
-        .expect("the scene makes sense");
-        let wanted = soft.peak_squash - 0.03;
-        let found =
-            drop_at_squash(drop_disc, &scene, wanted, 1..=32).expect("the scene makes sense");
-        assert!(found.reached && found.substeps > 1, "{found:?}");
-        let all_too_soft =
-            drop_at_squash(drop_disc, &scene, wanted, 1..=1).expect("the scene makes sense");
-        assert!(
-            !all_too_soft.reached && all_too_soft.substeps == 1,
-            "{all_too_soft:?}"
-        );
+            ..Drop::stiff(dim, n)
+        }
+    }
+
+    #[test]
+    fn both_engines_squash_a_body_alike() {
+        for scene in [small(2, 12), small(3, 8)] {
+            let [ours, theirs] = compare_drop(&scene, |_| ()).expect("the scene makes sense");
+            for side in [&ours, &theirs] {
+                assert_eq!(side.milliseconds.len(), 40);
+                assert!(side.finite && side.softening == 1.0);
+                assert!((0.01..0.15).contains(&side.peak_squash), "{side:?}");
+            }
+            assert!(ours.equals(&theirs), "{ours:?} {theirs:?}");
+        }
+    }
+
+    #[test]
+    fn substeps_rise_until_the_body_is_stiff_enough() {
+        let scene = small(2, 16);
+        let [soft] = fall([theirs(&scene, 1).expect("the scene makes sense")], 40);
+        let mut tried = Vec::new();
+        let limit = soft.peak_squash - 0.01;
+        let enough = enough_substeps(&scene, 40, limit, |substeps| tried.push(substeps));
+        let enough = enough.expect("the scene makes sense");
+        assert!(enough > 1 && tried.last() == Some(&enough), "{tried:?}");
+        let [stiffer] = fall([theirs(&scene, enough).expect("the scene makes sense")], 40);
+        assert!(stiffer.peak_squash <= limit);
     }
 }

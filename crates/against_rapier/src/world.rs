@@ -1,7 +1,8 @@
 //! Rapier's worlds, in 2D and in 3D. They are two crates with the same names in them, hence the macro.
 
 use std::f32::consts::PI;
-use std::time::Instant;
+
+use cpu_time::ThreadTime;
 
 use crate::Drop;
 
@@ -67,15 +68,33 @@ impl Span {
 
 /// A world in which something falls.
 pub trait Falling {
+    /// Its name and version, and what its bodies are made of.
+    fn engine(&self) -> String;
+
     /// One frame.
     fn step(&mut self);
 
     /// How far up and down everything soft reaches.
     fn span(&self) -> Span;
 
-    /// One frame, and the time it took [ms].
+    /// Substeps in a frame.
+    fn substeps(&self) -> usize;
+
+    /// Factor by which the engine itself lowered Young's modulus.
+    fn softening(&self) -> f64 {
+        1.0
+    }
+
+    /// How many pieces there are.
+    fn pieces(&self) -> usize;
+
+    /// Share of the pieces that sleep.
+    fn asleep(&self) -> f64;
+
+    /// One frame, and the time that the processor worked on it [ms]. By the clock on the wall a long frame of the one
+    /// engine would suffer more from whatever else the machine does than a short one of the other.
     fn timed_step(&mut self) -> f64 {
-        let start = Instant::now();
+        let start = ThreadTime::now();
         self.step();
         start.elapsed().as_secs_f64() * 1e3
     }
@@ -85,7 +104,7 @@ pub trait Falling {
 const SKIN: f32 = 0.1;
 
 macro_rules! world {
-    ($rapier:ident, $corners:literal, $vector:expr) => {
+    ($rapier:ident, $corners:literal, $vector:expr, $cells:literal) => {
         use crate::Drop;
         use crate::mesh::Simplices;
         use crate::world::{Falling, Law, SKIN, Span};
@@ -100,11 +119,16 @@ macro_rules! world {
 
         impl World {
             /// The body of `mesh`, at rest, as high above the floor as the scene wants it.
-            pub fn new(mesh: &Simplices<$corners>, scene: &Drop, law: Law) -> Self {
+            pub fn new(
+                mesh: &Simplices<$corners>,
+                scene: &Drop,
+                substeps: usize,
+                law: Law,
+            ) -> Self {
                 let mut rapier = PhysicsWorld::new();
                 rapier.gravity = Vector::Y * -scene.gravity;
                 rapier.integration_parameters.dt = crate::FRAME;
-                rapier.integration_parameters.num_solver_iterations = scene.substeps;
+                rapier.integration_parameters.num_solver_iterations = substeps;
                 let floor = ColliderBuilder::halfspace(Unit::new_unchecked(Vector::Y));
                 rapier.insert(RigidBodyBuilder::fixed(), floor.friction(scene.friction));
                 rapier.insert_soft_body(body(mesh, scene, law));
@@ -143,10 +167,14 @@ macro_rules! world {
                 .material(material)
                 .particle_radius(skin)
                 .surface_collider(surface)
-                .can_sleep(false)
+                .can_sleep(scene.sleeps)
         }
 
         impl Falling for World {
+            fn engine(&self) -> String {
+                format!("Rapier {}, {}", $rapier::VERSION, $cells)
+            }
+
             fn step(&mut self) {
                 self.rapier.step();
             }
@@ -155,16 +183,40 @@ macro_rules! world {
                 let bodies = self.rapier.soft_bodies();
                 Span::of(bodies.flat_map(|(_, body)| body.particle_positions().map(|at| at.y)))
             }
+
+            fn substeps(&self) -> usize {
+                self.rapier.integration_parameters.num_solver_iterations
+            }
+
+            fn pieces(&self) -> usize {
+                self.rapier.soft_bodies.len()
+            }
+
+            fn asleep(&self) -> f64 {
+                let bodies = self.rapier.soft_bodies();
+                let asleep = bodies.filter(|(_, body)| body.is_sleeping()).count();
+                asleep as f64 / self.pieces() as f64
+            }
         }
     };
 }
 
 pub mod plane {
     //! Rapier's plane.
-    world!(rapier2d, 3, |[x, y, _]: [f32; 3]| Vector::new(x, y));
+    world!(
+        rapier2d,
+        3,
+        |[x, y, _]: [f32; 3]| Vector::new(x, y),
+        "corotational triangles"
+    );
 }
 
 pub mod space {
     //! Rapier's space.
-    world!(rapier3d, 4, |[x, y, z]: [f32; 3]| Vector::new(x, y, z));
+    world!(
+        rapier3d,
+        4,
+        |[x, y, z]: [f32; 3]| Vector::new(x, y, z),
+        "tetrahedra with springs and volumes"
+    );
 }
