@@ -3,7 +3,7 @@
 
 use std::process::ExitCode;
 
-use against_rapier::{Drop, Error, Result, Side, compare_drop, compare_tear};
+use against_rapier::{Drop, Result, Side, compare_drop, compare_tear};
 use clap::{Parser, ValueEnum};
 use serde::Serialize;
 
@@ -25,6 +25,9 @@ struct Arguments {
     /// Only this scene.
     #[arg(long, value_enum)]
     scene: Option<Scene>,
+    /// Frames of 1/60 s; if not given 300, or 240 where the disc is torn.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    frames: Option<u16>,
     /// Print JSON instead of a table.
     #[arg(long)]
     json: bool,
@@ -87,29 +90,33 @@ fn compare(arguments: &Arguments) -> Result<Vec<Comparison>> {
         (None, 2) => vec![Scene::Stiff, Scene::Soft, Scene::Torn],
         (None, _) => vec![Scene::Stiff, Scene::Soft],
     };
-    let n = arguments.n.map(usize::from);
-    let compare = |scene: &Scene| compare_in(*scene, arguments.dim, n);
+    let compare = |scene: &Scene| compare_in(*scene, arguments);
     scenes.iter().map(compare).collect()
 }
 
-fn compare_in(scene: Scene, dim: u8, n: Option<usize>) -> Result<Comparison> {
+fn compare_in(scene: Scene, arguments: &Arguments) -> Result<Comparison> {
+    let dim = arguments.dim;
     let usual = match (scene, dim) {
         (Scene::Torn, _) => 64,
         (_, 2) => 128,
         _ => 32,
     };
-    let n = n.unwrap_or(usual);
-    let trying = |substeps| eprintln!("{dim}D n = {n}, {scene:?}: Rapier with {substeps} substeps");
-    let sides = match scene {
-        Scene::Stiff => compare_drop(&Drop::stiff(dim, n), trying)?,
-        Scene::Soft => compare_drop(&Drop::soft(dim, n), trying)?,
-        Scene::Torn if dim == 2 => compare_tear(&Drop::diced(n), PITCH, USUAL_SUBSTEPS)?,
-        Scene::Torn => {
-            return Err(Error::Scene {
-                field: "dim",
-                expected: "2 where the disc is torn",
-            });
-        }
+    let n = arguments.n.map_or(usual, usize::from);
+    let mut drop = match scene {
+        Scene::Stiff => Drop::stiff(dim, n),
+        Scene::Soft => Drop::soft(dim, n),
+        Scene::Torn => Drop {
+            dim,
+            ..Drop::diced(n)
+        },
+    };
+    drop.frames = arguments.frames.map_or(drop.frames, usize::from);
+    let sides = if scene == Scene::Torn {
+        compare_tear(&drop, PITCH, USUAL_SUBSTEPS)?
+    } else {
+        compare_drop(&drop, |substeps| {
+            eprintln!("{dim}D n = {n}, {scene:?}: Rapier with {substeps} substeps");
+        })?
     };
     let [ours, theirs] = &sides;
     Ok(Comparison {

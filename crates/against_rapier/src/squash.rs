@@ -8,15 +8,17 @@ const MOST_SUBSTEPS: usize = 128;
 
 /// A body falls in both engines, a frame of fuwafuwa's and a frame of Rapier's in turns; returns fuwafuwa's side and
 /// Rapier's. Rapier gets so few substeps that its peak squash is just within 2 percentage points of ours, or below that;
-/// `trying` hears of every number that is tried before.
+/// `trying` hears of every number that is tried before. They run until the deepest squash is over, even if that takes
+/// more frames than the scene has.
 ///
 /// # Errors
 /// [`Error`](crate::Error) when the scene makes no sense.
 pub fn compare_drop(scene: &Drop, trying: impl FnMut(usize)) -> Result<[Side; 2]> {
-    let frames = scene.frames.min(frames_to_peak(scene));
+    let frames = frames_to_peak(scene);
     let [alone] = fall([ours(scene)?], frames);
     let substeps = enough_substeps(scene, frames, alone.peak_squash + TOLERANCE, trying)?;
-    Ok(fall([ours(scene)?, theirs(scene, substeps)?], scene.frames))
+    let frames = scene.frames.max(frames);
+    Ok(fall([ours(scene)?, theirs(scene, substeps)?], frames))
 }
 
 /// With how many substeps Rapier's body is not squashed deeper than `limit`; raised by a quarter at a time.
@@ -68,7 +70,7 @@ mod tests {
         for scene in [small(2, 12), small(3, 8)] {
             let [ours, theirs] = compare_drop(&scene, |_| ()).expect("the scene makes sense");
             for side in [&ours, &theirs] {
-                assert_eq!(side.milliseconds.len(), 40);
+                assert!(side.milliseconds.len() >= 40);
                 assert!(side.finite && side.softening == 1.0);
                 assert!((0.01..0.15).contains(&side.peak_squash), "{side:?}");
             }

@@ -167,6 +167,7 @@ macro_rules! world {
                 .material(material)
                 .particle_radius(skin)
                 .surface_collider(surface)
+                .additional_pgs_iterations(scene.sweeps - 1)
                 .can_sleep(scene.sleeps)
         }
 
