@@ -18,14 +18,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     }
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let status = Command::new(cargo)
-        .args([
-            "run",
-            "--quiet",
-            "--release",
-            "--manifest-path",
-            MANIFEST,
-            "--",
-        ])
+        .args(["run", "--release", "--manifest-path", MANIFEST, "--"])
         .args(passed_on(arguments))
         .status()
         .context("cargo, which builds Rapier, could not be started")?;
@@ -48,4 +41,31 @@ fn passed_on(arguments: &Arguments) -> Vec<String> {
     passed.extend(arguments.frames.map(|frames| format!("--frames={frames}")));
     passed.extend(arguments.json.then(|| "--json".into()));
     passed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        arguments: Arguments,
+    }
+
+    fn check(line: &str, expect: &[&str]) {
+        let line = Line::parse_from(line.split(' '));
+        assert_eq!(passed_on(&line.arguments), expect);
+    }
+
+    #[test]
+    fn what_was_asked_for_is_passed_on() {
+        assert!(Path::new(MANIFEST).exists());
+        check("bench --against rapier", &["--dim=2"]);
+        check(
+            "bench --against rapier --dim 3 --n 16 --scene soft --frames 9 --json",
+            &["--dim=3", "--n=16", "--scene=soft", "--frames=9", "--json"],
+        );
+    }
 }
