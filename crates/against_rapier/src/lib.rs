@@ -15,7 +15,7 @@
 //! | cells in 2D | corotational triangles, 2 a voxel | take Young's modulus and Poisson's ratio, and cost the least there |
 //! | cells in 3D | 5 tetrahedra a voxel, each a volume constraint, and springs on their edges | at equal squash a third to a quarter of the time of corotational tetrahedra; Poisson's ratio then follows from the lattice of springs and is about 0.2 |
 //! | damping | none | the material has none; Rapier's own (critical) damping makes the body softer still |
-//! | sweeps | 8 a substep for the stiff body, 4 for the soft one | at equal squash the stiff disc takes 10 to 15 % less than with the usual 4; the soft one would take more |
+//! | sweeps over the constraints | 1, 2, 4 or 8 a substep, whichever is fastest at equal squash | 4 is Rapier's default; the more sweeps, the fewer substeps it needs |
 //! | contact skin | a tenth of a voxel | the pieces of a cut body lie closer than Rapier's half voxel; and Rapier adds up to four substeps by itself while the body hits faster than a skin a substep: with the thin skin it does so in time, and the median frame at equal squash takes 20 to 50 % less than without the additions |
 //! | sleep | off for a body in one piece | every frame is a frame of a moving body |
 //! | floor | a half-space | |
@@ -54,6 +54,7 @@ pub use squash::compare_drop;
 pub use tear::compare_tear;
 
 use mesh::Simplices;
+pub use world::Effort;
 use world::{Falling, Law, plane, space};
 
 /// Width of the body [m], empty voxels at the rim included.
@@ -83,8 +84,6 @@ pub struct Drop {
     pub friction: f32,
     /// Frames of 1/60 s to run.
     pub frames: usize,
-    /// How often Rapier goes over its constraints in each substep, which stiffens the body too: 4 is its default.
-    pub sweeps: usize,
     /// Whether what rests may fall asleep, on Rapier's side; fuwafuwa always lets it, and a comparison of a body in one
     /// piece ends when it does.
     pub sleeps: bool,
@@ -103,18 +102,16 @@ impl Drop {
             gravity: 9.81,
             friction: 0.5,
             frames: 300,
-            sweeps: 8,
             sleeps: false,
         }
     }
 
-    /// A body as soft as in a game, 5000 Pa, falls gently, and is squashed by about 10 %.
+    /// A body as soft as in a game, 5000 Pa, falls gently, from so high that it is squashed by about 10 %.
     pub fn soft(dim: u8, n: usize) -> Self {
         Self {
             young: 5000.0,
-            height: 0.2,
+            height: if dim == 2 { 0.15 } else { 0.1 },
             gravity: 1.0,
-            sweeps: 4,
             ..Self::stiff(dim, n)
         }
     }
@@ -186,21 +183,21 @@ impl From<Refused> for Error {
 pub type Result<T> = std::result::Result<T, Error>;
 
 /// The scene in Rapier.
-fn theirs(scene: &Drop, substeps: usize) -> Result<Box<dyn Falling>> {
+fn theirs(scene: &Drop, effort: Effort) -> Result<Box<dyn Falling>> {
     if scene.dim == 2 {
-        return Ok(Box::new(disc(scene, substeps)?));
+        return Ok(Box::new(disc(scene, effort)?));
     }
     scene.check()?;
     let mesh = Simplices::tetrahedra(&VoxelGrid::<Dim3>::ball(scene.n, WIDTH)?);
     let law = Law::springs(scene, mesh.voxel_size);
-    Ok(Box::new(space::World::new(&mesh, scene, substeps, law)))
+    Ok(Box::new(space::World::new(&mesh, scene, effort, law)))
 }
 
-fn disc(scene: &Drop, substeps: usize) -> Result<plane::World> {
+fn disc(scene: &Drop, effort: Effort) -> Result<plane::World> {
     scene.check()?;
     let mesh = Simplices::triangles(&VoxelGrid::<Dim2>::ball(scene.n, WIDTH)?);
     let law = Law::Corotational;
-    Ok(plane::World::new(&mesh, scene, substeps, law))
+    Ok(plane::World::new(&mesh, scene, effort, law))
 }
 
 /// The scene in fuwafuwa.
@@ -230,7 +227,6 @@ impl Drop {
                 "from 0 to below 0.5",
             ),
             ("dim", (2..=3).contains(&self.dim), "2 or 3"),
-            ("sweeps", self.sweeps > 0, "at least 1"),
             ("frames", self.frames > 0, "at least 1"),
         ] {
             if !holds {
@@ -256,10 +252,10 @@ mod tests {
             error.to_string(),
             "`poisson` of the scene has to be from 0 to below 0.5"
         );
-        assert_eq!(theirs(&scene, 1).err(), Some(error));
+        assert_eq!(theirs(&scene, Effort::default()).err(), Some(error));
         let empty = Drop::stiff(3, 0);
         let refused = Some(Error::Shape(BuildError::Empty));
-        assert_eq!(theirs(&empty, 1).err(), refused);
+        assert_eq!(theirs(&empty, Effort::default()).err(), refused);
         assert_eq!(ours(&empty).err(), refused);
     }
 }

@@ -5,7 +5,7 @@ use rapier2d::prelude::{SoftBodyHandle, Vector};
 
 use crate::side::{Side, fall};
 use crate::world::{Falling, plane};
-use crate::{Drop, Error, Result, WIDTH, disc, ours};
+use crate::{Drop, Effort, Error, Result, WIDTH, disc, ours};
 
 /// Cuts a disc along the vertical and then along the horizontal lines of a square lattice, and lets the pieces fall, a
 /// frame of fuwafuwa's and a frame of Rapier's in turns; returns fuwafuwa's side and Rapier's. The pieces touch each
@@ -13,17 +13,16 @@ use crate::{Drop, Error, Result, WIDTH, disc, ours};
 ///
 /// # Errors
 /// [`Error`] when the scene makes no sense.
-pub fn compare_tear(scene: &Drop, pitch: usize, substeps: usize) -> Result<[Side; 2]> {
+pub fn compare_tear(scene: &Drop, pitch: usize, effort: Effort) -> Result<[Side; 2]> {
     for (field, holds, expected) in [
         ("dim", scene.dim == 2, "2"),
         ("pitch", pitch > 0, "at least 1"),
-        ("substeps", substeps > 0, "at least 1"),
     ] {
         if !holds {
             return Err(Error::Scene { field, expected });
         }
     }
-    let mut theirs = disc(scene, substeps)?;
+    let mut theirs = disc(scene, effort)?;
     cut_to_pieces(&mut theirs, scene, pitch, 0.0);
     let mut ours = ours::world::<Dim2>(scene)?;
     let whole = ours.bodies()[0].piece_views()[0];
@@ -89,7 +88,9 @@ mod tests {
         // 32 voxels: rows of 4, 6, 6, 6, 6 and 4, which no line of pitch 1 leaves together.
         // One line each way through the middle makes four quarters.
         for (pitch, pieces) in [(1, 32), (4, 4)] {
-            for side in compare_tear(&scene, pitch, 4).expect("the scene makes sense") {
+            for side in
+                compare_tear(&scene, pitch, Effort::default()).expect("the scene makes sense")
+            {
                 assert_eq!(side.pieces, pieces);
                 assert!(side.finite && side.milliseconds.len() == 10);
             }

@@ -34,6 +34,25 @@ impl Law {
     }
 }
 
+/// How much Rapier works on a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Effort {
+    /// Substeps of the solver, to which Rapier adds up to 4 while a body hits fast. More make a body stiffer.
+    pub substeps: usize,
+    /// How often it goes over its constraints in each of them. More make a body stiffer, too.
+    pub sweeps: usize,
+}
+
+impl Default for Effort {
+    /// Rapier's own.
+    fn default() -> Self {
+        Self {
+            substeps: 4,
+            sweeps: 4,
+        }
+    }
+}
+
 /// How far up and down a body reaches.
 #[derive(Clone, Copy, Debug)]
 pub struct Span {
@@ -107,7 +126,7 @@ macro_rules! world {
     ($rapier:ident, $corners:literal, $vector:expr, $cells:literal) => {
         use crate::Drop;
         use crate::mesh::Simplices;
-        use crate::world::{Falling, Law, SKIN, Span};
+        use crate::world::{Effort, Falling, Law, SKIN, Span};
         use $rapier::na::Unit;
         use $rapier::prelude::*;
 
@@ -115,28 +134,29 @@ macro_rules! world {
         pub struct World {
             /// Rapier's own world.
             pub rapier: PhysicsWorld,
+            effort: Effort,
         }
 
         impl World {
             /// The body of `mesh`, at rest, as high above the floor as the scene wants it.
-            pub fn new(
-                mesh: &Simplices<$corners>,
-                scene: &Drop,
-                substeps: usize,
-                law: Law,
-            ) -> Self {
+            pub fn new(mesh: &Simplices<$corners>, scene: &Drop, effort: Effort, law: Law) -> Self {
                 let mut rapier = PhysicsWorld::new();
                 rapier.gravity = Vector::Y * -scene.gravity;
                 rapier.integration_parameters.dt = crate::FRAME;
-                rapier.integration_parameters.num_solver_iterations = substeps;
+                rapier.integration_parameters.num_solver_iterations = effort.substeps;
                 let floor = ColliderBuilder::halfspace(Unit::new_unchecked(Vector::Y));
                 rapier.insert(RigidBodyBuilder::fixed(), floor.friction(scene.friction));
-                rapier.insert_soft_body(body(mesh, scene, law));
-                Self { rapier }
+                rapier.insert_soft_body(body(mesh, scene, effort, law));
+                Self { rapier, effort }
             }
         }
 
-        fn body(mesh: &Simplices<$corners>, scene: &Drop, law: Law) -> SoftBodyBuilder {
+        fn body(
+            mesh: &Simplices<$corners>,
+            scene: &Drop,
+            effort: Effort,
+            law: Law,
+        ) -> SoftBodyBuilder {
             let skin = SKIN * mesh.voxel_size;
             let up = Vector::Y * (scene.height + skin);
             let vector = $vector;
@@ -167,13 +187,14 @@ macro_rules! world {
                 .material(material)
                 .particle_radius(skin)
                 .surface_collider(surface)
-                .additional_pgs_iterations(scene.sweeps - 1)
+                .additional_pgs_iterations(effort.sweeps - 1)
                 .can_sleep(scene.sleeps)
         }
 
         impl Falling for World {
             fn engine(&self) -> String {
-                format!("Rapier {}, {}", $rapier::VERSION, $cells)
+                let sweeps = self.effort.sweeps;
+                format!("Rapier {}, {}, {sweeps} sweeps", $rapier::VERSION, $cells)
             }
 
             fn step(&mut self) {
@@ -186,7 +207,7 @@ macro_rules! world {
             }
 
             fn substeps(&self) -> usize {
-                self.rapier.integration_parameters.num_solver_iterations
+                self.effort.substeps
             }
 
             fn pieces(&self) -> usize {
@@ -218,6 +239,6 @@ pub mod space {
         rapier3d,
         4,
         |[x, y, z]: [f32; 3]| Vector::new(x, y, z),
-        "tetrahedra with springs and volumes"
+        "tetrahedra with springs"
     );
 }
