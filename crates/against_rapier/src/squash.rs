@@ -1,57 +1,65 @@
-//! Comparing at equal quality: substeps are raised until the body is as stiff as its material.
+//! Comparing at equal quality: Rapier's substeps are raised until its body is as stiff as ours.
 
-use std::ops::RangeInclusive;
+use crate::side::{Side, TOLERANCE, Watched, fall};
+use crate::{Drop, Effort, FRAME, Result, WIDTH, ours, theirs};
 
-use crate::{Drop, FRAME, Outcome, Result, WIDTH};
+/// How often Rapier may go over its constraints in a substep; its default first, which is seldom far off.
+const SWEEPS: [usize; 4] = [4, 8, 2, 1];
+/// Where raising the substeps ends.
+const MOST_SUBSTEPS: usize = 128;
 
-/// How far the peak squash may be from the one wanted: 2 percentage points.
-const TOLERANCE: f64 = 0.02;
-
-/// A fall with as many substeps as the wanted squash takes.
-#[derive(Clone, Debug)]
-pub struct AtSquash {
-    /// Substeps in each frame.
-    pub substeps: usize,
-    /// The fall with that many.
-    pub outcome: Outcome,
-    /// Whether its peak squash is within 2 percentage points of the one wanted. If not, either the range was too
-    /// short, or the body is stiffer than wanted with any number of substeps.
-    pub reached: bool,
-}
-
-/// Raises the substeps, a quarter at a time, until the peak squash is within 2 percentage points of `wanted` or below
-/// that, and runs the scene with those. `fall` is [`drop_disc`](crate::drop_disc) or [`drop_ball`](crate::drop_ball);
-/// the scene's own substeps count for nothing.
+/// A body falls in both engines, a frame of fuwafuwa's and a frame of Rapier's in turns; returns fuwafuwa's side and
+/// Rapier's. Rapier gets so few substeps that its peak squash is just within 2 percentage points of ours, or below that,
+/// with the number of sweeps that is fastest then; `trying` hears of all that is tried before. They run until the deepest
+/// squash is over, even if that takes more frames than the scene has.
 ///
 /// # Errors
 /// [`Error`](crate::Error) when the scene makes no sense.
-pub fn drop_at_squash(
-    fall: fn(&Drop) -> Result<Outcome>,
-    scene: &Drop,
-    wanted: f64,
-    substeps: RangeInclusive<usize>,
-) -> Result<AtSquash> {
-    let mut tried = Drop {
-        substeps: *substeps.start(),
-        frames: scene.frames.min(frames_to_peak(scene)),
-        ..*scene
-    };
-    while fall(&tried)?.peak_squash > wanted + TOLERANCE {
-        let raised = tried.substeps + (tried.substeps / 4).max(1);
-        if raised > *substeps.end() {
-            break;
+pub fn compare_drop(scene: &Drop, mut trying: impl FnMut(Effort)) -> Result<[Side; 2]> {
+    let frames = frames_to_peak(scene);
+    let [alone] = fall([ours(scene)?], frames);
+    let limit = alone.peak_squash + TOLERANCE;
+    let (mut fastest, mut effort) = (f64::INFINITY, Effort::default());
+    for sweeps in SWEEPS {
+        let start = Effort {
+            substeps: 1,
+            sweeps,
+        };
+        if let Some(found) = enough(scene, start, frames, limit, fastest, &mut trying)? {
+            (effort, fastest) = found;
         }
-        tried.substeps = raised;
     }
-    let outcome = fall(&Drop {
-        frames: scene.frames,
-        ..tried
-    })?;
-    Ok(AtSquash {
-        substeps: tried.substeps,
-        reached: (outcome.peak_squash - wanted).abs() <= TOLERANCE,
-        outcome,
-    })
+    let frames = scene.frames.max(frames);
+    Ok(fall([ours(scene)?, theirs(scene, effort)?], frames))
+}
+
+/// With how many substeps Rapier's body is not squashed deeper than `limit`, raised by a quarter at a time, and the
+/// median time of a frame with so many [ms]; nothing if that is not faster than `fastest` [ms].
+fn enough(
+    scene: &Drop,
+    mut effort: Effort,
+    frames: usize,
+    limit: f64,
+    fastest: f64,
+    mut trying: impl FnMut(Effort),
+) -> Result<Option<(Effort, f64)>> {
+    loop {
+        trying(effort);
+        let mut watched = Watched::new(theirs(scene, effort)?);
+        let too_soft = (0..frames).any(|_| {
+            watched.step();
+            watched.side.peak_squash > limit
+        });
+        let median = watched.side.median();
+        if median >= fastest {
+            return Ok(None);
+        }
+        let raised = effort.substeps + (effort.substeps / 4).max(1);
+        if !too_soft || raised > MOST_SUBSTEPS {
+            return Ok(Some((effort, median)));
+        }
+        effort.substeps = raised;
+    }
 }
 
 /// Frames until the first impact is over, and with it the deepest squash: the fall, the time in which sound crosses the
@@ -66,30 +74,52 @@ fn frames_to_peak(scene: &Drop) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drop_disc;
 
-    #[test]
-    fn substeps_rise_until_the_disc_is_stiff_enough() {
-        let scene = Drop {
-            n: 12,
+    fn small(dim: u8, n: usize) -> Drop {
+        Drop {
             height: 0.3,
             frames: 40,
-            ..Drop::default()
-        };
-        let soft = drop_disc(&Drop {
+            ..Drop::stiff(dim, n)
+        }
+    }
+
+    #[test]
+    fn both_engines_squash_a_body_alike() {
+        for scene in [small(2, 12), small(3, 8)] {
+            let [ours, theirs] = compare_drop(&scene, |_| ()).expect("the scene makes sense");
+            for side in [&ours, &theirs] {
+                assert!(side.milliseconds.len() >= 40);
+                assert!(side.finite && side.softening == 1.0);
+                assert!((0.01..0.15).contains(&side.peak_squash), "{side:?}");
+            }
+            assert!(ours.equals(&theirs), "{ours:?} {theirs:?}");
+        }
+    }
+
+    #[test]
+    fn substeps_rise_until_the_body_is_stiff_enough() {
+        let scene = small(2, 16);
+        let whole = |effort| fall([theirs(&scene, effort).expect("the scene makes sense")], 40);
+        let least = Effort {
             substeps: 1,
-            ..scene
-        })
-        .expect("the scene makes sense");
-        let wanted = soft.peak_squash - 0.03;
-        let found =
-            drop_at_squash(drop_disc, &scene, wanted, 1..=32).expect("the scene makes sense");
-        assert!(found.reached && found.substeps > 1, "{found:?}");
-        let all_too_soft =
-            drop_at_squash(drop_disc, &scene, wanted, 1..=1).expect("the scene makes sense");
+            sweeps: 4,
+        };
+        let [soft] = whole(least);
+        let limit = soft.peak_squash - 0.01;
+        let mut tried = Vec::new();
+        let found = enough(&scene, least, 40, limit, f64::INFINITY, |effort| {
+            tried.push(effort);
+        });
+        let (effort, _) = found
+            .expect("the scene makes sense")
+            .expect("anything is faster than never");
         assert!(
-            !all_too_soft.reached && all_too_soft.substeps == 1,
-            "{all_too_soft:?}"
+            effort.substeps > 1 && tried.last() == Some(&effort),
+            "{tried:?}"
         );
+        let [stiffer] = whole(effort);
+        assert!(stiffer.peak_squash <= limit);
+        let faster = enough(&scene, least, 40, limit, 0.0, |_| ());
+        assert_eq!(faster, Ok(None));
     }
 }

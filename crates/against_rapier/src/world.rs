@@ -1,7 +1,8 @@
 //! Rapier's worlds, in 2D and in 3D. They are two crates with the same names in them, hence the macro.
 
 use std::f32::consts::PI;
-use std::time::Instant;
+
+use cpu_time::ThreadTime;
 
 use crate::Drop;
 
@@ -29,6 +30,25 @@ impl Law {
         let mass = scene.density * voxel_size.powi(3);
         Self::Springs {
             frequency: (2.0 * stiffness / mass).sqrt() / (2.0 * PI),
+        }
+    }
+}
+
+/// How much Rapier works on a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Effort {
+    /// Substeps of the solver, to which Rapier adds up to 4 while a body hits fast. More make a body stiffer.
+    pub substeps: usize,
+    /// How often it goes over its constraints in each of them. More make a body stiffer, too.
+    pub sweeps: usize,
+}
+
+impl Default for Effort {
+    /// Rapier's own.
+    fn default() -> Self {
+        Self {
+            substeps: 4,
+            sweeps: 4,
         }
     }
 }
@@ -67,15 +87,33 @@ impl Span {
 
 /// A world in which something falls.
 pub trait Falling {
+    /// Its name and version, and what its bodies are made of.
+    fn engine(&self) -> String;
+
     /// One frame.
     fn step(&mut self);
 
     /// How far up and down everything soft reaches.
     fn span(&self) -> Span;
 
-    /// One frame, and the time it took [ms].
+    /// Substeps in a frame.
+    fn substeps(&self) -> usize;
+
+    /// Factor by which the engine itself lowered Young's modulus.
+    fn softening(&self) -> f64 {
+        1.0
+    }
+
+    /// How many pieces there are.
+    fn pieces(&self) -> usize;
+
+    /// Share of the pieces that sleep.
+    fn asleep(&self) -> f64;
+
+    /// One frame, and the time that the processor worked on it [ms]. By the clock on the wall a long frame of the one
+    /// engine would suffer more from whatever else the machine does than a short one of the other.
     fn timed_step(&mut self) -> f64 {
-        let start = Instant::now();
+        let start = ThreadTime::now();
         self.step();
         start.elapsed().as_secs_f64() * 1e3
     }
@@ -85,10 +123,10 @@ pub trait Falling {
 const SKIN: f32 = 0.1;
 
 macro_rules! world {
-    ($rapier:ident, $corners:literal, $vector:expr) => {
+    ($rapier:ident, $corners:literal, $vector:expr, $cells:literal) => {
         use crate::Drop;
         use crate::mesh::Simplices;
-        use crate::world::{Falling, Law, SKIN, Span};
+        use crate::world::{Effort, Falling, Law, SKIN, Span};
         use $rapier::na::Unit;
         use $rapier::prelude::*;
 
@@ -96,23 +134,29 @@ macro_rules! world {
         pub struct World {
             /// Rapier's own world.
             pub rapier: PhysicsWorld,
+            effort: Effort,
         }
 
         impl World {
             /// The body of `mesh`, at rest, as high above the floor as the scene wants it.
-            pub fn new(mesh: &Simplices<$corners>, scene: &Drop, law: Law) -> Self {
+            pub fn new(mesh: &Simplices<$corners>, scene: &Drop, effort: Effort, law: Law) -> Self {
                 let mut rapier = PhysicsWorld::new();
                 rapier.gravity = Vector::Y * -scene.gravity;
                 rapier.integration_parameters.dt = crate::FRAME;
-                rapier.integration_parameters.num_solver_iterations = scene.substeps;
+                rapier.integration_parameters.num_solver_iterations = effort.substeps;
                 let floor = ColliderBuilder::halfspace(Unit::new_unchecked(Vector::Y));
                 rapier.insert(RigidBodyBuilder::fixed(), floor.friction(scene.friction));
-                rapier.insert_soft_body(body(mesh, scene, law));
-                Self { rapier }
+                rapier.insert_soft_body(body(mesh, scene, effort, law));
+                Self { rapier, effort }
             }
         }
 
-        fn body(mesh: &Simplices<$corners>, scene: &Drop, law: Law) -> SoftBodyBuilder {
+        fn body(
+            mesh: &Simplices<$corners>,
+            scene: &Drop,
+            effort: Effort,
+            law: Law,
+        ) -> SoftBodyBuilder {
             let skin = SKIN * mesh.voxel_size;
             let up = Vector::Y * (scene.height + skin);
             let vector = $vector;
@@ -143,10 +187,16 @@ macro_rules! world {
                 .material(material)
                 .particle_radius(skin)
                 .surface_collider(surface)
-                .can_sleep(false)
+                .additional_pgs_iterations(effort.sweeps - 1)
+                .can_sleep(scene.sleeps)
         }
 
         impl Falling for World {
+            fn engine(&self) -> String {
+                let sweeps = self.effort.sweeps;
+                format!("Rapier {}, {}, {sweeps} sweeps", $rapier::VERSION, $cells)
+            }
+
             fn step(&mut self) {
                 self.rapier.step();
             }
@@ -155,16 +205,40 @@ macro_rules! world {
                 let bodies = self.rapier.soft_bodies();
                 Span::of(bodies.flat_map(|(_, body)| body.particle_positions().map(|at| at.y)))
             }
+
+            fn substeps(&self) -> usize {
+                self.effort.substeps
+            }
+
+            fn pieces(&self) -> usize {
+                self.rapier.soft_bodies.len()
+            }
+
+            fn asleep(&self) -> f64 {
+                let bodies = self.rapier.soft_bodies();
+                let asleep = bodies.filter(|(_, body)| body.is_sleeping()).count();
+                asleep as f64 / self.pieces() as f64
+            }
         }
     };
 }
 
 pub mod plane {
     //! Rapier's plane.
-    world!(rapier2d, 3, |[x, y, _]: [f32; 3]| Vector::new(x, y));
+    world!(
+        rapier2d,
+        3,
+        |[x, y, _]: [f32; 3]| Vector::new(x, y),
+        "corotational triangles"
+    );
 }
 
 pub mod space {
     //! Rapier's space.
-    world!(rapier3d, 4, |[x, y, z]: [f32; 3]| Vector::new(x, y, z));
+    world!(
+        rapier3d,
+        4,
+        |[x, y, z]: [f32; 3]| Vector::new(x, y, z),
+        "tetrahedra with springs"
+    );
 }

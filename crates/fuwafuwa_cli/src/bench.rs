@@ -1,6 +1,8 @@
 //! Measures speed and memory. Machines are shared and noisy: everything that is compared runs in
 //! turns in one run, and medians and ratios are what counts.
 
+mod rapier;
+
 use crate::report::{Progress, table};
 use anyhow::Result;
 use clap::ValueEnum;
@@ -15,16 +17,20 @@ use std::time::Instant;
 /// Measure speed and memory, in this run and on this machine.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Time the ticks of a scene, by name or file, instead of the usual list.
+    /// Time the ticks of a scene, by name or file, instead of the usual list. With --against rapier: `stiff`, `soft` or
+    /// `torn` instead of all of them.
     #[arg(long)]
     scene: Option<String>,
     /// With --against: space dimensions.
     #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u8).range(2..=3))]
     dim: u8,
-    /// With --against: voxels across.
-    #[arg(long, default_value_t = 128, value_parser = clap::value_parser!(u16).range(8..=512))]
-    n: u16,
-    /// What to compare a swinging ball with.
+    /// With --against: voxels across; 128 in 2D and 32 in 3D if not given.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(8..=512))]
+    n: Option<u16>,
+    /// With --against rapier: frames to run; 300 if not given, 240 of what is torn.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    frames: Option<u16>,
+    /// What to compare with.
     #[arg(long, value_enum)]
     against: Option<Rival>,
     /// Print JSON instead of a table.
@@ -34,8 +40,11 @@ pub struct Arguments {
 
 #[derive(Copy, Clone, Debug, PartialEq, Eq, ValueEnum)]
 enum Rival {
-    /// The same body with elements of single voxels everywhere.
+    /// A swinging ball, with the same ball made of elements of single voxels everywhere.
     Uniform,
+    /// Bodies that fall, and one that is torn, with those of Rapier at equal peak squash. Builds Rapier, which takes
+    /// minutes, from crates/against_rapier.
+    Rapier,
 }
 
 /// One thing measured.
@@ -50,10 +59,13 @@ struct Measure {
 
 /// Measures, and prints what it found.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
+    if arguments.against == Some(Rival::Rapier) {
+        return rapier::run(arguments);
+    }
     let progress = Progress::new();
     let measures = match (&arguments.scene, arguments.against) {
         (Some(name), _) => vec![scene(name, &progress)?],
-        (None, Some(Rival::Uniform)) => against_uniform(arguments, &progress)?,
+        (None, Some(_)) => against_uniform(arguments, &progress)?,
         (None, None) => usual(&progress)?,
     };
     drop(progress);
@@ -190,9 +202,10 @@ fn memory() -> Result<Measure> {
 
 /// A swinging ball, graded and uniform, a tick's worth of substeps of each in turns.
 fn against_uniform(arguments: &Arguments, progress: &Progress) -> Result<Vec<Measure>> {
+    let n = arguments.n.map(usize::from);
     match arguments.dim {
-        2 => against_uniform_in::<Dim2>(arguments.n.into(), progress),
-        _ => against_uniform_in::<Dim3>(arguments.n.into(), progress),
+        2 => against_uniform_in::<Dim2>(n.unwrap_or(128), progress),
+        _ => against_uniform_in::<Dim3>(n.unwrap_or(32), progress),
     }
 }
 

@@ -1,0 +1,175 @@
+//! Prints how long a frame takes in fuwafuwa and in Rapier, measured in turns in one run. `fuwafuwa bench --against
+//! rapier` starts it.
+
+use std::process::ExitCode;
+
+use against_rapier::{Drop, Effort, Result, Side, compare_drop, compare_tear};
+use clap::{Parser, ValueEnum};
+use serde::Serialize;
+
+/// Voxels along the edge of a piece of the torn disc: 390 pieces of a disc of 64 voxels.
+const PITCH: usize = 3;
+/// fuwafuwa and Rapier side by side.
+#[derive(Parser)]
+#[command(name = "against_rapier", version)]
+struct Arguments {
+    /// Space dimensions.
+    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u8).range(2..=3))]
+    dim: u8,
+    /// Voxels across; if not given, 128 in 2D (64 where it is torn) and 32 in 3D.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(8..=512))]
+    n: Option<u16>,
+    /// Only this scene.
+    #[arg(long, value_enum)]
+    scene: Option<Scene>,
+    /// Frames of 1/60 s; if not given 300, or 240 where the disc is torn.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    frames: Option<u16>,
+    /// Print JSON instead of a table.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "snake_case")]
+enum Scene {
+    /// A body of 4e5 Pa falls 1 m at 9.81 m/s².
+    Stiff,
+    /// A body of 5000 Pa falls 0.15 m (in 3D 0.1 m) at 1 m/s².
+    Soft,
+    /// A disc of 5000 Pa in pieces of 3 x 3 voxels falls 0.2 m at 9.81 m/s²; 2D only.
+    Torn,
+}
+
+/// A scene in both engines.
+#[derive(Serialize)]
+struct Comparison {
+    scene: Scene,
+    dim: u8,
+    n: usize,
+    /// fuwafuwa's side and Rapier's.
+    sides: [Side; 2],
+    /// Median time of a frame on each side [ms].
+    median: [f64; 2],
+    /// Time of the slowest frame on each side [ms].
+    worst: [f64; 2],
+    /// Rapier's median over fuwafuwa's.
+    ratio: f64,
+    /// Whether the peak squash of a body in one piece is equal within 2 percentage points.
+    equal_squash: Option<bool>,
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let comparisons = match compare(&arguments) {
+        Ok(comparisons) => comparisons,
+        Err(error) => return fail(&error.to_string()),
+    };
+    if arguments.json {
+        match serde_json::to_string_pretty(&comparisons) {
+            Ok(text) => println!("{text}"),
+            Err(error) => return fail(&error.to_string()),
+        }
+    } else {
+        comparisons.iter().for_each(print);
+    }
+    ExitCode::SUCCESS
+}
+
+fn fail(reason: &str) -> ExitCode {
+    eprintln!("error: {reason}");
+    ExitCode::from(2)
+}
+
+fn compare(arguments: &Arguments) -> Result<Vec<Comparison>> {
+    let scenes = match (arguments.scene, arguments.dim) {
+        (Some(scene), _) => vec![scene],
+        (None, 2) => vec![Scene::Stiff, Scene::Soft, Scene::Torn],
+        (None, _) => vec![Scene::Stiff, Scene::Soft],
+    };
+    let compare = |scene: &Scene| compare_in(*scene, arguments);
+    scenes.iter().map(compare).collect()
+}
+
+fn compare_in(scene: Scene, arguments: &Arguments) -> Result<Comparison> {
+    let dim = arguments.dim;
+    let usual = match (scene, dim) {
+        (Scene::Torn, _) => 64,
+        (_, 2) => 128,
+        _ => 32,
+    };
+    let n = arguments.n.map_or(usual, usize::from);
+    let mut drop = match scene {
+        Scene::Stiff => Drop::stiff(dim, n),
+        Scene::Soft => Drop::soft(dim, n),
+        Scene::Torn => Drop {
+            dim,
+            ..Drop::diced(n)
+        },
+    };
+    drop.frames = arguments.frames.map_or(drop.frames, usize::from);
+    let sides = if scene == Scene::Torn {
+        // Its small pieces are stiff enough with the usual effort.
+        compare_tear(&drop, PITCH, Effort::default())?
+    } else {
+        compare_drop(&drop, |Effort { substeps, sweeps }| {
+            eprintln!(
+                "{dim}D n = {n}, {scene:?}: Rapier with {substeps} substeps, {sweeps} sweeps"
+            );
+        })?
+    };
+    let [ours, theirs] = &sides;
+    Ok(Comparison {
+        scene,
+        dim,
+        n,
+        median: [ours.median(), theirs.median()],
+        worst: [ours.worst(), theirs.worst()],
+        ratio: theirs.median() / ours.median(),
+        equal_squash: (scene != Scene::Torn).then(|| ours.equals(theirs)),
+        sides,
+    })
+}
+
+fn print(comparison: &Comparison) {
+    let Comparison { scene, dim, n, .. } = comparison;
+    let what = scene.to_possible_value();
+    let what = what.and_then(|value| value.get_help().map(ToString::to_string));
+    println!("{dim}D n = {n}: {}", what.unwrap_or_default());
+    println!(
+        "{:<52}{:>9}{:>10}{:>8}{:>8}{:>11}{:>11}",
+        "  frames of 1/60 s in turns, one thread",
+        "substeps",
+        "softening",
+        "squash",
+        "asleep",
+        "median ms",
+        "worst ms",
+    );
+    for side in &comparison.sides {
+        let pieces = match side.pieces {
+            1 => String::new(),
+            pieces => format!(", {pieces} pieces"),
+        };
+        let lost = if side.finite { "" } else { ", not finite" };
+        println!(
+            "  {:<50}{:>9}{:>10.2}{:>6.1} %{:>6.0} %{:>11.2}{:>11.2}",
+            format!("{}{pieces}{lost}", side.engine),
+            side.substeps,
+            side.softening,
+            100.0 * side.peak_squash,
+            100.0 * side.asleep,
+            side.median(),
+            side.worst(),
+        );
+    }
+    let remark = match comparison.equal_squash {
+        Some(false) => "; NOT at equal squash",
+        _ => "",
+    };
+    let frames = comparison.sides[0].milliseconds.len();
+    println!(
+        "  Rapier takes {:.1} times as long a frame ({frames} frames){remark}\n",
+        comparison.ratio
+    );
+}

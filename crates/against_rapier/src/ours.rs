@@ -1,0 +1,78 @@
+//! The same scenes in fuwafuwa.
+
+use fuwafuwa::law::Elasticity;
+use fuwafuwa::{Body, Dim, Material, Settings, Shape, VoxelGrid, World};
+
+use crate::world::{Falling, Span};
+use crate::{Drop, Result, WIDTH};
+
+/// So many that nothing is softened, see [`Body::softening`].
+const MOST_SUBSTEPS: u32 = 1024;
+
+/// A body without damping and strong enough for anything, above a half-space.
+pub fn world<D: Dim>(scene: &Drop) -> Result<World<D>> {
+    let material = Material {
+        elasticity: Elasticity {
+            young: scene.young.into(),
+            poisson: scene.poisson.into(),
+        },
+        density: scene.density,
+        damping: 0.0,
+        friction: scene.friction,
+        strength: f32::INFINITY,
+        ..Material::default()
+    };
+    let mut world = World::<D>::new(Settings {
+        gravity: [0.0, -scene.gravity, 0.0],
+        drag: 0.0,
+        most_substeps: MOST_SUBSTEPS,
+    })?;
+    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    world.add_obstacle(floor, scene.friction)?;
+    let body = Body::new(VoxelGrid::<D>::ball(scene.n, WIDTH)?, &[material])?;
+    let lowest = span(&body).lowest;
+    world.add_body(body.moved([0.0, scene.height - lowest, 0.0]));
+    Ok(world)
+}
+
+fn span<D: Dim>(body: &Body<D>) -> Span {
+    let pieces = body.piece_views();
+    Span::of(
+        pieces
+            .iter()
+            .flat_map(|piece| [piece.low[1], piece.high[1]]),
+    )
+}
+
+impl<D: Dim> Falling for World<D> {
+    fn engine(&self) -> String {
+        let elements = self.bodies()[0].mesh().element_count();
+        format!("fuwafuwa, {elements} elements")
+    }
+
+    fn step(&mut self) {
+        World::step(self);
+    }
+
+    fn span(&self) -> Span {
+        span(&self.bodies()[0])
+    }
+
+    fn substeps(&self) -> usize {
+        World::substeps(self) as usize
+    }
+
+    fn softening(&self) -> f64 {
+        self.bodies()[0].softening()
+    }
+
+    fn pieces(&self) -> usize {
+        self.bodies()[0].pieces().list.len()
+    }
+
+    fn asleep(&self) -> f64 {
+        let pieces = &self.bodies()[0].pieces().list;
+        let asleep = pieces.iter().filter(|piece| piece.asleep).count();
+        asleep as f64 / pieces.len() as f64
+    }
+}
