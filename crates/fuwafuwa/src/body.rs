@@ -420,24 +420,21 @@ impl<D: Dim> Body<D> {
         numbers
     }
 
-    /// Where a node was. One that is new, or whose id was another's, is put beside the nearest that
-    /// was anywhere, and to its place at rest when nothing was.
+    /// Where a node was. One that is new, or whose id was another's, is put beside the nearest of its
+    /// elements that was anywhere, and to its place at rest when none was: across a crack, what is
+    /// near in the lattice may be far away.
     fn place_before(&self, id: u32, at: Point, before: &[(Point, Row)]) -> Row {
-        let apart = |point: Point| [0, 1, 2].map(|axis: usize| at[axis] - point[axis]);
-        let squared = |(point, _): &&(Point, Row)| {
-            apart(*point)
-                .map(|k| i64::from(k) * i64::from(k))
-                .iter()
-                .sum::<i64>()
+        let was = |id: u32, at: Point| {
+            let known = before.get(id as usize);
+            known.filter(|(point, row)| *point == at && is_finite(*row))
         };
-        let was_sane = |(_, row): &&(Point, Row)| is_finite(*row);
-        let known = before.get(id as usize).filter(|(point, _)| *point == at);
-        let nearest = || before.iter().filter(was_sane).min_by_key(squared);
-        let (point, row) = known
-            .filter(was_sane)
-            .or_else(nearest)
-            .copied()
-            .unwrap_or_default();
+        let carriers = self.mesh.carriers_of(id);
+        let beside = carriers.flat_map(|(element, _)| element.nodes.iter());
+        let beside = beside.filter_map(|&other| was(other, self.mesh.node(other).at));
+        let apart = |point: Point| [0, 1, 2].map(|axis: usize| at[axis] - point[axis]);
+        let squared = |(point, _): &&(Point, Row)| apart(*point).map(|k| k * k).iter().sum::<i32>();
+        let nearest = || beside.min_by_key(squared);
+        let (point, row) = was(id, at).or_else(nearest).copied().unwrap_or_default();
         let [x, y, z] = apart(point).map(|k| k as f32 * self.grid.voxel_size());
         plus(row, [x, y, z, 0.0])
     }

@@ -224,10 +224,10 @@ impl Skins {
     /// strayed. Pairs that were known keep their impulses.
     fn merge(&mut self, found: &[[u32; 2]], strayed: &[bool]) {
         let (list, is_good) = (&self.list, self.is_good);
+        // Where the skins are others than before, their old places say nothing.
         let stays = |pair: &SkinPair| {
             let [a, b] = pair.skins.map(|skin| skin as usize);
-            let both_sleep = list[a].asleep && list[b].asleep;
-            is_good && !(strayed[a] || strayed[b] || both_sleep)
+            is_good && !(strayed[a] || strayed[b] || list[a].asleep && list[b].asleep)
         };
         let old = std::mem::take(&mut self.pairs);
         self.pairs.reserve(old.len().max(found.len()));
