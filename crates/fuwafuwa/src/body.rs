@@ -333,8 +333,9 @@ impl<D: Dim> Body<D> {
     /// forces would grow from substep to substep.
     pub(crate) fn drift(&mut self, duration: f32, lead: f32) {
         let top_speed = self.grid.voxel_size() / duration;
-        let pieces = self.pieces.list.len();
-        self.rigid.resize(pieces, RoughMotion::default());
+        // Pieces born since the last round of damping have no motion yet.
+        self.rigid
+            .resize(self.pieces.list.len(), RoughMotion::default());
         for &id in &self.awake {
             let node = id as usize;
             let mut velocity = self.velocity[node];
@@ -345,12 +346,8 @@ impl<D: Dim> Body<D> {
             }
             let position = plus(self.position[node], scaled(velocity, duration));
             self.position[node] = position;
-            self.ahead[node] = position;
-            if lead > 0.0 {
-                let piece = self.pieces.of_node(id) as usize;
-                let strain = minus(velocity, self.rigid[piece].at(position));
-                self.ahead[node] = plus(position, scaled(strain, lead));
-            }
+            let whole = self.rigid[self.pieces.of_node(id) as usize].at(position);
+            self.ahead[node] = plus(position, scaled(minus(velocity, whole), lead));
         }
     }
 
