@@ -266,6 +266,12 @@ impl<D: Dim> Body<D> {
         states.sum()
     }
 
+    /// How many elements that are awake were inside out when forces were last computed; under
+    /// [`Law::Endo2004`], which does not look, none.
+    pub fn inverted_count(&self) -> u32 {
+        self.blocks.inverted_count()
+    }
+
     /// Mass [kg].
     pub fn total_mass(&self) -> f64 {
         let ids = self.mesh.nodes();

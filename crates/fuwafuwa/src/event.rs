@@ -85,6 +85,8 @@ pub struct StepReport {
     pub released: u32,
     /// Pieces that came off.
     pub parted: u32,
+    /// Elements that were inside out in its last substep; they turn themselves back.
+    pub inverted: u32,
     /// Pieces that went out of hand and were stopped.
     pub quarantined: u32,
 }

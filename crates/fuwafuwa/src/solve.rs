@@ -78,6 +78,8 @@ struct Block {
     elements: [u32; LANES],
     /// The lanes that sleep or are vacant, as a mask.
     asleep: u8,
+    /// The lanes that are inside out, as of the last evaluation.
+    inverted: u8,
     half_size: Eight,
     /// In space a quaternion; in the plane cosine and sine.
     rotation: [Eight; 4],
@@ -162,6 +164,7 @@ impl Block {
             half_size: &self.half_size,
             rotation: &mut self.rotation,
             forces: &mut forces[places.start - first..places.end - first],
+            inverted: &mut self.inverted,
         }
     }
 }
@@ -399,6 +402,13 @@ impl<D: Dim> Blocks<D> {
         [0, 1, 2].map(|row: usize| [0, 1, 2].map(|column: usize| lanes[3 * row + column][0]))
     }
 
+    /// How many elements that are awake were inside out in the last evaluation; under
+    /// [`Law::Endo2004`], which does not look, none.
+    pub fn inverted_count(&self) -> u32 {
+        let inverted = |block: &Block| (block.inverted & !block.asleep).count_ones();
+        self.blocks.iter().map(inverted).sum()
+    }
+
     /// Lets an element sleep, or wakes it: a block whose elements all sleep is not evaluated, and
     /// keeps the forces it had.
     pub fn set_asleep(&mut self, id: u32, asleep: bool) {
@@ -560,6 +570,7 @@ impl<D: Dim> Blocks<D> {
             home,
             elements: [VACANT; LANES],
             asleep: ALL_LANES,
+            inverted: 0,
             half_size: [self.voxel_size; LANES],
             rotation: [[0.0; LANES]; 4],
             node_count: count,

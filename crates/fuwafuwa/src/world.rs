@@ -236,6 +236,7 @@ impl<D: Dim> World<D> {
             self.touch(duration);
             self.drift(duration);
         }
+        report.inverted = self.bodies.iter().map(Body::inverted_count).sum();
         self.quarantine(&before, &mut report);
         self.rest();
         self.end_tick();

@@ -215,9 +215,9 @@ fn an_inverted_start_stays_finite() {
         body.set_node_state(id, [1.0 - at[0], at[1], 0.0], [0.0; 3]);
     }
     world.add_body(body);
-    for _ in 0..120 {
-        world.step();
-    }
+    let inverted: Vec<u32> = (0..120).map(|_| world.step().inverted).collect();
+    assert!(inverted[0] > 0, "reported: {inverted:?}");
+    assert!(inverted[119] < inverted[0], "turned back: {inverted:?}");
     let view = world.bodies()[0].piece_views()[0];
     assert!(view.high[0] - view.low[0] < 2.0, "{view:?}");
 }

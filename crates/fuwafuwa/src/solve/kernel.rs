@@ -33,6 +33,8 @@ pub struct Seats<'a> {
     pub rotation: &'a mut [Eight; 4],
     /// The forces on the nodes, in their order.
     pub forces: &'a mut [Row],
+    /// The lanes whose element is inside out, as a mask.
+    pub inverted: &'a mut u8,
 }
 
 /// The stiffnesses of a material in single precision.
@@ -214,7 +216,7 @@ pub fn stress<D: Dim, L: Lanes>(
     }
     let rotation = turn::<D, L>(&f, seats.rotation);
     let stress = match law {
-        Law::PatchExact => stress_of::<D, L>(moduli, &f, &rotation),
+        Law::PatchExact => stress_of::<D, L>(moduli, &f, &rotation, seats.inverted),
         Law::Endo2004 => rotation,
     };
     for i in 0..D::N {
@@ -341,9 +343,15 @@ fn scales<D: Dim, L: Lanes>(moduli: &Moduli, half: L) -> (L, L) {
     }
 }
 
-/// First Piola–Kirchhoff stress [Pa] of the deformation f with rotation r.
+/// First Piola–Kirchhoff stress [Pa] of the deformation f with rotation r; notes where f turns
+/// inside out.
 #[inline(always)]
-fn stress_of<D: Dim, L: Lanes>(moduli: &Moduli, f: &Matrix<L>, r: &Matrix<L>) -> Matrix<L> {
+fn stress_of<D: Dim, L: Lanes>(
+    moduli: &Moduli,
+    f: &Matrix<L>,
+    r: &Matrix<L>,
+    inverted: &mut u8,
+) -> Matrix<L> {
     let zero = L::splat(0.0);
     let mut stretch = L::splat(-(D::N as f32));
     for i in 0..D::N {
@@ -370,6 +378,7 @@ fn stress_of<D: Dim, L: Lanes>(moduli: &Moduli, f: &Matrix<L>, r: &Matrix<L>) ->
     for j in 0..D::N {
         squash = squash - f[0][j] * cofactor[0][j];
     }
+    *inverted = (squash - L::splat(SQUASH_LIMIT as f32)).positive();
     let barrier = L::splat(moduli.young) * squash.at_least(zero);
     let mut p = [[zero; 3]; 3];
     for i in 0..D::N {

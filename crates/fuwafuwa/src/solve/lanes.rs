@@ -23,6 +23,8 @@ pub trait Lanes:
     fn at_least(self, least: Self) -> Self;
     /// `yes` in the lanes where self > 0, `no` elsewhere.
     fn if_positive(self, yes: Self, no: Self) -> Self;
+    /// The lanes where self > 0, as a mask.
+    fn positive(self) -> u8;
     /// The three columns of the rows at eight places.
     fn gather(rows: &[Row], places: &[u32; LANES]) -> [Self; 3];
     /// Eight rows from three columns, the fourth number 0.
@@ -76,6 +78,14 @@ impl Lanes for Portable {
             }
         }
         chosen
+    }
+
+    #[inline(always)]
+    fn positive(self) -> u8 {
+        let lanes = self.0.iter().enumerate();
+        lanes.fold(0, |mask, (lane, &value)| {
+            mask | u8::from(value > 0.0) << lane
+        })
     }
 
     #[inline(always)]
@@ -184,6 +194,14 @@ mod wide {
             unsafe {
                 let positive = _mm256_cmp_ps::<_CMP_GT_OQ>(self.0, _mm256_setzero_ps());
                 Self(_mm256_blendv_ps(no.0, yes.0, positive))
+            }
+        }
+
+        #[inline(always)]
+        fn positive(self) -> u8 {
+            unsafe {
+                let positive = _mm256_cmp_ps::<_CMP_GT_OQ>(self.0, _mm256_setzero_ps());
+                _mm256_movemask_ps(positive) as u8
             }
         }
 
