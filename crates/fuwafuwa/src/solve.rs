@@ -311,7 +311,7 @@ impl<D: Dim> Blocks<D> {
     /// Computes the forces of all elements that are awake, at the given node positions [m].
     pub fn evaluate(&mut self, position: &[Row]) {
         #[cfg(feature = "parallel")]
-        if self.blocks.len() >= LEAST_PARALLEL {
+        if self.blocks.len() >= LEAST_PARALLEL && rayon::current_num_threads() > 1 {
             use rayon::prelude::*;
             let groups: Vec<Group> = self.groups().collect();
             let groups = groups.into_par_iter().with_min_len(8);

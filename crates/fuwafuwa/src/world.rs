@@ -579,7 +579,10 @@ impl<D: Dim> World<D> {
         }
         let skins = self.nearby.skins.pairs.iter();
         for pair in skins.filter(|pair| pair.impulse.pressed > 0.0) {
-            for skin in pair.skins.map(|skin| &self.nearby.skins.list[skin as usize]) {
+            for skin in pair
+                .skins
+                .map(|skin| &self.nearby.skins.list[skin as usize])
+            {
                 mark(skin.body, Some(skin.piece));
             }
         }

@@ -8,7 +8,7 @@ use anyhow::Result;
 use clap::ValueEnum;
 use fuwafuwa::law::Law;
 use fuwafuwa::pyramid::Grading;
-use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, Settings, Shape, VoxelGrid, World};
+use fuwafuwa::{Body, Dim, Dim2, Dim3, Manipulator, Material, Settings, Shape, VoxelGrid, World};
 use fuwafuwa_scenes::Scene;
 use serde::Serialize;
 use std::process::ExitCode;
@@ -21,12 +21,16 @@ pub struct Arguments {
     /// `torn` instead of all of them.
     #[arg(long)]
     scene: Option<String>,
-    /// With --against: space dimensions.
+    /// Space dimensions, with --n or --against.
     #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u8).range(2..=3))]
     dim: u8,
-    /// With --against: voxels across; 128 in 2D and 32 in 3D if not given.
+    /// Measure a ball of so many voxels across, instead of the usual list. With --against: 128 in 2D and 32 in 3D if not
+    /// given.
     #[arg(long, value_parser = clap::value_parser!(u16).range(8..=512))]
     n: Option<u16>,
+    /// Threads for the elastic forces of large bodies. The bits are the same on any number.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=64))]
+    threads: u8,
     /// With --against rapier: frames to run; 300 if not given, 240 of what is torn.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     frames: Option<u16>,
@@ -62,13 +66,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     if arguments.against == Some(Rival::Rapier) {
         return rapier::run(arguments);
     }
-    let progress = Progress::new();
-    let measures = match (&arguments.scene, arguments.against) {
-        (Some(name), _) => vec![scene(name, &progress)?],
-        (None, Some(_)) => against_uniform(arguments, &progress)?,
-        (None, None) => usual(&progress)?,
-    };
-    drop(progress);
+    let threads = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.into());
+    let measures = threads.build()?.install(|| measures(arguments))?;
     if arguments.json {
         println!("{}", serde_json::to_string_pretty(&measures)?);
         return Ok(ExitCode::SUCCESS);
@@ -90,6 +89,21 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
+fn measures(arguments: &Arguments) -> Result<Vec<Measure>> {
+    let progress = Progress::new();
+    match (&arguments.scene, arguments.against, arguments.n) {
+        (Some(name), ..) => Ok(vec![scene(name, &progress)?]),
+        (None, Some(_), _) => against_uniform(arguments, &progress),
+        (None, None, Some(n)) if arguments.dim == 2 => ball::<Dim2>(n.into()),
+        (None, None, Some(n)) => ball::<Dim3>(n.into()),
+        (None, None, None) => usual(&progress),
+    }
+}
+
+fn ball<D: Dim>(n: usize) -> Result<Vec<Measure>> {
+    Ok(vec![element_time::<D>(n)?, pushed_ball::<D>(n)?])
+}
+
 fn usual(progress: &Progress) -> Result<Vec<Measure>> {
     progress.expect(15);
     let mut measures = Vec::new();
@@ -107,7 +121,7 @@ fn usual(progress: &Progress) -> Result<Vec<Measure>> {
     for name in ["drop", "drop-3d", "tear", "diced", "pile", "tear-3d"] {
         add(scene(name, &Progress::new()))?;
     }
-    add(resting_ball(64))?;
+    add(pushed_ball::<Dim3>(64))?;
     add(memory())?;
     Ok(measures)
 }
@@ -172,20 +186,24 @@ fn scene_in<D: Dim>(name: &str, scene: &Scene, progress: &Progress) -> Result<Me
     Ok(measure(what, "ms", times, 1e3))
 }
 
-/// A soft ball on the floor, with contact, before it falls asleep.
-fn resting_ball(n: usize) -> Result<Measure> {
-    let mut world = World::<Dim3>::new(Settings::default())?;
+/// The ticks of a soft ball on the floor, which a hand pushes down by a third.
+fn pushed_ball<D: Dim>(n: usize) -> Result<Measure> {
+    const TICKS: u16 = 60;
+    let mut world = World::<D>::new(Settings::default())?;
     world.add_obstacle(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.5)?;
     world.add_body(Body::new(VoxelGrid::ball(n, 1.0)?, &[Material::default()])?);
-    let times = timed(60, || {
+    let z = if D::N == 3 { 0.5 } else { 0.0 };
+    let hand = world.add_manipulator(Manipulator::new([0.5, 1.2, z], 0.2))?;
+    let mut times = Vec::new();
+    for tick in 1..=TICKS {
+        let down = 0.35 * f32::from(tick) / f32::from(TICKS);
+        world.set_goal(hand, [0.5, 1.2 - down, z]);
+        let start = Instant::now();
         world.step();
-    });
-    Ok(measure(
-        format!("3D ball n = {n} on the floor, a tick"),
-        "ms",
-        times,
-        1e3,
-    ))
+        times.push(start.elapsed().as_secs_f64());
+    }
+    let what = format!("{}D ball n = {n} on the floor, pushed, a tick", D::N);
+    Ok(measure(what, "ms", times, 1e3))
 }
 
 /// What the process has taken at the most, after a ball of 128 voxels was made and moved.
