@@ -16,12 +16,12 @@ pub const SCENES: [Scene; 4] = [
     (
         "torn disc",
         || hash_of_torn_world::<Dim2>(32),
-        0xf64b_2e64_3179_5c15,
+        0x17d4_dc77_5b54_6576,
     ),
     (
         "torn ball",
         || hash_of_torn_world::<Dim3>(16),
-        0xcead_f7bf_3fe7_062d,
+        0x6c66_7d91_8182_28ba,
     ),
     (
         "disc, law of the paper",
