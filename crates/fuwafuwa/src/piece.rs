@@ -45,19 +45,20 @@ struct Search {
 }
 
 /// Which of some things, given by their places, have turned out to be the same.
-struct Same {
+pub(crate) struct Same {
     /// Each points to a lower one of its kind, the lowest to itself.
     lower: Vec<usize>,
 }
 
 impl Same {
-    fn new(count: usize) -> Self {
+    /// Nothing is the same yet.
+    pub(crate) fn new(count: usize) -> Self {
         let lower = (0..count).collect();
         Self { lower }
     }
 
     /// The lowest of the kind of one.
-    fn lowest(&mut self, mut place: usize) -> usize {
+    pub(crate) fn lowest(&mut self, mut place: usize) -> usize {
         while self.lower[place] != place {
             self.lower[place] = self.lower[self.lower[place]];
             place = self.lower[place];
@@ -65,7 +66,8 @@ impl Same {
         place
     }
 
-    fn join(&mut self, a: usize, b: usize) {
+    /// Makes two the same.
+    pub(crate) fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.lowest(a), self.lowest(b));
         self.lower[a.max(b)] = a.min(b);
     }

@@ -4,6 +4,7 @@ use crate::body::Body;
 use crate::dim::{Dim, Point, neighbourhood, voxel_around};
 use crate::mesh::{Defect, Inheritance, Remodelled};
 use crate::momentum::{Momentum, RigidMotion, centre_of};
+use crate::piece::Same;
 use crate::pyramid::Grading;
 use crate::solve::Row;
 use std::collections::BTreeMap;
@@ -36,21 +37,58 @@ impl<D: Dim> Body<D> {
             self.mesh
                 .remodel(&self.grid, &self.sharing, &self.pyramid, &changed, &born)?;
         self.pass_on(&remodelled);
-        let beside = beside::<D>(&changed);
-        self.expose(&beside);
-        let touching = beside.iter().filter_map(|&voxel| self.mesh.owner(voxel));
-        let mut elements: Vec<u32> = touching.collect();
+        self.expose(&beside::<D>(&changed));
+        let places = self.places_around(&changed);
+        self.refresh_fronts(&places.concat(), &remodelled);
+        self.awake_is_stale = true;
+        Ok(self.part(&places))
+    }
+
+    /// Looks place by place for pieces that came off; returns their numbers.
+    fn part(&mut self, places: &[Vec<u32>]) -> Vec<u32> {
+        let mut parted = Vec::new();
+        for elements in places {
+            parted.extend(self.pieces.part(&self.mesh, elements));
+        }
+        // What hung together only through a piece that came off shares no place, but each side of
+        // it has one in common with that piece.
+        let is_off = |&id: &u32| parted.contains(&self.pieces.of_element(id));
+        let beside_off = places.iter().filter(|place| place.iter().any(is_off));
+        let elements: Vec<u32> = beside_off.flatten().copied().collect();
+        parted.extend(self.pieces.part(&self.mesh, &elements));
+        parted
+    }
+
+    /// The elements around the given points, ascending: a list for each of the places where they
+    /// met before, if only through others of their list.
+    fn places_around(&self, points: &[Point]) -> Vec<Vec<u32>> {
+        let around = |&at: &Point| {
+            let voxels = (0..D::CORNERS).map(move |octant| voxel_around::<D>(at, octant));
+            voxels.filter_map(|voxel| self.mesh.owner(voxel))
+        };
+        let mut elements: Vec<u32> = points.iter().flat_map(around).collect();
         elements.sort_unstable();
         elements.dedup();
-        self.refresh_fronts(&elements, &remodelled);
-        self.awake_is_stale = true;
-        Ok(self.pieces.part(&self.mesh, &elements))
+        let mut same = Same::new(elements.len());
+        for at in points {
+            let mut places = around(at).filter_map(|id| elements.binary_search(&id).ok());
+            if let Some(first) = places.next() {
+                places.for_each(|place| same.join(first, place));
+            }
+        }
+        let mut sorted: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
+        for (place, &id) in elements.iter().enumerate() {
+            sorted.entry(same.lowest(place)).or_default().push(id);
+        }
+        sorted.into_values().collect()
     }
 
     /// Gives new nodes and elements the state of those they come from.
     fn pass_on(&mut self, remodelled: &Remodelled) {
         let touched = self.touched_by(remodelled);
-        let is_new = |id: u32| remodelled.inherited.iter().any(|new| new.node == id);
+        let mut new: Vec<u32> = remodelled.inherited.iter().map(|new| new.node).collect();
+        new.sort_unstable();
+        let is_new = |id: u32| new.binary_search(&id).is_ok();
         // Held nodes keep their velocity; the rest of each piece keeps its momentum.
         let free = |id: &u32| self.lightness[*id as usize] > 0.0;
         let stay = touched.iter().copied().filter(|&id| !is_new(id));
@@ -186,4 +224,47 @@ fn beside<D: Dim>(points: &[Point]) -> Vec<Point> {
     voxels.sort_unstable_by_key(|&[x, y, z]| [z, y, x]);
     voxels.dedup();
     voxels
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dim::{Dim2, Dim3};
+    use crate::grid::VoxelGrid;
+    use crate::material::Material;
+    use crate::piece::Pieces;
+    use std::collections::BTreeSet;
+
+    /// Many releases at once, near each other and far apart: the pieces must be those of a search
+    /// from scratch.
+    fn check_pieces<D: Dim>(n: usize) {
+        let grid = VoxelGrid::<D>::ball(n, 1.0).expect("a ball is not empty");
+        let mut body = Body::new(grid, &[Material::default()]).expect("the material is good");
+        let mut seed = 3u32;
+        let mut random = |below: usize| {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) as usize % below
+        };
+        for _ in 0..40 {
+            let mut releases: Vec<(Point, u8)> = Vec::new();
+            for _ in 0..n * n / 4 {
+                let mut at = [random(n) as i32, random(n) as i32, random(n) as i32];
+                at[D::N..].fill(0);
+                releases.push((at, 1 << random(D::CORNERS)));
+            }
+            body.release(&releases).expect("the mesh stays whole");
+            let fresh = Pieces::new(&body.mesh);
+            let both = |(id, _)| (body.pieces.of_element(id), fresh.of_element(id));
+            let pairs: BTreeSet<(u32, u32)> = body.mesh.elements().map(both).collect();
+            assert_eq!(pairs.len(), fresh.list.len());
+            assert_eq!(pairs.len(), body.pieces.list.len());
+        }
+        assert!(body.pieces.list.len() > 20, "hardly anything came off");
+    }
+
+    #[test]
+    fn pieces_are_those_of_a_search_from_scratch() {
+        check_pieces::<Dim2>(20);
+        check_pieces::<Dim3>(8);
+    }
 }

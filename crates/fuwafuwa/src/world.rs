@@ -401,30 +401,32 @@ impl<D: Dim> World<D> {
     /// Releases what is overstrained, and remodels around it.
     fn fracture(&mut self, report: &mut StepReport) {
         let duration = TICK / FRACTURE_ROUNDS as f32;
-        for place in 0..self.bodies.len() {
-            let body = &mut self.bodies[place];
-            for failure in failures(body, &mut self.rests[place], duration) {
-                self.release(place, &failure, report);
+        for (place, body) in self.bodies.iter_mut().enumerate() {
+            let failures = failures(body, &mut self.rests[place], duration);
+            if failures.is_empty() {
+                continue;
             }
+            let index = place as u32;
+            let released = |failure: &Failure| {
+                let [x, y, z, _] = body.position[failure.node as usize];
+                Event::Released {
+                    body: index,
+                    at: [x, y, z],
+                    energy: failure.energy,
+                }
+            };
+            self.events.extend(failures.iter().map(released));
+            let sides = failures.iter().map(|failure| (failure.at, failure.side));
+            let parted = body.release(&sides.collect::<Vec<_>>());
+            let parted = parted.expect("a release leaves the mesh whole");
+            report.released += failures.len() as u32;
+            report.parted += parted.len() as u32;
+            let events = parted
+                .iter()
+                .map(|&piece| Event::Parted { body: index, piece });
+            self.events.extend(events);
+            self.nearby.expire();
         }
-    }
-
-    fn release(&mut self, place: usize, failure: &Failure, report: &mut StepReport) {
-        let body = &mut self.bodies[place];
-        let at = body.position[failure.node as usize];
-        let parted = body.release(&[(failure.at, failure.side)]);
-        let parted = parted.expect("a release leaves the mesh whole");
-        report.released += 1;
-        report.parted += parted.len() as u32;
-        let body = place as u32;
-        self.events.push(Event::Released {
-            body,
-            at: [at[0], at[1], at[2]],
-            energy: failure.energy,
-        });
-        let events = parted.iter().map(|&piece| Event::Parted { body, piece });
-        self.events.extend(events);
-        self.nearby.expire();
     }
 
     /// Calms the swings within each piece, and slows what moves through air.
