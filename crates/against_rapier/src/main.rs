@@ -47,6 +47,8 @@ struct Comparison {
     scene: Scene,
     dim: u8,
     n: usize,
+    /// Frames of each side.
+    frames: usize,
     /// fuwafuwa's side and Rapier's.
     sides: [Side; 2],
     /// Median time of a frame on each side [ms].
@@ -123,6 +125,7 @@ fn compare_in(scene: Scene, arguments: &Arguments) -> Result<Comparison> {
         scene,
         dim,
         n,
+        frames: ours.milliseconds.len(),
         median: [ours.median(), theirs.median()],
         worst: [ours.worst(), theirs.worst()],
         ratio: theirs.median() / ours.median(),
@@ -137,7 +140,7 @@ fn print(comparison: &Comparison) {
     let what = what.and_then(|value| value.get_help().map(ToString::to_string));
     println!("{dim}D n = {n}: {}", what.unwrap_or_default());
     println!(
-        "{:<52}{:>9}{:>10}{:>8}{:>8}{:>11}{:>11}",
+        "{:<64}{:>9}{:>10}{:>8}{:>8}{:>11}{:>11}",
         "  frames of 1/60 s in turns, one thread",
         "substeps",
         "softening",
@@ -153,7 +156,7 @@ fn print(comparison: &Comparison) {
         };
         let lost = if side.finite { "" } else { ", not finite" };
         println!(
-            "  {:<50}{:>9}{:>10.2}{:>6.1} %{:>6.0} %{:>11.2}{:>11.2}",
+            "  {:<62}{:>9}{:>10.2}{:>6.1} %{:>6.0} %{:>11.2}{:>11.2}",
             format!("{}{pieces}{lost}", side.engine),
             side.substeps,
             side.softening,
@@ -167,9 +170,8 @@ fn print(comparison: &Comparison) {
         Some(false) => "; NOT at equal squash",
         _ => "",
     };
-    let frames = comparison.sides[0].milliseconds.len();
     println!(
-        "  Rapier takes {:.1} times as long a frame ({frames} frames){remark}\n",
-        comparison.ratio
+        "  Rapier takes {:.1} times as long a frame ({} frames){remark}\n",
+        comparison.ratio, comparison.frames
     );
 }

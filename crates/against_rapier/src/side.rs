@@ -25,6 +25,7 @@ pub struct Side {
     /// Whether every node stayed at a finite place.
     pub finite: bool,
     /// Time that the processor worked on each frame [ms].
+    #[serde(skip)]
     pub milliseconds: Vec<f64>,
 }
 

@@ -19,7 +19,11 @@ pub fn compare_drop(scene: &Drop, mut trying: impl FnMut(Effort)) -> Result<[Sid
     let frames = frames_to_peak(scene);
     let [alone] = fall([ours(scene)?], frames);
     let limit = alone.peak_squash + TOLERANCE;
-    let (mut fastest, mut effort) = (f64::INFINITY, Effort::default());
+    let mut fastest = f64::INFINITY;
+    let mut effort = Effort {
+        substeps: MOST_SUBSTEPS,
+        sweeps: SWEEPS[0],
+    };
     for sweeps in SWEEPS {
         let start = Effort {
             substeps: 1,
@@ -34,7 +38,7 @@ pub fn compare_drop(scene: &Drop, mut trying: impl FnMut(Effort)) -> Result<[Sid
 }
 
 /// With how many substeps Rapier's body is not squashed deeper than `limit`, raised by a quarter at a time, and the
-/// median time of a frame with so many [ms]; nothing if that is not faster than `fastest` [ms].
+/// median time of a frame with so many [ms]; nothing if that is not faster than `fastest` [ms], or out of reach.
 fn enough(
     scene: &Drop,
     mut effort: Effort,
@@ -48,17 +52,19 @@ fn enough(
         let mut watched = Watched::new(theirs(scene, effort)?);
         let too_soft = (0..frames).any(|_| {
             watched.step();
-            watched.side.peak_squash > limit
+            watched.side.peak_squash > limit || !watched.side.finite
         });
         let median = watched.side.median();
         if median >= fastest {
             return Ok(None);
         }
-        let raised = effort.substeps + (effort.substeps / 4).max(1);
-        if !too_soft || raised > MOST_SUBSTEPS {
+        if !too_soft {
             return Ok(Some((effort, median)));
         }
-        effort.substeps = raised;
+        effort.substeps += (effort.substeps / 4).max(1);
+        if effort.substeps > MOST_SUBSTEPS {
+            return Ok(None);
+        }
     }
 }
 
