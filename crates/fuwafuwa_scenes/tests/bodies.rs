@@ -118,8 +118,8 @@ fn a_crack_does_not_enter_what_is_unbreakable() {
     // Coarser than it comes along and weaker around the core, so that it is soon torn.
     let changes = [
         "body.n=32",
-        "material.1.strength=500",
-        "material.1.toughness=80",
+        "material.1.strength=250",
+        "material.1.toughness=50",
     ];
     let scene = Scene::open("core", &changes.map(String::from)).unwrap();
     let mut world = scene.build::<Dim2>().unwrap();
