@@ -17,6 +17,7 @@
 
 use crate::dim::Dim;
 use crate::stencil::{Stencil, Vector64};
+use crate::vector::{cross, dot, plus, scaled};
 use std::fmt;
 
 /// How an element answers to being deformed.
@@ -300,26 +301,6 @@ fn volume_scale<D: Dim>(half: f64) -> f64 {
 
 fn volume_of<D: Dim>(stencil: &Stencil<D>, half: f64) -> f64 {
     stencil.volume * volume_scale::<D>(half)
-}
-
-fn plus(a: Vector64, b: Vector64) -> Vector64 {
-    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
-}
-
-fn scaled(a: Vector64, k: f64) -> Vector64 {
-    a.map(|component| component * k)
-}
-
-fn dot(a: Vector64, b: Vector64) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: Vector64, b: Vector64) -> Vector64 {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 }
 
 fn apply(m: &Matrix, v: Vector64) -> Vector64 {
