@@ -5,7 +5,7 @@ use crate::grid::VoxelGrid;
 use crate::law::{Elasticity, Law};
 use crate::material::{BodyError, Material};
 use crate::mesh::{Element, Mesh};
-use crate::momentum::{Momentum, RigidMotion};
+use crate::momentum::{Momentum, RoughMotion};
 use crate::piece::Pieces;
 use crate::pyramid::{Grading, Pyramid};
 use crate::sharing::Sharing;
@@ -46,7 +46,7 @@ pub struct Body<D: Dim> {
     /// Positions a moment ahead, where damped forces are evaluated.
     pub(crate) ahead: Vec<Row>,
     /// The rigid motion of each piece, as of the last round of damping.
-    pub(crate) rigid: Vec<RigidMotion>,
+    pub(crate) rigid: Vec<RoughMotion>,
 }
 
 /// The slowest swing of a whole body.
@@ -323,7 +323,7 @@ impl<D: Dim> Body<D> {
             if lead > 0.0 {
                 let piece = self.pieces.of_node(id) as usize;
                 let rigid = self.rigid.get(piece).copied().unwrap_or_default();
-                let strain = minus(velocity, rigid.roughly_at(position));
+                let strain = minus(velocity, rigid.at(position));
                 self.ahead[node] = plus(position, scaled(strain, lead));
             }
         }

@@ -10,7 +10,7 @@ use crate::body::Body;
 use crate::dim::Dim;
 use crate::manipulator::Manipulator;
 use crate::solve::Row;
-use crate::touch::{Collider, Impulse, MARGIN, Nearby, NodePair, Skin};
+use crate::touch::{Collider, Impulse, MARGIN, Nearby, Skins};
 use crate::vector::{dot, length, minus, plus, scaled};
 
 /// How much of the last substep's impulse a row starts from: 1 is unstable, 0 never comes to rest.
@@ -38,6 +38,27 @@ struct Contact {
     pair: u32,
 }
 
+/// A node against something rigid.
+#[derive(Copy, Clone, Debug)]
+struct NodeContact {
+    contact: Contact,
+    /// Place of the node among those of all bodies.
+    node: u32,
+    /// The hand, if it is one that the node touches.
+    hand: Option<u32>,
+}
+
+/// Two skins against each other.
+#[derive(Copy, Clone, Debug)]
+struct SkinContact {
+    contact: Contact,
+    /// Places of their nodes among those of all bodies.
+    grips: [Grip; 2],
+}
+
+/// The corner nodes of a skin; the first four in 2D.
+type Grip = [u32; 8];
+
 /// A manipulator against an obstacle or against another manipulator.
 #[derive(Copy, Clone, Debug)]
 struct HandContact {
@@ -49,9 +70,19 @@ struct HandContact {
 /// The contacts of one substep.
 #[derive(Clone, Debug, Default)]
 pub struct Contacts {
-    nodes: Vec<Contact>,
-    skins: Vec<Contact>,
+    nodes: Vec<NodeContact>,
+    skins: Vec<SkinContact>,
     hands: Vec<HandContact>,
+    /// The place of the first node of each body among all.
+    first: Vec<u32>,
+    motion: Motion,
+}
+
+/// The velocities of all nodes side by side [m/s], one over their mass as the fourth component
+/// [1/kg]: what a push needs is in one place.
+#[derive(Clone, Debug, Default)]
+struct Motion {
+    rows: Vec<Row>,
 }
 
 /// A sleeping piece that was hit: body and piece number.
@@ -134,8 +165,14 @@ impl Contacts {
         duration: f32,
     ) -> Vec<Hit> {
         let mut hits = Vec::new();
+        self.first.clear();
+        let mut first = 0;
+        for body in bodies {
+            self.first.push(first);
+            first += body.velocity.len() as u32;
+        }
         self.find_nodes(bodies, colliders, nearby, duration, &mut hits);
-        self.find_skins(bodies, nearby, duration, &mut hits);
+        self.find_skins(bodies, &mut nearby.skins, duration, &mut hits);
         hits.sort_unstable();
         hits.dedup();
         hits
@@ -150,6 +187,8 @@ impl Contacts {
         hits: &mut Vec<Hit>,
     ) {
         self.nodes.clear();
+        let obstacles = colliders.iter().filter(|collider| !collider.is_hand);
+        let first_hand = obstacles.count() as u32;
         for (place, pair) in nearby.node_pairs.iter_mut().enumerate() {
             let body = &bodies[pair.body as usize];
             let collider = &colliders[pair.collider as usize];
@@ -160,7 +199,7 @@ impl Contacts {
             let relative = minus(body.velocity[node], collider.velocity);
             let size = body.grid.voxel_size();
             if !is_close(gap, dot(relative, normal), size, duration) {
-                pair.impulse.pressed = 0.0;
+                pair.impulse.release();
                 continue;
             }
             if collider.is_hand && gap < 0.1 * size && body.pieces.sleeps(pair.node) {
@@ -172,53 +211,56 @@ impl Contacts {
             }
             let friction = collider.friction;
             let contact = Contact::new(normal, gap, duration, 1.0 / lightness, friction);
-            self.nodes.push(contact.known_as(place, &pair.impulse));
+            self.nodes.push(NodeContact {
+                contact: contact.known_as(place, &pair.impulse),
+                node: self.first[pair.body as usize] + pair.node,
+                hand: pair.collider.checked_sub(first_hand),
+            });
         }
     }
 
     fn find_skins<D: Dim>(
         &mut self,
         bodies: &[Body<D>],
-        nearby: &mut Nearby,
+        skins: &mut Skins,
         duration: f32,
         hits: &mut Vec<Hit>,
     ) {
         self.skins.clear();
-        let (skins, centres) = (&nearby.skins, &nearby.centres);
-        for (place, pair) in nearby.skin_pairs.iter_mut().enumerate() {
-            let [a, b] = pair.skins.map(|skin| skin as usize);
-            let apart = minus(centres[a], centres[b]);
-            let touching = skins[a].radius + skins[b].radius;
+        let frictions: Vec<f32> = bodies.iter().map(Body::friction).collect();
+        for (place, pair) in skins.pairs.iter_mut().enumerate() {
+            let [a, b] = [pair.skins[0] as usize, pair.skins[1] as usize];
+            let apart = minus(skins.centres[a], skins.centres[b]);
+            let touching = skins.list[a].radius + skins.list[b].radius;
             let squared = dot(apart, apart);
             let reach = touching * (1.0 + MARGIN);
             if squared > reach * reach {
-                pair.impulse.pressed = 0.0;
+                pair.impulse.release();
                 continue;
             }
             let distance = squared.sqrt().max(1e-9);
             let (normal, gap) = (scaled(apart, 1.0 / distance), distance - touching);
-            let relative = minus(velocity(bodies, &skins[a]), velocity(bodies, &skins[b]));
+            let relative = minus(skins.velocities[a], skins.velocities[b]);
             if !is_close(gap, dot(relative, normal), touching, duration) {
-                pair.impulse.pressed = 0.0;
+                pair.impulse.release();
                 continue;
             }
-            let (light_a, light_b) = (lightness(bodies, &skins[a]), lightness(bodies, &skins[b]));
-            if light_a + light_b == 0.0 {
+            let lightness = skins.lightness[a] + skins.lightness[b];
+            if lightness == 0.0 {
                 continue;
             }
+            let (a, b) = (&skins.list[a], &skins.list[b]);
             if gap < 0.05 * touching && length(relative) > WAKE_SPEED {
-                for skin in [&skins[a], &skins[b]] {
-                    let pieces = &bodies[skin.body as usize].pieces;
-                    if pieces.list[skin.piece as usize].asleep {
-                        hits.push((skin.body, skin.piece));
-                    }
-                }
+                let sleepers = [a, b].into_iter().filter(|skin| skin.asleep);
+                hits.extend(sleepers.map(|skin| (skin.body, skin.piece)));
             }
-            let friction = bodies[skins[a].body as usize].friction();
-            let friction = 0.5 * (friction + bodies[skins[b].body as usize].friction());
-            let inertia = 1.0 / (light_a + light_b);
-            let contact = Contact::new(normal, gap, duration, inertia, friction);
-            self.skins.push(contact.known_as(place, &pair.impulse));
+            let friction = 0.5 * (frictions[a.body as usize] + frictions[b.body as usize]);
+            let contact = Contact::new(normal, gap, duration, 1.0 / lightness, friction);
+            self.skins.push(SkinContact {
+                contact: contact.known_as(place, &pair.impulse),
+                grips: [a, b]
+                    .map(|skin| skin.nodes.map(|node| node + self.first[skin.body as usize])),
+            });
         }
     }
 
@@ -252,65 +294,55 @@ impl Contacts {
         }
     }
 
-    /// Changes velocities so that the contacts hold. `first_hand` is the place of the first hand
-    /// among the colliders.
+    /// Changes velocities so that the contacts hold.
     pub fn solve<D: Dim>(
         &mut self,
         bodies: &mut [Body<D>],
         hands: &mut [Manipulator],
         nearby: &mut Nearby,
-        first_hand: usize,
         duration: f32,
     ) {
-        let (pairs, skin_pairs) = (&nearby.node_pairs, &nearby.skin_pairs);
-        for contact in &self.nodes {
-            let pair = &pairs[contact.pair as usize];
-            push_node(bodies, hands, pair, first_hand, contact.start(), duration);
+        let motion = &mut self.motion;
+        if self.nodes.is_empty() && self.skins.is_empty() {
+            motion.rows.clear();
+        } else {
+            motion.load(bodies);
         }
-        for contact in &self.skins {
-            let [a, b] = skin_pairs[contact.pair as usize].skins;
-            push_skin(bodies, &nearby.skins[a as usize], contact.start());
-            push_skin(
-                bodies,
-                &nearby.skins[b as usize],
-                scaled(contact.start(), -1.0),
-            );
+        for row in &self.nodes {
+            motion.push_node(row, hands, row.contact.start(), duration);
+        }
+        for row in &self.skins {
+            motion.push_skins::<D>(&row.grips, row.contact.start());
         }
         for backwards in [false, true] {
-            for_each(&mut self.skins, backwards, |contact| {
-                let [a, b] = skin_pairs[contact.pair as usize].skins;
-                let (a, b) = (&nearby.skins[a as usize], &nearby.skins[b as usize]);
-                let change = contact.solve(minus(velocity(bodies, a), velocity(bodies, b)));
-                push_skin(bodies, a, change);
-                push_skin(bodies, b, scaled(change, -1.0));
+            for_each(&mut self.skins, backwards, |row| {
+                let change = row.contact.solve(motion.between::<D>(&row.grips));
+                motion.push_skins::<D>(&row.grips, change);
             });
-            for_each(&mut self.nodes, backwards, |contact| {
-                let pair = &pairs[contact.pair as usize];
-                let relative = node_velocity(bodies, hands, pair, first_hand);
-                let change = contact.solve(relative);
-                push_node(bodies, hands, pair, first_hand, change, duration);
+            for_each(&mut self.nodes, backwards, |row| {
+                let change = row.contact.solve(motion.of_node(row, hands));
+                motion.push_node(row, hands, change, duration);
             });
             for_each(&mut self.hands, backwards, |row| {
-                let relative = match row.other {
-                    Some(other) => {
-                        minus(four(hands[row.hand].velocity), four(hands[other].velocity))
-                    }
-                    None => four(hands[row.hand].velocity),
-                };
-                let change = row.contact.solve(relative);
+                let own = four(hands[row.hand].velocity);
+                let other = row
+                    .other
+                    .map_or([0.0; 4], |other| four(hands[other].velocity));
+                let change = row.contact.solve(minus(own, other));
                 push_hand(&mut hands[row.hand], change, duration);
                 if let Some(other) = row.other {
                     push_hand(&mut hands[other], scaled(change, -1.0), duration);
                 }
             });
         }
-        for contact in &self.nodes {
+        motion.store(bodies);
+        for NodeContact { contact, .. } in &self.nodes {
             nearby.node_pairs[contact.pair as usize]
                 .impulse
                 .note(contact);
         }
-        for contact in &self.skins {
-            nearby.skin_pairs[contact.pair as usize]
+        for SkinContact { contact, .. } in &self.skins {
+            nearby.skins.pairs[contact.pair as usize]
                 .impulse
                 .note(contact);
         }
@@ -321,26 +353,115 @@ impl Contacts {
         &mut self,
         bodies: &mut [Body<D>],
         hands: &mut [Manipulator],
-        nearby: &Nearby,
-        first_hand: usize,
         duration: f32,
     ) {
-        for contact in self.skins.iter_mut().filter(|row| row.was_pushed_out()) {
-            let [a, b] = nearby.skin_pairs[contact.pair as usize].skins;
-            let (a, b) = (&nearby.skins[a as usize], &nearby.skins[b as usize]);
-            let change = contact.relax(minus(velocity(bodies, a), velocity(bodies, b)));
-            push_skin(bodies, a, change);
-            push_skin(bodies, b, scaled(change, -1.0));
+        let motion = &mut self.motion;
+        if self.nodes.is_empty() && self.skins.is_empty() {
+            return;
         }
-        for contact in self.nodes.iter_mut().filter(|row| row.was_pushed_out()) {
-            let pair = &nearby.node_pairs[contact.pair as usize];
-            let change = contact.relax(node_velocity(bodies, hands, pair, first_hand));
-            push_node(bodies, hands, pair, first_hand, change, duration);
+        motion.load(bodies);
+        for row in &mut self.skins {
+            if row.contact.was_pushed_out() {
+                let change = row.contact.relax(motion.between::<D>(&row.grips));
+                motion.push_skins::<D>(&row.grips, change);
+            }
+        }
+        for row in &mut self.nodes {
+            if row.contact.was_pushed_out() {
+                let change = row.contact.relax(motion.of_node(row, hands));
+                motion.push_node(row, hands, change, duration);
+            }
+        }
+        motion.store(bodies);
+    }
+}
+
+impl Motion {
+    /// Takes the velocities from the bodies.
+    fn load<D: Dim>(&mut self, bodies: &[Body<D>]) {
+        self.rows.clear();
+        for body in bodies {
+            let nodes = body.velocity.iter().zip(&body.lightness);
+            let rows = nodes.map(|(velocity, &lightness)| with_fourth(*velocity, lightness));
+            self.rows.extend(rows);
+        }
+    }
+
+    /// Gives them back.
+    fn store<D: Dim>(&self, bodies: &mut [Body<D>]) {
+        let all = bodies.iter_mut().flat_map(|body| &mut body.velocity);
+        for (velocity, row) in all.zip(&self.rows) {
+            *velocity = with_fourth(*row, 0.0);
+        }
+    }
+
+    /// How fast the first skin moves as seen from the second.
+    #[inline(always)]
+    fn between<D: Dim>(&self, grips: &[Grip; 2]) -> Row {
+        with_fourth(
+            minus(self.mean::<D>(&grips[0]), self.mean::<D>(&grips[1])),
+            0.0,
+        )
+    }
+
+    #[inline(always)]
+    fn mean<D: Dim>(&self, grip: &Grip) -> Row {
+        let mut sum = self.rows[grip[0] as usize];
+        for &node in &grip[1..D::CORNERS] {
+            sum = plus(sum, self.rows[node as usize]);
+        }
+        scaled(sum, 1.0 / D::CORNERS as f32)
+    }
+
+    /// Pushes the first skin, and the second the other way.
+    #[inline(always)]
+    fn push_skins<D: Dim>(&mut self, grips: &[Grip; 2], impulse: Row) {
+        let share = scaled(impulse, 1.0 / D::CORNERS as f32);
+        for (grip, share) in [(&grips[0], share), (&grips[1], scaled(share, -1.0))] {
+            for &node in &grip[..D::CORNERS] {
+                let row = &mut self.rows[node as usize];
+                *row = plus(*row, scaled(share, row[3]));
+            }
+        }
+    }
+
+    /// How fast a node moves as seen from what it touches.
+    #[inline(always)]
+    fn of_node(&self, row: &NodeContact, hands: &[Manipulator]) -> Row {
+        let own = self.rows[row.node as usize];
+        let other = row
+            .hand
+            .map_or([0.0; 4], |hand| four(hands[hand as usize].velocity));
+        with_fourth(minus(own, other), 0.0)
+    }
+
+    /// Pushes a node, and the hand that touches it the other way.
+    #[inline(always)]
+    fn push_node(
+        &mut self,
+        row: &NodeContact,
+        hands: &mut [Manipulator],
+        impulse: Row,
+        duration: f32,
+    ) {
+        let own = &mut self.rows[row.node as usize];
+        *own = plus(*own, scaled(impulse, own[3]));
+        if let Some(hand) = row.hand {
+            push_hand(&mut hands[hand as usize], scaled(impulse, -1.0), duration);
         }
     }
 }
 
 impl Impulse {
+    /// They do not touch any more.
+    #[inline(always)]
+    fn release(&mut self) {
+        // Most never did; what does not press does not drag.
+        if self.pressed > 0.0 {
+            (self.pressed, self.dragged) = (0.0, [0.0; 4]);
+        }
+    }
+
     fn note(&mut self, contact: &Contact) {
         self.pressed = contact.pressed;
         self.dragged = contact.dragged;
@@ -361,63 +482,6 @@ fn for_each<T>(rows: &mut [T], backwards: bool, mut solve: impl FnMut(&mut T)) {
     }
 }
 
-#[inline]
-fn velocity<D: Dim>(bodies: &[Body<D>], skin: &Skin) -> Row {
-    skin.mean::<D>(&bodies[skin.body as usize].velocity)
-}
-
-/// One over the mass that a push on a skin meets [1/kg].
-#[inline]
-fn lightness<D: Dim>(bodies: &[Body<D>], skin: &Skin) -> f32 {
-    let all = &bodies[skin.body as usize].lightness;
-    let nodes = skin.nodes[..D::CORNERS].iter();
-    let sum: f32 = nodes.map(|&node| all[node as usize]).sum();
-    sum / (D::CORNERS * D::CORNERS) as f32
-}
-
-#[inline]
-fn push_skin<D: Dim>(bodies: &mut [Body<D>], skin: &Skin, impulse: Row) {
-    let body = &mut bodies[skin.body as usize];
-    let share = scaled(impulse, 1.0 / D::CORNERS as f32);
-    for &node in &skin.nodes[..D::CORNERS] {
-        let node = node as usize;
-        let change = scaled(share, body.lightness[node]);
-        body.velocity[node] = plus(body.velocity[node], change);
-    }
-}
-
-#[inline]
-fn node_velocity<D: Dim>(
-    bodies: &[Body<D>],
-    hands: &[Manipulator],
-    pair: &NodePair,
-    first_hand: usize,
-) -> Row {
-    let velocity = bodies[pair.body as usize].velocity[pair.node as usize];
-    match (pair.collider as usize).checked_sub(first_hand) {
-        Some(hand) => minus(velocity, four(hands[hand].velocity)),
-        None => velocity,
-    }
-}
-
-#[inline]
-fn push_node<D: Dim>(
-    bodies: &mut [Body<D>],
-    hands: &mut [Manipulator],
-    pair: &NodePair,
-    first_hand: usize,
-    impulse: Row,
-    duration: f32,
-) {
-    let body = &mut bodies[pair.body as usize];
-    let node = pair.node as usize;
-    let change = scaled(impulse, body.lightness[node]);
-    body.velocity[node] = plus(body.velocity[node], change);
-    if let Some(hand) = (pair.collider as usize).checked_sub(first_hand) {
-        push_hand(&mut hands[hand], scaled(impulse, -1.0), duration);
-    }
-}
-
 fn push_hand(hand: &mut Manipulator, impulse: Row, duration: f32) {
     let lightness = hand.lightness();
     for axis in 0..3 {
@@ -430,4 +494,9 @@ fn push_hand(hand: &mut Manipulator, impulse: Row, duration: f32) {
 
 fn four(v: [f32; 3]) -> Row {
     [v[0], v[1], v[2], 0.0]
+}
+
+#[inline(always)]
+fn with_fourth(row: Row, fourth: f32) -> Row {
+    [row[0], row[1], row[2], fourth]
 }

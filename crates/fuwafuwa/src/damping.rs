@@ -89,7 +89,8 @@ pub fn slow_down<D: Dim>(body: &mut Body<D>, motions: &[PieceMotion], slowing: &
             RigidMotion::of_spin(motion.velocity, motion.centre, angular, inertia)
         })
         .collect();
-    body.rigid.clone_from(&rigid);
+    body.rigid.clear();
+    body.rigid.extend(rigid.iter().map(RigidMotion::rounded));
     if slowing.iter().all(|slowing| *slowing == Slowing::default()) {
         return;
     }

@@ -97,13 +97,14 @@ impl RigidMotion {
         }
     }
 
-    /// The velocity at a point, in single precision.
-    #[inline]
-    pub(crate) fn roughly_at(&self, position: Row) -> Row {
+    /// The same in single precision.
+    pub(crate) fn rounded(&self) -> RoughMotion {
         let single = |v: [f64; 3]| v.map(|k| k as f32);
-        let from = minus([position[0], position[1], position[2]], single(self.centre));
-        let [x, y, z] = plus(single(self.velocity), cross(single(self.spin), from));
-        [x, y, z, 0.0]
+        RoughMotion {
+            velocity: single(self.velocity),
+            spin: single(self.spin),
+            centre: single(self.centre),
+        }
     }
 
     /// The velocity at a point.
@@ -112,6 +113,25 @@ impl RigidMotion {
             self.velocity,
             cross(self.spin, from_centre(position, self.centre)),
         )
+    }
+}
+
+/// A [`RigidMotion`] in single precision.
+#[derive(Copy, Clone, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct RoughMotion {
+    velocity: [f32; 3],
+    spin: [f32; 3],
+    centre: [f32; 3],
+}
+
+impl RoughMotion {
+    /// The velocity at a point.
+    #[inline(always)]
+    pub fn at(&self, position: Row) -> Row {
+        let from = minus([position[0], position[1], position[2]], self.centre);
+        let [x, y, z] = plus(self.velocity, cross(self.spin, from));
+        [x, y, z, 0.0]
     }
 }
 

@@ -403,7 +403,7 @@ impl<D: Dim> World<D> {
     /// Changes velocities so that nothing goes through anything else.
     fn touch(&mut self, duration: f32) {
         let colliders = self.colliders();
-        let (obstacles, first_hand) = (self.obstacles.len(), self.obstacles.len());
+        let obstacles = self.obstacles.len();
         self.nearby.refresh(&self.bodies, &colliders, duration);
         let hits = self
             .contacts
@@ -413,8 +413,7 @@ impl<D: Dim> World<D> {
         self.contacts
             .find_hands(hands, &colliders[..obstacles], duration);
         let (bodies, nearby) = (&mut self.bodies, &mut self.nearby);
-        self.contacts
-            .solve(bodies, hands, nearby, first_hand, duration);
+        self.contacts.solve(bodies, hands, nearby, duration);
     }
 
     /// Moves everything by its velocity, and takes back what only pushed overlaps out.
@@ -426,10 +425,8 @@ impl<D: Dim> World<D> {
         for hand in &mut self.manipulators {
             hand.drift(duration);
         }
-        let first_hand = self.obstacles.len();
         let (bodies, hands) = (&mut self.bodies, &mut self.manipulators);
-        self.contacts
-            .relax(bodies, hands, &self.nearby, first_hand, duration);
+        self.contacts.relax(bodies, hands, duration);
     }
 
     /// Stops pieces that went out of hand where they were before the tick, for good.
@@ -465,7 +462,7 @@ impl<D: Dim> World<D> {
             .collect();
         let fallen = fall_asleep(&mut self.bodies, &motions, &handled, TICK);
         if !fallen.is_empty() {
-            self.nearby.expire();
+            self.nearby.expire_rest();
         }
         let events = fallen
             .iter()
@@ -481,7 +478,7 @@ impl<D: Dim> World<D> {
         for body in &mut self.bodies {
             body.refresh_awake();
         }
-        self.nearby.expire();
+        self.nearby.expire_rest();
         let events = woken
             .iter()
             .map(|&(body, piece)| Event::Woke { body, piece });
@@ -523,11 +520,15 @@ impl<D: Dim> World<D> {
         }
         for pair in self
             .nearby
-            .skin_pairs
+            .skins
+            .pairs
             .iter()
             .filter(|pair| pair.impulse.pressed > 0.0)
         {
-            for skin in pair.skins.map(|skin| &self.nearby.skins[skin as usize]) {
+            for skin in pair
+                .skins
+                .map(|skin| &self.nearby.skins.list[skin as usize])
+            {
                 touching[skin.body as usize][skin.piece as usize] = true;
             }
         }
@@ -564,11 +565,14 @@ impl<D: Dim> World<D> {
         }
         for pair in self
             .nearby
-            .skin_pairs
+            .skins
+            .pairs
             .iter()
             .filter(|pair| pair.impulse.total > 0.0)
         {
-            let [a, b] = pair.skins.map(|skin| &self.nearby.skins[skin as usize]);
+            let [a, b] = pair
+                .skins
+                .map(|skin| &self.nearby.skins.list[skin as usize]);
             let (body, piece) = (b.body, b.piece);
             let with = With::Piece { body, piece };
             add(
@@ -576,7 +580,7 @@ impl<D: Dim> World<D> {
                 a.piece,
                 with,
                 pair.impulse.total,
-                a.centre(&self.bodies),
+                self.nearby.skins.centres[pair.skins[0] as usize],
             );
         }
         for ((body, piece, with), (impulse, _, at)) in sums {

@@ -16,7 +16,7 @@ pub const SCENES: [Scene; 4] = [
     (
         "torn disc",
         || hash_of_torn_world::<Dim2>(32),
-        0xf64b_2e64_3179_5c15,
+        0xd0bc_8b29_82bb_db6b,
     ),
     (
         "torn ball",

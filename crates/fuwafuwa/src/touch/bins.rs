@@ -1,0 +1,136 @@
+//! Points sorted into square bins, so that those near a place are found without looking at all.
+
+use crate::dim::{Dim, Point};
+use crate::solve::Row;
+use crate::vector::{dot, minus};
+
+/// Points in the bins of a grid that goes round and round: what lies a multiple of the grid's
+/// extent apart shares a bin, so bodies may fly off as far as they like.
+pub struct Bins {
+    /// One over the width of a bin [1/m].
+    inverse: f32,
+    /// log₂ of the number of bins on each axis, and that number − 1.
+    bits: usize,
+    mask: i32,
+    /// `points[start[b]..start[b + 1]]` lie in bin b, with their numbers, ascending.
+    start: Vec<u32>,
+    points: Vec<(Row, u32)>,
+}
+
+impl Bins {
+    /// Sorts points [m] into bins of a `width` [m].
+    pub fn new<D: Dim>(points: &[Row], width: f32) -> Self {
+        // About a bin for each point; four on an axis, so that three neighbours differ.
+        let wanted = points.len().max(1).ilog2() as usize;
+        let bits = wanted.div_ceil(D::N).max(2);
+        let mut bins = Self {
+            inverse: 1.0 / width,
+            bits,
+            mask: (1 << bits) - 1,
+            start: vec![0; (1 << (D::N * bits)) + 1],
+            points: vec![([0.0; 4], 0); points.len()],
+        };
+        let places: Vec<u32> = points.iter().map(|at| bins.bin(bins.square(at))).collect();
+        for &bin in &places {
+            bins.start[bin as usize + 1] += 1;
+        }
+        for bin in 1..bins.start.len() {
+            bins.start[bin] += bins.start[bin - 1];
+        }
+        let mut next = bins.start.clone();
+        for (number, (point, &bin)) in points.iter().zip(&places).enumerate() {
+            let place = &mut next[bin as usize];
+            bins.points[*place as usize] = (*point, number as u32);
+            *place += 1;
+        }
+        bins
+    }
+
+    /// Calls `visit` with the number of each point that is no further from `at` than `reach` [m],
+    /// which may be no more than a bin is wide.
+    #[inline]
+    pub fn near<D: Dim>(&self, at: Row, reach: f32, mut visit: impl FnMut(u32)) {
+        let [x, y, z] = self.square(&at);
+        let layers = if D::N == 3 { -1..=1 } else { 0..=0 };
+        for (dy, dz) in layers.flat_map(|dz| (-1..=1).map(move |dy| (dy, dz))) {
+            let mut look = |from: i32, to: i32| {
+                let row = [from, y.wrapping_add(dy), z.wrapping_add(dz)];
+                let first = self.bin(row) as usize;
+                let last = first + (to - from) as usize;
+                let range = self.start[first] as usize..self.start[last + 1] as usize;
+                for &(point, number) in &self.points[range] {
+                    let apart = minus(point, at);
+                    if dot(apart, apart) <= reach * reach {
+                        visit(number);
+                    }
+                }
+            };
+            // A row of three bins is one stretch of points, but where the grid goes round.
+            match x & self.mask {
+                0 => (look(-1, -1), look(0, 1)),
+                x if x == self.mask => (look(x - 1, x), look(0, 0)),
+                x => (look(x - 1, x + 1), ()),
+            };
+        }
+    }
+
+    /// The square of the endless grid that a place lies in.
+    #[inline]
+    fn square(&self, at: &Row) -> Point {
+        let mut square = [0; 3];
+        for axis in 0..3 {
+            let place = at[axis] * self.inverse;
+            // Rounded down: towards zero alone, the squares around zero would be twice as wide.
+            square[axis] = (place as i32).wrapping_sub(i32::from(place < 0.0));
+        }
+        square
+    }
+
+    #[inline]
+    fn bin(&self, square: Point) -> u32 {
+        let [x, y, z] = square;
+        let along = |k: i32| (k & self.mask) as u32;
+        along(x) | along(y) << self.bits | along(z) << (2 * self.bits)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dim::{Dim2, Dim3};
+
+    fn check<D: Dim>() {
+        let mut seed = 7u32;
+        let mut random = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) as f32 / (1 << 24) as f32 * 8.0 - 4.0
+        };
+        let point = |_| {
+            let z = if D::N == 3 { random() } else { 0.0 };
+            [random(), random(), z, 0.0]
+        };
+        let points: Vec<Row> = (0..900).map(point).collect();
+        let reach = 0.4;
+        let bins = Bins::new::<D>(&points, reach);
+        let mut total = 0;
+        for &at in &points {
+            let mut found = Vec::new();
+            bins.near::<D>(at, reach, |number| found.push(number));
+            found.sort_unstable();
+            let is_near = |number: &u32| {
+                let apart = minus(points[*number as usize], at);
+                dot(apart, apart) <= reach * reach
+            };
+            let expected: Vec<u32> = (0..points.len() as u32).filter(is_near).collect();
+            total += expected.len();
+            assert_eq!(found, expected);
+        }
+        assert!(total > points.len() + 100);
+    }
+
+    #[test]
+    fn points_nearby_are_found_once_each() {
+        check::<Dim2>();
+        check::<Dim3>();
+    }
+}

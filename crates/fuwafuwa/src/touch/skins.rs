@@ -1,0 +1,382 @@
+//! The skins of all bodies, and which of them may touch each other.
+//!
+//! The list of pairs is kept for each skin on its own. A skin has an *anchor*, the place where its
+//! pairs were found, and may stray from it by the slack; since every other skin keeps to its own
+//! anchor as well, no pair can be missed until one of the two has strayed. Only those that have
+//! look for their pairs anew [Verlet 1967].
+
+use super::Impulse;
+use super::bins::Bins;
+use crate::body::Body;
+use crate::dim::{Dim, Point};
+use crate::solve::Row;
+use crate::vector::{dot, minus, plus, scaled};
+
+/// Contacts are looked for out to this many voxels, so that none comes as a surprise.
+pub const MARGIN: f32 = 0.3;
+/// How far a skin may stray from its anchor, in voxels: more makes longer lists, less more lists.
+const SLACK: f32 = 0.3;
+/// The share of its slack that a skin may have used up when others look for new pairs.
+const SPARE: f32 = 0.5;
+
+/// The ball around a surface element that stands for its skin.
+#[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Skin {
+    /// Place among the bodies.
+    pub body: u32,
+    /// Element id.
+    pub element: u32,
+    /// Piece number.
+    pub piece: u32,
+    /// Half a voxel [m].
+    pub radius: f32,
+    /// Whether its piece sleeps.
+    pub asleep: bool,
+    /// Its voxel.
+    cell: Point,
+    /// Its corner nodes; the first four in 2D.
+    pub nodes: [u32; 8],
+}
+
+/// Two skins that may touch.
+#[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct SkinPair {
+    /// Places among the skins, ascending.
+    pub skins: [u32; 2],
+    /// Body and element of both, in one number each: what the pair is known by.
+    key: [u64; 2],
+    /// What passed between them.
+    pub impulse: Impulse,
+}
+
+/// All skins, and which are close to each other.
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Skins {
+    /// By body and element.
+    pub list: Vec<Skin>,
+    /// Close to each other, ascending.
+    pub pairs: Vec<SkinPair>,
+    /// Where the middles of the skins are [m] and how fast they move [m/s].
+    pub centres: Vec<Row>,
+    pub velocities: Vec<Row>,
+    /// One over the mass that a push on a skin meets [1/kg].
+    pub lightness: Vec<f32>,
+    /// Places of those awake, ascending.
+    awake: Vec<u32>,
+    /// Where each was when its pairs were found, as seen from a frame that has come as far as all
+    /// skins have on the average, while none sleeps: falling together changes no pair.
+    anchors: Vec<Row>,
+    frame: Row,
+    is_good: bool,
+    rest_is_good: bool,
+}
+
+impl Skins {
+    /// The meshes have changed.
+    pub fn expire(&mut self) {
+        self.is_good = false;
+    }
+
+    /// Somebody woke or fell asleep.
+    pub fn expire_rest(&mut self) {
+        self.rest_is_good = false;
+    }
+
+    /// Follows the bodies: where the skins are now, and which pairs are close; `size` [m] is that
+    /// of the largest voxels. Returns how far the fastest has come [m], or nothing when the list of
+    /// skins or of sleepers is another one.
+    pub fn follow<D: Dim>(&mut self, bodies: &[Body<D>], size: f32) -> Option<f32> {
+        let is_same = self.is_good && self.rest_is_good;
+        let mut strayed = vec![false; self.list.len()];
+        if !self.is_good {
+            self.find(bodies);
+            strayed = vec![true; self.list.len()];
+        } else if !self.rest_is_good {
+            for (skin, strayed) in self.list.iter_mut().zip(&mut strayed) {
+                let asleep = sleeps(bodies, skin);
+                *strayed = skin.asleep && !asleep;
+                skin.asleep = asleep;
+            }
+        }
+        if !is_same {
+            self.note_rest(bodies);
+        }
+        let furthest = self.move_on(bodies);
+        let any = self.find_strayed(&mut strayed, size);
+        if any || !is_same {
+            self.find_pairs::<D>(&strayed, size);
+        }
+        (self.is_good, self.rest_is_good) = (true, true);
+        is_same.then_some(furthest)
+    }
+
+    /// Lists the skins of all bodies.
+    fn find<D: Dim>(&mut self, bodies: &[Body<D>]) {
+        self.list.clear();
+        for (place, body) in bodies.iter().enumerate() {
+            for (id, element) in body.mesh.elements() {
+                if element.cell.level > 0 || body.bare[id as usize] == 0 {
+                    continue;
+                }
+                let mut nodes = [0; 8];
+                nodes[..D::CORNERS].copy_from_slice(&element.nodes);
+                let mut skin = Skin {
+                    body: place as u32,
+                    element: id,
+                    piece: body.pieces.of_element(id),
+                    radius: 0.5 * body.grid.voxel_size(),
+                    asleep: false,
+                    cell: element.cell.at,
+                    nodes,
+                };
+                skin.asleep = sleeps(bodies, &skin);
+                self.list.push(skin);
+            }
+        }
+        let position = |skin: &Skin| skin.mean::<D>(&bodies[skin.body as usize].position);
+        self.centres.clear();
+        self.centres.extend(self.list.iter().map(position));
+        self.anchors.clone_from(&self.centres);
+        self.frame = [0.0; 4];
+    }
+
+    /// Notes who is awake, and what a push meets.
+    fn note_rest<D: Dim>(&mut self, bodies: &[Body<D>]) {
+        let places = 0..self.list.len() as u32;
+        let list = &self.list;
+        self.awake.clear();
+        self.awake
+            .extend(places.filter(|&place| !list[place as usize].asleep));
+        self.velocities.clear();
+        self.velocities.resize(list.len(), [0.0; 4]);
+        self.lightness.clear();
+        self.lightness
+            .extend(list.iter().map(|skin| skin.lightness(bodies)));
+    }
+
+    /// Moves the skins along with the bodies; returns how far the fastest has come [m].
+    fn move_on<D: Dim>(&mut self, bodies: &[Body<D>]) -> f32 {
+        let mut furthest = 0.0f32;
+        let mut sum = [0.0; 4];
+        for &place in &self.awake {
+            let place = place as usize;
+            let skin = &self.list[place];
+            let body = &bodies[skin.body as usize];
+            let centre = skin.mean::<D>(&body.position);
+            let moved = minus(centre, self.centres[place]);
+            furthest = furthest.max(dot(moved, moved));
+            self.centres[place] = centre;
+            self.velocities[place] = skin.mean::<D>(&body.velocity);
+            sum = plus(sum, minus(centre, self.anchors[place]));
+        }
+        if self.awake.len() == self.list.len() && !self.awake.is_empty() {
+            self.frame = scaled(sum, 1.0 / self.awake.len() as f32);
+        }
+        furthest.sqrt()
+    }
+
+    /// Marks those that have strayed too far, and if there are any, those that soon will have;
+    /// returns whether any are marked.
+    fn find_strayed(&mut self, strayed: &mut [bool], size: f32) -> bool {
+        let mut any = strayed.contains(&true);
+        let is_beyond = |place: u32, share: f32| {
+            let place = place as usize;
+            let moved = minus(minus(self.centres[place], self.anchors[place]), self.frame);
+            let bearable = share * SLACK * size;
+            dot(moved, moved) > bearable * bearable
+        };
+        any |= self.awake.iter().any(|&place| is_beyond(place, 1.0));
+        if any {
+            for &place in &self.awake {
+                strayed[place as usize] |= is_beyond(place, SPARE);
+            }
+        }
+        any
+    }
+
+    /// Anchors the strayed where they are and finds their pairs; those of the others stay.
+    fn find_pairs<D: Dim>(&mut self, strayed: &[bool], size: f32) {
+        let places = || (0..strayed.len()).filter(|&place| strayed[place]);
+        for place in places() {
+            self.anchors[place] = minus(self.centres[place], self.frame);
+        }
+        let reach = (1.0 + MARGIN + 2.0 * SLACK) * size;
+        let bins = Bins::new::<D>(&self.anchors, reach);
+        let mut found: Vec<[u32; 2]> = Vec::new();
+        for place in places() {
+            let skin = &self.list[place];
+            bins.near::<D>(self.anchors[place], reach, |other| {
+                let second = &self.list[other as usize];
+                let seen = strayed[other as usize] && other as usize <= place;
+                let both_sleep = skin.asleep && second.asleep;
+                if !(seen || both_sleep || skin.shares_node::<D>(second)) {
+                    found.push([other.min(place as u32), other.max(place as u32)]);
+                }
+            });
+        }
+        self.merge(&sorted(&found, self.list.len()), strayed);
+    }
+
+    /// Makes the new list of pairs from those just found and the old ones of which neither has
+    /// strayed. Pairs that were known keep their impulses.
+    fn merge(&mut self, found: &[[u32; 2]], strayed: &[bool]) {
+        let (list, is_good) = (&self.list, self.is_good);
+        let stays = |pair: &SkinPair| {
+            let [a, b] = pair.skins.map(|skin| skin as usize);
+            let both_sleep = list[a].asleep && list[b].asleep;
+            is_good && !(strayed[a] || strayed[b] || both_sleep)
+        };
+        let old = std::mem::take(&mut self.pairs);
+        self.pairs.reserve(old.len().max(found.len()));
+        let mut old = old.into_iter().peekable();
+        for &skins in found {
+            let key = skins.map(|skin| list[skin as usize].key());
+            while let Some(pair) = old.next_if(|pair| pair.key < key) {
+                if stays(&pair) {
+                    self.pairs.push(pair);
+                }
+            }
+            let known = old.next_if(|pair| pair.key == key);
+            let impulse = known.map_or(Impulse::default(), |pair| pair.impulse);
+            self.pairs.push(SkinPair {
+                skins,
+                key,
+                impulse,
+            });
+        }
+        self.pairs.extend(old.filter(stays));
+    }
+}
+
+impl Skin {
+    /// The mean of something at its corners.
+    #[inline]
+    pub fn mean<D: Dim>(&self, rows: &[Row]) -> Row {
+        let mut sum = rows[self.nodes[0] as usize];
+        for &node in &self.nodes[1..D::CORNERS] {
+            sum = plus(sum, rows[node as usize]);
+        }
+        scaled(sum, 1.0 / D::CORNERS as f32)
+    }
+
+    /// One over the mass that a push on it meets [1/kg].
+    fn lightness<D: Dim>(&self, bodies: &[Body<D>]) -> f32 {
+        let all = &bodies[self.body as usize].lightness;
+        let nodes = self.nodes[..D::CORNERS].iter();
+        let sum: f32 = nodes.map(|&node| all[node as usize]).sum();
+        sum / (D::CORNERS * D::CORNERS) as f32
+    }
+
+    /// Body and element in one number.
+    fn key(&self) -> u64 {
+        u64::from(self.body) << 32 | u64::from(self.element)
+    }
+
+    fn shares_node<D: Dim>(&self, other: &Self) -> bool {
+        if self.piece != other.piece || self.body != other.body {
+            return false;
+        }
+        let near = (0..D::N).all(|axis| (self.cell[axis] - other.cell[axis]).abs() <= 1);
+        let has = |node: &u32| other.nodes[..D::CORNERS].contains(node);
+        near && self.nodes[..D::CORNERS].iter().any(has)
+    }
+}
+
+/// Pairs of numbers below `count` in ascending order: by the first numbers at one go, and the few
+/// that have the same by comparison.
+fn sorted(pairs: &[[u32; 2]], count: usize) -> Vec<[u32; 2]> {
+    let mut end = vec![0u32; count];
+    for pair in pairs {
+        end[pair[0] as usize] += 1;
+    }
+    let mut sum = 0;
+    for end in &mut end {
+        sum += std::mem::replace(end, sum);
+    }
+    let mut sorted = vec![[0; 2]; pairs.len()];
+    for pair in pairs {
+        let place = &mut end[pair[0] as usize];
+        sorted[*place as usize] = *pair;
+        *place += 1;
+    }
+    for same in sorted.chunk_by_mut(|a, b| a[0] == b[0]) {
+        same.sort_unstable();
+    }
+    sorted
+}
+
+fn sleeps<D: Dim>(bodies: &[Body<D>], skin: &Skin) -> bool {
+    let pieces = &bodies[skin.body as usize].pieces;
+    pieces.list[skin.piece as usize].asleep
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dim::{Dim2, Dim3};
+    use crate::grid::VoxelGrid;
+    use crate::material::Material;
+
+    /// Crumbs fly about, fall asleep and wake; the list of pairs against all that there are.
+    fn check<D: Dim>(n: usize) {
+        let grid = VoxelGrid::<D>::ball(n, 1.0).unwrap();
+        let mut body = Body::new(grid, &[Material::default()]).unwrap();
+        body.crumble().unwrap();
+        let (size, pieces) = (body.grid.voxel_size(), body.pieces.list.len());
+        let mut seed = 7u32;
+        let mut random = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) as f32 / (1 << 24) as f32 - 0.5
+        };
+        let fall = [0.0, 0.3 * size, 0.0, 0.0];
+        let mut steps = vec![[0.0; 4]; pieces];
+        for step in &mut steps {
+            (0..D::N).for_each(|axis| step[axis] = 0.2 * size * random());
+        }
+        let mut skins = Skins::default();
+        let mut changes = 0;
+        for round in 0..60 {
+            if round % 10 == 9 {
+                let marked: Vec<bool> = (0..pieces).map(|_| random() > 0.2).collect();
+                body.set_asleep(&marked, round % 20 == 9);
+                skins.expire_rest();
+            }
+            for node in 0..body.position.len() {
+                let piece = body.pieces.of_node(node as u32);
+                if !body.pieces.list[piece as usize].asleep {
+                    let step = minus(steps[piece as usize], fall);
+                    body.position[node] = plus(body.position[node], step);
+                }
+            }
+            let before = skins.pairs.len();
+            skins.follow(std::slice::from_ref(&body), size);
+            changes += usize::from(before != skins.pairs.len());
+            assert!(skins.pairs.is_sorted_by(|a, b| a.skins < b.skins));
+            for (b, second) in skins.list.iter().enumerate() {
+                for (a, first) in skins.list[..b].iter().enumerate() {
+                    let apart = minus(skins.centres[a], skins.centres[b]);
+                    let is_close =
+                        dot(apart, apart) < (1.0 + MARGIN) * size * (1.0 + MARGIN) * size;
+                    let key = [a as u32, b as u32];
+                    let found = skins.pairs.binary_search_by(|pair| pair.skins.cmp(&key));
+                    let both_sleep = first.asleep && second.asleep;
+                    assert!(found.is_ok() || !is_close || both_sleep, "round {round}");
+                    assert!(found.is_err() || !both_sleep, "round {round}");
+                }
+            }
+        }
+        assert!(
+            changes > 10,
+            "{changes} new lists: they must have been needed"
+        );
+    }
+
+    #[test]
+    fn no_pair_is_missed() {
+        check::<Dim2>(14);
+        check::<Dim3>(6);
+    }
+}
