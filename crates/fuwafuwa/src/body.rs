@@ -309,6 +309,9 @@ impl<D: Dim> Body<D> {
     /// forces would grow from substep to substep.
     pub(crate) fn drift(&mut self, duration: f32, lead: f32) {
         let top_speed = self.grid.voxel_size() / duration;
+        // Pieces born since the last round of damping have no motion yet.
+        let rigid = &mut self.rigid;
+        rigid.resize(self.pieces.list.len(), RoughMotion::default());
         for &id in &self.awake {
             let node = id as usize;
             let mut velocity = self.velocity[node];
@@ -319,13 +322,8 @@ impl<D: Dim> Body<D> {
             }
             let position = plus(self.position[node], scaled(velocity, duration));
             self.position[node] = position;
-            self.ahead[node] = position;
-            if lead > 0.0 {
-                let piece = self.pieces.of_node(id) as usize;
-                let rigid = self.rigid.get(piece).copied().unwrap_or_default();
-                let strain = minus(velocity, rigid.at(position));
-                self.ahead[node] = plus(position, scaled(strain, lead));
-            }
+            let whole = rigid[self.pieces.of_node(id) as usize].at(position);
+            self.ahead[node] = plus(position, scaled(minus(velocity, whole), lead));
         }
     }
 

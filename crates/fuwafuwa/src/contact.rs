@@ -11,14 +11,15 @@ use crate::dim::Dim;
 use crate::manipulator::Manipulator;
 use crate::solve::Row;
 use crate::touch::{Collider, Impulse, MARGIN, Nearby, Skins};
-use crate::vector::{dot, length, minus, plus, scaled};
+use crate::vector::{dot, minus, plus, scaled};
 
 /// How much of the last substep's impulse a row starts from: 1 is unstable, 0 never comes to rest.
 const WARM_START: f32 = 0.9;
 /// How much of an overlap is pushed out in a substep, and how fast at most [m/s].
 const PUSH_OUT: f32 = 0.2;
 const PUSH_OUT_SPEED: f32 = 0.5;
-/// A sleeper wakes when what touches it moves at this speed [m/s].
+/// A sleeper wakes when what touches it moves at this speed [m/s]: what it did move, since deep in
+/// a heap the forces of a substep alone would give as much to what rests.
 const WAKE_SPEED: f32 = 0.15;
 
 /// One contact in one substep.
@@ -114,6 +115,12 @@ impl Contact {
         let dragged = minus(impulse.dragged, scaled(self.normal, along));
         self.dragged = scaled(dragged, WARM_START);
         self
+    }
+
+    /// Whether it neither presses nor has to, at this motion: most that are merely close do not.
+    #[inline(always)]
+    fn is_idle(&self, relative: Row) -> bool {
+        self.pressed == 0.0 && dot(relative, self.normal) >= self.least
     }
 
     /// What it starts from.
@@ -227,21 +234,24 @@ impl Contacts {
         hits: &mut Vec<Hit>,
     ) {
         self.skins.clear();
+        let sizes = bodies.iter().map(|body| body.grid.voxel_size());
+        let furthest = (1.0 + MARGIN) * sizes.fold(0.0, f32::max);
+        let waking = WAKE_SPEED * duration;
         let frictions: Vec<f32> = bodies.iter().map(Body::friction).collect();
         for (place, pair) in skins.pairs.iter_mut().enumerate() {
             let [a, b] = [pair.skins[0] as usize, pair.skins[1] as usize];
             let apart = minus(skins.centres[a], skins.centres[b]);
-            let touching = skins.list[a].radius + skins.list[b].radius;
             let squared = dot(apart, apart);
-            let reach = touching * (1.0 + MARGIN);
-            if squared > reach * reach {
+            if squared > furthest * furthest {
                 pair.impulse.release();
                 continue;
             }
+            let touching = skins.list[a].radius + skins.list[b].radius;
             let distance = squared.sqrt().max(1e-9);
             let (normal, gap) = (scaled(apart, 1.0 / distance), distance - touching);
             let relative = minus(skins.velocities[a], skins.velocities[b]);
-            if !is_close(gap, dot(relative, normal), touching, duration) {
+            if gap > MARGIN * touching || !is_close(gap, dot(relative, normal), touching, duration)
+            {
                 pair.impulse.release();
                 continue;
             }
@@ -249,8 +259,9 @@ impl Contacts {
             if lightness == 0.0 {
                 continue;
             }
+            let moved = skins.moved[a].max(skins.moved[b]);
             let (a, b) = (&skins.list[a], &skins.list[b]);
-            if gap < 0.05 * touching && length(relative) > WAKE_SPEED {
+            if gap < 0.05 * touching && moved > waking * waking {
                 let sleepers = [a, b].into_iter().filter(|skin| skin.asleep);
                 hits.extend(sleepers.map(|skin| (skin.body, skin.piece)));
             }
@@ -311,13 +322,16 @@ impl Contacts {
         for row in &self.nodes {
             motion.push_node(row, hands, row.contact.start(), duration);
         }
-        for row in &self.skins {
+        for row in self.skins.iter().filter(|row| row.contact.pressed > 0.0) {
             motion.push_skins::<D>(&row.grips, row.contact.start());
         }
         for backwards in [false, true] {
             for_each(&mut self.skins, backwards, |row| {
-                let change = row.contact.solve(motion.between::<D>(&row.grips));
-                motion.push_skins::<D>(&row.grips, change);
+                let relative = motion.between::<D>(&row.grips);
+                if !row.contact.is_idle(relative) {
+                    let change = row.contact.solve(relative);
+                    motion.push_skins::<D>(&row.grips, change);
+                }
             });
             for_each(&mut self.nodes, backwards, |row| {
                 let change = row.contact.solve(motion.of_node(row, hands));
@@ -389,9 +403,13 @@ impl Motion {
 
     /// Gives them back.
     fn store<D: Dim>(&self, bodies: &mut [Body<D>]) {
-        let all = bodies.iter_mut().flat_map(|body| &mut body.velocity);
-        for (velocity, row) in all.zip(&self.rows) {
-            *velocity = with_fourth(*row, 0.0);
+        let mut rest = &self.rows[..];
+        for body in bodies.iter_mut().filter(|_| !self.rows.is_empty()) {
+            let (own, others) = rest.split_at(body.velocity.len());
+            rest = others;
+            for (velocity, row) in body.velocity.iter_mut().zip(own) {
+                *velocity = with_fourth(*row, 0.0);
+            }
         }
     }
 

@@ -99,10 +99,11 @@ impl RigidMotion {
 
     /// The same in single precision.
     pub(crate) fn rounded(&self) -> RoughMotion {
-        let single = |v: [f64; 3]| v.map(|k| k as f32);
+        let single = |v: [f64; 3]| [v[0] as f32, v[1] as f32, v[2] as f32, 0.0];
+        let [x, y, z, _] = single(self.spin);
         RoughMotion {
             velocity: single(self.velocity),
-            spin: single(self.spin),
+            spin: [[0.0, z, -y, 0.0], [-z, 0.0, x, 0.0], [y, -x, 0.0, 0.0]],
             centre: single(self.centre),
         }
     }
@@ -120,18 +121,20 @@ impl RigidMotion {
 #[derive(Copy, Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct RoughMotion {
-    velocity: [f32; 3],
-    spin: [f32; 3],
-    centre: [f32; 3],
+    velocity: Row,
+    /// What a step along each axis away from the centre adds.
+    spin: [Row; 3],
+    centre: Row,
 }
 
 impl RoughMotion {
     /// The velocity at a point.
     #[inline(always)]
     pub fn at(&self, position: Row) -> Row {
-        let from = minus([position[0], position[1], position[2]], self.centre);
-        let [x, y, z] = plus(self.velocity, cross(self.spin, from));
-        [x, y, z, 0.0]
+        let from = minus(position, self.centre);
+        let [x, y, z] = &self.spin;
+        let turn = plus(scaled(*x, from[0]), scaled(*y, from[1]));
+        plus(self.velocity, plus(turn, scaled(*z, from[2])))
     }
 }
 

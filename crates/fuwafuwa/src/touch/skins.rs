@@ -59,8 +59,10 @@ pub struct Skins {
     pub list: Vec<Skin>,
     /// Close to each other, ascending.
     pub pairs: Vec<SkinPair>,
-    /// Where the middles of the skins are [m] and how fast they move [m/s].
+    /// Where the middles of the skins are [m], how far they came in the last substep, squared [m²],
+    /// and how fast they would go on if nothing touched them [m/s].
     pub centres: Vec<Row>,
+    pub moved: Vec<f32>,
     pub velocities: Vec<Row>,
     /// One over the mass that a push on a skin meets [1/kg].
     pub lightness: Vec<f32>,
@@ -152,6 +154,8 @@ impl Skins {
             .extend(places.filter(|&place| !list[place as usize].asleep));
         self.velocities.clear();
         self.velocities.resize(list.len(), [0.0; 4]);
+        self.moved.clear();
+        self.moved.resize(list.len(), 0.0);
         self.lightness.clear();
         self.lightness
             .extend(list.iter().map(|skin| skin.lightness(bodies)));
@@ -167,7 +171,8 @@ impl Skins {
             let body = &bodies[skin.body as usize];
             let centre = skin.mean::<D>(&body.position);
             let moved = minus(centre, self.centres[place]);
-            furthest = furthest.max(dot(moved, moved));
+            self.moved[place] = dot(moved, moved);
+            furthest = furthest.max(self.moved[place]);
             self.centres[place] = centre;
             self.velocities[place] = skin.mean::<D>(&body.velocity);
             sum = plus(sum, minus(centre, self.anchors[place]));
