@@ -6,38 +6,23 @@
 //! substeps are the iterations [Macklin 2019]. What is pushed out of an overlap gains no speed by it:
 //! after the move the same rows are solved again without the push [Catto 2023].
 
+mod motion;
+mod row;
+
 use crate::body::Body;
 use crate::dim::Dim;
 use crate::manipulator::Manipulator;
 use crate::solve::Row;
-use crate::touch::{Collider, Impulse, MARGIN, Nearby, Skins};
-use crate::vector::{dot, minus, plus, scaled};
+use crate::touch::{Collider, Impulse, MARGIN, Nearby, Skin, Skins};
+use crate::vector::{minus, scaled};
+use motion::Motion;
+use row::{Contact, inner};
 
-/// How much of the last substep's impulse a row starts from: 1 is unstable, 0 never comes to rest.
-const WARM_START: f32 = 0.9;
-/// How much of an overlap is pushed out in a substep, and how fast at most [m/s].
-const PUSH_OUT: f32 = 0.2;
-const PUSH_OUT_SPEED: f32 = 0.5;
+/// A crumb is behind a skin when the way to it goes this far inwards (cosine).
+const BEHIND: f32 = 0.3;
 /// A sleeper wakes when what touches it moves at this speed [m/s]: what it did move, since deep in
 /// a heap the forces of a substep alone would give as much to what rests.
 const WAKE_SPEED: f32 = 0.15;
-
-/// One contact in one substep.
-#[derive(Copy, Clone, Debug)]
-struct Contact {
-    normal: Row,
-    /// [m]
-    gap: f32,
-    /// The approach along the normal may not be less than this [m/s].
-    least: f32,
-    /// One over the speed that a unit of impulse gives [kg].
-    inertia: f32,
-    friction: f32,
-    pressed: f32,
-    dragged: Row,
-    /// Place of its pair in the list.
-    pair: u32,
-}
 
 /// A node against something rigid.
 #[derive(Copy, Clone, Debug)]
@@ -79,88 +64,8 @@ pub struct Contacts {
     motion: Motion,
 }
 
-/// The velocities of all nodes side by side [m/s], one over their mass as the fourth component
-/// [1/kg]: what a push needs is in one place.
-#[derive(Clone, Debug, Default)]
-struct Motion {
-    rows: Vec<Row>,
-}
-
 /// A sleeping piece that was hit: body and piece number.
 pub type Hit = (u32, u32);
-
-impl Contact {
-    fn new(normal: Row, gap: f32, duration: f32, inertia: f32, friction: f32) -> Self {
-        let least = if gap > 0.0 {
-            -gap / duration
-        } else {
-            (-PUSH_OUT * gap / duration).min(PUSH_OUT_SPEED)
-        };
-        Self {
-            normal,
-            gap,
-            least,
-            inertia,
-            friction,
-            pressed: 0.0,
-            dragged: [0.0; 4],
-            pair: 0,
-        }
-    }
-
-    fn known_as(mut self, pair: usize, impulse: &Impulse) -> Self {
-        self.pair = pair as u32;
-        self.pressed = WARM_START * impulse.pressed;
-        let along = dot(impulse.dragged, self.normal);
-        let dragged = minus(impulse.dragged, scaled(self.normal, along));
-        self.dragged = scaled(dragged, WARM_START);
-        self
-    }
-
-    /// Whether it neither presses nor has to, at this motion: most that are merely close do not.
-    #[inline(always)]
-    fn is_idle(&self, relative: Row) -> bool {
-        self.pressed == 0.0 && dot(relative, self.normal) >= self.least
-    }
-
-    /// What it starts from.
-    fn start(&self) -> Row {
-        plus(scaled(self.normal, self.pressed), self.dragged)
-    }
-
-    /// The change of impulse on the first side [N s], which moves at `relative` [m/s] as seen from
-    /// the second.
-    #[inline(always)]
-    fn solve(&mut self, relative: Row) -> Row {
-        let approach = dot(relative, self.normal);
-        let pressed = (self.pressed + (self.least - approach) * self.inertia).max(0.0);
-        let slip = minus(relative, scaled(self.normal, approach));
-        let mut dragged = minus(self.dragged, scaled(slip, self.inertia));
-        let (held, wanted) = (self.friction * pressed, dot(dragged, dragged));
-        if wanted > held * held {
-            dragged = scaled(dragged, held / wanted.sqrt());
-        }
-        let press = scaled(self.normal, pressed - self.pressed);
-        let change = plus(press, minus(dragged, self.dragged));
-        self.pressed = pressed;
-        self.dragged = dragged;
-        change
-    }
-
-    /// As [`Contact::solve`], along the normal only, and without the push out of an overlap.
-    #[inline(always)]
-    fn relax(&mut self, relative: Row) -> Row {
-        let approach = dot(relative, self.normal);
-        let pressed = (self.pressed - approach * self.inertia).max(0.0);
-        let change = scaled(self.normal, pressed - self.pressed);
-        self.pressed = pressed;
-        change
-    }
-
-    fn was_pushed_out(&self) -> bool {
-        self.gap < 0.0 && self.pressed > 0.0
-    }
-}
 
 impl Contacts {
     /// Finds the contacts of this substep among what is nearby. Returns the sleepers that were hit.
@@ -205,7 +110,7 @@ impl Contacts {
             let normal = [normal[0], normal[1], normal[2], 0.0];
             let relative = minus(body.velocity[node], collider.velocity);
             let size = body.grid.voxel_size();
-            if !is_close(gap, dot(relative, normal), size, duration) {
+            if !is_close(gap, inner::<D>(relative, normal), size, duration) {
                 pair.impulse.release();
                 continue;
             }
@@ -219,7 +124,7 @@ impl Contacts {
             let friction = collider.friction;
             let contact = Contact::new(normal, gap, duration, 1.0 / lightness, friction);
             self.nodes.push(NodeContact {
-                contact: contact.known_as(place, &pair.impulse),
+                contact: contact.known_as::<D>(place, &pair.impulse),
                 node: self.first[pair.body as usize] + pair.node,
                 hand: pair.collider.checked_sub(first_hand),
             });
@@ -241,16 +146,26 @@ impl Contacts {
         for (place, pair) in skins.pairs.iter_mut().enumerate() {
             let [a, b] = [pair.skins[0] as usize, pair.skins[1] as usize];
             let apart = minus(skins.centres[a], skins.centres[b]);
-            let squared = dot(apart, apart);
+            let squared = inner::<D>(apart, apart);
             if squared > furthest * furthest {
+                pair.met_in_front = false;
                 pair.impulse.release();
                 continue;
             }
             let touching = skins.list[a].radius + skins.list[b].radius;
             let distance = squared.sqrt().max(1e-9);
-            let (normal, gap) = (scaled(apart, 1.0 / distance), distance - touching);
+            let (mut normal, mut gap) = (scaled(apart, 1.0 / distance), distance - touching);
+            if gap < 0.0 {
+                let both = [&skins.list[a], &skins.list[b]];
+                let behind = behind_skin(bodies, both, scaled(normal, distance));
+                pair.met_in_front |= behind.is_none();
+                if let Some((out, ahead)) = behind.filter(|_| pair.met_in_front) {
+                    (normal, gap) = (out, ahead - touching);
+                }
+            }
             let relative = minus(skins.velocities[a], skins.velocities[b]);
-            if gap > MARGIN * touching || !is_close(gap, dot(relative, normal), touching, duration)
+            if gap > MARGIN * touching
+                || !is_close(gap, inner::<D>(relative, normal), touching, duration)
             {
                 pair.impulse.release();
                 continue;
@@ -268,7 +183,7 @@ impl Contacts {
             let friction = 0.5 * (frictions[a.body as usize] + frictions[b.body as usize]);
             let contact = Contact::new(normal, gap, duration, 1.0 / lightness, friction);
             self.skins.push(SkinContact {
-                contact: contact.known_as(place, &pair.impulse),
+                contact: contact.known_as::<D>(place, &pair.impulse),
                 grips: [a, b]
                     .map(|skin| skin.nodes.map(|node| node + self.first[skin.body as usize])),
             });
@@ -328,13 +243,13 @@ impl Contacts {
         for backwards in [false, true] {
             for_each(&mut self.skins, backwards, |row| {
                 let relative = motion.between::<D>(&row.grips);
-                if !row.contact.is_idle(relative) {
-                    let change = row.contact.solve(relative);
+                if !row.contact.is_idle::<D>(relative) {
+                    let change = row.contact.solve::<D>(relative);
                     motion.push_skins::<D>(&row.grips, change);
                 }
             });
             for_each(&mut self.nodes, backwards, |row| {
-                let change = row.contact.solve(motion.of_node(row, hands));
+                let change = row.contact.solve::<D>(motion.of_node(row, hands));
                 motion.push_node(row, hands, change, duration);
             });
             for_each(&mut self.hands, backwards, |row| {
@@ -342,7 +257,7 @@ impl Contacts {
                 let other = row
                     .other
                     .map_or([0.0; 4], |other| four(hands[other].velocity));
-                let change = row.contact.solve(minus(own, other));
+                let change = row.contact.solve::<D>(minus(own, other));
                 push_hand(&mut hands[row.hand], change, duration);
                 if let Some(other) = row.other {
                     push_hand(&mut hands[other], scaled(change, -1.0), duration);
@@ -376,97 +291,17 @@ impl Contacts {
         motion.load(bodies);
         for row in &mut self.skins {
             if row.contact.was_pushed_out() {
-                let change = row.contact.relax(motion.between::<D>(&row.grips));
+                let change = row.contact.relax::<D>(motion.between::<D>(&row.grips));
                 motion.push_skins::<D>(&row.grips, change);
             }
         }
         for row in &mut self.nodes {
             if row.contact.was_pushed_out() {
-                let change = row.contact.relax(motion.of_node(row, hands));
+                let change = row.contact.relax::<D>(motion.of_node(row, hands));
                 motion.push_node(row, hands, change, duration);
             }
         }
         motion.store(bodies);
-    }
-}
-
-impl Motion {
-    /// Takes the velocities from the bodies.
-    fn load<D: Dim>(&mut self, bodies: &[Body<D>]) {
-        self.rows.clear();
-        for body in bodies {
-            let nodes = body.velocity.iter().zip(&body.lightness);
-            let rows = nodes.map(|(velocity, &lightness)| with_fourth(*velocity, lightness));
-            self.rows.extend(rows);
-        }
-    }
-
-    /// Gives them back.
-    fn store<D: Dim>(&self, bodies: &mut [Body<D>]) {
-        let mut rest = &self.rows[..];
-        for body in bodies.iter_mut().filter(|_| !self.rows.is_empty()) {
-            let (own, others) = rest.split_at(body.velocity.len());
-            rest = others;
-            for (velocity, row) in body.velocity.iter_mut().zip(own) {
-                *velocity = with_fourth(*row, 0.0);
-            }
-        }
-    }
-
-    /// How fast the first skin moves as seen from the second.
-    #[inline(always)]
-    fn between<D: Dim>(&self, grips: &[Grip; 2]) -> Row {
-        with_fourth(
-            minus(self.mean::<D>(&grips[0]), self.mean::<D>(&grips[1])),
-            0.0,
-        )
-    }
-
-    #[inline(always)]
-    fn mean<D: Dim>(&self, grip: &Grip) -> Row {
-        let mut sum = self.rows[grip[0] as usize];
-        for &node in &grip[1..D::CORNERS] {
-            sum = plus(sum, self.rows[node as usize]);
-        }
-        scaled(sum, 1.0 / D::CORNERS as f32)
-    }
-
-    /// Pushes the first skin, and the second the other way.
-    #[inline(always)]
-    fn push_skins<D: Dim>(&mut self, grips: &[Grip; 2], impulse: Row) {
-        let share = scaled(impulse, 1.0 / D::CORNERS as f32);
-        for (grip, share) in [(&grips[0], share), (&grips[1], scaled(share, -1.0))] {
-            for &node in &grip[..D::CORNERS] {
-                let row = &mut self.rows[node as usize];
-                *row = plus(*row, scaled(share, row[3]));
-            }
-        }
-    }
-
-    /// How fast a node moves as seen from what it touches.
-    #[inline(always)]
-    fn of_node(&self, row: &NodeContact, hands: &[Manipulator]) -> Row {
-        let own = self.rows[row.node as usize];
-        let other = row
-            .hand
-            .map_or([0.0; 4], |hand| four(hands[hand as usize].velocity));
-        with_fourth(minus(own, other), 0.0)
-    }
-
-    /// Pushes a node, and the hand that touches it the other way.
-    #[inline(always)]
-    fn push_node(
-        &mut self,
-        row: &NodeContact,
-        hands: &mut [Manipulator],
-        impulse: Row,
-        duration: f32,
-    ) {
-        let own = &mut self.rows[row.node as usize];
-        *own = plus(*own, scaled(impulse, own[3]));
-        if let Some(hand) = row.hand {
-            push_hand(&mut hands[hand as usize], scaled(impulse, -1.0), duration);
-        }
     }
 }
 
@@ -485,6 +320,22 @@ impl Impulse {
         self.dragged = contact.dragged;
         self.total += contact.pressed;
     }
+}
+
+/// For a crumb whose middle is behind a skin: the direction out of the skin's body, as it pushes
+/// the first of both, and how far in front of the skin the crumb is [m], less than 0.
+fn behind_skin<D: Dim>(bodies: &[Body<D>], [a, b]: [&Skin; 2], apart: Row) -> Option<(Row, f32)> {
+    let (wall, sign) = match (a.is_crumb::<D>(), b.is_crumb::<D>()) {
+        (true, false) => (b, 1.0),
+        (false, true) => (a, -1.0),
+        _ => return None,
+    };
+    let out = wall.outward::<D>(&bodies[wall.body as usize].position);
+    let length = inner::<D>(out, out).sqrt();
+    let normal = scaled(out, sign / length.max(1e-9));
+    let ahead = inner::<D>(apart, normal);
+    let is_behind = ahead < -BEHIND * inner::<D>(apart, apart).sqrt();
+    (is_behind && length > 0.2 * wall.radius).then_some((normal, ahead))
 }
 
 /// Whether a contact may matter in this substep: it overlaps, or will if nothing is done.
@@ -512,9 +363,4 @@ fn push_hand(hand: &mut Manipulator, impulse: Row, duration: f32) {
 
 fn four(v: [f32; 3]) -> Row {
     [v[0], v[1], v[2], 0.0]
-}
-
-#[inline(always)]
-fn with_fourth(row: Row, fourth: f32) -> Row {
-    [row[0], row[1], row[2], fourth]
 }

@@ -13,7 +13,7 @@ use crate::dim::Dim;
 use crate::shape::Shape;
 use crate::solve::Row;
 use crate::vector::{dot, length, minus, plus, scaled};
-pub use skins::{MARGIN, Skins};
+pub use skins::{MARGIN, Skin, Skins};
 
 /// Something rigid that nodes can touch.
 #[derive(Copy, Clone, Debug)]

@@ -239,3 +239,35 @@ fn a_body_too_stiff_is_softened() {
     let view = world.bodies()[0].piece_views()[0];
     assert!(view.low[1] > -0.05 && view.high[1] < 1.5, "{view:?}");
 }
+
+/// Ten widths a second, one body against its like and a handful of dust against another.
+fn check_no_tunnelling<D: Dim>(n: usize) {
+    for crumbles in [false, true] {
+        let mut world = World::<D>::new(WEIGHTLESS).unwrap();
+        let mut flying = ball::<D>(n, unbreakable());
+        if crumbles {
+            flying.crumble().unwrap();
+        }
+        world.add_body(flying.moved([-1.2, 0.0, 0.0]).thrown([10.0, 0.0, 0.0]));
+        world.add_body(ball::<D>(n, unbreakable()));
+        for tick in 0..40 {
+            world.step();
+            let target = world.bodies()[1].piece_views()[0];
+            let is_aside = |axis: usize, at: f32| (at - target.centre[axis]).abs() > 0.3;
+            for piece in world.bodies()[0].piece_views() {
+                let aside = (1..D::N).any(|axis| is_aside(axis, piece.centre[axis]));
+                let [x, ..] = piece.centre;
+                assert!(
+                    aside || x < target.centre[0],
+                    "tick {tick}: {x} in {target:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_fast_does_not_pass_through() {
+    check_no_tunnelling::<Dim2>(16);
+    check_no_tunnelling::<Dim3>(10);
+}

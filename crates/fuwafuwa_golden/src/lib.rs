@@ -16,7 +16,7 @@ pub const SCENES: [Scene; 4] = [
     (
         "torn disc",
         || hash_of_torn_world::<Dim2>(32),
-        0xd0bc_8b29_82bb_db6b,
+        0x0236_465c_edff_27e7,
     ),
     (
         "torn ball",

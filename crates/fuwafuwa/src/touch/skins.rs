@@ -33,6 +33,8 @@ pub struct Skin {
     pub radius: f32,
     /// Whether its piece sleeps.
     pub asleep: bool,
+    /// Its bare faces: bit 2 · axis + side.
+    bare: u8,
     /// Its voxel.
     cell: Point,
     /// Its corner nodes; the first four in 2D.
@@ -49,6 +51,8 @@ pub struct SkinPair {
     key: [u64; 2],
     /// What passed between them.
     pub impulse: Impulse,
+    /// Whether they met face to face: if one is behind the other now, it was forced there.
+    pub met_in_front: bool,
 }
 
 /// All skins, and which are close to each other.
@@ -131,6 +135,7 @@ impl Skins {
                     piece: body.pieces.of_element(id),
                     radius: 0.5 * body.grid.voxel_size(),
                     asleep: false,
+                    bare: body.bare[id as usize],
                     cell: element.cell.at,
                     nodes,
                 };
@@ -245,11 +250,11 @@ impl Skins {
                 }
             }
             let known = old.next_if(|pair| pair.key == key);
-            let impulse = known.map_or(Impulse::default(), |pair| pair.impulse);
             self.pairs.push(SkinPair {
                 skins,
                 key,
-                impulse,
+                impulse: known.map_or(Impulse::default(), |pair| pair.impulse),
+                met_in_front: known.is_some_and(|pair| pair.met_in_front),
             });
         }
         self.pairs.extend(old.filter(stays));
@@ -265,6 +270,29 @@ impl Skin {
             sum = plus(sum, rows[node as usize]);
         }
         scaled(sum, 1.0 / D::CORNERS as f32)
+    }
+
+    /// Whether it is a piece of its own.
+    pub fn is_crumb<D: Dim>(&self) -> bool {
+        self.bare.count_ones() as usize == 2 * D::N
+    }
+
+    /// From its middle out of the body, through the bare faces; nothing for a crumb or a sheet.
+    pub fn outward<D: Dim>(&self, position: &[Row]) -> Row {
+        let mut sum = [0.0; 4];
+        for corner in 0..D::CORNERS {
+            let is_bare = |axis: usize, side: usize| f32::from(self.bare >> (2 * axis + side) & 1);
+            // The middle of a face less that of all corners: half a step across.
+            let weight: f32 = (0..D::N)
+                .map(|axis| {
+                    let out = is_bare(axis, 1) - is_bare(axis, 0);
+                    if corner >> axis & 1 == 1 { out } else { -out }
+                })
+                .sum();
+            let at = position[self.nodes[corner] as usize];
+            sum = plus(sum, scaled(at, weight / D::CORNERS as f32));
+        }
+        sum
     }
 
     /// One over the mass that a push on it meets [1/kg].

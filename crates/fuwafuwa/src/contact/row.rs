@@ -1,0 +1,117 @@
+//! One contact: what it may do to the velocities of its two sides.
+
+use crate::dim::Dim;
+use crate::solve::Row;
+use crate::touch::Impulse;
+use crate::vector::{minus, plus, scaled};
+
+/// How much of the last substep's impulse a row starts from: 1 is unstable, 0 never comes to rest.
+const WARM_START: f32 = 0.9;
+/// How much of an overlap is pushed out in a substep, and how fast at most [m/s].
+const PUSH_OUT: f32 = 0.2;
+const PUSH_OUT_SPEED: f32 = 0.5;
+
+/// One contact in one substep.
+#[derive(Copy, Clone, Debug)]
+pub struct Contact {
+    pub normal: Row,
+    /// [m]
+    pub gap: f32,
+    /// The approach along the normal may not be less than this [m/s].
+    pub least: f32,
+    /// One over the speed that a unit of impulse gives [kg].
+    pub inertia: f32,
+    pub friction: f32,
+    pub pressed: f32,
+    pub dragged: Row,
+    /// Place of its pair in the list.
+    pub pair: u32,
+}
+
+impl Contact {
+    #[inline(always)]
+    pub fn new(normal: Row, gap: f32, duration: f32, inertia: f32, friction: f32) -> Self {
+        let least = if gap > 0.0 {
+            -gap / duration
+        } else {
+            (-PUSH_OUT * gap / duration).min(PUSH_OUT_SPEED)
+        };
+        Self {
+            normal,
+            gap,
+            least,
+            inertia,
+            friction,
+            pressed: 0.0,
+            dragged: [0.0; 4],
+            pair: 0,
+        }
+    }
+
+    /// The same, starting from what passed between the two sides so far.
+    #[inline(always)]
+    pub fn known_as<D: Dim>(mut self, pair: usize, impulse: &Impulse) -> Self {
+        self.pair = pair as u32;
+        if impulse.pressed > 0.0 {
+            self.pressed = WARM_START * impulse.pressed;
+            let along = inner::<D>(impulse.dragged, self.normal);
+            let dragged = minus(impulse.dragged, scaled(self.normal, along));
+            self.dragged = scaled(dragged, WARM_START);
+        }
+        self
+    }
+
+    /// Whether it neither presses nor has to, at this motion: most that are merely close do not.
+    #[inline(always)]
+    pub fn is_idle<D: Dim>(&self, relative: Row) -> bool {
+        self.pressed == 0.0 && inner::<D>(relative, self.normal) >= self.least
+    }
+
+    /// What it starts from.
+    pub fn start(&self) -> Row {
+        plus(scaled(self.normal, self.pressed), self.dragged)
+    }
+
+    /// The change of impulse on the first side [N s], which moves at `relative` [m/s] as seen from
+    /// the second.
+    #[inline(always)]
+    pub fn solve<D: Dim>(&mut self, relative: Row) -> Row {
+        let approach = inner::<D>(relative, self.normal);
+        let pressed = (self.pressed + (self.least - approach) * self.inertia).max(0.0);
+        let slip = minus(relative, scaled(self.normal, approach));
+        let mut dragged = minus(self.dragged, scaled(slip, self.inertia));
+        let (held, wanted) = (self.friction * pressed, inner::<D>(dragged, dragged));
+        if wanted > held * held {
+            dragged = scaled(dragged, held / wanted.sqrt());
+        }
+        let press = scaled(self.normal, pressed - self.pressed);
+        let change = plus(press, minus(dragged, self.dragged));
+        self.pressed = pressed;
+        self.dragged = dragged;
+        change
+    }
+
+    /// As [`Contact::solve`], along the normal only, and without the push out of an overlap.
+    #[inline(always)]
+    pub fn relax<D: Dim>(&mut self, relative: Row) -> Row {
+        let approach = inner::<D>(relative, self.normal);
+        let pressed = (self.pressed - approach * self.inertia).max(0.0);
+        let change = scaled(self.normal, pressed - self.pressed);
+        self.pressed = pressed;
+        change
+    }
+
+    pub fn was_pushed_out(&self) -> bool {
+        self.gap < 0.0 && self.pressed > 0.0
+    }
+}
+
+/// a · b of the components that a dimension has; the others are 0.
+#[inline(always)]
+pub fn inner<D: Dim>(a: Row, b: Row) -> f32 {
+    let mut sum = a[0] * b[0];
+    for axis in 1..D::N {
+        sum += a[axis] * b[axis];
+    }
+    sum
+}
