@@ -352,7 +352,7 @@ impl<D: Dim> Body<D> {
             }
             let position = plus(self.position[node], scaled(velocity, duration));
             self.position[node] = position;
-            let whole = self.rigid[self.pieces.of_node(id) as usize].at(position);
+            let whole = self.rigid[self.pieces.of_node(id) as usize].at::<D>(position);
             self.ahead[node] = plus(position, scaled(minus(velocity, whole), lead));
         }
     }

@@ -139,7 +139,7 @@ pub fn slow_down<D: Dim>(body: &mut Body<D>, motions: &[PieceMotion], slowing: &
         if body.lightness[node] != 0.0 {
             let (kept, pace) = &paces[body.pieces.of_node(id) as usize];
             let velocity = &mut body.velocity[node];
-            *velocity = plus(scaled(*velocity, *kept), pace.at(body.position[node]));
+            *velocity = plus(scaled(*velocity, *kept), pace.at::<D>(body.position[node]));
         }
     }
 }

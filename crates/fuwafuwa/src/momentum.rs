@@ -1,5 +1,6 @@
 //! Linear and angular momentum of a set of nodes, and the rigid motion that makes up a difference.
 
+use crate::dim::Dim;
 use crate::solve::Row;
 use crate::vector::{cross, dot, minus, plus, scaled};
 
@@ -55,11 +56,13 @@ pub(crate) struct RoughMotion {
 impl RoughMotion {
     /// The velocity at a point.
     #[inline(always)]
-    pub fn at(&self, position: Row) -> Row {
+    pub fn at<D: Dim>(&self, position: Row) -> Row {
         let from = minus(position, self.centre);
-        let mut velocity = plus(self.velocity, scaled(self.spin[0], from[0]));
-        velocity = plus(velocity, scaled(self.spin[1], from[1]));
-        plus(velocity, scaled(self.spin[2], from[2]))
+        let mut velocity = self.velocity;
+        for axis in 0..D::N {
+            velocity = plus(velocity, scaled(self.spin[axis], from[axis]));
+        }
+        velocity
     }
 }
 

@@ -68,6 +68,9 @@ pub struct Blocks<D: Dim> {
     /// The nodes of all blocks: node k of lane l at k · LANES + l after the block's first.
     nodes: Vec<u32>,
     forces: Vec<Row>,
+    /// Kept for the next evaluation, so that it need not be cleared.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    desk: Option<Box<[Scratch; GROUP]>>,
     dim: PhantomData<D>,
 }
 
@@ -169,16 +172,13 @@ impl Block {
     }
 }
 
-/// A scratch for each block of a group.
-type Desk = [Scratch; GROUP];
-
-fn desk() -> Desk {
-    [Scratch::EMPTY; GROUP]
-}
-
 /// The forces of the blocks of a group that are awake.
 #[inline(always)]
-fn evaluate_group<D: Dim, L: Lanes>(group: Group, position: &[Row], scratch: &mut Desk) {
+fn evaluate_group<D: Dim, L: Lanes>(
+    group: Group,
+    position: &[Row],
+    scratch: &mut [Scratch; GROUP],
+) {
     let Group {
         blocks,
         forces: rows,
@@ -228,12 +228,12 @@ fn evaluate_group<D: Dim, L: Lanes>(group: Group, position: &[Row], scratch: &mu
 /// As [`evaluate_group`], compiled for AVX2.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn evaluate_group_wide<D: Dim>(group: Group, position: &[Row], scratch: &mut Desk) {
+fn evaluate_group_wide<D: Dim>(group: Group, position: &[Row], scratch: &mut [Scratch; GROUP]) {
     evaluate_group::<D, lanes::Wide>(group, position, scratch);
 }
 
 /// The forces of a group, by the widest lanes the machine has.
-fn evaluate_best<D: Dim>(group: Group, position: &[Row], scratch: &mut Desk) {
+fn evaluate_best<D: Dim>(group: Group, position: &[Row], scratch: &mut [Scratch; GROUP]) {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx2") {
         // SAFETY: the machine has AVX2; the function is safe code otherwise.
@@ -266,6 +266,7 @@ impl<D: Dim> Blocks<D> {
             slots: Vec::new(),
             nodes: vec![VACANT; LANES],
             forces: vec![[0.0; 4]; LANES],
+            desk: None,
             dim: PhantomData,
         }
     }
@@ -315,20 +316,23 @@ impl<D: Dim> Blocks<D> {
             use rayon::prelude::*;
             let groups: Vec<Group> = self.groups().collect();
             let groups = groups.into_par_iter().with_min_len(8);
-            groups.for_each_init(desk, |scratch, group| {
-                evaluate_best::<D>(group, position, scratch);
-            });
+            groups.for_each_init(
+                || [Scratch::EMPTY; GROUP],
+                |scratch, group| evaluate_best::<D>(group, position, scratch),
+            );
             return;
         }
-        let mut scratch = desk();
+        let mut desk = std::mem::take(&mut self.desk);
+        let scratch = desk.get_or_insert_with(|| Box::new([Scratch::EMPTY; GROUP]));
         for group in self.groups() {
-            evaluate_best::<D>(group, position, &mut scratch);
+            evaluate_best::<D>(group, position, scratch);
         }
+        self.desk = desk;
     }
 
     #[cfg(test)]
     fn evaluate_portable(&mut self, position: &[Row]) {
-        let mut scratch = desk();
+        let mut scratch = [Scratch::EMPTY; GROUP];
         for group in self.groups() {
             evaluate_group::<D, Portable>(group, position, &mut scratch);
         }

@@ -97,7 +97,7 @@ pub const fn numbers<D: Dim>(nodes: usize) -> usize {
 type Matrix<L> = [[L; 3]; 3];
 
 /// What passes from one loop over some blocks to the next.
-#[derive(Copy, Clone)]
+#[derive(Copy, Clone, Debug)]
 pub struct Scratch {
     /// Positions of the nodes from the first of them.
     x: [[Eight; 3]; 27],
