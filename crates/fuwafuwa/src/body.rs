@@ -24,7 +24,6 @@ pub struct Body<D: Dim> {
     pub(crate) mesh: Mesh<D>,
     pub(crate) blocks: Blocks<D>,
     pub(crate) pieces: Pieces,
-    law: Law,
     materials: Vec<Material>,
     blend: Blend,
     /// By what its stiffness was lowered so that the substep bears it; 1 = not at all.
@@ -98,7 +97,6 @@ impl<D: Dim> Body<D> {
         let mut body = Self {
             blocks: Blocks::new(law, &elasticities(materials, 1.0), grid.voxel_size()),
             pieces: Pieces::new(&mesh),
-            law,
             blend: Blend::of(&grid, materials),
             materials: materials.to_vec(),
             softening: 1.0,
@@ -125,7 +123,8 @@ impl<D: Dim> Body<D> {
             body.position[id as usize] = [at[0], at[1], at[2], 0.0];
         }
         body.ahead.clone_from(&body.position);
-        body.seat_all_elements();
+        let elements: Vec<u32> = body.mesh.elements().map(|(id, _)| id).collect();
+        body.blocks.update(&body.mesh, &body.grid, &[], &elements);
         let all: Vec<u32> = body.mesh.nodes().map(|(id, _)| id).collect();
         body.weigh(&all);
         let voxels: Vec<Point> = body.grid.voxels().collect();
@@ -310,16 +309,22 @@ impl<D: Dim> Body<D> {
         self.softening
     }
 
-    /// Lowers the stiffness so that a substep of `duration` [s] is stable.
+    /// Lowers the stiffness so far that a substep of `duration` [s] is stable, and no further.
     pub(crate) fn soften_for(&mut self, duration: f64) {
-        let ratio = self.longest_substep() / duration;
-        if ratio >= 1.0 {
+        let size = f64::from(self.grid.voxel_size());
+        let ratio = 0.6 * size / self.blend.fastest_wave / duration;
+        let softening = (ratio * ratio).min(1.0);
+        if softening == self.softening {
             return;
         }
-        self.softening *= ratio * ratio;
-        let elasticities = elasticities(&self.materials, self.softening);
-        self.blocks = Blocks::new(self.law, &elasticities, self.grid.voxel_size());
-        self.seat_all_elements();
+        self.softening = softening;
+        let elasticities = elasticities(&self.materials, softening);
+        self.blocks.set_elasticities(&elasticities);
+    }
+
+    /// Speed of the fastest pressure wave in it [m/s], softened or not.
+    pub(crate) fn fastest_wave(&self) -> f64 {
+        self.blend.fastest_wave
     }
 
     /// Adds elastic forces and gravity over `duration` [s] to the velocities.
@@ -539,11 +544,6 @@ impl<D: Dim> Body<D> {
         let octant = D::CORNERS - 1 - (side << axis);
         debug_assert_eq!(voxel_around::<D>(at, octant), voxel);
         self.sharing.is_closed(at, octant, axis)
-    }
-
-    fn seat_all_elements(&mut self) {
-        let everything: Vec<u32> = self.mesh.elements().map(|(id, _)| id).collect();
-        self.blocks.update(&self.mesh, &self.grid, &[], &everything);
     }
 }
 

@@ -15,7 +15,6 @@
 use crate::body::Body;
 use crate::dim::{Dim, Point};
 use crate::front::{Cut, Front};
-use crate::material::Material;
 use crate::solve::Row;
 use crate::vector::{dot, length, minus, plus, scaled};
 
@@ -102,9 +101,7 @@ pub fn failures<D: Dim>(body: &mut Body<D>, rests: &mut Rests, duration: f32) ->
     }
     body.damage = damage;
     found.sort_by(|a, b| b.excess.total_cmp(&a.excess).then(a.node.cmp(&b.node)));
-    let waves = body.materials().iter().map(Material::wave_speed);
-    let wave = waves.fold(0.0, f64::max);
-    let rest = (REST_VOXELS * f64::from(size) / wave) as f32;
+    let rest = (REST_VOXELS * f64::from(size) / body.fastest_wave()) as f32;
     let chosen = undisturbed(found);
     let resting = chosen.iter().map(|failure| (failure.at, rest));
     rests.points.extend(resting);

@@ -251,10 +251,7 @@ impl<D: Dim> Blocks<D> {
     pub fn new(law: Law, elasticities: &[Elasticity], voxel_size: f32) -> Self {
         Self {
             law,
-            moduli: elasticities
-                .iter()
-                .map(|&elasticity| Moduli::of::<D>(elasticity))
-                .collect(),
+            moduli: moduli::<D>(elasticities),
             voxel_size,
             blocks: Vec::new(),
             open: BTreeMap::new(),
@@ -269,6 +266,11 @@ impl<D: Dim> Blocks<D> {
             desk: None,
             dim: PhantomData,
         }
+    }
+
+    /// Other stiffnesses for the materials, in their order.
+    pub fn set_elasticities(&mut self, elasticities: &[Elasticity]) {
+        self.moduli = moduli::<D>(elasticities);
     }
 
     /// Follows a remodelling: takes out `removed` elements and puts in, or in other blocks, those
@@ -634,6 +636,11 @@ impl<D: Dim> Blocks<D> {
     }
 }
 
+fn moduli<D: Dim>(elasticities: &[Elasticity]) -> Vec<Moduli> {
+    let elasticities = elasticities.iter().copied();
+    elasticities.map(Moduli::of::<D>).collect()
+}
+
 /// An element on its way into a block.
 struct Newcomer<'a> {
     id: u32,
@@ -731,6 +738,18 @@ mod tests {
             let bits = |blocks: &Blocks<D>| blocks.force_on(id).map(f32::to_bits);
             assert_eq!(bits(&wide), bits(&portable));
         }
+        let nodes: Vec<u32> = mesh.nodes().map(|(id, _)| id).collect();
+        let lightness: Vec<f32> = (0..position.len()).map(|id| (id % 7) as f32).collect();
+        let gravity = [0.0, -9.81, 0.0, 0.0];
+        let mut velocities = [position.clone(), position];
+        let [by_best, by_portable] = &mut velocities;
+        wide.kick(&nodes, &lightness, 0.001, gravity, by_best);
+        portable.kick_by::<Portable>(&nodes, &lightness, 0.001, gravity, by_portable);
+        let [by_best, by_portable] = velocities.map(|rows| {
+            let bits = rows.iter().flatten().map(|value| value.to_bits());
+            bits.collect::<Vec<u32>>()
+        });
+        assert_eq!(by_best, by_portable);
     }
 
     #[test]

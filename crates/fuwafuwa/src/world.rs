@@ -28,8 +28,8 @@ const CRUMB_SPIN_LOSS: f32 = 20.0;
 /// Slow pieces that touch something lose their last motion at this rate [1/s], below this speed [m/s].
 const SETTLING: f32 = 2.0;
 const SETTLING_SPEED: f64 = 0.1;
-/// A piece with a node faster than this [m/s] has gone out of hand. Bodies of voxels narrower than a
-/// metre cannot: no node moves by more than a voxel in a substep.
+/// A piece with a node faster than this [m/s] has gone out of hand. Small voxels cannot: no node
+/// moves by more than a voxel in a substep.
 const TOP_SPEED: f32 = 1000.0;
 
 /// What holds for the whole world.
@@ -164,7 +164,11 @@ impl<D: Dim> World<D> {
         self.bodies.push(body);
         self.rests.push(Rests::default());
         self.nearby.expire();
-        self.bodies.len() - 1
+        let place = self.bodies.len() - 1;
+        // It may have fallen asleep elsewhere.
+        let pieces = self.pieces_of(place);
+        self.wake(&pieces);
+        place
     }
 
     /// Puts a rigid shape into the world; returns its place among the obstacles. In the plane its

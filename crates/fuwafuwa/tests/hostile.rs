@@ -326,6 +326,42 @@ fn what_leant_on_what_is_removed_falls() {
 }
 
 #[test]
+fn a_sleeper_that_is_put_back_elsewhere_falls() {
+    let mut world = sleeper();
+    let body = world.remove_body(0).moved([0.0, 3.0, 0.0]);
+    world.add_body(body);
+    step(&mut world, 30);
+    let view = world.bodies()[0].piece_views()[0];
+    assert!(!view.asleep && view.low[1] < 2.5, "{view:?}");
+}
+
+#[test]
+fn a_body_is_as_stiff_as_the_world_that_it_is_in_bears() {
+    let stiff = Material {
+        elasticity: fuwafuwa::Elasticity {
+            young: 1e6,
+            poisson: 0.3,
+        },
+        ..Material::default()
+    };
+    let world_of = |most_substeps| {
+        let settings = Settings {
+            most_substeps,
+            ..Settings::default()
+        };
+        World::<Dim2>::new(settings).unwrap()
+    };
+    let (mut poor, mut rich) = (world_of(16), world_of(1024));
+    poor.add_body(Body::new(VoxelGrid::ball(16, 1.0).unwrap(), &[stiff]).unwrap());
+    let softening = poor.bodies()[0].softening();
+    assert!(softening < 0.2);
+    rich.add_body(poor.remove_body(0));
+    assert_eq!(rich.bodies()[0].softening(), 1.0);
+    poor.add_body(rich.remove_body(0));
+    assert_eq!(poor.bodies()[0].softening(), softening);
+}
+
+#[test]
 fn things_leave_and_the_rest_move_up() {
     let mut world = world::<Dim2>();
     for place in 0..3u8 {
@@ -381,9 +417,16 @@ fn a_material_that_no_voxel_has_changes_nothing() {
     };
     let hash_with = |materials: &[Material]| {
         let mut world = world::<Dim2>();
-        world.add_body(Body::new(VoxelGrid::ball(12, 1.0).unwrap(), materials).unwrap());
+        world.add_body(Body::new(VoxelGrid::ball(16, 1.0).unwrap(), materials).unwrap());
         assert_eq!(world.bodies()[0].softening(), 1.0);
-        step(&mut world, 20);
+        let hand = Manipulator::new([0.5, 1.1, 0.0], 0.1).driven(Drive::Kinematic);
+        let hand = world.add_manipulator(hand).unwrap();
+        let mut released = 0;
+        for tick in 0..40u8 {
+            world.set_goal(hand, [0.5, 1.1 - 0.03 * f32::from(tick), 0.0]);
+            released += world.step().released;
+        }
+        assert!(released > 10, "it does not tear");
         world.hash()
     };
     let usual = Material::default();

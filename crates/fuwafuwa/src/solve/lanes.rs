@@ -158,7 +158,8 @@ mod wide {
     ///
     /// SAFETY of every function here: they need AVX, and are only reached from
     /// `evaluate_group_wide` and `kick_wide` in `solve`, which are called after the machine was asked for
-    /// AVX2. Loads and stores go through references to arrays of the right length and need no alignment.
+    /// AVX2. Loads and stores go through references to arrays of the right length and need no alignment;
+    /// rows are read unchecked only at places that `check` let pass.
     #[derive(Copy, Clone)]
     pub struct Wide(__m256);
 
@@ -266,7 +267,8 @@ mod wide {
             // An opaque load: of a plain one the compiler would take the places out of the
             // register again, one by one, where loading each is cheaper.
             let wanted = _mm256_lddqu_si256(places.as_ptr().cast());
-            let last = _mm256_set1_epi32(rows.len() as i32 - 1);
+            // Of more rows than a place can name the low bits alone: a smaller number, or all.
+            let last = _mm256_set1_epi32((rows.len() as i32).wrapping_sub(1));
             let greatest = _mm256_max_epu32(wanted, last);
             let within = _mm256_cmpeq_epi32(greatest, last);
             assert!(!rows.is_empty() && _mm256_movemask_epi8(within) == -1);
@@ -297,4 +299,39 @@ mod wide {
     wide_operator!(Sub, sub, _mm256_sub_ps);
     wide_operator!(Mul, mul, _mm256_mul_ps);
     wide_operator!(Div, div, _mm256_div_ps);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::panic::catch_unwind;
+
+    /// Whether rows at these places are refused, by a gather and by a sum.
+    fn refuses<L: Lanes>(rows: &[Row], places: [u32; LANES]) -> [bool; 2] {
+        let gather = catch_unwind(|| L::gather(rows, &places).len());
+        let sum = catch_unwind(|| L::sum(rows, &places, LANES));
+        [gather.is_err(), sum.is_err()]
+    }
+
+    fn check<L: Lanes>() {
+        let rows = [[1.0; 4]; 3];
+        for lane in 0..LANES {
+            for (place, expected) in [(0, false), (2, false), (3, true), (u32::MAX, true)] {
+                let mut places = [1; LANES];
+                places[lane] = place;
+                assert_eq!(refuses::<L>(&rows, places), [expected; 2], "{places:?}");
+            }
+        }
+        assert_eq!(refuses::<L>(&[], [0; LANES]), [true; 2]);
+        assert_eq!(refuses::<L>(&[], [u32::MAX; LANES]), [true; 2]);
+    }
+
+    #[test]
+    fn places_that_are_not_among_the_rows_are_refused() {
+        check::<Portable>();
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx2") {
+            check::<Wide>();
+        }
+    }
 }
