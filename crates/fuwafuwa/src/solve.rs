@@ -11,16 +11,14 @@
 
 mod kernel;
 mod lanes;
+mod seating;
 
 use crate::dim::Dim;
-use crate::grid::VoxelGrid;
 use crate::law::{Elasticity, Law};
-use crate::mesh::{Element, Mesh};
-use crate::stencil::Stencil;
 use crate::vector::{plus, scaled};
 use kernel::{
-    Eight, Mixed, Moduli, Same, Scratch, Seats, forces, gradient, numbers, numbers_a_node,
-    plain_forces, plain_gradient, stress,
+    Eight, Mixed, Moduli, Same, Scratch, Seats, forces, gradient, plain_forces, plain_gradient,
+    stress,
 };
 use lanes::{Lanes, Portable};
 use std::collections::{BTreeMap, BTreeSet};
@@ -273,44 +271,6 @@ impl<D: Dim> Blocks<D> {
         self.moduli = moduli::<D>(elasticities);
     }
 
-    /// Follows a remodelling: takes out `removed` elements and puts in, or in other blocks, those
-    /// that were `seated`. Costs by what changed.
-    pub fn update(&mut self, mesh: &Mesh<D>, grid: &VoxelGrid<D>, removed: &[u32], seated: &[u32]) {
-        let rotations: Vec<[f32; 4]> = seated.iter().map(|&id| self.rotation_of(id)).collect();
-        for &id in removed.iter().chain(seated) {
-            self.take_out(id);
-        }
-        let mut classes: BTreeMap<(u8, u32), Vec<Newcomer>> = BTreeMap::new();
-        for (&id, rotation) in seated.iter().zip(rotations) {
-            let element = mesh.element(id).expect("seated elements are alive");
-            let material = grid.material(mesh.first_voxel(element));
-            let class = classes.entry((material, element.stencil)).or_default();
-            class.push(Newcomer {
-                id,
-                element,
-                rotation,
-            });
-        }
-        for (&(material, class), newcomers) in &classes {
-            let stencil = mesh.stencil(newcomers[0].element);
-            self.put_in(material, class, stencil, newcomers);
-        }
-        self.slots.resize(mesh.node_capacity(), [0; 8]);
-        let elements = seated.iter().filter_map(|&id| mesh.element(id));
-        let mut touched: Vec<u32> = elements
-            .flat_map(|element| element.nodes.iter().copied())
-            .collect();
-        touched.sort_unstable();
-        touched.dedup();
-        for node in touched {
-            let mut slots = [0; 8];
-            for (place, id) in slots.iter_mut().zip(mesh.carrier_ids(node)) {
-                *place = self.slot(id, node);
-            }
-            self.slots[node as usize] = slots;
-        }
-    }
-
     /// Computes the forces of all elements that are awake, at the given node positions [m].
     pub fn evaluate(&mut self, position: &[Row]) {
         #[cfg(feature = "parallel")]
@@ -485,155 +445,6 @@ impl<D: Dim> Blocks<D> {
             _ => [0.0, 0.0, 0.0, 1.0],
         }
     }
-
-    /// The place of an element's force on a node.
-    fn slot(&self, id: u32, node: u32) -> u32 {
-        let (block, lane) = self.seats[id as usize];
-        let block = &self.blocks[block as usize];
-        let first = block.first as usize + lane as usize;
-        let mut lane_nodes = self.nodes[first..].iter().step_by(LANES);
-        let place = lane_nodes
-            .position(|&other| other == node)
-            .expect("the element carries the node");
-        (first + place * LANES) as u32
-    }
-
-    fn take_out(&mut self, id: u32) {
-        let Some(&(index, lane)) = self.seats.get(id as usize) else {
-            return;
-        };
-        if index == VACANT {
-            return;
-        }
-        self.seats[id as usize] = (VACANT, 0);
-        let block = &mut self.blocks[index as usize];
-        block.elements[lane as usize] = VACANT;
-        block.asleep |= 1 << lane;
-        let open = self.open.entry(block.home).or_default();
-        if block.elements == [VACANT; LANES] {
-            open.remove(&index);
-            let kind = (block.node_count, block.home.is_pool());
-            self.empty.entry(kind).or_default().push(index);
-        } else {
-            open.insert(index);
-        }
-    }
-
-    /// Puts elements of one class and material into blocks: into vacant lanes of the class, eight
-    /// at a time into blocks of their own, and what is left into the pool.
-    fn put_in(
-        &mut self,
-        material: u8,
-        class: u32,
-        stencil: &Stencil<D>,
-        mut newcomers: &[Newcomer],
-    ) {
-        let is_plain = stencil.is_plain() && self.law == Law::PatchExact;
-        let home = if is_plain {
-            Home::Plain(material)
-        } else {
-            Home::Class(material, class)
-        };
-        let count = stencil.slots.len() as u32;
-        let numbers = numbers_of(self.law, stencil);
-        while let Some((newcomer, rest)) = newcomers.split_first() {
-            let open = self.open.get(&home).and_then(|open| open.first().copied());
-            let index = match open {
-                Some(index) => index,
-                None if is_plain || newcomers.len() >= LANES => {
-                    let index = self.empty_block(home, count);
-                    self.blocks[index as usize].stencil = self.stencil_of(class, &numbers);
-                    index
-                }
-                None => {
-                    let pool = Home::Pool(material, count);
-                    let open = self.open.get(&pool).and_then(|open| open.first().copied());
-                    open.unwrap_or_else(|| self.empty_block(pool, count))
-                }
-            };
-            self.seat(index, newcomer, &numbers);
-            newcomers = rest;
-        }
-    }
-
-    /// A block without elements, for elements of so many nodes.
-    fn empty_block(&mut self, home: Home, count: u32) -> u32 {
-        let kind = (count, home.is_pool());
-        if let Some(index) = self.empty.get_mut(&kind).and_then(Vec::pop) {
-            self.blocks[index as usize].home = home;
-            return index;
-        }
-        let first = self.nodes.len() as u32;
-        let stencil = self.pooled.len() as u32;
-        let rows = self.nodes.len() + count as usize * LANES;
-        self.nodes.resize(rows, VACANT);
-        self.forces.resize(rows, [0.0; 4]);
-        if home.is_pool() {
-            let length = self.pooled.len() + numbers::<D>(count as usize);
-            self.pooled.resize(length, [0.0; LANES]);
-        }
-        self.blocks.push(Block {
-            home,
-            elements: [VACANT; LANES],
-            asleep: ALL_LANES,
-            inverted: 0,
-            half_size: [self.voxel_size; LANES],
-            rotation: [[0.0; LANES]; 4],
-            node_count: count,
-            first,
-            stencil,
-            numbers: numbers::<D>(count as usize) as u32,
-        });
-        self.blocks.len() as u32 - 1
-    }
-
-    /// Where the numbers of a class stand.
-    fn stencil_of(&mut self, class: u32, numbers: &[f32]) -> u32 {
-        let all = &mut self.numbers;
-        *self.stencils.entry(class).or_insert_with(|| {
-            all.extend_from_slice(numbers);
-            (all.len() - numbers.len()) as u32
-        })
-    }
-
-    /// Seats an element in a vacant lane of a block.
-    fn seat(&mut self, index: u32, newcomer: &Newcomer, numbers: &[f32]) {
-        let block = &mut self.blocks[index as usize];
-        let is_first = block.elements == [VACANT; LANES];
-        let mut vacant = (0..LANES).filter(|&lane| block.elements[lane] == VACANT);
-        let lane = vacant.next().expect("open blocks have a vacancy");
-        let is_last = vacant.next().is_none();
-        // The first in a block lends the vacant lanes its numbers: they compute something sane.
-        let lanes = if is_first { 0..LANES } else { lane..lane + 1 };
-        let half_size = 0.5 * self.voxel_size * newcomer.element.cell.width() as f32;
-        let first = block.first as usize;
-        for lane in lanes {
-            block.half_size[lane] = half_size;
-            for part in 0..4 {
-                block.rotation[part][lane] = newcomer.rotation[part];
-            }
-            for (place, &node) in newcomer.element.nodes.iter().enumerate() {
-                self.nodes[first + place * LANES + lane] = node;
-            }
-            if block.home.is_pool() {
-                let pooled = &mut self.pooled[block.stencil as usize..];
-                for (all, &number) in pooled.iter_mut().zip(numbers) {
-                    all[lane] = number;
-                }
-            }
-        }
-        block.elements[lane] = newcomer.id;
-        block.asleep &= !(1 << lane);
-        let open = self.open.entry(block.home).or_default();
-        if is_last {
-            open.remove(&index);
-        } else {
-            open.insert(index);
-        }
-        let id = newcomer.id as usize;
-        self.seats.resize(self.seats.len().max(id + 1), (VACANT, 0));
-        self.seats[id] = (index, lane as u8);
-    }
 }
 
 fn moduli<D: Dim>(elasticities: &[Elasticity]) -> Vec<Moduli> {
@@ -641,70 +452,12 @@ fn moduli<D: Dim>(elasticities: &[Elasticity]) -> Vec<Moduli> {
     elasticities.map(Moduli::of::<D>).collect()
 }
 
-/// An element on its way into a block.
-struct Newcomer<'a> {
-    id: u32,
-    element: &'a Element,
-    rotation: [f32; 4],
-}
-
-/// A stencil in single precision, as the kernel reads it.
-fn numbers_of<D: Dim>(law: Law, stencil: &Stencil<D>) -> Vec<f32> {
-    let count = stencil.slots.len();
-    let mut mean = [0.0; 3];
-    for offset in &stencil.offsets {
-        for axis in 0..3 {
-            mean[axis] += offset[axis] / count as f64;
-        }
-    }
-    let mut all = vec![0.0; numbers::<D>(count)];
-    let mut total = 0.0;
-    for k in 0..count {
-        let node = &mut all[numbers_a_node::<D>() * k..][..numbers_a_node::<D>()];
-        let w = stencil.volumes[k];
-        for axis in 0..D::N {
-            let centred = stencil.offsets[k][axis] - mean[axis];
-            total += centred * centred;
-            match law {
-                Law::PatchExact => {
-                    node[axis] = stencil.gradients[k][axis] as f32;
-                    node[D::N + axis] = (w * stencil.offsets[k][axis]) as f32;
-                }
-                Law::Endo2004 => node[axis] = centred as f32,
-            }
-        }
-        node[2 * D::N] = if law == Law::PatchExact {
-            w as f32
-        } else {
-            1.0
-        };
-    }
-    for i in 0..D::N {
-        for j in i..D::N {
-            let term =
-                |k: usize| stencil.volumes[k] * stencil.offsets[k][i] * stencil.offsets[k][j];
-            let spread: f64 = (0..count).map(term).sum();
-            all[numbers_a_node::<D>() * count + kernel::symmetric::<D>(i, j)] = spread as f32;
-        }
-    }
-    let volume = match law {
-        Law::PatchExact => stencil.volume,
-        Law::Endo2004 => count as f64,
-    };
-    let last = all.len() - 1;
-    all[last - 1] = (1.0 / volume) as f32;
-    let stiffness = match law {
-        Law::PatchExact => stencil.hourglass,
-        Law::Endo2004 => stencil.volume * D::N as f64 / total,
-    };
-    all[last] = stiffness as f32;
-    all
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::dim::{Dim2, Dim3};
+    use crate::grid::VoxelGrid;
+    use crate::mesh::Mesh;
     use crate::pyramid::{Grading, Pyramid};
     use crate::sharing::Sharing;
 
