@@ -1,13 +1,14 @@
 //! Everything together, and time: [`World::step`] is the program.
 
-use crate::blade::{Blade, CutReport};
+mod contents;
+
 use crate::body::Body;
 use crate::contact::{Contacts, Hit};
 use crate::damping::{PieceMotion, Slowing, motions, slow_down};
 use crate::dim::{Dim, Point};
 use crate::event::{Event, StepReport, With};
 use crate::fracture::{Failure, Rests, failures};
-use crate::manipulator::{BadManipulator, Manipulator, is_place};
+use crate::manipulator::{BadManipulator, Manipulator};
 use crate::rest::{fall_asleep, wake};
 use crate::shape::{BadShape, Shape, Vector};
 use crate::solve::Row;
@@ -156,68 +157,6 @@ impl<D: Dim> World<D> {
         })
     }
 
-    /// Puts a body into the world; returns its place among the bodies. A body that is too stiff
-    /// for the most substeps allowed is softened: see [`Body::softening`].
-    pub fn add_body(&mut self, mut body: Body<D>) -> usize {
-        let shortest = f64::from(TICK) / f64::from(self.settings.most_substeps);
-        body.soften_for(shortest);
-        self.bodies.push(body);
-        self.rests.push(Rests::default());
-        self.nearby.expire();
-        let place = self.bodies.len() - 1;
-        // It may have fallen asleep elsewhere.
-        let pieces = self.pieces_of(place);
-        self.wake(&pieces);
-        place
-    }
-
-    /// Puts a rigid shape into the world; returns its place among the obstacles. In the plane its
-    /// third coordinates do not count.
-    ///
-    /// # Errors
-    /// [`Refused`] when the shape is not one, or friction is negative or not finite.
-    pub fn add_obstacle(&mut self, shape: Shape, friction: f32) -> Result<usize, Refused> {
-        let shape = shape.seen_in::<D>();
-        shape.check().map_err(Refused::Shape)?;
-        if !(0.0..=f32::MAX).contains(&friction) {
-            return Err(Refused::Friction(friction));
-        }
-        self.obstacles.push(Obstacle { shape, friction });
-        // Places of the hands among the colliders move up.
-        self.nearby.forget_node_pairs();
-        Ok(self.obstacles.len() - 1)
-    }
-
-    /// Puts a hand into the world; returns its place among the manipulators.
-    ///
-    /// # Errors
-    /// [`Refused::Manipulator`] when a field of it is out of range.
-    pub fn add_manipulator(&mut self, mut manipulator: Manipulator) -> Result<usize, Refused> {
-        manipulator.check().map_err(Refused::Manipulator)?;
-        let hand = &mut manipulator;
-        for vector in [&mut hand.position, &mut hand.goal, &mut hand.goal_before] {
-            vector[D::N..].fill(0.0);
-        }
-        self.manipulators.push(manipulator);
-        self.nearby.expire();
-        Ok(self.manipulators.len() - 1)
-    }
-
-    /// Sends a hand to a goal [m], where it is to be at the end of the next tick. Returns false,
-    /// and leaves the goal as it is, when that is no place or one beyond
-    /// [`FARTHEST`](crate::manipulator::FARTHEST).
-    ///
-    /// # Panics
-    /// When there is no such manipulator.
-    pub fn set_goal(&mut self, manipulator: usize, goal: Vector) -> bool {
-        let good = is_place(goal);
-        if good {
-            let hand = &mut self.manipulators[manipulator];
-            hand.goal[..D::N].copy_from_slice(&goal[..D::N]);
-        }
-        good
-    }
-
     /// Lets a tick pass.
     pub fn step(&mut self) -> StepReport {
         self.events.clear();
@@ -247,144 +186,12 @@ impl<D: Dim> World<D> {
         report
     }
 
-    /// Cuts a body along a blade at once, whatever it bears; returns how many nodes were released.
-    /// They and what came off stand among the events until the next tick.
-    ///
-    /// # Panics
-    /// When there is no such body.
-    pub fn cut(&mut self, body: usize, blade: &Blade) -> usize {
-        let pieces = self.pieces_of(body);
-        self.wake(&pieces);
-        let cut = self.bodies[body].cut(blade);
-        let CutReport { released, parted } = cut.expect("a release leaves the mesh whole");
-        let (body, energy) = (body as u32, 0.0);
-        let places = released.iter();
-        let releases = places.map(|&at| Event::Released { body, at, energy });
-        self.events.extend(releases);
-        let parts = parted.iter().map(|&piece| Event::Parted { body, piece });
-        self.events.extend(parts);
-        self.nearby.expire();
-        released.len()
-    }
-
-    /// Its settings.
-    pub fn settings(&self) -> &Settings {
-        &self.settings
-    }
-
-    /// Its bodies.
-    pub fn bodies(&self) -> &[Body<D>] {
-        &self.bodies
-    }
-
-    /// A body, to be changed from outside: held, placed, cut. All of it wakes. Another body in its
-    /// place would not be softened: remove the one and add the other.
-    ///
-    /// # Panics
-    /// When there is no such body.
-    pub fn body_mut(&mut self, body: usize) -> &mut Body<D> {
-        let pieces = self.pieces_of(body);
-        self.wake(&pieces);
-        self.nearby.expire();
-        &mut self.bodies[body]
-    }
-
-    /// Takes a body out of the world; the places of those after it move down by one. Everything
-    /// wakes: it may have leant on it.
-    ///
-    /// # Panics
-    /// When there is no such body.
-    pub fn remove_body(&mut self, body: usize) -> Body<D> {
-        self.rests.remove(body);
-        let removed = self.bodies.remove(body);
-        self.start_contacts_anew();
-        removed
-    }
-
-    /// Takes a rigid shape out of the world, as [`World::remove_body`].
-    ///
-    /// # Panics
-    /// When there is no such obstacle.
-    pub fn remove_obstacle(&mut self, obstacle: usize) -> Obstacle {
-        let removed = self.obstacles.remove(obstacle);
-        self.start_contacts_anew();
-        removed
-    }
-
-    /// Takes a hand out of the world, as [`World::remove_body`].
-    ///
-    /// # Panics
-    /// When there is no such manipulator.
-    pub fn remove_manipulator(&mut self, manipulator: usize) -> Manipulator {
-        let removed = self.manipulators.remove(manipulator);
-        self.start_contacts_anew();
-        removed
-    }
-
-    /// The rigid shapes.
-    pub fn obstacles(&self) -> &[Obstacle] {
-        &self.obstacles
-    }
-
-    /// The hands.
-    pub fn manipulators(&self) -> &[Manipulator] {
-        &self.manipulators
-    }
-
-    /// What happened in the last tick.
-    pub fn events(&self) -> &[Event] {
-        &self.events
-    }
-
-    /// Ticks since the beginning.
-    pub fn ticks(&self) -> u64 {
-        self.ticks
-    }
-
     /// Substeps that the stiffest body asks for: at least 16, at most what the settings allow.
     pub fn substeps(&self) -> u32 {
         let longest = self.bodies.iter().map(Body::longest_substep);
         let longest = longest.fold(f64::INFINITY, f64::min);
         let asked = (f64::from(TICK) / longest - 1e-6).ceil() as u32;
         asked.clamp(LEAST_SUBSTEPS, self.settings.most_substeps)
-    }
-
-    /// A number that two worlds share only when every node and hand of them is in the same state,
-    /// to the last bit [FNV-1a].
-    pub fn hash(&self) -> u64 {
-        let mut hash = 0xcbf2_9ce4_8422_2325u64;
-        let mut add = |bits: u64| hash = (hash ^ bits).wrapping_mul(0x0100_0000_01b3);
-        add(self.ticks);
-        for body in &self.bodies {
-            for (id, _) in body.mesh.nodes() {
-                let (at, speed) = (body.position[id as usize], body.velocity[id as usize]);
-                add(u64::from(body.pieces.of_node(id)));
-                for value in at.iter().chain(&speed) {
-                    add(u64::from(value.to_bits()));
-                }
-            }
-        }
-        for hand in &self.manipulators {
-            for value in hand.position.iter().chain(&hand.velocity) {
-                add(u64::from(value.to_bits()));
-            }
-        }
-        hash
-    }
-
-    /// All pieces of a body.
-    fn pieces_of(&self, body: usize) -> Vec<Hit> {
-        let pieces = 0..self.bodies[body].pieces.list.len() as u32;
-        pieces.map(|piece| (body as u32, piece)).collect()
-    }
-
-    /// Forgets what touched what, for things have other places now, and wakes all.
-    fn start_contacts_anew(&mut self) {
-        self.nearby = Nearby::default();
-        let all: Vec<Hit> = (0..self.bodies.len())
-            .flat_map(|body| self.pieces_of(body))
-            .collect();
-        self.wake(&all);
     }
 
     fn start_tick(&mut self) {
