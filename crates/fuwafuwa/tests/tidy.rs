@@ -56,6 +56,7 @@ fn used(source: &str) -> Vec<String> {
         .filter(|line| !line.trim_start().starts_with("//"));
     code.flat_map(|line| line.split("crate::").skip(1))
         .map(|rest| rest.chars().take_while(|&c| is_word(c)).collect())
+        .inspect(|name: &String| assert!(!name.is_empty(), "name each module: {source}"))
         .collect()
 }
 

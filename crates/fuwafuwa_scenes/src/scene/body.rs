@@ -5,7 +5,7 @@ use super::grid;
 use super::rigid::{BallText, BoxText, CapsuleText, HalfSpaceText};
 use fuwafuwa::law::{Elasticity, Law};
 use fuwafuwa::pyramid::Grading;
-use fuwafuwa::{Blade, Body, BodyError, Dim, Material, VoxelGrid};
+use fuwafuwa::{Blade, Body, BodyError, Dim, Material};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -163,7 +163,7 @@ impl BodyText {
     pub(super) fn build<D: Dim>(&self, materials: &[Material]) -> Result<Body<D>, Wrong> {
         require_vector(D::N, "at", self.at)?;
         require_vector(D::N, "velocity", self.velocity)?;
-        let (grid, materials) = of_its_own(grid::of(self)?, materials)?;
+        let grid = grid::of(self)?;
         self.check_diced(grid.voxel_size())?;
         let law = match self.paper_law {
             true => Law::Endo2004,
@@ -174,8 +174,15 @@ impl BodyText {
             false => Grading::Graded,
         };
         let broken = |reason: String| Wrong::new("shape", reason);
-        let body = Body::with(grid, &materials, law, grading);
-        let mut body = body.map_err(|error| broken(error.to_string()))?;
+        let body = Body::with(grid, materials, law, grading);
+        let mut body = body.map_err(|error| match error {
+            BodyError::MissingMaterial { number } => {
+                let count = materials.len();
+                let reason = format!("voxels are of material {number}, the scene has 1 to {count}");
+                Wrong::new("material", reason)
+            }
+            error => broken(error.to_string()),
+        })?;
         if self.crumbled {
             body.crumble().map_err(|error| broken(error.to_string()))?;
         }
@@ -193,34 +200,6 @@ impl BodyText {
         let expected = format!("expected a voxel, {voxel_size} m, or more, found {spacing}");
         require(spacing >= voxel_size, "diced", expected)
     }
-}
-
-/// A grid with those materials alone that are in it, numbered anew: the engine takes the substep of a
-/// body from the stiffest material that it is given, and the friction of its skin from the first.
-fn of_its_own<D: Dim>(
-    grid: VoxelGrid<D>,
-    materials: &[Material],
-) -> Result<(VoxelGrid<D>, Vec<Material>), Wrong> {
-    let mut is_used = [false; 256];
-    for voxel in grid.voxels() {
-        is_used[usize::from(grid.material(voxel))] = true;
-    }
-    let (mut numbers, mut own) = ([0; 256], Vec::new());
-    for number in (1..256).filter(|&number| is_used[number]) {
-        let material = materials.get(number - 1).ok_or_else(|| {
-            let count = materials.len();
-            let reason = format!("voxels are of material {number}, the scene has 1 to {count}");
-            Wrong::new("material", reason)
-        })?;
-        own.push(*material);
-        numbers[number] = own.len() as u8;
-    }
-    let size = grid.size().map(|extent| extent as usize);
-    let grid = VoxelGrid::from_fn(size, grid.voxel_size(), |voxel| {
-        numbers[usize::from(grid.material(voxel))]
-    });
-    let grid = grid.expect("only the numbers of materials are others");
-    Ok((grid, own))
 }
 
 /// Planes a distance apart on every axis, through the whole body.
