@@ -2,7 +2,9 @@
 //!
 //! `cargo run --release -p fuwafuwa --example tear`
 
-use fuwafuwa::{Body, Dim2, Event, Manipulator, Material, Settings, Shape, VoxelGrid, World};
+use fuwafuwa::{
+    Body, Dim2, Drive, Event, Manipulator, Material, Settings, Shape, VoxelGrid, World,
+};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut world = World::<Dim2>::new(Settings {
@@ -15,7 +17,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         VoxelGrid::ball(64, 1.0)?,
         &[Material::default()],
     )?);
-    let hand = world.add_manipulator(Manipulator::new([-0.2, 0.5, 0.0], 0.1))?;
+    // Stronger than the usual hand, which gets stuck halfway.
+    let strong = Drive::Coupled {
+        mass: 2.0,
+        stiffness: 10_000.0,
+        damping: 0.9,
+        limit: f32::INFINITY,
+    };
+    let hand = world.add_manipulator(Manipulator::new([-0.2, 0.5, 0.0], 0.1).driven(strong))?;
     for tick in 0..120u8 {
         world.set_goal(hand, [-0.2 + 0.012 * f32::from(tick), 0.5, 0.0]);
         let report = world.step();

@@ -5,6 +5,13 @@
 //! → [`stencil`] one class of element → [`mesh`] elements and nodes → [`law`] the forces of one element
 //! → [`solve`] of all of them → [`body`] what moves and tears.
 //! Two and three dimensions are one program: [`dim`] holds all that differs.
+//!
+//! To use it, begin with [`World`], [`Body`] and [`VoxelGrid`]; `examples` has whole programs.
+//!
+//! # Features
+//! None is on unless asked for.
+//! - `serde`: saving and loading worlds, in the module `snapshot`
+//! - `parallel`: the forces of large bodies on several threads, to the same bits
 // One exception, in `solve`: calling code compiled for AVX2 after asking for AVX2.
 #![deny(unsafe_code)]
 #![warn(missing_docs)]

@@ -43,7 +43,7 @@ pub enum RecordingError {
     Text {
         /// The file.
         name: String,
-        /// Line, field, and what was expected.
+        /// The field, and what was expected.
         reason: String,
     },
     /// It was made by another version of this library.
@@ -79,7 +79,8 @@ impl Recording {
         let recording: Self = match toml::from_str(&text) {
             Ok(recording) => recording,
             Err(error) => {
-                let reason = error.to_string().trim_end().into();
+                // Without the line itself, in which the goals of hours may stand.
+                let reason = format!("this is no recording: {}", error.message());
                 return Err(RecordingError::Text { name, reason });
             }
         };
