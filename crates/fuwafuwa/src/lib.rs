@@ -3,7 +3,8 @@
 //! The way through the library, each module using only those above it:
 //! [`grid`] which voxels are solid → [`sharing`] what is connected → [`pyramid`] which cells exist
 //! → [`stencil`] one class of element → [`mesh`] elements and nodes → [`law`] the forces of one element
-//! → [`solve`] of all of them → [`body`] what moves and tears.
+//! → [`solve`] of all of them → [`body`] what moves and tears → `fracture` and `release` where and how
+//! → `touch` and `contact` what meets → [`world`] all of it, and time.
 //! Two and three dimensions are one program: [`dim`] holds all that differs.
 //!
 //! To use it, begin with [`World`], [`Body`] and [`VoxelGrid`]; `examples` has whole programs.
