@@ -28,7 +28,9 @@ pub struct Material {
 }
 
 impl Default for Material {
-    /// A soft body for a game: Y = 5000 Pa, ν = 0.3, 100 kg/m³, torn by a firm push.
+    /// A soft body for a game: Y = 5000 Pa, ν = 0.3, 100 kg/m³. A body 1 m across is torn by a thin
+    /// hand that pushes with some 1000 N, and in space cracked by a fall of a few decimetres: what
+    /// has to bear more wants more strength.
     fn default() -> Self {
         Self {
             elasticity: Elasticity {
