@@ -33,7 +33,8 @@ pub struct PieceMotion {
 
 impl PieceMotion {
     /// Adds a node at x from `origin`, still without regard to the centre.
-    fn add(&mut self, x: [f64; 3], velocity: [f64; 3], mass: f64) {
+    #[inline(always)]
+    fn add<D: Dim>(&mut self, x: [f64; 3], velocity: [f64; 3], mass: f64) {
         let (moment, impulse) = (scaled(x, mass), scaled(velocity, mass));
         self.mass += mass;
         self.nodes += 1;
@@ -41,8 +42,10 @@ impl PieceMotion {
         self.velocity = plus(self.velocity, impulse);
         self.speed_squared += dot(impulse, velocity);
         self.angular = plus(self.angular, cross(x, impulse));
-        for i in 0..3 {
-            self.spread[i] = plus(self.spread[i], scaled(x, moment[i]));
+        for i in 0..D::N {
+            for j in i..D::N {
+                self.spread[i][j] += moment[i] * x[j];
+            }
         }
     }
 
@@ -54,8 +57,10 @@ impl PieceMotion {
         self.speed_squared *= share;
         self.angular = minus(self.angular, cross(from, impulse));
         for i in 0..3 {
-            let moment = scaled(from, self.mass * from[i]);
-            self.spread[i] = minus(self.spread[i], moment);
+            for j in i..3 {
+                self.spread[i][j] -= self.mass * from[i] * from[j];
+                self.spread[j][i] = self.spread[i][j];
+            }
         }
         self.centre = plus(origin, from);
     }
@@ -81,7 +86,7 @@ pub fn motions<D: Dim>(body: &Body<D>) -> Vec<PieceMotion> {
         if motion.nodes == 0 {
             *origin = x;
         }
-        motion.add(minus(x, *origin), wide(velocity), f64::from(mass));
+        motion.add::<D>(minus(x, *origin), wide(velocity), f64::from(mass));
         motion.is_driven |= body.lightness[id as usize] == 0.0 && velocity != [0.0; 4];
     }
     for (motion, origin) in motions.iter_mut().zip(origins) {
@@ -144,6 +149,7 @@ pub fn slow_down<D: Dim>(body: &mut Body<D>, motions: &[PieceMotion], slowing: &
     }
 }
 
+#[inline(always)]
 fn wide(row: [f32; 4]) -> [f64; 3] {
     [row[0], row[1], row[2]].map(f64::from)
 }
