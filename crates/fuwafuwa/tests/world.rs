@@ -273,3 +273,46 @@ fn what_is_fast_does_not_pass_through() {
     check_no_tunnelling::<Dim2>(16);
     check_no_tunnelling::<Dim3>(10);
 }
+
+/// A stick is driven 960 times a second: what it is to push back with must not jitter while the
+/// hand rests on a body, nor jump from one substep to the next while it pushes in.
+fn check_smooth_reaction<D: Dim>(n: usize) {
+    let mut world = World::<D>::new(Settings::default()).unwrap();
+    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    world.add_obstacle(floor, 0.5).unwrap();
+    world.add_body(ball::<D>(n, unbreakable()));
+    let z = if D::N == 3 { 0.5 } else { 0.0 };
+    let hand = Manipulator::new([0.5, 1.2, z], 0.15);
+    let hand = world.add_manipulator(hand).unwrap();
+    let (mut steps, mut pressed) = (Vec::new(), Vec::new());
+    for tick in 0..480u16 {
+        let down = 0.5 * f32::from(tick.min(120)) / 120.0;
+        world.set_goal(hand, [0.5, 1.2 - down, z]);
+        world.step();
+        let felt = world.manipulators()[hand].reactions();
+        let up = felt.iter().map(|reaction| reaction.coupling[1]);
+        // The start is a jerk of the goal, and felt as one.
+        if (1..120).contains(&tick) {
+            steps.extend(up);
+        } else if tick >= 420 {
+            pressed.extend(up);
+        }
+    }
+    let mean = pressed.iter().sum::<f32>() / pressed.len() as f32;
+    assert!(mean.abs() > 20.0, "it is pushed back: {mean} N");
+    let furthest = pressed.iter().map(|up| (up - mean).abs());
+    let furthest = furthest.fold(0.0, f32::max);
+    assert!(
+        furthest < 0.02 * mean.abs(),
+        "at rest: {furthest} of {mean} N"
+    );
+    let jump = steps.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let jump = jump.fold(0.0, f32::max);
+    assert!(jump < 0.1 * mean.abs(), "pushing in: {jump} of {mean} N");
+}
+
+#[test]
+fn what_a_hand_feels_is_smooth() {
+    check_smooth_reaction::<Dim2>(24);
+    check_smooth_reaction::<Dim3>(12);
+}
