@@ -10,8 +10,8 @@ use crate::momentum::{Momentum, RoughMotion};
 use crate::piece::Pieces;
 use crate::pyramid::{Grading, Pyramid};
 use crate::sharing::Sharing;
-use crate::solve::{Blocks, Row};
-use crate::vector::{dot, minus, plus, scaled};
+use crate::solve::{Blocks, Kick, Row};
+use crate::vector::{as_row, dot, minus, plus, scaled, three};
 
 /// One soft thing, whole or in pieces.
 #[derive(Clone, Debug)]
@@ -120,7 +120,7 @@ impl<D: Dim> Body<D> {
         body.make_room();
         for (id, node) in body.mesh.nodes() {
             let at = node.at.map(|k| k as f32 * body.grid.voxel_size());
-            body.position[id as usize] = [at[0], at[1], at[2], 0.0];
+            body.position[id as usize] = as_row(at);
         }
         body.ahead.clone_from(&body.position);
         let elements: Vec<u32> = body.mesh.elements().map(|(id, _)| id).collect();
@@ -331,11 +331,15 @@ impl<D: Dim> Body<D> {
     pub(crate) fn push(&mut self, duration: f32, gravity: [f32; 3]) {
         self.refresh_awake();
         self.blocks.evaluate(&self.ahead);
-        let mut pull = [gravity[0], gravity[1], gravity[2], 0.0];
-        pull[D::N..].fill(0.0);
-        let velocity = &mut self.velocity;
-        self.blocks
-            .kick(&self.awake, &self.lightness, duration, pull, velocity);
+        let mut gravity = as_row(gravity);
+        gravity[D::N..].fill(0.0);
+        let kick = Kick {
+            nodes: &self.awake,
+            lightness: &self.lightness,
+            duration,
+            gravity,
+        };
+        self.blocks.kick(&kick, &mut self.velocity);
     }
 
     /// Moves every awake node by its velocity, and looks `lead` seconds ahead for the next forces,
@@ -601,8 +605,4 @@ fn root(of: f64, order: usize) -> f64 {
 
 fn is_finite(row: Row) -> bool {
     row.iter().all(|k| k.is_finite())
-}
-
-fn three(row: Row) -> [f32; 3] {
-    [row[0], row[1], row[2]]
 }

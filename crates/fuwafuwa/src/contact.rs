@@ -14,7 +14,7 @@ use crate::dim::Dim;
 use crate::manipulator::Manipulator;
 use crate::solve::Row;
 use crate::touch::{Collider, Impulse, MARGIN, Nearby, Skin, Skins};
-use crate::vector::{minus, scaled};
+use crate::vector::{as_row, minus, scaled, three};
 use motion::Motion;
 use row::{Contact, inner};
 
@@ -106,8 +106,8 @@ impl Contacts {
             let collider = &colliders[pair.collider as usize];
             let node = pair.node as usize;
             let at = body.position[node];
-            let (gap, normal) = collider.shape.distance([at[0], at[1], at[2]]);
-            let normal = [normal[0], normal[1], normal[2], 0.0];
+            let (gap, normal) = collider.shape.distance(three(at));
+            let normal = as_row(normal);
             let relative = minus(body.velocity[node], collider.velocity);
             let size = body.grid.voxel_size();
             if !is_close(gap, inner::<D>(relative, normal), size, duration) {
@@ -197,7 +197,7 @@ impl Contacts {
         for (index, hand) in hands.iter().enumerate() {
             let mut add = |gap: f32, normal: [f32; 3], lightness: f32, other: Option<usize>| {
                 if lightness > 0.0 && gap < hand.radius {
-                    let normal = [normal[0], normal[1], normal[2], 0.0];
+                    let normal = as_row(normal);
                     let friction = hand.friction;
                     let contact = Contact::new(normal, gap, duration, 1.0 / lightness, friction);
                     let hand = index;
@@ -253,10 +253,10 @@ impl Contacts {
                 motion.push_node(row, hands, change, duration);
             });
             for_each(&mut self.hands, backwards, |row| {
-                let own = four(hands[row.hand].velocity);
+                let own = as_row(hands[row.hand].velocity);
                 let other = row
                     .other
-                    .map_or([0.0; 4], |other| four(hands[other].velocity));
+                    .map_or([0.0; 4], |other| as_row(hands[other].velocity));
                 let change = row.contact.solve::<D>(minus(own, other));
                 push_hand(&mut hands[row.hand], change, duration);
                 if let Some(other) = row.other {
@@ -360,8 +360,4 @@ fn push_hand(hand: &mut Manipulator, impulse: Row, duration: f32) {
             reaction.contact[axis] += impulse[axis] / duration;
         }
     }
-}
-
-fn four(v: [f32; 3]) -> Row {
-    [v[0], v[1], v[2], 0.0]
 }

@@ -8,7 +8,7 @@
 use crate::body::Body;
 use crate::dim::Dim;
 use crate::momentum::RigidMotion;
-use crate::vector::{cross, dot, minus, plus, scaled};
+use crate::vector::{cross, dot, minus, plus, scaled, three};
 
 /// The motion of one piece.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
@@ -151,5 +151,5 @@ pub fn slow_down<D: Dim>(body: &mut Body<D>, motions: &[PieceMotion], slowing: &
 
 #[inline(always)]
 fn wide(row: [f32; 4]) -> [f64; 3] {
-    [row[0], row[1], row[2]].map(f64::from)
+    three(row).map(f64::from)
 }

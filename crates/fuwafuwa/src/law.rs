@@ -17,7 +17,7 @@
 
 use crate::dim::Dim;
 use crate::stencil::{Stencil, Vector64};
-use crate::vector::{cross, dot, plus, scaled};
+use crate::vector::{cross, dot, minus, plus, scaled};
 use std::fmt;
 
 /// How an element answers to being deformed.
@@ -127,14 +127,8 @@ fn endo<D: Dim>(
             .fold([0.0; 3], |sum, &x| plus(sum, scaled(x, 1.0 / count)))
     };
     let (rest_mean, now_mean) = (mean(&rest), mean(positions));
-    let rest: Vec<Vector64> = rest
-        .iter()
-        .map(|&r| plus(r, scaled(rest_mean, -1.0)))
-        .collect();
-    let now: Vec<Vector64> = positions
-        .iter()
-        .map(|&x| plus(x, scaled(now_mean, -1.0)))
-        .collect();
+    let rest: Vec<Vector64> = rest.iter().map(|&r| minus(r, rest_mean)).collect();
+    let now: Vec<Vector64> = positions.iter().map(|&x| minus(x, now_mean)).collect();
     let mut moment = [[0.0; 3]; 3];
     let mut spread = 0.0;
     for (r, x) in rest.iter().zip(&now) {
@@ -146,9 +140,7 @@ fn endo<D: Dim>(
     }
     let rotation = rotation_of(&moment);
     let stiffness = elasticity.young * volume_of(stencil, half) * D::N as f64 / spread;
-    let pull = |(r, x): (&Vector64, &Vector64)| {
-        scaled(plus(apply(&rotation, *r), scaled(*x, -1.0)), stiffness)
-    };
+    let pull = |(r, x): (&Vector64, &Vector64)| scaled(minus(apply(&rotation, *r), *x), stiffness);
     rest.iter().zip(&now).map(pull).collect()
 }
 

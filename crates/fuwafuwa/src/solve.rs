@@ -116,6 +116,19 @@ impl Home {
     }
 }
 
+/// What changes velocities in a substep, beside the elastic forces.
+#[derive(Copy, Clone, Debug)]
+pub struct Kick<'a> {
+    /// The nodes that move.
+    pub nodes: &'a [u32],
+    /// One over the mass of each node [1/kg], by id; 0 where it is held.
+    pub lightness: &'a [f32],
+    /// The substep [s].
+    pub duration: f32,
+    /// [m/s²]
+    pub gravity: Row,
+}
+
 /// What all blocks read.
 #[derive(Copy, Clone)]
 struct Shared<'a> {
@@ -383,56 +396,34 @@ impl<D: Dim> Blocks<D> {
         *sleepers = *sleepers & !(1 << lane) | u8::from(asleep) << lane;
     }
 
-    /// Adds a substep's worth of elastic force and of `gravity` [m/s²] to the velocity of `nodes`
-    /// [m/s]. `lightness` is one over the mass of each node [1/kg], 0 where it is held.
-    pub fn kick(
-        &self,
-        nodes: &[u32],
-        lightness: &[f32],
-        duration: f32,
-        gravity: Row,
-        velocity: &mut [Row],
-    ) {
+    /// Adds a substep's worth of elastic force and of gravity to velocities [m/s].
+    pub fn kick(&self, kick: &Kick, velocity: &mut [Row]) {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {
             // SAFETY: the machine has AVX2; the function is safe code otherwise.
             #[allow(unsafe_code)]
-            return unsafe { self.kick_wide(nodes, lightness, duration, gravity, velocity) };
+            return unsafe { self.kick_wide(kick, velocity) };
         }
-        self.kick_by::<Portable>(nodes, lightness, duration, gravity, velocity);
+        self.kick_by::<Portable>(kick, velocity);
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
-    fn kick_wide(
-        &self,
-        nodes: &[u32],
-        lightness: &[f32],
-        duration: f32,
-        gravity: Row,
-        velocity: &mut [Row],
-    ) {
-        self.kick_by::<lanes::Wide>(nodes, lightness, duration, gravity, velocity);
+    fn kick_wide(&self, kick: &Kick, velocity: &mut [Row]) {
+        self.kick_by::<lanes::Wide>(kick, velocity);
     }
 
     #[inline(always)]
-    fn kick_by<L: Lanes>(
-        &self,
-        nodes: &[u32],
-        lightness: &[f32],
-        duration: f32,
-        gravity: Row,
-        velocity: &mut [Row],
-    ) {
-        for &id in nodes {
+    fn kick_by<L: Lanes>(&self, kick: &Kick, velocity: &mut [Row]) {
+        for &id in kick.nodes {
             let node = id as usize;
-            let lightness = lightness[node];
+            let lightness = kick.lightness[node];
             if lightness == 0.0 {
                 continue;
             }
             let force = L::sum(&self.forces, &self.slots[node], D::CORNERS);
-            let acceleration = plus(scaled(force, lightness), gravity);
-            velocity[node] = plus(velocity[node], scaled(acceleration, duration));
+            let acceleration = plus(scaled(force, lightness), kick.gravity);
+            velocity[node] = plus(velocity[node], scaled(acceleration, kick.duration));
         }
     }
 
@@ -493,11 +484,16 @@ mod tests {
         }
         let nodes: Vec<u32> = mesh.nodes().map(|(id, _)| id).collect();
         let lightness: Vec<f32> = (0..position.len()).map(|id| (id % 7) as f32).collect();
-        let gravity = [0.0, -9.81, 0.0, 0.0];
+        let kick = Kick {
+            nodes: &nodes,
+            lightness: &lightness,
+            duration: 0.001,
+            gravity: [0.0, -9.81, 0.0, 0.0],
+        };
         let mut velocities = [position.clone(), position];
         let [by_best, by_portable] = &mut velocities;
-        wide.kick(&nodes, &lightness, 0.001, gravity, by_best);
-        portable.kick_by::<Portable>(&nodes, &lightness, 0.001, gravity, by_portable);
+        wide.kick(&kick, by_best);
+        portable.kick_by::<Portable>(&kick, by_portable);
         let [by_best, by_portable] = velocities.map(|rows| {
             let bits = rows.iter().flatten().map(|value| value.to_bits());
             bits.collect::<Vec<u32>>()

@@ -12,8 +12,8 @@ use crate::body::Body;
 use crate::dim::Dim;
 use crate::shape::Shape;
 use crate::solve::Row;
-use crate::vector::{dot, length, minus, plus, scaled};
-pub use skins::{MARGIN, Skin, Skins};
+use crate::vector::{dot, length, minus, plus, scaled, three};
+pub use skins::{MARGIN, Skin, Skins, mean};
 
 /// Something rigid that nodes can touch.
 #[derive(Copy, Clone, Debug)]
@@ -181,8 +181,4 @@ fn bounding_ball<D: Dim>(body: &Body<D>) -> (Row, f32) {
     }
     let centre = scaled(plus(low, high), 0.5);
     (centre, length(minus(high, centre)))
-}
-
-fn three(row: Row) -> [f32; 3] {
-    [row[0], row[1], row[2]]
 }

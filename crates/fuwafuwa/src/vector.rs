@@ -58,6 +58,18 @@ pub fn cross<T: Number>(a: [T; 3], b: [T; 3]) -> [T; 3] {
     ]
 }
 
+/// A vector as a row, its fourth number 0.
+#[inline(always)]
+pub fn as_row([x, y, z]: [f32; 3]) -> [f32; 4] {
+    [x, y, z, 0.0]
+}
+
+/// The vector in a row.
+#[inline(always)]
+pub fn three([x, y, z, _]: [f32; 4]) -> [f32; 3] {
+    [x, y, z]
+}
+
 /// |a|
 #[inline(always)]
 pub fn length<const K: usize>(a: [f32; K]) -> f32 {

@@ -5,7 +5,7 @@ use crate::dim::{Dim, add, corner};
 use crate::mesh::Element;
 use crate::shape::{Shape, Vector};
 use crate::stencil::{slot_at, slot_index};
-use crate::vector::{cross, length, minus, plus, scaled};
+use crate::vector::{cross, length, minus, plus, scaled, three};
 
 /// A piece as a whole.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -213,8 +213,7 @@ impl<D: Dim> Body<D> {
         let scale = 1.0 / (stencil.volume as f32 * half);
         let (mut centre, mut gradient) = ([0.0; 3], [[0.0; 3]; 3]);
         for (place, &node) in element.nodes.iter().enumerate() {
-            let at = self.position[node as usize];
-            let at = [at[0], at[1], at[2]];
+            let at = three(self.position[node as usize]);
             let share = (stencil.volumes[place] / stencil.volume) as f32;
             centre = plus(centre, scaled(at, share));
             let b = stencil.gradients[place].map(|k| k as f32);
@@ -236,8 +235,7 @@ impl<D: Dim> Body<D> {
         let mut places: [Option<Vector>; 27] = [None; 27];
         let slots = &self.mesh.stencil(element).slots;
         for (&slot, &node) in slots.iter().zip(&element.nodes) {
-            let at = self.position[node as usize];
-            places[slot as usize] = Some([at[0], at[1], at[2]]);
+            places[slot as usize] = Some(three(self.position[node as usize]));
         }
         // From edge middles up to the centre: the mean of what a slot lies between.
         for order in 1..=D::N {
@@ -292,8 +290,7 @@ impl<D: Dim> Body<D> {
             let vertex = side << axis | (step & 1) << others[0] | (step >> 1) << others[1];
             let node = element.nodes[vertex];
             nodes[place] = node;
-            let at = self.position[node as usize];
-            corners[place] = [at[0], at[1], at[2]];
+            corners[place] = three(self.position[node as usize]);
         }
         let normal = match D::N {
             2 => {

@@ -13,6 +13,7 @@ use crate::rest::{fall_asleep, wake};
 use crate::shape::{BadShape, Shape, Vector};
 use crate::solve::Row;
 use crate::touch::{Collider, Nearby};
+use crate::vector::{as_row, three};
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -218,13 +219,10 @@ impl<D: Dim> World<D> {
                 continue;
             }
             let index = place as u32;
-            let released = |failure: &Failure| {
-                let [x, y, z, _] = body.position[failure.node as usize];
-                Event::Released {
-                    body: index,
-                    at: [x, y, z],
-                    energy: failure.energy,
-                }
+            let released = |failure: &Failure| Event::Released {
+                body: index,
+                at: three(body.position[failure.node as usize]),
+                energy: failure.energy,
             };
             self.events.extend(failures.iter().map(released));
             let sides = failures.iter().map(|failure| (failure.at, failure.side));
@@ -366,7 +364,7 @@ impl<D: Dim> World<D> {
         };
         let moving = |hand: &Manipulator| Collider {
             shape: hand.shape(),
-            velocity: [hand.velocity[0], hand.velocity[1], hand.velocity[2], 0.0],
+            velocity: as_row(hand.velocity),
             lightness: hand.lightness(),
             friction: hand.friction,
             is_hand: true,
@@ -392,10 +390,7 @@ impl<D: Dim> World<D> {
         }
         let skins = self.nearby.skins.pairs.iter();
         for pair in skins.filter(|pair| pair.impulse.pressed > 0.0) {
-            for skin in pair
-                .skins
-                .map(|skin| &self.nearby.skins.list[skin as usize])
-            {
+            for skin in pair.both(&self.nearby.skins.list) {
                 mark(skin.body, Some(skin.piece));
             }
         }
@@ -411,7 +406,7 @@ impl<D: Dim> World<D> {
                 .or_insert((0.0, 0.0, [0.0; 3]));
             sum.0 += impulse;
             if impulse > sum.1 {
-                (sum.1, sum.2) = (impulse, [at[0], at[1], at[2]]);
+                (sum.1, sum.2) = (impulse, three(at));
             }
         };
         let first_hand = self.obstacles.len() as u32;
@@ -437,9 +432,7 @@ impl<D: Dim> World<D> {
             .iter()
             .filter(|pair| pair.impulse.total > 0.0)
         {
-            let [a, b] = pair
-                .skins
-                .map(|skin| &self.nearby.skins.list[skin as usize]);
+            let [a, b] = pair.both(&self.nearby.skins.list);
             let (body, piece) = (b.body, b.piece);
             let with = With::Piece { body, piece };
             add(

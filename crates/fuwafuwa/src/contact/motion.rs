@@ -1,11 +1,12 @@
 //! The velocities that contacts push on, side by side.
 
-use super::{Grip, NodeContact, four, push_hand};
+use super::{Grip, NodeContact, push_hand};
 use crate::body::Body;
 use crate::dim::Dim;
 use crate::manipulator::Manipulator;
 use crate::solve::Row;
-use crate::vector::{minus, plus, scaled};
+use crate::touch::mean;
+use crate::vector::{as_row, minus, plus, scaled};
 
 /// The velocities of all nodes side by side [m/s], one over their mass as the fourth component
 /// [1/kg]: what a push needs is in one place.
@@ -40,19 +41,8 @@ impl Motion {
     /// How fast the first skin moves as seen from the second.
     #[inline(always)]
     pub fn between<D: Dim>(&self, grips: &[Grip; 2]) -> Row {
-        with_fourth(
-            minus(self.mean::<D>(&grips[0]), self.mean::<D>(&grips[1])),
-            0.0,
-        )
-    }
-
-    #[inline(always)]
-    fn mean<D: Dim>(&self, grip: &Grip) -> Row {
-        let mut sum = self.rows[grip[0] as usize];
-        for &node in &grip[1..D::CORNERS] {
-            sum = plus(sum, self.rows[node as usize]);
-        }
-        scaled(sum, 1.0 / D::CORNERS as f32)
+        let [first, second] = grips.each_ref().map(|grip| mean::<D>(&self.rows, grip));
+        with_fourth(minus(first, second), 0.0)
     }
 
     /// Pushes the first skin, and the second the other way.
@@ -73,7 +63,7 @@ impl Motion {
         let own = self.rows[row.node as usize];
         let other = row
             .hand
-            .map_or([0.0; 4], |hand| four(hands[hand as usize].velocity));
+            .map_or([0.0; 4], |hand| as_row(hands[hand as usize].velocity));
         with_fourth(minus(own, other), 0.0)
     }
 

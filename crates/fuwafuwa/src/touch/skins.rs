@@ -96,11 +96,11 @@ impl Skins {
     /// skins or of sleepers is another one.
     pub fn follow<D: Dim>(&mut self, bodies: &[Body<D>], size: f32) -> Option<f32> {
         let is_same = self.is_good && self.rest_is_good;
-        let mut strayed = vec![false; self.list.len()];
         if !self.is_good {
             self.find(bodies);
-            strayed = vec![true; self.list.len()];
-        } else if !self.rest_is_good {
+        }
+        let mut strayed = vec![!self.is_good; self.list.len()];
+        if self.is_good && !self.rest_is_good {
             for (skin, strayed) in self.list.iter_mut().zip(&mut strayed) {
                 let asleep = sleeps(bodies, skin);
                 *strayed = skin.asleep && !asleep;
@@ -261,15 +261,28 @@ impl Skins {
     }
 }
 
+/// The mean of the rows of a skin's corner nodes.
+#[inline(always)]
+pub fn mean<D: Dim>(rows: &[Row], nodes: &[u32; 8]) -> Row {
+    let mut sum = rows[nodes[0] as usize];
+    for &node in &nodes[1..D::CORNERS] {
+        sum = plus(sum, rows[node as usize]);
+    }
+    scaled(sum, 1.0 / D::CORNERS as f32)
+}
+
+impl SkinPair {
+    /// Its skins among all of them.
+    pub fn both<'a>(&self, skins: &'a [Skin]) -> [&'a Skin; 2] {
+        self.skins.map(|skin| &skins[skin as usize])
+    }
+}
+
 impl Skin {
     /// The mean of something at its corners.
     #[inline]
     pub fn mean<D: Dim>(&self, rows: &[Row]) -> Row {
-        let mut sum = rows[self.nodes[0] as usize];
-        for &node in &self.nodes[1..D::CORNERS] {
-            sum = plus(sum, rows[node as usize]);
-        }
-        scaled(sum, 1.0 / D::CORNERS as f32)
+        mean::<D>(rows, &self.nodes)
     }
 
     /// Whether it is a piece of its own.
