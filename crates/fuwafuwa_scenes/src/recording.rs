@@ -1,9 +1,9 @@
 //! What hands did in a scene, tick by tick, so that it can be run again and compared.
 
-use crate::scene::{Scene, SceneError};
+use crate::scene::{Scene, SceneError, text_of};
 use fuwafuwa::{Dim, World};
 use serde::{Deserialize, Serialize};
-use std::io::{self, Read};
+use std::io;
 use std::path::Path;
 
 /// Number of the format; it changes when an older recording would run differently.
@@ -72,7 +72,8 @@ impl Recording {
     /// [`RecordingError`] when the file cannot be read, holds no recording, or one of another format.
     pub fn open(path: &Path) -> Result<Self, RecordingError> {
         let name = path.display().to_string();
-        let text = match read(path) {
+        let too_long = format!("longer than {MAX_BYTES} bytes, the most that are read");
+        let text = match text_of(path, MAX_BYTES, &too_long) {
             Ok(text) => text,
             Err(reason) => return Err(RecordingError::File { name, reason }),
         };
@@ -148,17 +149,6 @@ impl Recording {
             differs_at,
         })
     }
-}
-
-/// The text of a file: what has no end is none.
-fn read(path: &Path) -> io::Result<String> {
-    let mut text = String::new();
-    let mut file = std::fs::File::open(path)?.take(MAX_BYTES + 1);
-    if file.read_to_string(&mut text)? as u64 > MAX_BYTES {
-        let reason = format!("longer than {MAX_BYTES} bytes, the most that are read");
-        return Err(io::Error::new(io::ErrorKind::FileTooLarge, reason));
-    }
-    Ok(text)
 }
 
 fn send<D: Dim>(world: &mut World<D>, goals: &[[f32; 3]]) {

@@ -133,7 +133,8 @@ impl Scene {
                 known: known.join(", "),
             });
         }
-        let text = read(path).map_err(|source| SceneError::File {
+        let too_long = format!("a scene has {MAX_TEXT_BYTES} bytes at most");
+        let text = text_of(path, MAX_TEXT_BYTES, &too_long).map_err(|source| SceneError::File {
             path: name.into(),
             source,
         })?;
@@ -262,15 +263,13 @@ impl Scene {
     }
 }
 
-/// The text of a file, refused when it is longer than [`MAX_TEXT_BYTES`].
-fn read(path: &Path) -> io::Result<String> {
+/// The text of a file, refused for the given reason when it is longer than `most` bytes: what has no
+/// end is none.
+pub(crate) fn text_of(path: &Path, most: u64, too_long: &str) -> io::Result<String> {
     let mut text = String::new();
-    File::open(path)?
-        .take(MAX_TEXT_BYTES + 1)
-        .read_to_string(&mut text)?;
-    if text.len() as u64 > MAX_TEXT_BYTES {
-        let reason = format!("a scene has {MAX_TEXT_BYTES} bytes at most");
-        return Err(io::Error::new(io::ErrorKind::InvalidData, reason));
+    let mut file = File::open(path)?.take(most + 1);
+    if file.read_to_string(&mut text)? as u64 > most {
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, too_long));
     }
     Ok(text)
 }
