@@ -138,7 +138,7 @@ fn name_of(path: &Path) -> String {
 
 /// The bytes of a file, refused when there are more than [`MAX_FILE_BYTES`]. The length that the
 /// system reports is not asked: pipes and devices have none.
-fn read(path: &Path) -> Result<Vec<u8>, ImportError> {
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>, ImportError> {
     let mut bytes = Vec::new();
     let outcome = File::open(path)
         .and_then(|file| file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes))

@@ -35,6 +35,11 @@
 //! [[hand]]
 //! radius = 0.1                    # [m]
 //! path = [[0.0, -0.3, 0.5, 0.0], [1.0, 1.2, 0.5, 0.0]]   # seconds, then where [m]
+//!
+//! [game]                          # only where a scene is a level of the game
+//! name = { en = "Over the wall", ja = "かべのむこう" }
+//! basket = { centre = [1.2, 0.3, 0.0], half = [0.4, 0.4, 0.0] }   # [m]
+//! share = 0.6                     # of the mass that must rest in the basket
 //! ```
 //!
 //! How pictures and models become voxels is said at [`Picture::grid`](crate::import::Picture::grid)
@@ -43,16 +48,18 @@
 mod body;
 mod change;
 mod error;
+mod game;
 mod grid;
 mod rigid;
 
 pub use body::{BodyText, Form, MaterialText, PartText};
 pub use error::SceneError;
+pub use game::{GameText, RouteText, WishText, Words};
 pub use rigid::{BallText, BoxText, CapsuleText, HalfSpaceText, HandText, ObstacleText};
 
 use error::{Origin, Wrong, require, require_vector};
 use fuwafuwa::world::Refused;
-use fuwafuwa::{Dim, Material, Settings, World};
+use fuwafuwa::{Dim, Material, Settings, Shape, World};
 use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::{self, Read};
@@ -97,6 +104,8 @@ pub struct Scene {
     /// Hands.
     #[serde(default)]
     pub hand: Vec<HandText>,
+    /// What makes a game of it.
+    pub game: Option<GameText>,
     #[serde(skip)]
     origin: Origin,
 }
@@ -239,6 +248,31 @@ impl Scene {
             added.map_err(|wrong| wrong.inside("hand", index))?;
         }
         Ok(world)
+    }
+
+    /// The region that has to be filled, where it is a level of the game with a basket.
+    ///
+    /// # Errors
+    /// [`SceneError::Build`] names the field of `[game]` and what is wrong with it.
+    pub fn basket<D: Dim>(&self) -> Result<Option<Shape>, SceneError> {
+        let Some(game) = &self.game else {
+            return Ok(None);
+        };
+        let basket = game.check::<D>().and_then(|()| game.basket::<D>());
+        basket.map_err(|wrong| self.origin.error(wrong.under("game")))
+    }
+
+    /// Takes the files that its bodies are made from into the scene, so that it can travel alone: from
+    /// those that are known by name, else from disk.
+    ///
+    /// # Errors
+    /// [`SceneError::Build`] names the body whose file cannot be read.
+    pub fn embed_files(&mut self, known: &[(&str, &[u8])]) -> Result<(), SceneError> {
+        for (index, body) in self.body.iter_mut().enumerate() {
+            let embedded = body.embed_file(known);
+            embedded.map_err(|wrong| self.origin.error(wrong.inside("body", index)))?;
+        }
+        Ok(())
     }
 
     /// Its materials, number 1 first.

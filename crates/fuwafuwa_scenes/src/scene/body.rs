@@ -3,12 +3,15 @@
 use super::error::{Wrong, require, require_vector};
 use super::grid;
 use super::rigid::{BallText, BoxText, CapsuleText, HalfSpaceText};
+use crate::import;
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD as BASE64;
 use fuwafuwa::law::{Elasticity, Law};
 use fuwafuwa::pyramid::Grading;
 use fuwafuwa::{Blade, Body, BodyError, Dim, Material};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A material as it is written down: what is not named is that of [`Material::default`].
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -42,6 +45,8 @@ pub struct BodyText {
     /// In place of a shape: a silhouette (.png, in 2D) or a model of MagicaVoxel (.vox, in 3D). A path
     /// is taken from the folder of the scene.
     pub file: Option<PathBuf>,
+    /// The bytes of that file in base64, where they travel with the scene; then no disk is asked.
+    pub content: Option<String>,
     /// Voxels across; of a silhouette at most so many, of a model it is not asked.
     pub n: Option<usize>,
     /// Width of the grid [m]; with a file, of its longest side.
@@ -160,6 +165,30 @@ impl MaterialText {
 }
 
 impl BodyText {
+    /// The bytes of its file.
+    pub(super) fn file_bytes(&self, file: &Path) -> Result<Vec<u8>, Wrong> {
+        let wrong = |reason: String| Wrong::new("content", reason);
+        match &self.content {
+            Some(text) => BASE64
+                .decode(text)
+                .map_err(|error| wrong(format!("expected base64: {error}"))),
+            None => import::read(file).map_err(|error| Wrong::new("file", error)),
+        }
+    }
+
+    pub(super) fn embed_file(&mut self, known: &[(&str, &[u8])]) -> Result<(), Wrong> {
+        let Some(file) = &self.file else {
+            return Ok(());
+        };
+        let known = known.iter().find(|(name, _)| Path::new(name) == file);
+        let content = match known {
+            Some((_, bytes)) => BASE64.encode(bytes),
+            None => BASE64.encode(self.file_bytes(file)?),
+        };
+        self.content = Some(content);
+        Ok(())
+    }
+
     pub(super) fn build<D: Dim>(&self, materials: &[Material]) -> Result<Body<D>, Wrong> {
         require_vector(D::N, "at", self.at)?;
         require_vector(D::N, "velocity", self.velocity)?;

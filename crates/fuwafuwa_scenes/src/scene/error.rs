@@ -112,6 +112,12 @@ impl Wrong {
         let path = format!("{list}.{}.{}", index + 1, self.path);
         Self { path, ..self }
     }
+
+    /// The same in a table.
+    pub(super) fn under(self, table: &str) -> Self {
+        let path = format!("{table}.{}", self.path);
+        Self { path, ..self }
+    }
 }
 
 /// `Ok` when a value is good.

@@ -125,14 +125,15 @@ fn of_file<D: Dim>(text: &BodyText, file: &Path) -> Result<Voxels, Wrong> {
     let ending = ending.map(str::to_ascii_lowercase);
     let colours = colours(text)?;
     let named = !text.colours.is_empty();
-    let (found, dim) = (file.display(), D::N);
+    let (name, dim) = (file.display().to_string(), D::N);
     match (ending.as_deref(), D::N) {
         (Some("png"), Dim2::N) => {
             let across = text.n.unwrap_or(MAX_EXTENT);
             check_across(across)?;
             let both = named && text.material.is_some();
             require(!both, "material", "the colours name the materials")?;
-            let picture = Picture::open(file).map_err(wrong)?;
+            let bytes = text.file_bytes(file)?;
+            let picture = Picture::decode(&name, &bytes).map_err(wrong)?;
             let grid = picture.grid(across, 1.0, &colours).map_err(wrong)?;
             let material = text.material.unwrap_or(1);
             Ok(Voxels::of(&grid, voxel_size(text, &grid), |solid| {
@@ -144,13 +145,14 @@ fn of_file<D: Dim>(text: &BodyText, file: &Path) -> Result<Voxels, Wrong> {
             require(text.n.is_none(), "n", expected)?;
             let expected = "the palette indices of a model are its materials, see colours";
             require(text.material.is_none(), "material", expected)?;
-            let model = Model::open(file).map_err(wrong)?;
+            let bytes = text.file_bytes(file)?;
+            let model = Model::decode(&name, &bytes).map_err(wrong)?;
             let grid = model.grid(1.0, &colours).map_err(wrong)?;
             Ok(Voxels::of(&grid, voxel_size(text, &grid), |solid| solid))
         }
         _ => {
             let reason = format!(
-                "expected .png for dim = 2 or .vox for dim = 3, found {found} for dim = {dim}"
+                "expected .png for dim = 2 or .vox for dim = 3, found {name} for dim = {dim}"
             );
             Err(Wrong::new("file", reason))
         }

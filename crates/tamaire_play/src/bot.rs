@@ -1,0 +1,281 @@
+//! Players that are programs. They see the world that a person sees and answer with the same
+//! [`InputFrame`].
+
+use crate::{InputFrame, Round};
+use fuwafuwa::world::TICK;
+use fuwafuwa::{Dim, PieceView, Shape, Vector};
+
+/// How fast a bot's hand goes where nothing is in the way, and when it pushes [m/s].
+const BRISK: f32 = 3.0;
+const GENTLE: f32 = 0.7;
+/// The shaving bot pushes when the largest piece has this share of the mass.
+const SMALL_ENOUGH: f32 = 0.8;
+
+/// What a bot is after.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum BotKind {
+    /// To push the body in whole.
+    Squeeze,
+    /// To tear bits off until it fits.
+    Shave,
+    /// Nothing: it goes here and there, now slowly, now fast.
+    Random,
+    /// Nothing at all.
+    Idle,
+}
+
+impl BotKind {
+    /// All, with the names by which they are called up.
+    pub const NAMED: [(&'static str, Self); 4] = [
+        ("squeeze", Self::Squeeze),
+        ("shave", Self::Shave),
+        ("random", Self::Random),
+        ("idle", Self::Idle),
+    ];
+}
+
+/// A player that is a program.
+#[derive(Clone, Debug)]
+pub struct Bot {
+    kind: BotKind,
+    random: fastrand::Rng,
+    /// How it differs from one with another seed, each -1 to 1.
+    temper: [f32; 3],
+    /// Where a random bot wants to go, and for how many ticks more, by player.
+    whims: [(Vector, u32); crate::PLAYERS],
+    stroke: Stroke,
+    strokes: u32,
+}
+
+/// What the shaving hand is at.
+#[derive(Copy, Clone, Debug, PartialEq)]
+enum Stroke {
+    Rest,
+    /// On its way to where the next stroke begins, as seen from the piece [m], for so many ticks more.
+    Reach(Vector, u32),
+    /// On its way to where the stroke ends [m], for so many ticks more.
+    Cut(Vector, u32),
+}
+
+impl Bot {
+    /// A bot of a kind; those with different seeds play differently.
+    pub fn new(kind: BotKind, seed: u64) -> Self {
+        let mut random = fastrand::Rng::with_seed(seed);
+        let temper = [0; 3].map(|_: i32| 2.0 * random.f32() - 1.0);
+        Self {
+            kind,
+            random,
+            temper,
+            whims: Default::default(),
+            stroke: Stroke::Rest,
+            strokes: 0,
+        }
+    }
+
+    /// What it does in the next tick.
+    pub fn frame<D: Dim>(&mut self, round: &Round<D>) -> InputFrame {
+        match self.kind {
+            BotKind::Idle => InputFrame::default(),
+            BotKind::Random => self.wander(round),
+            BotKind::Squeeze => match Sight::of(round) {
+                Some(sight) => InputFrame::towards(self.push(&sight)),
+                None => InputFrame::default(),
+            },
+            BotKind::Shave => match Sight::of(round) {
+                Some(sight) => InputFrame::towards(self.shave(&sight)),
+                None => InputFrame::default(),
+            },
+        }
+    }
+
+    fn wander<D: Dim>(&mut self, round: &Round<D>) -> InputFrame {
+        let [low, high] = round.level().arena();
+        let mut frame = InputFrame::default();
+        for player in 0..crate::PLAYERS {
+            if self.whims[player].1 == 0 {
+                let place = [0, 1, 2]
+                    .map(|axis: usize| low[axis] + self.random.f32() * (high[axis] - low[axis]));
+                self.whims[player] = (place, 1 + self.random.u32(..90));
+            }
+            self.whims[player].1 -= 1;
+            frame = frame.with(player, self.whims[player].0);
+        }
+        frame
+    }
+
+    /// From behind, steering by where it pushes, until it is in.
+    fn push(&mut self, sight: &Sight) -> Vector {
+        let Sight {
+            axis,
+            body,
+            hand,
+            reach,
+            ..
+        } = sight;
+        let behind = sub(*body, scale(*axis, 1.1 * reach));
+        let (along, aside) = split(sub(*hand, *body), *axis);
+        let is_behind = along < 0.0 && length(aside) < 0.5 * reach;
+        if !is_behind {
+            return self.go(sight, around(sight, behind), BRISK);
+        }
+        // Where the body is off the way, the hand pushes from further out on that side.
+        let steer = scale(sight.off, 1.5 + 0.3 * self.temper[0]);
+        let depth = 0.30 + 0.05 * self.temper[1];
+        let goal = add(*body, add(steer, scale(*axis, depth - reach)));
+        self.go(sight, goal, GENTLE)
+    }
+
+    /// Strokes past the middle of the largest piece, now on one side of it, now on the other, until
+    /// it is small enough; then pushes it in.
+    fn shave(&mut self, sight: &Sight) -> Vector {
+        let Sight {
+            axis,
+            body,
+            reach,
+            hand,
+            ..
+        } = sight;
+        if sight.share < SMALL_ENOUGH + 0.03 * self.temper[2] && self.stroke == Stroke::Rest {
+            return self.push(sight);
+        }
+        match self.stroke {
+            Stroke::Rest => {
+                self.strokes += 1;
+                let side = if self.strokes % 2 == 0 { 1.0 } else { -1.0 };
+                let aside = [-axis[1] * side, axis[0] * side, 0.0];
+                let from = add(scale(*axis, -1.15 * reach), scale(aside, 0.75 * reach));
+                self.stroke = Stroke::Reach(from, 90);
+                *hand
+            }
+            Stroke::Reach(from, patience) => {
+                let place = add(*body, from);
+                let there = length(sub(*hand, place)) < 0.1;
+                self.stroke = match there || patience == 0 {
+                    true => Stroke::Cut(add(place, scale(*axis, 2.6 * reach)), 40),
+                    false => Stroke::Reach(from, patience - 1),
+                };
+                self.go(sight, around(sight, place), BRISK)
+            }
+            Stroke::Cut(to, patience) => {
+                let there = length(sub(*hand, to)) < 0.1;
+                self.stroke = match there || patience == 0 {
+                    true => Stroke::Rest,
+                    false => Stroke::Cut(to, patience - 1),
+                };
+                to
+            }
+        }
+    }
+
+    /// The next goal on the way to a place, at a pace [m/s].
+    fn go(&self, sight: &Sight, place: Vector, pace: f32) -> Vector {
+        let way = sub(place, sight.goal);
+        let step = (pace * TICK / length(way).max(1e-6)).min(1.0);
+        add(sight.goal, scale(way, step))
+    }
+}
+
+/// Where to go now to come to a place without touching the body on the way.
+fn around(sight: &Sight, place: Vector) -> Vector {
+    let Sight {
+        body, hand, reach, ..
+    } = sight;
+    let (from, to) = (unit(sub(*hand, *body)), unit(sub(place, *body)));
+    if dot(from, to) > 0.8 {
+        return place;
+    }
+    let turn = sub(to, scale(from, dot(from, to)));
+    let turn = match length(turn) > 1e-3 {
+        true => unit(turn),
+        false => [-from[1], from[0], 0.0],
+    };
+    // An eighth of a turn onwards, at arm's length.
+    let onwards = scale(add(from, turn), 0.707);
+    add(*body, scale(onwards, 1.25 * reach))
+}
+
+/// What a bot looks at.
+struct Sight {
+    /// From the start towards the basket, of length 1.
+    axis: Vector,
+    /// Middle of the piece that matters: the largest not yet in the basket [m].
+    body: Vector,
+    /// How far that is from the way into the basket [m].
+    off: Vector,
+    /// From its middle to that of a hand that touches it [m].
+    reach: f32,
+    hand: Vector,
+    goal: Vector,
+    /// Its share of all mass.
+    share: f32,
+}
+
+impl Sight {
+    fn of<D: Dim>(round: &Round<D>) -> Option<Self> {
+        let basket = match round.basket()? {
+            Shape::Box { centre, .. } => *centre,
+            _ => return None,
+        };
+        let views = round
+            .world()
+            .bodies()
+            .iter()
+            .flat_map(|body| body.piece_views());
+        let largest = |a: &PieceView, b: &PieceView| a.mass.total_cmp(&b.mass);
+        let piece = views.max_by(largest)?;
+        let hand = round.world().manipulators().first()?;
+        let axis = towards_basket(basket);
+        let off = split(sub(piece.centre, basket), axis).1;
+        let width = sub(piece.high, piece.low);
+        let radius = 0.5 * (0..D::N).map(|k| width[k]).sum::<f32>() / D::N as f32;
+        Some(Self {
+            axis,
+            body: piece.centre,
+            off,
+            reach: radius + hand.radius,
+            hand: hand.position(),
+            goal: hand.goal(),
+            share: piece.mass / round.progress().mass,
+        })
+    }
+}
+
+/// The axis of the room along which the basket lies.
+fn towards_basket(basket: Vector) -> Vector {
+    let longest = (0..3)
+        .max_by(|&a, &b| basket[a].abs().total_cmp(&basket[b].abs()))
+        .unwrap_or(0);
+    let mut axis = [0.0; 3];
+    axis[longest] = basket[longest].signum();
+    axis
+}
+
+/// The share of a vector along an axis of length 1, and the rest.
+fn split(v: Vector, axis: Vector) -> (f32, Vector) {
+    let along = dot(v, axis);
+    (along, sub(v, scale(axis, along)))
+}
+
+fn add(a: Vector, b: Vector) -> Vector {
+    [0, 1, 2].map(|k| a[k] + b[k])
+}
+
+fn sub(a: Vector, b: Vector) -> Vector {
+    [0, 1, 2].map(|k| a[k] - b[k])
+}
+
+fn scale(v: Vector, by: f32) -> Vector {
+    v.map(|k| k * by)
+}
+
+fn dot(a: Vector, b: Vector) -> f32 {
+    (0..3).map(|k| a[k] * b[k]).sum()
+}
+
+fn length(v: Vector) -> f32 {
+    dot(v, v).sqrt()
+}
+
+fn unit(v: Vector) -> Vector {
+    scale(v, 1.0 / length(v).max(1e-6))
+}

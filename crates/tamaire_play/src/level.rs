@@ -1,0 +1,154 @@
+//! Where a round is played: a scene with a table `[game]`, in a text file that a person can write.
+
+use fuwafuwa::{Dim, Shape, World};
+use fuwafuwa_scenes::scene::{GameText, Scene, SceneError};
+use std::path::Path;
+
+/// A level, checked: its world can be built.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Level {
+    /// The name by which it is called up, or its file.
+    pub id: String,
+    scene: Scene,
+    game: GameText,
+}
+
+/// Why there is no such level.
+#[derive(Debug, thiserror::Error)]
+pub enum LevelError {
+    /// The scene in it is wrong.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// It can be watched, not played.
+    #[error("{id}: {field}: {reason}")]
+    NoGame {
+        /// The level.
+        id: String,
+        /// What is missing or wrong.
+        field: &'static str,
+        /// What was expected.
+        reason: String,
+    },
+    /// There is no level and no file of this name.
+    #[error("there is no level or file {id:?}; the levels are {known}")]
+    Unknown {
+        /// What was asked for.
+        id: String,
+        /// What there is.
+        known: String,
+    },
+}
+
+/// The levels that come along, in the order in which they are offered.
+pub const NAMED: [(&str, &str); 1] = [("classic", include_str!("../levels/classic.toml"))];
+
+/// Pictures that those levels are made from.
+const FILES: [(&str, &[u8]); 0] = [];
+
+/// The level that a picture is put into, in place of its body.
+const FRAME: &str = "classic";
+
+impl Level {
+    /// The level of a name, or in a file: a scene with a table `[game]` (.toml), or a picture (.png)
+    /// whose silhouette becomes the body.
+    ///
+    /// # Errors
+    /// [`LevelError`] says what is wrong, and in which line.
+    pub fn open(id: &str) -> Result<Self, LevelError> {
+        if let Some((_, text)) = NAMED.iter().find(|(known, _)| *known == id) {
+            return Self::of(id, Scene::read(id, text, &[])?);
+        }
+        let path = Path::new(id);
+        if !path.exists() {
+            let known: Vec<&str> = NAMED.iter().map(|(known, _)| *known).collect();
+            let (id, known) = (id.into(), known.join(", "));
+            return Err(LevelError::Unknown { id, known });
+        }
+        match path.extension().and_then(|ending| ending.to_str()) {
+            Some(ending) if ending.eq_ignore_ascii_case("png") => Self::of_picture(path),
+            _ => Self::of(id, Scene::open(id, &[])?),
+        }
+    }
+
+    /// The usual level with a body cut out of a picture.
+    fn of_picture(path: &Path) -> Result<Self, LevelError> {
+        let mut level = Self::open(FRAME)?;
+        level.id = path.display().to_string();
+        if let Some(body) = level.scene.body.first_mut() {
+            (body.shape, body.file) = (None, Some(path.into()));
+        }
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        level.game.name.en = name.chars().take(60).collect();
+        level.game.name.ja = None;
+        level.scene.game = Some(level.game);
+        Self::of(&level.id, level.scene)
+    }
+
+    /// The level that a scene is.
+    ///
+    /// # Errors
+    /// [`LevelError`] says what is wrong with it.
+    pub fn of(id: &str, mut scene: Scene) -> Result<Self, LevelError> {
+        scene.embed_files(&FILES)?;
+        let missing = |field, reason: &str| LevelError::NoGame {
+            id: id.into(),
+            field,
+            reason: reason.into(),
+        };
+        let game = scene.game.clone();
+        let game = game.ok_or_else(|| missing("game", "expected a table [game] with a name"))?;
+        let hands = scene.hand.len();
+        if !(1..=crate::PLAYERS).contains(&hands) {
+            let reason = format!("expected 1 or 2 tables [[hand]], found {hands}");
+            return Err(missing("hand", &reason));
+        }
+        if scene.body.is_empty() {
+            return Err(missing("body", "expected a table [[body]] at least"));
+        }
+        let [low, high] = scene.view;
+        if low.iter().chain(&high).any(|k| k.abs() > 3.9) {
+            let reason = "expected corners within 3.9 m of the origin: it is the arena";
+            return Err(missing("view", reason));
+        }
+        match scene.dim {
+            2 => check::<fuwafuwa::Dim2>(&scene)?,
+            _ => check::<fuwafuwa::Dim3>(&scene)?,
+        }
+        let id = id.into();
+        Ok(Self { id, scene, game })
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// What makes a game of it.
+    pub fn game(&self) -> &GameText {
+        &self.game
+    }
+
+    /// Low and high corner of the room in which hands may move [m].
+    pub fn arena(&self) -> [[f32; 3]; 2] {
+        self.scene.view
+    }
+
+    /// A number that two levels share only if they are the same [FNV-1a].
+    pub fn hash(&self) -> u64 {
+        let text = toml::to_string(&self.scene).expect("a scene that was read can be written");
+        let add = |hash: u64, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        text.bytes().fold(0xcbf2_9ce4_8422_2325, add)
+    }
+
+    /// Its world at the start, and its basket.
+    pub(crate) fn build<D: Dim>(&self) -> (World<D>, Option<Shape>) {
+        let checked = "a level was built once when it was checked";
+        let world = self.scene.build().expect(checked);
+        (world, self.scene.basket::<D>().expect(checked))
+    }
+}
+
+fn check<D: Dim>(scene: &Scene) -> Result<(), SceneError> {
+    scene.build::<D>()?;
+    scene.basket::<D>().map(|_| ())
+}

@@ -1,0 +1,27 @@
+//! The game without a window: push a soft body into a basket that is smaller than it.
+//!
+//! The way through, each module using only those above it:
+//! [`input`] what players do in a tick → [`level`] where they do it → [`rules`] what counts as won, and how
+//! → [`round`] one go at a level → [`replay`] the same again → [`bot`] players that are programs.
+//!
+//! A window, a bot and a replay play alike: they hand one [`InputFrame`] a tick to [`Round::step`]
+//! and look at what came of it.
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+#![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
+#![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
+
+pub mod bot;
+pub mod input;
+pub mod level;
+pub mod replay;
+pub mod round;
+pub mod rules;
+
+pub use bot::{Bot, BotKind};
+pub use fuwafuwa_scenes::scene::{RouteText as Route, WishText as Wish, Words};
+pub use input::{InputFrame, PLAYERS};
+pub use level::Level;
+pub use replay::{Playback, Replay, ReplayError};
+pub use round::Round;
+pub use rules::{Outcome, Progress};

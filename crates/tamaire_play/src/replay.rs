@@ -1,0 +1,216 @@
+//! A round on file, to be watched, raced and shared.
+
+use crate::level::LevelError;
+use crate::{InputFrame, Level, Outcome, Round};
+use fuwafuwa::Dim;
+use fuwafuwa_scenes::Scene;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Number of the format and of the rules; it changes when an older round would run differently.
+pub const VERSION: u32 = 1;
+
+/// Most ticks in a replay: an hour.
+pub const MAX_TICKS: usize = 60 * 60 * 60;
+
+/// A round: the level itself, what was played in it, and what came of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Replay {
+    /// Number of the format.
+    pub version: u32,
+    /// Version of the game.
+    pub game: String,
+    /// The level's name.
+    pub level: String,
+    /// The level's hash, in hexadecimal.
+    pub level_hash: String,
+    /// How it was won, if it was.
+    pub outcome: Option<Outcome>,
+    /// The world's hash after every sixtieth tick, and after the last when it was won, in hexadecimal.
+    pub hashes: Vec<String>,
+    /// What was played: for each tick the goals of the hands.
+    frames: Vec<Vec<i16>>,
+    /// The level.
+    scene: Scene,
+}
+
+/// Why a replay is not played.
+#[derive(Debug, thiserror::Error)]
+pub enum ReplayError {
+    /// It is no replay.
+    #[error("this is no replay: {0}")]
+    Text(String),
+    /// It was made by another version.
+    #[error("this replay is of version {found}, and this game plays version {VERSION}")]
+    Version {
+        /// Its version.
+        found: u32,
+    },
+    /// Its level is broken.
+    #[error(transparent)]
+    Level(#[from] LevelError),
+    /// Its level is not the one that was played.
+    #[error("the level in this replay was changed")]
+    LevelChanged,
+    /// It does not lead to what it says.
+    #[error("this replay was changed: it goes another way at second {second}")]
+    Differs {
+        /// Where.
+        second: usize,
+    },
+    /// It does not end as it says.
+    #[error("this replay was changed: it does not end as it says")]
+    OutcomeDiffers,
+}
+
+impl Replay {
+    /// What was played in a round so far.
+    pub fn of<D: Dim>(round: &Round<D>) -> Self {
+        let level = round.level();
+        let frame = |frame: &InputFrame| -> Vec<i16> {
+            // A hand that nobody plays says nothing, and so do those after it.
+            frame
+                .goals
+                .iter()
+                .map_while(|goal| *goal)
+                .flatten()
+                .collect()
+        };
+        Self {
+            version: VERSION,
+            game: env!("CARGO_PKG_VERSION").into(),
+            level: level.id.clone(),
+            level_hash: format!("{:016x}", level.hash()),
+            outcome: round.progress().outcome,
+            hashes: round
+                .hashes()
+                .iter()
+                .map(|hash| format!("{hash:016x}"))
+                .collect(),
+            frames: round.frames().iter().map(frame).collect(),
+            scene: level.scene().clone(),
+        }
+    }
+
+    /// The replay in a text.
+    ///
+    /// # Errors
+    /// [`ReplayError`] when it is none, or one of another version.
+    pub fn read(text: &str) -> Result<Self, ReplayError> {
+        #[derive(Deserialize)]
+        struct Header {
+            version: u32,
+        }
+        let wrong = |error: toml::de::Error| ReplayError::Text(error.message().into());
+        // Another version may have other fields: that it is one must be seen before them.
+        let Header { version } = toml::from_str(text).map_err(wrong)?;
+        if version != VERSION {
+            return Err(ReplayError::Version { found: version });
+        }
+        let replay: Self = toml::from_str(text).map_err(wrong)?;
+        let ticks = replay.frames.len();
+        if ticks > MAX_TICKS {
+            let reason = format!("expected {MAX_TICKS} ticks at most, found {ticks}");
+            return Err(ReplayError::Text(reason));
+        }
+        Ok(replay)
+    }
+
+    /// It as a text.
+    pub fn text(&self) -> String {
+        toml::to_string(self).expect("a replay has nothing that cannot be written")
+    }
+
+    /// Number of ticks.
+    pub fn ticks(&self) -> usize {
+        self.frames.len()
+    }
+
+    /// What was played in a tick; nothing after the last.
+    pub fn frame(&self, tick: usize) -> InputFrame {
+        let mut frame = InputFrame::default();
+        if let Some(goals) = self.frames.get(tick) {
+            for (goal, given) in frame.goals.iter_mut().zip(goals.chunks_exact(3)) {
+                *goal = Some([given[0], given[1], given[2]]);
+            }
+        }
+        frame
+    }
+
+    /// The level it was played in.
+    ///
+    /// # Errors
+    /// [`ReplayError`] when it is broken, or not the one that was played.
+    pub fn level(&self) -> Result<Level, ReplayError> {
+        let level = Level::of(&self.level, self.scene.clone())?;
+        let same = format!("{:016x}", level.hash()) == self.level_hash;
+        same.then_some(level).ok_or(ReplayError::LevelChanged)
+    }
+}
+
+/// A replay that is being played.
+#[derive(Clone, Debug)]
+pub struct Playback<D: Dim> {
+    replay: Arc<Replay>,
+    round: Round<D>,
+    tick: usize,
+}
+
+impl<D: Dim> Playback<D> {
+    /// A replay from its start.
+    ///
+    /// # Errors
+    /// [`ReplayError`] when its level is broken or another one.
+    ///
+    /// # Panics
+    /// When the level is of another dimension.
+    pub fn new(replay: Arc<Replay>) -> Result<Self, ReplayError> {
+        let round = Round::new(Arc::new(replay.level()?));
+        let tick = 0;
+        Ok(Self {
+            replay,
+            round,
+            tick,
+        })
+    }
+
+    /// The round as it is now.
+    pub fn round(&self) -> &Round<D> {
+        &self.round
+    }
+
+    /// Whether all of it was played.
+    pub fn is_over(&self) -> bool {
+        self.tick >= self.replay.ticks()
+    }
+
+    /// Plays a tick. Past the end the world goes on by itself.
+    ///
+    /// # Errors
+    /// [`ReplayError`] when it turns out that the replay was tampered with.
+    pub fn step(&mut self) -> Result<(), ReplayError> {
+        let was_over = self.is_over();
+        self.round.step(self.replay.frame(self.tick));
+        self.tick += 1;
+        if was_over {
+            return Ok(());
+        }
+        let hashes = self.round.hashes();
+        let known = hashes.last().map(|hash| format!("{hash:016x}"));
+        if known.as_ref()
+            != hashes
+                .len()
+                .checked_sub(1)
+                .and_then(|last| self.replay.hashes.get(last))
+        {
+            let second = self.tick / 60;
+            return Err(ReplayError::Differs { second });
+        }
+        let ends_alike = self.round.progress().outcome == self.replay.outcome;
+        if self.is_over() && !ends_alike {
+            return Err(ReplayError::OutcomeDiffers);
+        }
+        Ok(())
+    }
+}

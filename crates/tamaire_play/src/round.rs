@@ -1,0 +1,135 @@
+//! One go at a level.
+
+use crate::{InputFrame, Level, PLAYERS, Progress};
+use fuwafuwa::world::TICK;
+use fuwafuwa::{Dim, Manipulator, Shape, StepReport, Vector, World};
+use std::sync::Arc;
+
+/// A hand's goal moves no faster than this [m/s]: what is much faster than a wave in the body
+/// throws it aside before it can give way.
+pub const TOP_SPEED: f32 = 6.0;
+/// A goal is never further from its hand than this [m]: there the coupling pulls as strongly as it
+/// can, and a hand that comes free has no long way to shoot.
+pub const LEASH: f32 = 0.4;
+
+/// One go at a level, from the first tick on.
+#[derive(Clone, Debug)]
+pub struct Round<D: Dim> {
+    level: Arc<Level>,
+    world: World<D>,
+    basket: Option<Shape>,
+    progress: Progress,
+    starts: Vec<Manipulator>,
+    frames: Vec<InputFrame>,
+    hashes: Vec<u64>,
+}
+
+impl<D: Dim> Round<D> {
+    /// The start of a round. `level` must be of this dimension.
+    ///
+    /// # Panics
+    /// When the level is of another dimension.
+    pub fn new(level: Arc<Level>) -> Self {
+        let (mut world, basket) = level.build::<D>();
+        let starts: Vec<Manipulator> = world.manipulators().to_vec();
+        // The others come in when their players join.
+        while world.manipulators().len() > 1 {
+            world.remove_manipulator(1);
+        }
+        Self {
+            progress: Progress::of(&world),
+            basket,
+            world,
+            starts,
+            frames: Vec::new(),
+            hashes: Vec::new(),
+            level,
+        }
+    }
+
+    /// Lets a tick pass in which the players want what `frame` says.
+    pub fn step(&mut self, frame: InputFrame) -> StepReport {
+        self.let_players_in(&frame);
+        for player in 0..self.world.manipulators().len() {
+            let goal = self.reachable(player, frame.goal(player));
+            self.world.set_goal(player, goal);
+        }
+        let report = self.world.step();
+        if self.progress.outcome.is_some() {
+            return report;
+        }
+        let basket = self.basket.as_ref();
+        self.progress.watch(&self.level, basket, &self.world);
+        self.frames.push(frame);
+        if self.frames.len().is_multiple_of(60) || self.progress.outcome.is_some() {
+            self.hashes.push(self.world.hash());
+        }
+        report
+    }
+
+    /// The level.
+    pub fn level(&self) -> &Arc<Level> {
+        &self.level
+    }
+
+    /// The world as it is now.
+    pub fn world(&self) -> &World<D> {
+        &self.world
+    }
+
+    /// The region that has to be filled, where the level has one.
+    pub fn basket(&self) -> Option<&Shape> {
+        self.basket.as_ref()
+    }
+
+    /// How far it has come.
+    pub fn progress(&self) -> &Progress {
+        &self.progress
+    }
+
+    /// What was played until it was won, tick by tick.
+    pub fn frames(&self) -> &[InputFrame] {
+        &self.frames
+    }
+
+    /// The world's hash after every sixtieth of those ticks, and after the last when it was won.
+    pub fn hashes(&self) -> &[u64] {
+        &self.hashes
+    }
+
+    fn let_players_in(&mut self, frame: &InputFrame) {
+        for player in self.world.manipulators().len()..self.starts.len().min(PLAYERS) {
+            if frame.goals[player].is_none() {
+                break;
+            }
+            let hand = self.starts[player].clone();
+            let added = self.world.add_manipulator(hand);
+            added.expect("it was in this world when the level was checked");
+        }
+    }
+
+    /// The place nearest to a wish to which a goal can move in a tick.
+    fn reachable(&self, player: usize, wish: Option<Vector>) -> Vector {
+        let hand = &self.world.manipulators()[player];
+        let [low, high] = self.level.arena();
+        let mut goal = wish.unwrap_or(hand.goal());
+        for axis in 0..D::N {
+            let margin = hand.radius.min(0.5 * (high[axis] - low[axis]));
+            goal[axis] = goal[axis].clamp(low[axis] + margin, high[axis] - margin);
+        }
+        let goal = near(hand.goal(), goal, TOP_SPEED * TICK);
+        near(hand.position(), goal, LEASH)
+    }
+}
+
+/// The place nearest to `wish` that is no further than `most` from `from`.
+fn near(from: Vector, wish: Vector, most: f32) -> Vector {
+    let way = [0, 1, 2].map(|axis| wish[axis] - from[axis]);
+    let distance = way.iter().map(|k| k * k).sum::<f32>().sqrt();
+    let share = if distance > most {
+        most / distance
+    } else {
+        1.0
+    };
+    [0, 1, 2].map(|axis| from[axis] + share * way[axis])
+}

@@ -1,0 +1,180 @@
+//! What counts as won, and by which route.
+
+use crate::{Level, Route, Wish};
+use fuwafuwa::world::TICK;
+use fuwafuwa::{Body, Dim, Shape, World};
+use serde::{Deserialize, Serialize};
+
+/// What moves faster than this does not rest in the basket [m/s].
+const RESTING: f32 = 0.4;
+/// Share of the mass that must still hang together for a body to count as whole.
+const WHOLE: f32 = 0.99;
+/// A body that is strained by more than this on the mean is being squeezed; a free one that bounces
+/// off a wall is not.
+const SQUEEZED: f32 = 0.08;
+/// The strain is looked at this often [ticks]: squeezing in takes longer.
+const LOOK: u64 = 4;
+
+/// How far a round has come.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Progress {
+    /// Mass of all bodies at the start [kg].
+    pub mass: f32,
+    /// Share of it that rests in the basket.
+    pub inside: f32,
+    /// Share of it in the largest piece of each body.
+    pub kept: f32,
+    /// Number of pieces.
+    pub pieces: usize,
+    /// For how long enough has rested in the basket [s].
+    pub held: f32,
+    /// The greatest mean strain of what was in the basket so far.
+    pub squeezed: f32,
+    /// How it ended, if it has.
+    pub outcome: Option<Outcome>,
+    bodies: usize,
+}
+
+/// How a round was won.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Outcome {
+    /// Ticks from the start.
+    pub ticks: u64,
+    /// By squeezing, by shaving, or some of both.
+    pub route: Route,
+    /// Share of the mass in the largest piece of each body.
+    pub kept: f32,
+    /// Share of the mass in the basket.
+    pub inside: f32,
+    /// Number of pieces.
+    pub pieces: usize,
+    /// How many of them are not in the basket.
+    pub lost: usize,
+}
+
+impl Outcome {
+    /// How long it took [s].
+    pub fn seconds(&self) -> f32 {
+        self.ticks as f32 * TICK
+    }
+
+    /// Whether a wish of the level came true.
+    pub fn fulfils(&self, wish: &Wish) -> bool {
+        wish.seconds.is_none_or(|most| self.seconds() <= most)
+            && wish.kept.is_none_or(|least| self.kept >= least)
+            && wish.pieces.is_none_or(|least| self.pieces >= least)
+            && wish.route.is_none_or(|route| self.route == route)
+    }
+}
+
+impl Progress {
+    pub(crate) fn of<D: Dim>(world: &World<D>) -> Self {
+        Self {
+            mass: total_mass(world),
+            inside: 0.0,
+            kept: 1.0,
+            pieces: world
+                .bodies()
+                .iter()
+                .map(|body| body.pieces().list.len())
+                .sum(),
+            held: 0.0,
+            squeezed: 0.0,
+            outcome: None,
+            bodies: world.bodies().len(),
+        }
+    }
+
+    /// Looks at the world after a tick.
+    pub(crate) fn watch<D: Dim>(
+        &mut self,
+        level: &Level,
+        basket: Option<&Shape>,
+        world: &World<D>,
+    ) {
+        let views: Vec<_> = world.bodies().iter().map(Body::piece_views).collect();
+        let greatest = views
+            .iter()
+            .map(|views| views.iter().map(|view| view.mass).fold(0.0, f32::max));
+        self.kept = greatest.sum::<f32>() / self.mass;
+        self.pieces = views.iter().map(Vec::len).sum();
+        let Some(basket) = basket else {
+            return;
+        };
+        self.inside = resting_inside(world, basket) / self.mass;
+        if world.ticks().is_multiple_of(LOOK) {
+            self.squeezed = self.squeezed.max(strain_inside(world, basket));
+        }
+        let enough = self.inside >= level.game().share;
+        self.held = if enough { self.held + TICK } else { 0.0 };
+        if enough && self.held >= level.game().hold {
+            let all = views.iter().flatten();
+            let lost = all
+                .filter(|view| basket.distance(view.centre).0 > 0.0)
+                .count();
+            self.outcome = Some(Outcome {
+                ticks: world.ticks(),
+                route: self.route(lost),
+                kept: self.kept,
+                inside: self.inside,
+                pieces: self.pieces,
+                lost,
+            });
+        }
+    }
+
+    /// Named from what happened, not from what was meant.
+    fn route(&self, lost: usize) -> Route {
+        let is_whole = self.kept >= WHOLE && lost == 0;
+        match (is_whole, self.squeezed > SQUEEZED) {
+            (true, _) => Route::Squeeze,
+            (false, false) => Route::Shave,
+            (false, true) => Route::Mix,
+        }
+    }
+}
+
+fn total_mass<D: Dim>(world: &World<D>) -> f32 {
+    world
+        .bodies()
+        .iter()
+        .map(|body| body.total_mass() as f32)
+        .sum()
+}
+
+/// The mass of all slow nodes in a region [kg].
+fn resting_inside<D: Dim>(world: &World<D>, region: &Shape) -> f32 {
+    let inside = |body: &Body<D>| -> f32 {
+        let states = body.mesh().nodes().map(|(id, _)| body.node_state(id));
+        let rests = |at, velocity: [f32; 3]| {
+            let square: f32 = velocity.iter().map(|k| k * k).sum();
+            region.distance(at).0 < 0.0 && square < RESTING * RESTING
+        };
+        let resting = states.filter(|&(at, velocity, _)| rests(at, velocity));
+        resting.map(|(_, _, mass)| mass).sum()
+    };
+    world.bodies().iter().map(inside).sum()
+}
+
+/// The mean strain, by volume, of the pieces whose middle is in a region and that are more than crumbs.
+fn strain_inside<D: Dim>(world: &World<D>, region: &Shape) -> f32 {
+    let (mut sum, mut volume) = (0.0, 0.0);
+    for body in world.bodies() {
+        let pieces = body.piece_views();
+        let counts = |piece: u32| {
+            let view = &pieces[piece as usize];
+            region.distance(view.centre).0 < 0.0 && view.element_count > 50
+        };
+        for element in body.element_views().filter(|element| counts(element.piece)) {
+            let children = match element.level {
+                0 => D::CORNERS as u32,
+                _ => element.children.count_ones(),
+            };
+            let share = children as f32 * (D::CORNERS as f32).powi(i32::from(element.level) - 1);
+            sum += share * element.strain;
+            volume += share;
+        }
+    }
+    if volume > 0.0 { sum / volume } else { 0.0 }
+}
