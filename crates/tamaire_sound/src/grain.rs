@@ -178,9 +178,9 @@ impl Voice {
         self.grain.gain * if self.rises { 1.0 } else { self.envelope }
     }
 
-    /// 80 dB below its beginning.
+    /// 80 dB below full scale.
     fn is_over(&self) -> bool {
-        !self.rises && self.envelope < 1e-4
+        !self.rises && self.loudness() < 1e-4
     }
 
     fn add(&mut self, noise: &mut Noise, out: &mut [Stereo]) {

@@ -15,8 +15,9 @@ pub(crate) struct Squeak {
     /// Follows `firm` late: the difference tells how the force stirs.
     late: Smooth,
     stir: Smooth,
-    pitch: Drift,
-    grip: Drift,
+    /// Rubber grips and slips: slowly in squeaks, and quickly within each.
+    squeak: Drift,
+    jerk: Drift,
     tone: Tone,
     mouth: Band,
     /// Two in a row, so that little hisses above them.
@@ -33,8 +34,8 @@ impl Squeak {
             x: smooth(0.05),
             late: smooth(0.12),
             stir: smooth(0.02),
-            pitch: Drift::new(11.0, rate),
-            grip: Drift::new(38.0, rate),
+            squeak: Drift::new(9.0, rate),
+            jerk: Drift::new(38.0, rate),
             tone: Tone::default(),
             mouth: Band::default(),
             wet: [Band::default(); 2],
@@ -72,13 +73,15 @@ impl Squeak {
             self.late.target = firm;
             self.stir.target = (4.0 * (firm - self.late.next())).abs().min(1.0);
             let stir = self.stir.next();
-            // Rubber slips in jerks; the faster, the more alike they are.
-            let jerk = 1.0 - 0.55 * (0.5 + 0.5 * self.grip.next(noise)) * (1.0 - 0.5 * slide);
             let moves = 1.0 - (1.0 - slide) * (1.0 - 0.6 * stir);
-            let frequency = height * (1.0 + 0.09 * self.pitch.next(noise)) / self.rate;
-            let tone = self.tone.next(frequency, 0.5 + 0.5 * firm);
+            let slips = 0.5 + 0.5 * self.squeak.next(noise);
+            let jerk = 0.75 + 0.25 * self.jerk.next(noise);
+            // Each squeak rises as it swells.
+            let frequency = height * (0.85 + 0.35 * slips) / self.rate;
+            let tone = self.tone.next(frequency, 0.3 + 0.4 * firm);
             let voice = 0.45 * tone + 0.8 * self.mouth.next(tone);
-            let squeak = 1.5 * firm * firm * (0.06 + 0.94 * moves) * jerk * voice;
+            let loud = firm * firm * (0.06 + 0.94 * moves) * (0.15 + 0.85 * slips);
+            let squeak = 1.7 * loud * jerk * voice;
             let [first, second] = &mut self.wet;
             let squish = 0.22 * firm * moves * jerk * second.next(first.hiss(noise));
             let sound = squeak + squish;
@@ -132,7 +135,7 @@ impl Wobble {
             let quick = self.speed * self.speed;
             self.gain.target = share(quick, 3.0);
             let frequency = 88.0 * (1.0 + 0.9 * self.place) / self.rate;
-            let sound = 0.5 * self.gain.next() * self.tone.next(frequency, 0.8);
+            let sound = 0.6 * self.gain.next() * self.tone.next(frequency, 0.45);
             *sample = sample.map(|side| side + sound);
         }
     }

@@ -44,6 +44,23 @@ impl Room {
     }
 }
 
+/// Keeps back what is too low to hear, as the mean of an edgy tone, which would push the limiter.
+#[derive(Default)]
+pub(crate) struct Floor {
+    mean: Stereo,
+}
+
+impl Floor {
+    /// Up to about 15 Hz, when asked `rate` times a second.
+    pub(crate) fn next(&mut self, sample: Stereo, rate: f32) -> Stereo {
+        [0, 1].map(|side| {
+            let mean = self.mean[side] + 100.0 / rate * (sample[side] - self.mean[side]);
+            self.mean[side] = if mean.abs() < 1e-7 { 0.0 } else { mean };
+            sample[side] - self.mean[side]
+        })
+    }
+}
+
 /// Turns down what is too loud, at once but without a jump, and up again slowly.
 pub(crate) struct Limiter {
     peak: f32,

@@ -101,7 +101,7 @@ impl Tone {
     /// `frequency` in turns a sample, `edge` from 0 for a sine to 1.
     pub(crate) fn next(&mut self, frequency: f32, edge: f32) -> f32 {
         self.phase = (self.phase + frequency).fract();
-        // Fed back is the mean of two samples: one alone hunts at high frequencies.
+        // Fed back is a running mean: the last sample alone hunts at high frequencies.
         let out = (TAU * self.phase + edge * self.last).sin();
         self.last = 0.5 * (self.last + out);
         out

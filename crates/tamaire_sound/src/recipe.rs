@@ -78,12 +78,13 @@ fn tear(energy: f32, x: f32, noise: &mut Noise, voices: &mut Voices) {
             ..Grain::default()
         });
     }
-    if strong > 0.5 {
+    let pop = strong - 0.4;
+    if pop > 0.0 {
         voices.start(Grain {
             x,
-            decay: 0.06,
-            gain: 0.7 * strong,
-            pitch: [260.0, 70.0],
+            decay: 0.045,
+            gain: pop,
+            pitch: [320.0, 95.0],
             glide: 0.03,
             edge: 0.4,
             ..Grain::default()
@@ -99,7 +100,7 @@ fn crumb(speed: f32, x: f32, noise: &mut Noise, voices: &mut Voices) {
         x,
         attack: 0.001,
         decay: 0.007 + 0.006 * fast,
-        gain: 0.03 + 0.13 * fast,
+        gain: 0.04 + 0.2 * fast,
         pitch: [pitch, 0.7 * pitch],
         glide: 0.01,
         tone: 0.6,
@@ -189,7 +190,7 @@ fn blip(menu: Menu, voices: &mut Voices) {
         Menu::Confirm => &[(0.0, 79.0), (0.07, 84.0)],
         Menu::Back => &[(0.0, 76.0), (0.07, 71.0)],
     };
-    let gain = if menu == Menu::Move { 0.14 } else { 0.22 };
+    let gain = if menu == Menu::Move { 0.3 } else { 0.45 };
     for (delay, number) in notes {
         let blip = bell(*number, *delay, gain, 0.06);
         voices.start(Grain {

@@ -3,7 +3,7 @@
 use crate::cue::Cue;
 use crate::grain::{BUSES, Bus, Buses, CHUNK, Voices};
 use crate::layer::{Chord, Squeak, Wobble};
-use crate::master::{Limiter, Room};
+use crate::master::{Floor, Limiter, Room};
 use crate::music::Music;
 use crate::part::{Noise, Smooth, clean};
 use crate::recipe;
@@ -33,6 +33,7 @@ pub struct Synth {
     gains: [Smooth; BUSES],
     master: Smooth,
     room: Room,
+    floor: Floor,
     limiter: Limiter,
     buses: Buses,
 }
@@ -53,9 +54,10 @@ impl Synth {
             voices: Voices::new(rate),
             thuds: Thuds::default(),
             noise: Noise::new(),
-            gains: [Smooth::new(0.015, rate); BUSES],
+            gains: [0.015, 0.3, 0.015].map(|seconds| Smooth::new(seconds, rate)),
             master: Smooth::new(0.015, rate),
             room: Room::new(rate),
+            floor: Floor::default(),
             limiter: Limiter::new(rate),
             buses: [[[0.0; 2]; CHUNK]; BUSES],
         };
@@ -139,8 +141,8 @@ impl Synth {
         }
         let room = self.room.next(into_room);
         let master = self.master.next();
-        self.limiter
-            .next([0, 1].map(|side| master * (dry[side] + room[side])))
+        let all = [0, 1].map(|side| master * (dry[side] + room[side]));
+        self.limiter.next(self.floor.next(all, self.rate))
     }
 
     /// Hands on to all parts what was told.
@@ -149,34 +151,27 @@ impl Synth {
             presses,
             squash,
             hold,
+            music,
             hush,
-            ..
         } = self.soundscape;
         for (squeak, press) in self.squeaks.iter_mut().zip(&presses) {
             squeak.hear(press);
         }
         self.wobble.hear(squash);
         self.chord.hear(hold);
+        let volumes = &self.volumes;
         // Ears tell ratios: half way down the slider is to sound half as loud.
-        let loudness = |volume: f32| clean(volume, 0.0, 1.0).powi(2);
-        let Volumes {
-            master,
-            effects,
-            music,
-            interface,
-        } = self.volumes;
-        self.gains[Bus::Effects as usize].target = if hush == Hush::World {
-            0.0
-        } else {
-            loudness(effects)
+        let loudness = |is_on, volume| {
+            if is_on {
+                clean(volume, 0.0, 1.0).powi(2)
+            } else {
+                0.0
+            }
         };
-        self.gains[Bus::Music as usize].target = loudness(music);
-        self.gains[Bus::Interface as usize].target = loudness(interface);
-        self.master.target = if hush == Hush::Everything {
-            0.0
-        } else {
-            loudness(master)
-        };
+        self.gains[Bus::Effects as usize].target = loudness(hush != Hush::World, volumes.effects);
+        self.gains[Bus::Music as usize].target = loudness(music, volumes.music);
+        self.gains[Bus::Interface as usize].target = loudness(true, volumes.interface);
+        self.master.target = loudness(hush != Hush::Everything, volumes.master);
     }
 }
 

@@ -95,7 +95,7 @@ fn after_everything_it_falls_silent() {
         ..pressed(1000.0, 1.0)
     };
     assert!(loudness(&steady(&mut synth, 1.0, all)) > 0.05);
-    steady(&mut synth, 20.0, Soundscape::default());
+    steady(&mut synth, 25.0, Soundscape::default());
     assert_eq!(synth.voice_count(), 0);
     let rest = steady(&mut synth, 0.5, Soundscape::default());
     assert!(rest.iter().all(|k| *k == 0.0), "still {}", loudness(&rest));
