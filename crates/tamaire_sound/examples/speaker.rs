@@ -1,0 +1,36 @@
+//! Plays a few seconds on the sound device, or says why it cannot.
+//!
+//! `cargo run --release -p tamaire_sound --example speaker`
+
+use std::time::Duration;
+use tamaire_sound::{Cue, Press, Route, Soundscape, Speaker, Volumes};
+
+fn main() {
+    let speaker = match Speaker::open() {
+        Ok(speaker) => speaker,
+        Err(why) => return println!("Nothing will be heard: {why}."),
+    };
+    for tick in 0..300 {
+        let time = tick as f32 / 60.0;
+        let press = Press {
+            force: if tick < 180 { 300.0 * time } else { 0.0 },
+            slip: 0.5 + 0.5 * (4.0 * time).sin(),
+            x: (2.0 * time).sin(),
+        };
+        if tick == 180 {
+            speaker.play(Cue::Won(Route::Squeeze));
+        }
+        let presses = [press, Press::default()];
+        speaker.update(
+            &Soundscape {
+                presses,
+                ..Soundscape::default()
+            },
+            &Volumes::default(),
+        );
+        if let Some(why) = speaker.trouble() {
+            println!("Nothing is heard just now: {why}.");
+        }
+        std::thread::sleep(Duration::from_millis(16));
+    }
+}

@@ -1,0 +1,215 @@
+//! Short sounds: every cue is made of them, and so is the music.
+
+use crate::part::{Band, Noise, Stereo, Tone, panned};
+
+/// As many grains sound at once.
+pub(crate) const MOST_VOICES: usize = 64;
+
+/// Samples that are worked out together; filters are tuned as often.
+pub(crate) const CHUNK: usize = 32;
+
+/// What has a volume of its own.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Bus {
+    Effects,
+    Music,
+    Interface,
+}
+
+/// As many as there are.
+pub(crate) const BUSES: usize = 3;
+
+/// A chunk of each bus.
+pub(crate) type Buses = [[Stereo; CHUNK]; BUSES];
+
+/// A tone and a band of noise that rise together, fall off together, and glide in pitch together.
+#[derive(Copy, Clone, Debug)]
+pub(crate) struct Grain {
+    pub(crate) bus: Bus,
+    /// Until it begins [s].
+    pub(crate) delay: f32,
+    /// Until it is at its loudest [s]. Less than 0.001 clicks.
+    pub(crate) attack: f32,
+    /// From then on, until it has fallen to 1/e [s].
+    pub(crate) decay: f32,
+    /// At its loudest, 0 to 1.
+    pub(crate) gain: f32,
+    /// From -1 at the left to 1 at the right.
+    pub(crate) x: f32,
+    /// At its beginning and in the end [Hz].
+    pub(crate) pitch: [f32; 2],
+    /// In which most of the way between them is made [s].
+    pub(crate) glide: f32,
+    /// How loud the tone is, 0 to 1, and how edgy.
+    pub(crate) tone: f32,
+    pub(crate) edge: f32,
+    /// How loud the noise is, 0 to 1, how high above the tone, and how sharp its band.
+    pub(crate) noise: f32,
+    pub(crate) above: f32,
+    pub(crate) sharpness: f32,
+}
+
+impl Default for Grain {
+    fn default() -> Self {
+        Self {
+            bus: Bus::Effects,
+            delay: 0.0,
+            attack: 0.002,
+            decay: 0.1,
+            gain: 0.5,
+            x: 0.0,
+            pitch: [440.0; 2],
+            glide: 0.05,
+            tone: 1.0,
+            edge: 0.0,
+            noise: 0.0,
+            above: 1.0,
+            sharpness: 1.5,
+        }
+    }
+}
+
+/// The grains that sound, or will soon.
+pub(crate) struct Voices {
+    rate: f32,
+    voices: Vec<Voice>,
+    /// What was sounding where a grain was cut off; fades, so that there is no click.
+    cut: [Stereo; BUSES],
+}
+
+impl Voices {
+    pub(crate) fn new(rate: f32) -> Self {
+        Self {
+            rate,
+            voices: Vec::with_capacity(MOST_VOICES),
+            cut: [[0.0; 2]; BUSES],
+        }
+    }
+
+    pub(crate) fn count(&self) -> usize {
+        self.voices.len()
+    }
+
+    /// Begins a grain; if there are too many, in place of the faintest, or not at all.
+    pub(crate) fn start(&mut self, grain: Grain) {
+        let voice = Voice::new(grain, self.rate);
+        if self.voices.len() < MOST_VOICES {
+            self.voices.push(voice);
+            return;
+        }
+        let faintest = self
+            .voices
+            .iter_mut()
+            .min_by(|a, b| a.loudness().total_cmp(&b.loudness()));
+        let faintest = faintest.expect("as many voices as there may be are more than none");
+        if faintest.loudness() < grain.gain {
+            let cut = &mut self.cut[faintest.grain.bus as usize];
+            *cut = [cut[0] + faintest.last[0], cut[1] + faintest.last[1]];
+            *faintest = voice;
+        }
+    }
+
+    /// Adds what sounds to the first `count` samples of each bus.
+    pub(crate) fn add(&mut self, noise: &mut Noise, buses: &mut Buses, count: usize) {
+        for voice in &mut self.voices {
+            let bus = voice.grain.bus as usize;
+            voice.add(noise, &mut buses[bus][..count]);
+        }
+        self.voices.retain(|voice| !voice.is_over());
+        let keep = 1.0 - 300.0 / self.rate;
+        for (bus, cut) in buses.iter_mut().zip(&mut self.cut) {
+            for sample in &mut bus[..count] {
+                for side in 0..2 {
+                    sample[side] += cut[side];
+                    cut[side] = if cut[side].abs() < 1e-6 {
+                        0.0
+                    } else {
+                        cut[side] * keep
+                    };
+                }
+            }
+        }
+    }
+}
+
+/// A grain that sounds.
+struct Voice {
+    grain: Grain,
+    sides: Stereo,
+    /// Samples until it begins.
+    wait: u32,
+    /// How loud it is now, and whether it still rises.
+    envelope: f32,
+    rises: bool,
+    /// What a sample adds to a rising envelope, and what it leaves of a falling one.
+    rise: f32,
+    fall: f32,
+    /// Turns a sample; now, in the end, and what a sample leaves of the difference.
+    frequency: f32,
+    frequency_end: f32,
+    approach: f32,
+    tone: Tone,
+    band: Band,
+    last: Stereo,
+}
+
+impl Voice {
+    fn new(grain: Grain, rate: f32) -> Self {
+        let [first, last] = grain.pitch.map(|pitch| (pitch / rate).min(0.45));
+        Self {
+            grain,
+            sides: panned(grain.x),
+            wait: (grain.delay * rate) as u32,
+            envelope: 0.0,
+            rises: true,
+            rise: 1.0 / (grain.attack * rate).max(1.0),
+            fall: (-1.0 / (grain.decay * rate)).exp(),
+            frequency: first,
+            frequency_end: last,
+            approach: (-1.0 / (grain.glide * rate)).exp(),
+            tone: Tone::default(),
+            band: Band::default(),
+            last: [0.0; 2],
+        }
+    }
+
+    /// How much would be lost without it.
+    fn loudness(&self) -> f32 {
+        self.grain.gain * if self.rises { 1.0 } else { self.envelope }
+    }
+
+    /// 80 dB below full scale.
+    fn is_over(&self) -> bool {
+        !self.rises && self.loudness() < 1e-4
+    }
+
+    fn add(&mut self, noise: &mut Noise, out: &mut [Stereo]) {
+        let waited = (self.wait as usize).min(out.len());
+        self.wait -= waited as u32;
+        let grain = self.grain;
+        if grain.noise > 0.0 {
+            self.band
+                .tune(self.frequency * grain.above, grain.sharpness);
+        }
+        for sample in &mut out[waited..] {
+            if self.rises {
+                self.envelope = (self.envelope + self.rise).min(1.0);
+                self.rises = self.envelope < 1.0;
+            } else {
+                self.envelope *= self.fall;
+            }
+            self.frequency =
+                self.frequency_end + (self.frequency - self.frequency_end) * self.approach;
+            let mut sound = 0.0;
+            if grain.tone > 0.0 {
+                sound += grain.tone * self.tone.next(self.frequency, grain.edge);
+            }
+            if grain.noise > 0.0 {
+                sound += grain.noise * self.band.hiss(noise);
+            }
+            sound *= grain.gain * self.envelope;
+            self.last = self.sides.map(|side| side * sound);
+            *sample = [sample[0] + self.last[0], sample[1] + self.last[1]];
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! Sounds that last for as long as something does.
+
+use crate::part::{Band, Drift, Noise, Smooth, Stereo, Tone, note, panned, share};
+use crate::soundscape::Press;
+use std::f32::consts::TAU;
+
+/// A hand that rubs and squashes rubber: a squeak, whose pitch follows the force, in a mouth that
+/// opens with it, and the wet noise of what is pushed about.
+pub(crate) struct Squeak {
+    rate: f32,
+    /// How firmly, how fast, where.
+    firm: Smooth,
+    slide: Smooth,
+    x: Smooth,
+    /// Follows `firm` late: the difference tells how the force stirs.
+    late: Smooth,
+    stir: Smooth,
+    /// Rubber grips and slips: slowly in squeaks, and quickly within each.
+    squeak: Drift,
+    jerk: Drift,
+    tone: Tone,
+    mouth: Band,
+    /// Two in a row, so that little hisses above them.
+    wet: [Band; 2],
+}
+
+impl Squeak {
+    pub(crate) fn new(rate: f32) -> Self {
+        let smooth = |seconds| Smooth::new(seconds, rate);
+        Self {
+            rate,
+            firm: smooth(0.02),
+            slide: smooth(0.03),
+            x: smooth(0.05),
+            late: smooth(0.12),
+            stir: smooth(0.02),
+            squeak: Drift::new(9.0, rate),
+            jerk: Drift::new(38.0, rate),
+            tone: Tone::default(),
+            mouth: Band::default(),
+            wet: [Band::default(); 2],
+        }
+    }
+
+    pub(crate) fn hear(&mut self, press: &Press) {
+        self.firm.target = share(press.force, 400.0);
+        self.slide.target = share(press.slip, 0.5);
+        self.x.target = press.x;
+        if self.is_silent() {
+            self.x.value = press.x;
+        }
+    }
+
+    /// Whether nothing was heard of late.
+    fn is_silent(&self) -> bool {
+        self.firm.value == 0.0 && self.late.value == 0.0 && self.stir.value == 0.0
+    }
+
+    pub(crate) fn add(&mut self, noise: &mut Noise, out: &mut [Stereo]) {
+        if self.is_silent() && self.firm.is_silent() {
+            return;
+        }
+        let firm = self.firm.value;
+        let sides = panned(self.x.value);
+        let height = 150.0 * (2.4 * firm).exp2() * (1.0 + 0.25 * self.slide.value);
+        self.mouth.tune(2.6 * height / self.rate, 1.6);
+        for band in &mut self.wet {
+            band.tune((200.0 + 1100.0 * firm) / self.rate, 1.2);
+        }
+        for sample in out {
+            self.x.next();
+            let (firm, slide) = (self.firm.next(), self.slide.next());
+            self.late.target = firm;
+            self.stir.target = (4.0 * (firm - self.late.next())).abs().min(1.0);
+            let stir = self.stir.next();
+            let moves = 1.0 - (1.0 - slide) * (1.0 - 0.6 * stir);
+            let slips = 0.5 + 0.5 * self.squeak.next(noise);
+            let jerk = 0.75 + 0.25 * self.jerk.next(noise);
+            // Each squeak rises as it swells.
+            let frequency = height * (0.85 + 0.35 * slips) / self.rate;
+            let tone = self.tone.next(frequency, 0.3 + 0.4 * firm);
+            let voice = 0.45 * tone + 0.8 * self.mouth.next(tone);
+            let loud = firm * firm * (0.06 + 0.94 * moves) * (0.15 + 0.85 * slips);
+            let squeak = 1.7 * loud * jerk * voice;
+            let [first, second] = &mut self.wet;
+            let squish = 0.22 * firm * moves * jerk * second.next(first.hiss(noise));
+            let sound = squeak + squish;
+            *sample = [sample[0] + sides[0] * sound, sample[1] + sides[1] * sound];
+        }
+    }
+}
+
+/// The wobble of something like mochi: a weight on a spring follows the squash, overshoots, and is
+/// heard as it moves.
+pub(crate) struct Wobble {
+    rate: f32,
+    squash: Smooth,
+    /// Of the weight [squash], [squash/s].
+    place: f32,
+    speed: f32,
+    gain: Smooth,
+    tone: Tone,
+}
+
+impl Wobble {
+    pub(crate) fn new(rate: f32) -> Self {
+        Self {
+            rate,
+            squash: Smooth::new(0.02, rate),
+            place: 0.0,
+            speed: 0.0,
+            gain: Smooth::new(0.015, rate),
+            tone: Tone::default(),
+        }
+    }
+
+    pub(crate) fn hear(&mut self, squash: f32) {
+        self.squash.target = squash;
+    }
+
+    pub(crate) fn add(&mut self, out: &mut [Stereo]) {
+        /// Swings a second, and the share of critical damping.
+        const SWING: f32 = TAU * 5.5;
+        const DAMPING: f32 = 0.16;
+        let still = self.squash.value == self.squash.target && self.gain.is_silent();
+        if still && self.speed.abs() < 1e-3 && (self.place - self.squash.value).abs() < 1e-4 {
+            return;
+        }
+        for sample in out {
+            let away = self.squash.next() - self.place;
+            let push = SWING * SWING * away - 2.0 * DAMPING * SWING * self.speed;
+            self.speed += push / self.rate;
+            self.place += self.speed / self.rate;
+            // Squared, so that what trembles a little is not heard.
+            let quick = self.speed * self.speed;
+            self.gain.target = share(quick, 3.0);
+            let frequency = 88.0 * (1.0 + 0.9 * self.place) / self.rate;
+            let sound = 0.6 * self.gain.next() * self.tone.next(frequency, 0.45);
+            *sample = sample.map(|side| side + sound);
+        }
+    }
+}
+
+/// Four voices that come in one after the other and rise while the body rests in the basket.
+pub(crate) struct Chord {
+    rate: f32,
+    hold: Smooth,
+    /// How high it has risen; stays when the hold is lost, until it has faded.
+    risen: f32,
+    shimmer: f32,
+    tones: [Tone; 4],
+}
+
+impl Chord {
+    pub(crate) fn new(rate: f32) -> Self {
+        Self {
+            rate,
+            hold: Smooth::new(0.04, rate),
+            risen: 0.0,
+            shimmer: 0.0,
+            tones: [Tone::default(); 4],
+        }
+    }
+
+    pub(crate) fn hear(&mut self, hold: f32) {
+        self.hold.target = hold;
+    }
+
+    pub(crate) fn add(&mut self, out: &mut [Stereo]) {
+        /// From G to the C with which the jingles begin.
+        const LOWEST: f32 = 55.0;
+        const RISE: f32 = 5.0;
+        const ABOVE: [f32; 4] = [0.0, 4.0, 7.0, 12.0];
+        if self.hold.is_silent() {
+            self.risen = 0.0;
+            return;
+        }
+        self.risen = self.risen.max(self.hold.value);
+        let risen = self.risen;
+        let frequencies = ABOVE.map(|above| note(LOWEST + above + RISE * risen) / self.rate);
+        let sides = [-0.6, 0.6, -0.2, 0.3].map(panned);
+        for sample in out {
+            let hold = self.hold.next();
+            self.shimmer = (self.shimmer + (4.0 + 6.0 * risen) / self.rate).fract();
+            let shimmer = 0.8 + 0.2 * (TAU * self.shimmer).sin();
+            for place in 0..4 {
+                let loud = (4.0 * hold - place as f32).clamp(0.0, 1.0);
+                let sound = 0.1 * loud * shimmer * self.tones[place].next(frequencies[place], 0.5);
+                for side in 0..2 {
+                    sample[side] += sides[place][side] * sound;
+                }
+            }
+        }
+    }
+}

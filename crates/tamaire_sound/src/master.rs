@@ -1,0 +1,100 @@
+//! What all sounds go through in the end: a little room, and a limit.
+
+use crate::part::Stereo;
+
+/// A small room: four echoes that feed each other [Jot 1991].
+pub(crate) struct Room {
+    lines: [Line; 4],
+}
+
+/// An echo, duller each time round.
+struct Line {
+    samples: Vec<f32>,
+    place: usize,
+    dull: f32,
+}
+
+impl Room {
+    pub(crate) fn new(rate: f32) -> Self {
+        // No two have a common multiple soon, so that no pitch stands out.
+        let line = |seconds: f32| Line {
+            samples: vec![0.0; (seconds * rate) as usize],
+            place: 0,
+            dull: 0.0,
+        };
+        Self {
+            lines: [0.0233, 0.0297, 0.0371, 0.0419].map(line),
+        }
+    }
+
+    /// What comes back, when this goes in.
+    pub(crate) fn next(&mut self, dry: Stereo) -> Stereo {
+        let [a, b, c, d] = self.lines.each_ref().map(|line| line.samples[line.place]);
+        // Rows of a Hadamard matrix: each echo feeds all, and none is louder for it.
+        let mixed = [a + b + c + d, a - b + c - d, a + b - c - d, a - b - c + d];
+        for (place, (line, mixed)) in self.lines.iter_mut().zip(mixed).enumerate() {
+            line.dull += 0.55 * (mixed - line.dull);
+            if line.dull.abs() < 1e-7 {
+                line.dull = 0.0;
+            }
+            line.samples[line.place] = dry[place % 2] + 0.5 * 0.74 * line.dull;
+            line.place = (line.place + 1) % line.samples.len();
+        }
+        [a + c, b + d]
+    }
+}
+
+/// Keeps back what is too low to hear, as the mean of an edgy tone, which would push the limiter.
+#[derive(Default)]
+pub(crate) struct Floor {
+    mean: Stereo,
+}
+
+impl Floor {
+    /// Up to about 15 Hz, when asked `rate` times a second.
+    pub(crate) fn next(&mut self, sample: Stereo, rate: f32) -> Stereo {
+        [0, 1].map(|side| {
+            let mean = self.mean[side] + 100.0 / rate * (sample[side] - self.mean[side]);
+            self.mean[side] = if mean.abs() < 1e-7 { 0.0 } else { mean };
+            sample[side] - self.mean[side]
+        })
+    }
+}
+
+/// Turns down what is too loud, at once but without a jump, and up again slowly.
+pub(crate) struct Limiter {
+    peak: f32,
+    attack: f32,
+    release: f32,
+}
+
+impl Limiter {
+    pub(crate) fn new(rate: f32) -> Self {
+        let share = |seconds: f32| 1.0 - (-1.0 / (seconds * rate)).exp();
+        Self {
+            peak: 0.0,
+            attack: share(0.000_5),
+            release: share(0.2),
+        }
+    }
+
+    /// Never beyond -1 to 1.
+    pub(crate) fn next(&mut self, sample: Stereo) -> Stereo {
+        /// Up to here nothing is changed.
+        const CLEAN: f32 = 0.7;
+        let loud = sample[0].abs().max(sample[1].abs());
+        let pace = if loud > self.peak {
+            self.attack
+        } else {
+            self.release
+        };
+        self.peak += pace * (loud - self.peak);
+        let gain = CLEAN / self.peak.max(CLEAN);
+        // What was too quick for that is bent.
+        let bent = |side: f32| {
+            let over = (gain * side.abs() - CLEAN).max(0.0) / (1.0 - CLEAN);
+            (gain * side.abs()).min(CLEAN) + (1.0 - CLEAN) * over.tanh()
+        };
+        sample.map(|side| bent(side).copysign(side))
+    }
+}

@@ -1,0 +1,403 @@
+//! Plays on the machine's sound device.
+//!
+//! Three threads meet at a mailbox: the game leaves there what is to be heard; the device's own
+//! thread takes it, and goes on with what it has while the game is just writing; a keeper opens the
+//! device, and again when it was lost.
+
+use crate::cue::Cue;
+use crate::soundscape::{Hush, Soundscape, Volumes};
+use crate::synth::Synth;
+use cpal::traits::{DeviceTrait, HostTrait, StreamTrait};
+use cpal::{Device, ErrorKind, FromSample, I24, SampleFormat, SizedSample, StreamConfig, U24};
+use std::sync::mpsc::{self, RecvTimeoutError, Sender};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError, Weak};
+use std::thread;
+use std::time::Duration;
+
+/// Until a device that does not answer counts as none.
+const PATIENCE: Duration = Duration::from_secs(3);
+
+/// Between two attempts to open a device that was lost.
+const PAUSE: Duration = Duration::from_secs(1);
+
+/// As many cues may wait for the device; a tick of heavy tearing has some hundred.
+const MOST_CUES: usize = 256;
+
+/// As many of them may be of the world. The rest are kept for menus and jingles, which are few and
+/// must not be lost.
+const MOST_CUES_OF_THE_WORLD: usize = 240;
+
+/// Frames that are worked out at a time.
+const FRAMES: usize = 256;
+
+/// Why nothing is heard. The game goes on without.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoSound {
+    /// There is none.
+    #[error("no sound device was found")]
+    NoDevice,
+    /// Another program has it for itself.
+    #[error("the sound device is in use by another program")]
+    Busy,
+    /// It neither works nor fails.
+    #[error("the sound device does not answer")]
+    NoAnswer,
+    /// Something else, in the words of the system.
+    #[error("the sound device cannot be used: {0}")]
+    Refused(String),
+}
+
+/// The machine's sound device. Falls silent when dropped.
+pub struct Speaker {
+    mailbox: Arc<Mutex<Mailbox>>,
+}
+
+impl Speaker {
+    /// Opens the device that the system prefers. It may take a moment, at most three seconds.
+    ///
+    /// # Errors
+    /// [`NoSound`] says why nothing would be heard.
+    pub fn open() -> Result<Self, NoSound> {
+        let mailbox = Arc::new(Mutex::new(Mailbox::new()));
+        let (opened, answer) = mpsc::channel();
+        let keeper = Arc::downgrade(&mailbox);
+        thread::Builder::new()
+            .name("sound".to_owned())
+            .spawn(move || keep_open(&keeper, &opened))
+            .map_err(|error| NoSound::Refused(error.to_string()))?;
+        answer
+            .recv_timeout(PATIENCE)
+            .unwrap_or(Err(NoSound::NoAnswer))?;
+        Ok(Self { mailbox })
+    }
+
+    /// Tells what lasts and how loud it is to be. To be called each frame.
+    pub fn update(&self, soundscape: &Soundscape, volumes: &Volumes) {
+        let mut mailbox = lock(&self.mailbox);
+        mailbox.soundscape = *soundscape;
+        mailbox.volumes = *volumes;
+        mailbox.number += 1;
+    }
+
+    /// Begins what sounds once.
+    pub fn play(&self, cue: Cue) {
+        lock(&self.mailbox).put(cue);
+    }
+
+    /// Why nothing is heard just now, if so: the device was unplugged, say. It is looked for again
+    /// every second.
+    pub fn trouble(&self) -> Option<NoSound> {
+        lock(&self.mailbox).trouble.clone()
+    }
+}
+
+/// What the game leaves for the device.
+struct Mailbox {
+    soundscape: Soundscape,
+    volumes: Volumes,
+    /// Counts what was told, so that the device sees what is new.
+    number: u64,
+    cues: Vec<Cue>,
+    trouble: Option<NoSound>,
+}
+
+impl Mailbox {
+    fn new() -> Self {
+        Self {
+            soundscape: Soundscape::default(),
+            volumes: Volumes::default(),
+            number: 0,
+            cues: Vec::with_capacity(MOST_CUES),
+            trouble: None,
+        }
+    }
+
+    /// Drops a cue for which there is no room, or no device: it would come too late.
+    fn put(&mut self, cue: Cue) {
+        let most = match cue {
+            Cue::Thud { .. } | Cue::Tear { .. } | Cue::Crumb { .. } => MOST_CUES_OF_THE_WORLD,
+            Cue::Won(_) | Cue::Menu(_) => MOST_CUES,
+        };
+        if self.trouble.is_none() && self.cues.len() < most {
+            self.cues.push(cue);
+        }
+    }
+}
+
+/// Nothing in the mailbox can be half done, so a thread that panicked does no harm.
+fn lock(mailbox: &Mutex<Mailbox>) -> MutexGuard<'_, Mailbox> {
+    mailbox.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// What the device's thread owns: it must never wait, nor allocate.
+struct Source {
+    mailbox: Weak<Mutex<Mailbox>>,
+    synth: Synth,
+    /// Of the last news that it heard.
+    number: u64,
+}
+
+impl Source {
+    fn new(mailbox: Weak<Mutex<Mailbox>>, rate: u32) -> Self {
+        Self {
+            mailbox,
+            synth: Synth::new(rate),
+            number: 0,
+        }
+    }
+
+    /// Fills frames of `channels` samples: all after the second are silent, and a single one gets both.
+    fn fill<T: SizedSample + FromSample<f32>>(&mut self, out: &mut [T], channels: usize) {
+        self.listen();
+        let mut stereo = [0.0; 2 * FRAMES];
+        for part in out.chunks_mut(FRAMES * channels) {
+            let stereo = &mut stereo[..2 * part.len().div_ceil(channels)];
+            self.synth.render(stereo);
+            for (frame, sides) in part.chunks_mut(channels).zip(stereo.chunks(2)) {
+                if let [one] = frame {
+                    *one = T::from_sample(0.5 * (sides[0] + sides[1]));
+                    continue;
+                }
+                frame.fill(T::EQUILIBRIUM);
+                for (sample, side) in frame.iter_mut().zip(sides) {
+                    *sample = T::from_sample(*side);
+                }
+            }
+        }
+    }
+
+    /// Takes what is new. If the game is just writing, that has time until the next call.
+    fn listen(&mut self) {
+        let Some(mailbox) = self.mailbox.upgrade() else {
+            let hush = Hush::Everything;
+            self.synth.hear(&Soundscape {
+                hush,
+                ..Soundscape::default()
+            });
+            return;
+        };
+        let mut mailbox = match mailbox.try_lock() {
+            Ok(mailbox) => mailbox,
+            Err(TryLockError::Poisoned(poisoned)) => poisoned.into_inner(),
+            Err(TryLockError::WouldBlock) => return,
+        };
+        if self.number != mailbox.number {
+            self.number = mailbox.number;
+            self.synth.hear(&mailbox.soundscape);
+            self.synth.set_volumes(&mailbox.volumes);
+        }
+        for cue in mailbox.cues.drain(..) {
+            self.synth.play(cue);
+        }
+    }
+}
+
+/// Keeps a device open until the speaker is gone, and tells `opened` how the first attempt ended.
+fn keep_open(mailbox: &Weak<Mutex<Mailbox>>, opened: &Sender<Result<(), NoSound>>) {
+    let mut is_first = true;
+    while mailbox.strong_count() > 0 {
+        let (lost, losses) = mpsc::channel();
+        let stream = open_stream(mailbox, lost);
+        let trouble = stream.as_ref().err().cloned();
+        report(mailbox, trouble.clone());
+        if is_first {
+            is_first = false;
+            // Nobody listens any more if it took too long; then the speaker is gone, too.
+            let _ = opened.send(trouble.clone().map_or(Ok(()), Err));
+            if trouble.is_some() {
+                return;
+            }
+        }
+        while stream.is_ok() && mailbox.strong_count() > 0 {
+            match losses.recv_timeout(PAUSE) {
+                Err(RecvTimeoutError::Timeout) => {}
+                Ok(why) => {
+                    report(mailbox, Some(why));
+                    break;
+                }
+                Err(RecvTimeoutError::Disconnected) => {
+                    report(mailbox, Some(NoSound::NoAnswer));
+                    break;
+                }
+            }
+        }
+        drop(stream);
+        thread::sleep(PAUSE);
+    }
+}
+
+fn report(mailbox: &Weak<Mutex<Mailbox>>, trouble: Option<NoSound>) {
+    if let Some(mailbox) = mailbox.upgrade() {
+        let mut mailbox = lock(&mailbox);
+        mailbox.cues.clear();
+        mailbox.trouble = trouble;
+    }
+}
+
+/// Plays on the device that the system prefers, until dropped; tells `lost` when it no longer can.
+fn open_stream(
+    mailbox: &Weak<Mutex<Mailbox>>,
+    lost: Sender<NoSound>,
+) -> Result<cpal::Stream, NoSound> {
+    let device = cpal::default_host()
+        .default_output_device()
+        .ok_or(NoSound::NoDevice)?;
+    let supported = device.default_output_config()?;
+    let config = supported.config();
+    let source = Source::new(mailbox.clone(), config.sample_rate);
+    let build = match supported.sample_format() {
+        SampleFormat::I8 => build::<i8>,
+        SampleFormat::I16 => build::<i16>,
+        SampleFormat::I24 => build::<I24>,
+        SampleFormat::I32 => build::<i32>,
+        SampleFormat::I64 => build::<i64>,
+        SampleFormat::U8 => build::<u8>,
+        SampleFormat::U16 => build::<u16>,
+        SampleFormat::U24 => build::<U24>,
+        SampleFormat::U32 => build::<u32>,
+        SampleFormat::U64 => build::<u64>,
+        SampleFormat::F32 => build::<f32>,
+        SampleFormat::F64 => build::<f64>,
+        other => return Err(NoSound::Refused(format!("its samples are {other}"))),
+    };
+    let stream = build(&device, config, source, lost)?;
+    stream.play()?;
+    Ok(stream)
+}
+
+fn build<T: SizedSample + FromSample<f32>>(
+    device: &Device,
+    config: StreamConfig,
+    mut source: Source,
+    lost: Sender<NoSound>,
+) -> Result<cpal::Stream, cpal::Error> {
+    let channels = usize::from(config.channels);
+    device.build_output_stream(
+        config,
+        move |out: &mut [T], _| source.fill(out, channels),
+        move |error| match error.kind() {
+            // It plays on.
+            ErrorKind::DeviceChanged | ErrorKind::Xrun | ErrorKind::RealtimeDenied => {}
+            // The keeper may have heard of it already, and be gone from the channel.
+            _ => drop(lost.send(error.into())),
+        },
+        Some(PATIENCE),
+    )
+}
+
+impl From<cpal::Error> for NoSound {
+    fn from(error: cpal::Error) -> Self {
+        match error.kind() {
+            ErrorKind::DeviceNotAvailable | ErrorKind::HostUnavailable => Self::NoDevice,
+            ErrorKind::DeviceBusy => Self::Busy,
+            _ => Self::Refused(error.to_string()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cue::{Menu, Route};
+    use crate::soundscape::Press;
+
+    fn speaker() -> (Speaker, Source) {
+        let mailbox = Arc::new(Mutex::new(Mailbox::new()));
+        let source = Source::new(Arc::downgrade(&mailbox), 48_000);
+        (Speaker { mailbox }, source)
+    }
+
+    fn loudest(source: &mut Source) -> f32 {
+        let mut out = [0.0_f32; 2 * 1000];
+        source.fill(&mut out, 2);
+        out.iter().fold(0.0, |most, k| most.max(k.abs()))
+    }
+
+    #[test]
+    fn what_the_game_tells_is_heard_in_the_next_block() {
+        let (speaker, mut source) = speaker();
+        assert_eq!(loudest(&mut source), 0.0);
+        let press = Press {
+            force: 800.0,
+            slip: 1.0,
+            x: 0.0,
+        };
+        let soundscape = Soundscape {
+            presses: [press; 2],
+            ..Soundscape::default()
+        };
+        speaker.update(&soundscape, &Volumes::default());
+        assert!(loudest(&mut source) > 0.0);
+        let (speaker, mut source) = self::speaker();
+        speaker.play(Cue::Menu(Menu::Confirm));
+        assert!(loudest(&mut source) > 0.01);
+    }
+
+    #[test]
+    fn a_game_that_is_writing_does_not_hold_up_the_device() {
+        let (speaker, mut source) = speaker();
+        speaker.play(Cue::Menu(Menu::Confirm));
+        let writing = speaker.mailbox.lock().expect("nobody panicked");
+        assert_eq!(loudest(&mut source), 0.0);
+        drop(writing);
+        assert!(loudest(&mut source) > 0.01);
+    }
+
+    #[test]
+    fn a_flood_of_tears_leaves_room_for_the_win() {
+        let (speaker, source) = speaker();
+        for _ in 0..10_000 {
+            speaker.play(Cue::Tear {
+                energy: 1.0,
+                x: 0.0,
+            });
+        }
+        speaker.play(Cue::Won(Route::Shave));
+        let mailbox = lock(&speaker.mailbox);
+        assert_eq!(mailbox.cues.len(), MOST_CUES_OF_THE_WORLD + 1);
+        assert_eq!(mailbox.cues.last(), Some(&Cue::Won(Route::Shave)));
+        drop(source);
+    }
+
+    #[test]
+    fn cues_of_a_time_without_device_are_not_heard_later() {
+        let (speaker, mut source) = speaker();
+        let weak = Arc::downgrade(&speaker.mailbox);
+        speaker.play(Cue::Won(Route::Shave));
+        report(&weak, Some(NoSound::NoDevice));
+        assert_eq!(speaker.trouble(), Some(NoSound::NoDevice));
+        speaker.play(Cue::Won(Route::Shave));
+        report(&weak, None);
+        assert_eq!((speaker.trouble(), loudest(&mut source)), (None, 0.0));
+    }
+
+    #[test]
+    fn it_falls_silent_when_dropped() {
+        let (speaker, mut source) = speaker();
+        speaker.play(Cue::Won(Route::Squeeze));
+        assert!(loudest(&mut source) > 0.01);
+        drop(speaker);
+        for _ in 0..12 {
+            loudest(&mut source);
+        }
+        assert_eq!(loudest(&mut source), 0.0);
+    }
+
+    #[test]
+    fn any_number_of_channels_is_filled() {
+        for channels in [1, 2, 6] {
+            let (speaker, mut source) = speaker();
+            speaker.play(Cue::Menu(Menu::Confirm));
+            let mut out = vec![7_u8; 600 * channels];
+            source.fill(&mut out, channels);
+            for channel in 0..channels {
+                let mut samples = out.iter().skip(channel).step_by(channels);
+                assert_eq!(
+                    samples.any(|sample| *sample != 128),
+                    channel < 2,
+                    "{channel} of {channels}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! From what there is to hear to samples.
+
+use crate::cue::Cue;
+use crate::grain::{BUSES, Bus, Buses, CHUNK, Voices};
+use crate::layer::{Chord, Squeak, Wobble};
+use crate::master::{Floor, Limiter, Room};
+use crate::music::Music;
+use crate::part::{Noise, Smooth, clean};
+use crate::recipe;
+use crate::soundscape::{Hush, Soundscape, Volumes};
+
+/// Seconds without news after which what lasts falls silent: the game hangs, or is gone.
+const STALE: f32 = 0.5;
+
+/// How much of a bus goes into the room, by [`Bus`].
+const INTO_ROOM: [f32; BUSES] = [0.1, 0.3, 0.12];
+
+/// Makes samples. The same calls bring the same samples, on the same machine.
+pub struct Synth {
+    rate: f32,
+    soundscape: Soundscape,
+    /// Samples since it was told.
+    age: usize,
+    volumes: Volumes,
+    squeaks: [Squeak; 2],
+    wobble: Wobble,
+    chord: Chord,
+    music: Music,
+    voices: Voices,
+    thuds: Thuds,
+    noise: Noise,
+    /// Volume of each bus, by [`Bus`].
+    gains: [Smooth; BUSES],
+    master: Smooth,
+    room: Room,
+    floor: Floor,
+    limiter: Limiter,
+    buses: Buses,
+}
+
+impl Synth {
+    /// One for a device that takes `rate` samples a second, about 48,000; within 8,000 to 400,000.
+    pub fn new(rate: u32) -> Self {
+        let rate = rate.clamp(8_000, 400_000) as f32;
+        let mut synth = Self {
+            rate,
+            soundscape: Soundscape::default(),
+            age: 0,
+            volumes: Volumes::default(),
+            squeaks: [Squeak::new(rate), Squeak::new(rate)],
+            wobble: Wobble::new(rate),
+            chord: Chord::new(rate),
+            music: Music::new(rate),
+            voices: Voices::new(rate),
+            thuds: Thuds::default(),
+            noise: Noise::new(),
+            gains: [0.015, 0.3, 0.015].map(|seconds| Smooth::new(seconds, rate)),
+            master: Smooth::new(0.015, rate),
+            room: Room::new(rate),
+            floor: Floor::default(),
+            limiter: Limiter::new(rate),
+            buses: [[[0.0; 2]; CHUNK]; BUSES],
+        };
+        synth.aim();
+        for gain in synth.gains.iter_mut().chain([&mut synth.master]) {
+            gain.value = gain.target;
+        }
+        synth
+    }
+
+    /// Tells what lasts.
+    pub fn hear(&mut self, soundscape: &Soundscape) {
+        self.soundscape = soundscape.cleaned();
+        self.age = 0;
+        self.aim();
+    }
+
+    /// Tells how loud it is to be.
+    pub fn set_volumes(&mut self, volumes: &Volumes) {
+        self.volumes = *volumes;
+        self.aim();
+    }
+
+    /// Begins what sounds once.
+    pub fn play(&mut self, cue: Cue) {
+        let cue = cue.cleaned();
+        if let Cue::Thud { impulse, .. } = cue
+            && !self.thuds.is_heard(impulse)
+        {
+            return;
+        }
+        recipe::start(cue, &mut self.noise, &mut self.voices);
+    }
+
+    /// Fills `out` with left and right in turns. Allocates nothing and takes no lock.
+    pub fn render(&mut self, out: &mut [f32]) {
+        for chunk in out.chunks_mut(2 * CHUNK) {
+            let count = chunk.len().div_ceil(2);
+            self.fill_buses(count);
+            for (place, sides) in chunk.chunks_mut(2).enumerate() {
+                let sample = self.mix(place);
+                sides.copy_from_slice(&sample[..sides.len()]);
+            }
+        }
+    }
+
+    /// How many short sounds are under way; never more than a bound.
+    pub fn voice_count(&self) -> usize {
+        self.voices.count()
+    }
+
+    /// Works out a chunk of every bus.
+    fn fill_buses(&mut self, count: usize) {
+        self.age += count;
+        if self.age as f32 > STALE * self.rate {
+            self.hear(&Soundscape::default());
+        }
+        self.thuds.forget(count as f32 / self.rate);
+        self.buses = [[[0.0; 2]; CHUNK]; BUSES];
+        let effects = &mut self.buses[Bus::Effects as usize][..count];
+        for squeak in &mut self.squeaks {
+            squeak.add(&mut self.noise, effects);
+        }
+        self.wobble.add(effects);
+        self.chord.add(effects);
+        if self.soundscape.music {
+            self.music.play(&mut self.noise, &mut self.voices, count);
+        }
+        self.voices.add(&mut self.noise, &mut self.buses, count);
+    }
+
+    /// Sample `place` of the chunk, as it is heard.
+    fn mix(&mut self, place: usize) -> [f32; 2] {
+        let (mut dry, mut into_room) = ([0.0; 2], [0.0; 2]);
+        for ((bus, gain), into) in self.buses.iter().zip(&mut self.gains).zip(INTO_ROOM) {
+            let gain = gain.next();
+            for side in 0..2 {
+                dry[side] += gain * bus[place][side];
+                into_room[side] += gain * into * bus[place][side];
+            }
+        }
+        let room = self.room.next(into_room);
+        let master = self.master.next();
+        let all = [0, 1].map(|side| master * (dry[side] + room[side]));
+        self.limiter.next(self.floor.next(all, self.rate))
+    }
+
+    /// Hands on to all parts what was told.
+    fn aim(&mut self) {
+        let Soundscape {
+            presses,
+            squash,
+            hold,
+            music,
+            hush,
+        } = self.soundscape;
+        for (squeak, press) in self.squeaks.iter_mut().zip(&presses) {
+            squeak.hear(press);
+        }
+        self.wobble.hear(squash);
+        self.chord.hear(hold);
+        let volumes = &self.volumes;
+        // Ears tell ratios: half way down the slider is to sound half as loud.
+        let loudness = |is_on, volume| {
+            if is_on {
+                clean(volume, 0.0, 1.0).powi(2)
+            } else {
+                0.0
+            }
+        };
+        self.gains[Bus::Effects as usize].target = loudness(hush != Hush::World, volumes.effects);
+        self.gains[Bus::Music as usize].target = loudness(music, volumes.music);
+        self.gains[Bus::Interface as usize].target = loudness(true, volumes.interface);
+        self.master.target = loudness(hush != Hush::Everything, volumes.master);
+    }
+}
+
+/// Which presses on a wall are impacts: those much harder than what was before.
+#[derive(Default)]
+struct Thuds {
+    /// Of late [N s].
+    usual: f32,
+}
+
+impl Thuds {
+    fn is_heard(&mut self, impulse: f32) -> bool {
+        let heard = impulse > 0.05 && impulse > 1.6 * self.usual;
+        self.usual = self.usual.max(impulse);
+        heard
+    }
+
+    fn forget(&mut self, seconds: f32) {
+        self.usual *= (-seconds / 0.15).exp();
+    }
+}

@@ -1,0 +1,420 @@
+//! What the synthesiser makes, measured.
+
+use tamaire_sound::{Cue, Hush, Menu, Press, Route, Soundscape, Synth, Volumes};
+
+const RATE: u32 = 48_000;
+
+/// One of each cue, loud.
+const CUES: [Cue; 9] = [
+    Cue::Thud {
+        impulse: 30.0,
+        x: -1.0,
+    },
+    Cue::Tear {
+        energy: 10.0,
+        x: 1.0,
+    },
+    Cue::Crumb { speed: 2.0, x: 0.0 },
+    Cue::Won(Route::Squeeze),
+    Cue::Won(Route::Shave),
+    Cue::Won(Route::Mix),
+    Cue::Menu(Menu::Move),
+    Cue::Menu(Menu::Confirm),
+    Cue::Menu(Menu::Back),
+];
+
+fn pressed(force: f32, slip: f32) -> Soundscape {
+    let press = Press {
+        force,
+        slip,
+        x: 0.0,
+    };
+    Soundscape {
+        presses: [press, Press::default()],
+        ..Soundscape::default()
+    }
+}
+
+/// Renders tick by tick with a soundscape for each, and gives the left side.
+fn render(synth: &mut Synth, seconds: f32, soundscape: impl Fn(f32) -> Soundscape) -> Vec<f32> {
+    let mut left = Vec::new();
+    let mut tick = [0.0; 2 * RATE as usize / 60];
+    for time in 0..(60.0 * seconds) as usize {
+        synth.hear(&soundscape(time as f32 / 60.0));
+        synth.render(&mut tick);
+        assert!(
+            tick.iter().all(|sample| sample.abs() <= 1.0),
+            "beyond full scale, or no number"
+        );
+        left.extend(tick.iter().step_by(2));
+    }
+    left
+}
+
+fn steady(synth: &mut Synth, seconds: f32, soundscape: Soundscape) -> Vec<f32> {
+    render(synth, seconds, |_| soundscape)
+}
+
+fn loudness(samples: &[f32]) -> f32 {
+    (samples.iter().map(|k| k * k).sum::<f32>() / samples.len() as f32).sqrt()
+}
+
+/// The mean frequency by power [Hz]: the power of the difference to that of the samples.
+fn centroid(samples: &[f32]) -> f32 {
+    let power: f32 = samples.iter().map(|k| k * k).sum();
+    let difference: f32 = samples.windows(2).map(|k| (k[1] - k[0]).powi(2)).sum();
+    (difference / power).sqrt() * RATE as f32 / std::f32::consts::TAU
+}
+
+/// The widest step in the slope: a click has one, a loud sound far less.
+fn roughest(samples: &[f32]) -> f32 {
+    let bend = |k: &[f32]| (k[2] - 2.0 * k[1] + k[0]).abs();
+    samples.windows(3).map(bend).fold(0.0, f32::max)
+}
+
+#[test]
+fn nothing_is_heard_when_nothing_happens() {
+    let mut synth = Synth::new(RATE);
+    assert!(
+        steady(&mut synth, 0.5, Soundscape::default())
+            .iter()
+            .all(|k| *k == 0.0)
+    );
+}
+
+#[test]
+fn after_everything_it_falls_silent() {
+    let mut synth = Synth::new(RATE);
+    for cue in CUES {
+        synth.play(cue);
+    }
+    let all = Soundscape {
+        squash: 0.5,
+        hold: 0.9,
+        music: true,
+        ..pressed(1000.0, 1.0)
+    };
+    assert!(loudness(&steady(&mut synth, 1.0, all)) > 0.05);
+    steady(&mut synth, 25.0, Soundscape::default());
+    assert_eq!(synth.voice_count(), 0);
+    let rest = steady(&mut synth, 0.5, Soundscape::default());
+    assert!(rest.iter().all(|k| *k == 0.0), "still {}", loudness(&rest));
+}
+
+#[test]
+fn a_firmer_press_is_louder_and_higher() {
+    let heard = [50.0, 200.0, 500.0, 1200.0].map(|force| {
+        let samples = steady(&mut Synth::new(RATE), 1.5, pressed(force, 0.5));
+        (loudness(&samples), centroid(&samples))
+    });
+    for pair in heard.windows(2) {
+        assert!(pair[1].0 > 1.2 * pair[0].0, "not louder: {heard:?}");
+        assert!(pair[1].1 > 1.1 * pair[0].1, "not higher: {heard:?}");
+    }
+}
+
+#[test]
+fn a_press_that_slips_is_louder_than_one_that_rests() {
+    let [rests, slips] = [0.0, 0.5].map(|slip| {
+        loudness(&steady(&mut Synth::new(RATE), 1.5, pressed(400.0, slip))[RATE as usize / 2..])
+    });
+    assert!(slips > 3.0 * rests, "{slips} after {rests}");
+}
+
+#[test]
+fn more_is_louder() {
+    let loud = |cue| {
+        let mut synth = Synth::new(RATE);
+        synth.play(cue);
+        loudness(&steady(&mut synth, 0.5, Soundscape::default()))
+    };
+    let rises = |cue: fn(f32) -> Cue, amounts: [f32; 3]| {
+        let heard = amounts.map(|amount| loud(cue(amount)));
+        assert!(
+            heard[0] > 0.0 && heard[1] > 1.3 * heard[0] && heard[2] > 1.1 * heard[1],
+            "{heard:?}"
+        );
+    };
+    rises(|impulse| Cue::Thud { impulse, x: 0.0 }, [0.5, 5.0, 40.0]);
+    rises(|energy| Cue::Tear { energy, x: 0.0 }, [0.05, 0.5, 10.0]);
+    rises(|speed| Cue::Crumb { speed, x: 0.0 }, [0.1, 0.5, 4.0]);
+}
+
+#[test]
+fn the_chord_rises_with_the_hold() {
+    let at = |hold| {
+        let samples = steady(
+            &mut Synth::new(RATE),
+            1.0,
+            Soundscape {
+                hold,
+                ..Soundscape::default()
+            },
+        );
+        (loudness(&samples), centroid(&samples[RATE as usize / 2..]))
+    };
+    let (early, late) = (at(0.2), at(0.9));
+    assert!(
+        late.0 > early.0 && late.1 > 1.2 * early.1,
+        "{early:?} {late:?}"
+    );
+}
+
+#[test]
+fn a_squash_wobbles_and_dies_away() {
+    let squash = |time| Soundscape {
+        squash: if time < 0.1 { 0.0 } else { 0.4 },
+        ..Soundscape::default()
+    };
+    let samples = render(&mut Synth::new(RATE), 2.5, squash);
+    let second = RATE as usize;
+    assert!(loudness(&samples[second / 10..second / 2]) > 0.02);
+    assert!(loudness(&samples[2 * second..]) < 1e-4);
+    assert!(centroid(&samples[..second / 2]) < 300.0, "low");
+}
+
+#[test]
+fn changes_do_not_click() {
+    let states = [
+        pressed(0.0, 0.0),
+        pressed(1500.0, 1.0),
+        Soundscape {
+            hold: 1.0,
+            ..pressed(0.0, 0.0)
+        },
+        Soundscape {
+            squash: 0.6,
+            ..pressed(800.0, 0.0)
+        },
+        Soundscape {
+            hush: Hush::Everything,
+            ..pressed(800.0, 0.7)
+        },
+        Soundscape {
+            hush: Hush::World,
+            ..pressed(800.0, 0.7)
+        },
+    ];
+    // Without the noise of the rub, which is rough by nature, a sine of 2 kHz at full scale would
+    // be at 0.07; a jump from half scale to nothing is at 0.5.
+    let usual = roughest(&steady(&mut Synth::new(RATE), 2.0, pressed(1500.0, 1.0)));
+    for from in states {
+        for to in states {
+            let change = |time| if time < 0.5 { from } else { to };
+            let found = roughest(&render(&mut Synth::new(RATE), 1.0, change));
+            assert!(
+                found < 1.25 * usual,
+                "{found} after {usual}, from {from:?} to {to:?}"
+            );
+        }
+    }
+    assert!(usual < 0.2, "{usual}");
+}
+
+#[test]
+fn volumes_and_cut_off_voices_do_not_click() {
+    let mut synth = Synth::new(RATE);
+    let mut samples = Vec::new();
+    for tick in 0..60 {
+        let master = (tick % 2) as f32;
+        synth.set_volumes(&Volumes {
+            master,
+            ..Volumes::default()
+        });
+        // More than there are voices, so that sounding ones are cut off.
+        for _ in 0..100 {
+            synth.play(Cue::Menu(Menu::Confirm));
+        }
+        samples.extend(steady(&mut synth, 1.0 / 60.0, Soundscape::default()));
+    }
+    let found = roughest(&samples);
+    assert!(found < 0.1, "{found}");
+}
+
+#[test]
+fn a_cue_is_heard_within_a_millisecond_or_two() {
+    for cue in CUES {
+        let mut synth = Synth::new(RATE);
+        synth.play(cue);
+        let mut block = [0.0; 128];
+        synth.render(&mut block);
+        let loudest = block.iter().fold(0.0, |most: f32, k| most.max(k.abs()));
+        assert!(loudest > 1e-3, "{cue:?}: {loudest}");
+        assert!(
+            block[..2].iter().all(|k| k.abs() < 0.02),
+            "{cue:?} begins with a click"
+        );
+    }
+}
+
+#[test]
+fn ten_thousand_cues_are_bounded() {
+    let mut synth = Synth::new(RATE);
+    let mut most = 0;
+    for _ in 0..10 {
+        for number in 0..1000 {
+            synth.play(CUES[number % CUES.len()]);
+        }
+        most = most.max(synth.voice_count());
+        steady(&mut synth, 0.02, pressed(1e6, 1e3));
+    }
+    assert!((10..=64).contains(&most), "{most} voices");
+}
+
+#[test]
+fn numbers_that_are_none_do_no_harm() {
+    let mut synth = Synth::new(0);
+    let bad = [
+        f32::NAN,
+        f32::INFINITY,
+        f32::NEG_INFINITY,
+        f32::MAX,
+        -1.0,
+        f32::MIN_POSITIVE,
+    ];
+    for a in bad {
+        for b in bad {
+            let press = Press {
+                force: a,
+                slip: b,
+                x: a,
+            };
+            let (impulse, energy, speed, x) = (a, a, a, b);
+            synth.play(Cue::Thud { impulse, x });
+            synth.play(Cue::Tear { energy, x });
+            synth.play(Cue::Crumb { speed, x });
+            synth.set_volumes(&Volumes {
+                master: a,
+                effects: b,
+                music: a,
+                interface: b,
+            });
+            let soundscape = Soundscape {
+                presses: [press; 2],
+                squash: a,
+                hold: b,
+                ..Soundscape::default()
+            };
+            steady(&mut synth, 0.05, soundscape);
+        }
+    }
+    synth.set_volumes(&Volumes::default());
+    let after = steady(&mut synth, 0.5, pressed(400.0, 0.5));
+    assert!(loudness(&after) > 0.01, "spoilt for good");
+}
+
+#[test]
+fn a_press_on_the_left_is_louder_there() {
+    let mut synth = Synth::new(RATE);
+    let press = Press {
+        force: 400.0,
+        slip: 0.5,
+        x: -1.0,
+    };
+    synth.hear(&Soundscape {
+        presses: [press, Press::default()],
+        ..Soundscape::default()
+    });
+    let mut samples = [0.0; 9600];
+    synth.render(&mut samples);
+    let side = |from: usize| {
+        loudness(
+            &samples
+                .iter()
+                .skip(from)
+                .step_by(2)
+                .copied()
+                .collect::<Vec<_>>(),
+        )
+    };
+    assert!(side(0) > 2.5 * side(1));
+}
+
+#[test]
+fn leaning_on_a_wall_thuds_once() {
+    let thuds = |impulse: fn(u32) -> f32| {
+        let mut synth = Synth::new(RATE);
+        let mut started = 0;
+        for tick in 0..60 {
+            let before = synth.voice_count();
+            synth.play(Cue::Thud {
+                impulse: impulse(tick),
+                x: 0.0,
+            });
+            started += synth.voice_count() - before;
+            steady(&mut synth, 1.0 / 60.0, Soundscape::default());
+        }
+        started
+    };
+    assert_eq!(thuds(|tick| 8.0 + (tick % 3) as f32), 1);
+    assert_eq!(thuds(|tick| if tick % 30 == 0 { 8.0 } else { 0.0 }), 2);
+}
+
+#[test]
+fn volumes_and_hush_are_obeyed() {
+    let heard = |volumes: Volumes, hush| {
+        let mut synth = Synth::new(RATE);
+        synth.set_volumes(&volumes);
+        let soundscape = Soundscape {
+            hush,
+            ..pressed(600.0, 0.5)
+        };
+        steady(&mut synth, 0.5, soundscape);
+        let world = loudness(&steady(&mut synth, 0.3, soundscape));
+        synth.play(Cue::Menu(Menu::Confirm));
+        let silent = Soundscape {
+            hush,
+            ..Soundscape::default()
+        };
+        steady(&mut synth, 0.05, silent);
+        (
+            world > 1e-4,
+            loudness(&steady(&mut synth, 0.1, silent)) > 1e-3,
+        )
+    };
+    let all = Volumes::default();
+    assert_eq!(heard(all, Hush::Nothing), (true, true));
+    assert_eq!(heard(all, Hush::World), (false, true));
+    assert_eq!(heard(all, Hush::Everything), (false, false));
+    let deaf = Volumes {
+        effects: 0.0,
+        ..all
+    };
+    assert_eq!(heard(deaf, Hush::Nothing), (false, true));
+    let deaf = Volumes {
+        interface: 0.0,
+        ..deaf
+    };
+    assert_eq!(heard(deaf, Hush::Nothing), (false, false));
+    assert_eq!(
+        heard(Volumes { master: 0.0, ..all }, Hush::Nothing),
+        (false, false)
+    );
+}
+
+#[test]
+fn a_game_that_hangs_is_not_heard_for_ever() {
+    let mut synth = Synth::new(RATE);
+    synth.hear(&pressed(600.0, 0.5));
+    let mut samples = vec![0.0; 4 * RATE as usize];
+    synth.render(&mut samples);
+    assert!(loudness(&samples[..RATE as usize / 2]) > 0.01);
+    assert!(loudness(&samples[3 * RATE as usize..]) < 1e-4);
+}
+
+#[test]
+fn the_same_calls_bring_the_same_samples() {
+    let run = || {
+        let mut synth = Synth::new(44_100);
+        CUES.iter().for_each(|cue| synth.play(*cue));
+        steady(
+            &mut synth,
+            1.0,
+            Soundscape {
+                music: true,
+                ..pressed(600.0, 0.5)
+            },
+        )
+    };
+    assert_eq!(run(), run());
+}
