@@ -1,6 +1,6 @@
 //! Writes what the game can sound like as WAV files, to listen to.
 //!
-//! `cargo run --release -p tamaire_sound --no-default-features --example listen -- folder`
+//! `cargo run --release -p tamaire_sound --example listen -- folder`
 
 use std::path::Path;
 use tamaire_sound::{Cue, Menu, Press, Route, Soundscape, Synth};

@@ -1,6 +1,6 @@
 //! Measures what the sound costs: the share of one core that it takes while it plays.
 //!
-//! `cargo run --release -p tamaire_sound --no-default-features --example load`
+//! `cargo run --release -p tamaire_sound --example load`
 
 use std::time::Instant;
 use tamaire_sound::{Cue, Press, Soundscape, Synth};

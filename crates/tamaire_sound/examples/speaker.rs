@@ -1,6 +1,6 @@
 //! Plays a few seconds on the sound device, or says why it cannot.
 //!
-//! `cargo run --release -p tamaire_sound --example speaker`
+//! `cargo run --release -p tamaire_sound --features output --example speaker`
 
 use std::time::Duration;
 use tamaire_sound::{Cue, Press, Route, Soundscape, Speaker, Volumes};

@@ -2,7 +2,7 @@
 
 use crate::part::{Band, Drift, Noise, Smooth, Stereo, Tone, note, panned, share};
 use crate::soundscape::Press;
-use std::f32::consts::TAU;
+use std::f32::consts::{PI, TAU};
 
 /// A hand that rubs and squashes rubber: a squeak, whose pitch follows the force, in a mouth that
 /// opens with it, and the wet noise of what is pushed about.
@@ -15,8 +15,11 @@ pub(crate) struct Squeak {
     /// Follows `firm` late: the difference tells how the force stirs.
     late: Smooth,
     stir: Smooth,
-    /// Rubber grips and slips: slowly in squeaks, and quickly within each.
-    squeak: Drift,
+    /// How much of the present squeak is over, 0 to 1, and how many there would be in a second of
+    /// very fast slip.
+    squeak: f32,
+    hurry: f32,
+    /// Rubber grips and slips within each squeak, too.
     jerk: Drift,
     tone: Tone,
     mouth: Band,
@@ -34,7 +37,8 @@ impl Squeak {
             x: smooth(0.05),
             late: smooth(0.12),
             stir: smooth(0.02),
-            squeak: Drift::new(9.0, rate),
+            squeak: 0.0,
+            hurry: 14.0,
             jerk: Drift::new(38.0, rate),
             tone: Tone::default(),
             mouth: Band::default(),
@@ -74,16 +78,22 @@ impl Squeak {
             self.stir.target = (4.0 * (firm - self.late.next())).abs().min(1.0);
             let stir = self.stir.next();
             let moves = 1.0 - (1.0 - slide) * (1.0 - 0.6 * stir);
-            let slips = 0.5 + 0.5 * self.squeak.next(noise);
+            // One squeak for a few centimetres, no two of them alike.
+            self.squeak += slide * self.hurry / self.rate;
+            if self.squeak >= 1.0 {
+                self.squeak -= 1.0;
+                self.hurry = noise.between(9.0, 18.0);
+            }
+            let swell = (PI * self.squeak).sin();
             let jerk = 0.75 + 0.25 * self.jerk.next(noise);
             // Each squeak rises as it swells.
-            let frequency = height * (0.85 + 0.35 * slips) / self.rate;
+            let frequency = height * (0.85 + 0.3 * self.squeak) / self.rate;
             let tone = self.tone.next(frequency, 0.3 + 0.4 * firm);
             let voice = 0.45 * tone + 0.8 * self.mouth.next(tone);
-            let loud = firm * firm * (0.06 + 0.94 * moves) * (0.15 + 0.85 * slips);
-            let squeak = 1.7 * loud * jerk * voice;
+            let loud = firm * firm * (0.05 + 0.95 * moves * swell * swell);
+            let squeak = 2.6 * loud * jerk * voice;
             let [first, second] = &mut self.wet;
-            let squish = 0.22 * firm * moves * jerk * second.next(first.hiss(noise));
+            let squish = 0.32 * firm * moves * jerk * second.next(first.hiss(noise));
             let sound = squeak + squish;
             *sample = [sample[0] + sides[0] * sound, sample[1] + sides[1] * sound];
         }

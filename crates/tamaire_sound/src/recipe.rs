@@ -38,7 +38,9 @@ fn thud(impulse: f32, x: f32, noise: &mut Noise, voices: &mut Voices) {
 /// a large one pops too.
 fn tear(energy: f32, x: f32, noise: &mut Noise, voices: &mut Voices) {
     let strong = share(energy, 1.0);
-    let gain = 0.06 + 0.5 * strong;
+    // In a crowd each is fainter, or a rip would drown all else.
+    let crowd = 1.0 + 0.03 * voices.count() as f32;
+    let gain = (0.07 + 0.43 * strong) / crowd;
     let high = noise.between(900.0, 2200.0);
     voices.start(Grain {
         x,
@@ -83,7 +85,7 @@ fn tear(energy: f32, x: f32, noise: &mut Noise, voices: &mut Voices) {
         voices.start(Grain {
             x,
             decay: 0.045,
-            gain: pop,
+            gain: pop / crowd,
             pitch: [320.0, 95.0],
             glide: 0.03,
             edge: 0.4,

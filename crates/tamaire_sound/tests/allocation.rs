@@ -1,0 +1,59 @@
+//! The device's thread must never wait for memory: neither cues nor samples take any.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use tamaire_sound::{Cue, Press, Route, Soundscape, Synth};
+
+/// Counts what is taken.
+struct Counting;
+
+static TAKEN: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: hands everything on to the system's allocator.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        TAKEN.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: the caller keeps the same promises.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        // SAFETY: as above.
+        unsafe { System.dealloc(memory, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// The only test of this file: others would be counted too.
+#[test]
+fn playing_takes_no_memory() {
+    let mut synth = Synth::new(48_000);
+    let mut samples = [0.0; 1600];
+    let press = Press {
+        force: 500.0,
+        slip: 0.5,
+        x: 0.0,
+    };
+    let soundscape = Soundscape {
+        presses: [press; 2],
+        squash: 0.3,
+        hold: 0.7,
+        music: true,
+        ..Soundscape::default()
+    };
+    let before = TAKEN.load(Ordering::Relaxed);
+    for _ in 0..60 {
+        synth.hear(&soundscape);
+        for _ in 0..30 {
+            synth.play(Cue::Tear {
+                energy: 2.0,
+                x: 0.0,
+            });
+        }
+        synth.play(Cue::Won(Route::Squeeze));
+        synth.render(&mut samples);
+    }
+    assert_eq!(TAKEN.load(Ordering::Relaxed) - before, 0);
+}
