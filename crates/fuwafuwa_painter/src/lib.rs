@@ -1,21 +1,30 @@
-//! Paints segments, polygons and letters that have a role and no colour: see [`theme`].
+//! Pictures and films of worlds, painted without a GPU, from shapes that have a role and no colour:
+//! see [`theme`].
 //!
-//! A [`Painter`] is a list of shapes; it becomes a drawing ([`svg`]), an image ([`raster`]) or a
-//! frame of a film ([`film`]), the same in all of them. Bodies in space are painted by [`solid`]
-//! into an image that lies on the paper like any other shape.
+//! A [`Painter`] is a list of shapes; it becomes a drawing ([`Painter::svg`]), an image
+//! ([`Painter::pixels`]) or a frame of a [`film`], the same in all of them. Bodies in space are
+//! painted by [`solid`] into an image that lies on the paper like any other shape. [`stage`] puts
+//! whole worlds on a painter.
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+// Units and sources stand in brackets: [m], [RFC 4648].
+#![allow(rustdoc::broken_intra_doc_links)]
 
 mod canvas;
+mod error;
 pub mod film;
-pub mod letters;
-pub mod raster;
+mod letters;
+mod raster;
 mod shadow;
 pub mod solid;
-pub mod svg;
+pub mod stage;
+mod svg;
 pub mod theme;
 
+pub use error::PaintError;
 use std::rc::Rc;
 pub use theme::Role;
-use tiny_skia::Pixmap;
+pub use tiny_skia::Pixmap;
 
 /// A place on the paper [px], y downwards.
 pub type Spot = [f32; 2];

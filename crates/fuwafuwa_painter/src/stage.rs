@@ -1,7 +1,7 @@
 //! Bodies and worlds on a painter: by their elements, or by their skin.
 
-use crate::painter::solid::Solid;
-use crate::painter::{Frame, Painter, Role, Spot};
+use crate::solid::Solid;
+use crate::{Frame, Painter, Role, Spot};
 use fuwafuwa::dim::{add, corner, scale};
 use fuwafuwa::shape::{Shape, Vector};
 use fuwafuwa::stencil::slot_index;
