@@ -16,6 +16,7 @@ pub mod film;
 mod letters;
 mod raster;
 mod shadow;
+pub mod smoothing;
 pub mod solid;
 pub mod stage;
 mod svg;
