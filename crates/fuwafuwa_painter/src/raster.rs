@@ -1,6 +1,6 @@
 //! The painter's shapes as pixels.
 
-use crate::theme::colour;
+use crate::theme::{colour, opacity};
 use crate::{PaintError, Painter, Role, Shape, Spot};
 use tiny_skia::{
     Color, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, PixmapPaint, Stroke,
@@ -106,7 +106,8 @@ fn path_of(spots: &[Spot], closed: bool) -> Result<Path, PaintError> {
 fn brush(role: Role) -> Paint<'static> {
     let [red, green, blue] = colour(role);
     let mut paint = Paint::default();
-    paint.set_color_rgba8(red, green, blue, 255);
+    let alpha = (255.0 * opacity(role)).round() as u8;
+    paint.set_color_rgba8(red, green, blue, alpha);
     paint.anti_alias = true;
     paint
 }

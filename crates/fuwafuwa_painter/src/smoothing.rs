@@ -29,10 +29,10 @@ const INWARDS: f32 = 0.5;
 /// The step back.
 const OUTWARDS: f32 = -0.51;
 /// The farthest neighbours are as many points away as the root of their number, divided by this.
-const REACH: f32 = 3.5;
-/// How far a point may go, in lengths of its segments. Two sides of a part as thin as a voxel stay
-/// apart with at most a half.
-const FARTHEST: f32 = 0.5;
+const REACH: f32 = 3.0;
+/// How far a point may go, in lengths of its segments. With less the flat runs of a disc leave
+/// kinks, with more small parts lose their shape.
+const FARTHEST: f32 = 0.8;
 /// An outline with no more points than this is a crumb, round all over.
 const CRUMB: usize = 12;
 /// Points of the curve around each point of the outline.
@@ -47,7 +47,7 @@ pub struct Curve {
     pub is_fresh: Vec<bool>,
 }
 
-/// The points [m] of a closed outline, each moved by at most half a voxel so that stairs go.
+/// The points [m] of a closed outline, each moved by about a voxel at most so that stairs go.
 ///
 /// `is_fresh` tells of the segment from each point to the next whether it is torn. A point between
 /// a torn segment and one that is not stays where it is, unless the outline is a crumb's.
@@ -295,7 +295,8 @@ mod tests {
         let grid = VoxelGrid::from_fn([20, 20, 1], 1.0, |[x, y, _]| {
             let is_block = x < 6 && y < 6;
             let is_whisker = (y == 3 && x < 16) || (x == 15 && (3..18).contains(&y));
-            u8::from(is_block || is_whisker)
+            let is_stair = (y == x || y == x + 1) && x < 14;
+            u8::from(is_block || is_whisker || is_stair)
         });
         let line = outline(grid.unwrap());
         assert_eq!(crossings(&curve(&line).points), 0);

@@ -1,6 +1,6 @@
 //! The painter's shapes as an SVG document.
 
-use crate::theme::colour;
+use crate::theme::{colour, opacity};
 use crate::{PaintError, Painter, Role, Shape, Spot};
 use std::fmt::Write;
 
@@ -25,9 +25,9 @@ fn write_shape(text: &mut String, shape: &Shape) -> Result<(), PaintError> {
     let written = match shape {
         Shape::Area { outline, role } => writeln!(
             text,
-            "<polygon points=\"{}\" fill=\"{}\"/>",
+            "<polygon points=\"{}\" {}/>",
             spots_of(outline),
-            name(*role)
+            fill(*role)
         ),
         Shape::Line {
             spots,
@@ -43,10 +43,10 @@ fn write_shape(text: &mut String, shape: &Shape) -> Result<(), PaintError> {
         ),
         Shape::Dot { at, radius, role } => writeln!(
             text,
-            "<circle cx=\"{:.2}\" cy=\"{:.2}\" r=\"{radius:.2}\" fill=\"{}\"/>",
+            "<circle cx=\"{:.2}\" cy=\"{:.2}\" r=\"{radius:.2}\" {}/>",
             at[0],
             at[1],
-            name(*role)
+            fill(*role)
         ),
         Shape::Image { at, pixels } => writeln!(
             text,
@@ -68,6 +68,14 @@ fn spots_of(spots: &[Spot]) -> String {
         .map(|[x, y]| format!("{x:.2},{y:.2}"))
         .collect();
     pairs.join(" ")
+}
+
+fn fill(role: Role) -> String {
+    let fill = format!("fill=\"{}\"", name(role));
+    match opacity(role) {
+        1.0 => fill,
+        share => format!("{fill} fill-opacity=\"{share}\""),
+    }
 }
 
 fn name(role: Role) -> String {
