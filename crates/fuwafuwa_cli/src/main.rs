@@ -13,11 +13,9 @@ mod bench;
 mod check;
 mod count;
 mod figure;
-mod painter;
 mod replay;
 mod report;
 mod run;
-mod stage;
 
 use anyhow::Result;
 use clap::{Parser, Subcommand};

@@ -1,16 +1,15 @@
 //! Runs a scene, films it, and records what its hands did.
 
-use crate::painter::solid::{Camera, Solid};
-use crate::painter::{Frame, Painter, film};
 use crate::report::Progress;
-use crate::stage;
 use anyhow::{Context, Result};
 use fuwafuwa::{Dim, Dim2, Dim3, World};
+use fuwafuwa_painter::solid::{Camera, Solid};
+use fuwafuwa_painter::stage;
+use fuwafuwa_painter::{Frame, Painter, Pixmap, film};
 use fuwafuwa_scenes::{Recording, Scene};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use tiny_skia::Pixmap;
 
 /// Width of a frame [px].
 const WIDTH: u32 = 420;
@@ -155,7 +154,7 @@ fn run_in<D: Filmed>(scene: &Scene, arguments: &Arguments) -> Result<ExitCode> {
             .count();
         if arguments.film.is_some() && tick % every == 0 {
             let painted = D::painted(world, scene, arguments.elements);
-            match painted.and_then(|painter| painter.pixels()) {
+            match painted.and_then(|painter| Ok(painter.pixels()?)) {
                 Ok(pixels) => frames.push(pixels),
                 Err(error) => failure = Some(error),
             }

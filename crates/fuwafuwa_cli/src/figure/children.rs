@@ -1,12 +1,12 @@
 //! Figures 4 and 5: when a child is generated, and what that changes.
 
 use super::square::{MIDDLE, Release, draw, draw_nodes, mark, points, views};
-use crate::painter::{Frame, Painter, Role, Sample};
-use crate::stage;
 use anyhow::Result;
 use fuwafuwa::Point;
 use fuwafuwa::dim::add;
 use fuwafuwa::pyramid::Cell;
+use fuwafuwa_painter::stage;
+use fuwafuwa_painter::{Frame, Painter, Role, Sample};
 
 /// Figure 4: when a child is generated.
 pub fn conditions() -> Result<Painter> {

@@ -1,13 +1,13 @@
 //! What a body at rest is made of: a graded disc, its look-up table, and a ball cut open.
 
-use crate::painter::solid::{Camera, Solid};
-use crate::painter::{Frame, Painter, Role, Sample};
-use crate::stage;
 use anyhow::Result;
 use fuwafuwa::dim::{add, corner, points_in, scale};
 use fuwafuwa::pyramid::{Grading, Pyramid};
 use fuwafuwa::stencil::slot_at;
 use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, Mesh, Point, VoxelGrid};
+use fuwafuwa_painter::solid::{Camera, Solid};
+use fuwafuwa_painter::stage;
+use fuwafuwa_painter::{Frame, Painter, Role, Sample};
 use std::collections::BTreeSet;
 
 /// Voxels across the disc.

@@ -6,12 +6,11 @@ mod phases;
 mod sequence;
 mod square;
 
-use crate::painter::{Painter, Role, Sample, film};
 use anyhow::{Context, Result};
 use clap::ValueEnum;
+use fuwafuwa_painter::{Painter, Pixmap, Role, Sample, film};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use tiny_skia::Pixmap;
 
 /// Draw the figures of the paper from live data, each as SVG and PNG.
 #[derive(Debug, clap::Args)]

@@ -1,14 +1,14 @@
 //! Figure 3: the phases of remodelling, one panel each.
 
 use super::square::{ACROSS, MIDDLE, Release, draw, draw_nodes, mark, points, views};
-use crate::painter::{Frame, Painter, Role, Sample};
-use crate::stage;
 use anyhow::Result;
 use fuwafuwa::Point;
 use fuwafuwa::dim::{add, scale};
 use fuwafuwa::mesh::Element;
 use fuwafuwa::stencil::slot_at;
 use fuwafuwa::view::ElementView;
+use fuwafuwa_painter::stage;
+use fuwafuwa_painter::{Frame, Painter, Role, Sample};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Figure 3: what remodelling does, phase by phase.

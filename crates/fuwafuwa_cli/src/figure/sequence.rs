@@ -1,16 +1,15 @@
 //! A body being cut: in the plane by a hand that pushes, in space by a blade.
 
-use crate::painter::solid::{Camera, Solid};
-use crate::painter::{Frame, Painter, Role, Sample, film};
 use crate::report::Progress;
-use crate::stage::{self, DrawPlane, DrawSpace};
 use anyhow::Result;
 use fuwafuwa::law::Elasticity;
 use fuwafuwa::world::TICK;
 use fuwafuwa::{
     Blade, Body, Dim2, Dim3, Drive, Manipulator, Material, Settings, Shape, VoxelGrid, World,
 };
-use tiny_skia::Pixmap;
+use fuwafuwa_painter::solid::{Camera, Solid};
+use fuwafuwa_painter::stage::{self, DrawPlane, DrawSpace};
+use fuwafuwa_painter::{Frame, PaintError, Painter, Pixmap, Role, Sample, film};
 
 /// How long a frame of a film is shown [1/100 s].
 pub const HUNDREDTHS: u16 = 6;
@@ -64,7 +63,7 @@ pub fn disc() -> Result<(Painter, Vec<Pixmap>)> {
     strip.legend(y, &entries);
     let beside = |(elements, skin)| film::strip(&[elements, skin], 2)?.pixels();
     let frames = elements.into_iter().zip(skins).map(beside);
-    Ok((strip, frames.collect::<Result<_>>()?))
+    Ok((strip, frames.collect::<Result<_, PaintError>>()?))
 }
 
 /// Figure 6 in space: a blade runs through a ball that lies on the floor, and its halves part.
@@ -135,7 +134,7 @@ fn plane_frame(world: &World<Dim2>, tick: usize, draw: DrawPlane) -> Result<Pixm
     };
     stage::plane(&mut painter, frame, world, draw);
     write_time(&mut painter, tick);
-    painter.pixels()
+    Ok(painter.pixels()?)
 }
 
 fn space_frame(world: &World<Dim3>, tick: usize, draw: DrawSpace) -> Result<Pixmap> {
@@ -148,7 +147,7 @@ fn space_frame(world: &World<Dim3>, tick: usize, draw: DrawSpace) -> Result<Pixm
     let mut painter = Painter::new(SIZE, SIZE);
     painter.image([0.0; 2], solid.pixels(SIZE, SIZE)?);
     write_time(&mut painter, tick);
-    painter.pixels()
+    Ok(painter.pixels()?)
 }
 
 fn write_time(painter: &mut Painter, tick: usize) {

@@ -7,13 +7,13 @@
 //!   └───────┃───────┘
 //! ```
 
-use crate::painter::{Frame, Painter, Role};
-use crate::stage;
 use anyhow::Result;
 use fuwafuwa::mesh::Element;
 use fuwafuwa::pyramid::Cell;
 use fuwafuwa::view::ElementView;
 use fuwafuwa::{Body, Dim, Dim2, Material, Point, VoxelGrid};
+use fuwafuwa_painter::stage;
+use fuwafuwa_painter::{Frame, Painter, Role};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Voxels across the square and the empty rim around it, which seats it like the disc of figure 1.

@@ -1,9 +1,9 @@
-//! The depth buffer behind [`super::solid`].
+//! The depth buffer behind [`crate::solid`].
 
-use super::shadow::{KEY, Shadow};
-use super::solid::{Camera, Triangle};
-use super::theme::{Role, colour};
-use anyhow::{Context, Result};
+use crate::PaintError;
+use crate::shadow::{KEY, Shadow};
+use crate::solid::{Camera, Triangle};
+use crate::theme::{Role, colour};
 use fuwafuwa::shape::Vector;
 use fuwafuwa::vector::{cross, dot, length, minus, plus, scaled};
 use tiny_skia::{Pixmap, PremultipliedColorU8};
@@ -207,10 +207,10 @@ impl Canvas {
     ///
     /// # Errors
     /// When it has no area.
-    pub fn averaged(&self) -> Result<Pixmap> {
+    pub fn averaged(&self) -> Result<Pixmap, PaintError> {
         let (width, height) = (self.width / FINE, self.height / FINE);
-        let mut pixels =
-            Pixmap::new(width as u32, height as u32).context("the image has no area")?;
+        let mut pixels = Pixmap::new(width as u32, height as u32)
+            .ok_or(PaintError::NoSize { what: "an image" })?;
         for (k, pixel) in pixels.pixels_mut().iter_mut().enumerate() {
             let (x, y) = (k % width, k / width);
             let mut sum = [0.0; 3];
@@ -220,7 +220,7 @@ impl Canvas {
             }
             let [red, green, blue] = scaled(sum, 1.0 / (FINE * FINE) as f32).map(shown);
             *pixel = PremultipliedColorU8::from_rgba(red, green, blue, 255)
-                .context("an opaque colour is premultiplied")?;
+                .expect("an opaque colour is premultiplied");
         }
         Ok(pixels)
     }

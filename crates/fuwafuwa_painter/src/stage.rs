@@ -1,7 +1,7 @@
 //! Bodies and worlds on a painter: by their elements, or by their skin.
 
-use crate::painter::solid::Solid;
-use crate::painter::{Frame, Painter, Role, Spot};
+use crate::solid::Solid;
+use crate::{Frame, Painter, Role, Spot};
 use fuwafuwa::dim::{add, corner, scale};
 use fuwafuwa::shape::{Shape, Vector};
 use fuwafuwa::stencil::slot_index;
@@ -295,19 +295,47 @@ fn crumbs<D: Dim>(body: &Body<D>) -> BTreeSet<u32> {
 
 fn obstacle_outline(painter: &mut Painter, frame: Frame, shape: Shape) {
     match shape {
+        Shape::Ball { centre, radius } => {
+            painter.dot(frame.spot(centre), radius * frame.unit, Role::Obstacle);
+        }
+        _ => {
+            let round = rim(shape, 0.0);
+            let spots = round.iter().map(|&at| frame.spot(at));
+            painter.area(spots.collect(), Role::Obstacle);
+        }
+    }
+}
+
+/// The outline [m] of a rigid shape in the plane; boxes have corners of a radius [m].
+pub fn rim(shape: Shape, rounding: f32) -> Vec<Vector> {
+    match shape {
         Shape::HalfSpace { normal, offset } => {
             const FAR: f32 = 1e3;
             let on = scaled(normal, offset);
             let along = [-normal[1], normal[0], 0.0];
             let deep = scaled(normal, -FAR);
             let ends = [scaled(along, -FAR), scaled(along, FAR)].map(|by| plus(on, by));
-            let round = [ends[0], ends[1], plus(ends[1], deep), plus(ends[0], deep)];
-            painter.area(round.map(|at| frame.spot(at)).to_vec(), Role::Obstacle);
+            vec![ends[0], ends[1], plus(ends[1], deep), plus(ends[0], deep)]
         }
         Shape::Box { centre, half } => {
             let signs = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-            let round = signs.map(|[x, y]| plus(centre, [x * half[0], y * half[1], 0.0]));
-            painter.area(round.map(|at| frame.spot(at)).to_vec(), Role::Obstacle);
+            let radius = rounding.min(half[0]).min(half[1]);
+            let corner = |[x, y]: [f32; 2]| {
+                plus(
+                    centre,
+                    [x * (half[0] - radius), y * (half[1] - radius), 0.0],
+                )
+            };
+            if radius <= 0.0 {
+                return signs.map(corner).to_vec();
+            }
+            let corners = signs.into_iter().enumerate();
+            let arcs = corners.flat_map(|(k, sign)| {
+                let turns = (0..=ROUND / 4)
+                    .map(move |step| k as f32 + 4.0 * step as f32 / ROUND as f32 - 2.0);
+                turns.map(move |quarters| plus(corner(sign), on_circle(radius, 0.5 * quarters)))
+            });
+            arcs.collect()
         }
         Shape::Capsule { from, to, radius } => {
             let along = (to[1] - from[1]).atan2(to[0] - from[0]);
@@ -315,14 +343,23 @@ fn obstacle_outline(painter: &mut Painter, frame: Frame, shape: Shape) {
                 let (end, start) = if k <= ROUND { (to, 0) } else { (from, 1) };
                 let turn = (k - start) as f32 / ROUND as f32 - 0.5;
                 let angle = along + turn * std::f32::consts::PI;
-                frame.spot(plus(end, [radius * angle.cos(), radius * angle.sin(), 0.0]))
+                plus(end, [radius * angle.cos(), radius * angle.sin(), 0.0])
             });
-            painter.area(round.collect(), Role::Obstacle);
+            round.collect()
         }
         Shape::Ball { centre, radius } => {
-            painter.dot(frame.spot(centre), radius * frame.unit, Role::Obstacle);
+            let turns = (0..2 * ROUND).map(|k| k as f32 / ROUND as f32);
+            turns
+                .map(|turn| plus(centre, on_circle(radius, turn)))
+                .collect()
         }
     }
+}
+
+/// A place on a circle around the origin, at a number of half turns.
+fn on_circle(radius: f32, half_turns: f32) -> Vector {
+    let angle = half_turns * std::f32::consts::PI;
+    [radius * angle.cos(), radius * angle.sin(), 0.0]
 }
 
 #[cfg(test)]

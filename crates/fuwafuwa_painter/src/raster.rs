@@ -1,8 +1,7 @@
 //! The painter's shapes as pixels.
 
-use super::theme::colour;
-use super::{Painter, Role, Shape, Spot};
-use anyhow::{Context, Result};
+use crate::theme::{colour, opacity};
+use crate::{PaintError, Painter, Role, Shape, Spot};
 use tiny_skia::{
     Color, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, PixmapPaint, Stroke,
     Transform,
@@ -13,8 +12,9 @@ impl Painter {
     ///
     /// # Errors
     /// When the paper or a shape has no area.
-    pub fn pixels(&self) -> Result<Pixmap> {
-        let mut pixels = Pixmap::new(self.width, self.height).context("the picture has no area")?;
+    pub fn pixels(&self) -> Result<Pixmap, PaintError> {
+        let mut pixels =
+            Pixmap::new(self.width, self.height).ok_or(PaintError::NoSize { what: "the paper" })?;
         let [red, green, blue] = colour(Role::Paper);
         pixels.fill(Color::from_rgba8(red, green, blue, 255));
         for shape in &self.shapes {
@@ -27,12 +27,14 @@ impl Painter {
     ///
     /// # Errors
     /// As [`Painter::pixels`].
-    pub fn png(&self) -> Result<Vec<u8>> {
-        Ok(self.pixels()?.encode_png()?)
+    pub fn png(&self) -> Result<Vec<u8>, PaintError> {
+        self.pixels()?
+            .encode_png()
+            .map_err(PaintError::packing("PNG"))
     }
 }
 
-fn paint(pixels: &mut Pixmap, shape: &Shape) -> Result<()> {
+fn paint(pixels: &mut Pixmap, shape: &Shape) -> Result<(), PaintError> {
     let place = Transform::identity();
     match shape {
         Shape::Area { outline, role } => {
@@ -76,14 +78,15 @@ fn paint(pixels: &mut Pixmap, shape: &Shape) -> Result<()> {
     Ok(())
 }
 
-fn dot(pixels: &mut Pixmap, [x, y]: Spot, radius: f32, role: Role) -> Result<()> {
-    let circle = PathBuilder::from_circle(x, y, radius).context("a dot has no size")?;
+fn dot(pixels: &mut Pixmap, [x, y]: Spot, radius: f32, role: Role) -> Result<(), PaintError> {
+    let circle =
+        PathBuilder::from_circle(x, y, radius).ok_or(PaintError::NoSize { what: "a dot" })?;
     let place = Transform::identity();
     pixels.fill_path(&circle, &brush(role), FillRule::Winding, place, None);
     Ok(())
 }
 
-fn path_of(spots: &[Spot], closed: bool) -> Result<Path> {
+fn path_of(spots: &[Spot], closed: bool) -> Result<Path, PaintError> {
     let mut builder = PathBuilder::new();
     for (index, [x, y]) in spots.iter().enumerate() {
         if index == 0 {
@@ -95,13 +98,16 @@ fn path_of(spots: &[Spot], closed: bool) -> Result<Path> {
     if closed {
         builder.close();
     }
-    builder.finish().context("a shape has no area")
+    builder
+        .finish()
+        .ok_or(PaintError::NoSize { what: "a shape" })
 }
 
 fn brush(role: Role) -> Paint<'static> {
     let [red, green, blue] = colour(role);
     let mut paint = Paint::default();
-    paint.set_color_rgba8(red, green, blue, 255);
+    let alpha = (255.0 * opacity(role)).round() as u8;
+    paint.set_color_rgba8(red, green, blue, alpha);
     paint.anti_alias = true;
     paint
 }

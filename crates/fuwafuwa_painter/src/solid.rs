@@ -1,10 +1,10 @@
 //! Bodies in space as an image: triangles through a depth buffer, two lights, dark creases and a
 //! soft shadow on the floor. Enough to judge shape, cracks and levels; no more.
 
-use super::canvas::Canvas;
-use super::shadow::Shadow;
-use super::theme::Role;
-use anyhow::Result;
+use crate::PaintError;
+use crate::canvas::Canvas;
+use crate::shadow::Shadow;
+use crate::theme::Role;
 use fuwafuwa::shape::Vector;
 use fuwafuwa::vector::{cross, length, minus, plus, scaled};
 use tiny_skia::Pixmap;
@@ -110,7 +110,7 @@ impl Solid {
     ///
     /// # Errors
     /// When the image has no area.
-    pub fn pixels(&self, width: u32, height: u32) -> Result<Pixmap> {
+    pub fn pixels(&self, width: u32, height: u32) -> Result<Pixmap, PaintError> {
         let mut canvas = Canvas::new(self.camera, width, height);
         for triangle in &self.triangles {
             canvas.triangle(triangle);
@@ -137,8 +137,8 @@ fn unit(v: Vector) -> Vector {
 
 #[cfg(test)]
 mod tests {
-    use super::super::theme::colour;
     use super::*;
+    use crate::theme::colour;
 
     const CAMERA: Camera = Camera {
         eye: [0.0, 1.0, 4.0],

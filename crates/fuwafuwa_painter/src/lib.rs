@@ -1,21 +1,35 @@
-//! Paints segments, polygons and letters that have a role and no colour: see [`theme`].
+//! Pictures and films of worlds, painted without a GPU, from shapes that have a role and no colour:
+//! see [`theme`].
 //!
-//! A [`Painter`] is a list of shapes; it becomes a drawing ([`svg`]), an image ([`raster`]) or a
-//! frame of a film ([`film`]), the same in all of them. Bodies in space are painted by [`solid`]
-//! into an image that lies on the paper like any other shape.
+//! A [`Painter`] is a list of shapes; it becomes a drawing ([`Painter::svg`]), an image
+//! ([`Painter::pixels`]) or a frame of a [`film`], the same in all of them. Bodies in space are
+//! painted by [`solid`] into an image that lies on the paper like any other shape. [`stage`] puts
+//! whole worlds on a painter.
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+// Units and sources stand in brackets: [m], [RFC 4648].
+#![allow(rustdoc::broken_intra_doc_links)]
 
 mod canvas;
+mod cover;
+mod error;
+pub mod face;
 pub mod film;
-pub mod letters;
-pub mod raster;
+mod letters;
+mod raster;
 mod shadow;
+pub mod smoothing;
+pub mod soft;
 pub mod solid;
-pub mod svg;
+pub mod stage;
+mod svg;
 pub mod theme;
 
+pub use error::PaintError;
+pub use face::{Face, Mood};
 use std::rc::Rc;
 pub use theme::Role;
-use tiny_skia::Pixmap;
+pub use tiny_skia::Pixmap;
 
 /// A place on the paper [px], y downwards.
 pub type Spot = [f32; 2];
@@ -119,6 +133,47 @@ impl Painter {
         });
     }
 
+    /// Adds a closed line of dashes and gaps of about two lengths [px].
+    pub fn dashed(&mut self, ring: &[Spot], [dash, gap]: [f32; 2], width: f32, role: Role) {
+        let count = ring.len();
+        let whole: f32 = (0..count)
+            .map(|k| distance(ring[k], ring[(k + 1) % count]))
+            .sum();
+        // A whole number of them, so that the last one is like the others.
+        let number = (whole / (dash + gap)).round().max(1.0);
+        let dash = whole / number * dash / (dash + gap);
+        let gap = whole / number - dash;
+        let (mut spots, mut left, mut is_dash) = (Vec::new(), dash, true);
+        for k in 0..count {
+            let (mut at, to) = (ring[k], ring[(k + 1) % count]);
+            loop {
+                if is_dash {
+                    spots.push(at);
+                }
+                let far = distance(at, to);
+                if far < left {
+                    left -= far;
+                    break;
+                }
+                at = [0, 1].map(|axis: usize| at[axis] + (to[axis] - at[axis]) * left / far);
+                if is_dash {
+                    spots.push(at);
+                    self.line(std::mem::take(&mut spots), width, role);
+                }
+                (is_dash, left) = (!is_dash, if is_dash { gap } else { dash });
+            }
+        }
+    }
+
+    /// Adds a line of text in the middle below everything, on paper of its own.
+    pub fn caption(&mut self, text: &str) {
+        const HEIGHT: f32 = 13.0;
+        let [width, height] = self.size().map(|k| k as f32);
+        self.extend((2.6 * HEIGHT) as u32);
+        let x = 0.5 * (width - letters::width(HEIGHT, text));
+        self.text([x, height + 0.7 * HEIGHT], HEIGHT, Role::Ink, text);
+    }
+
     /// Adds a disc.
     pub fn dot(&mut self, at: Spot, radius: f32, role: Role) {
         self.shapes.push(Shape::Dot { at, radius, role });
@@ -201,6 +256,11 @@ pub enum Sample {
     Cross(Role),
     /// A line.
     Line(Role),
+}
+
+fn distance(a: Spot, b: Spot) -> f32 {
+    let [x, y] = [a[0] - b[0], a[1] - b[1]];
+    (x * x + y * y).sqrt()
 }
 
 /// The corners of a rectangle.

@@ -1,8 +1,7 @@
 //! The painter's shapes as an SVG document.
 
-use super::theme::colour;
-use super::{Painter, Role, Shape, Spot};
-use anyhow::Result;
+use crate::theme::{colour, opacity};
+use crate::{PaintError, Painter, Role, Shape, Spot};
 use std::fmt::Write;
 
 impl Painter {
@@ -10,7 +9,7 @@ impl Painter {
     ///
     /// # Errors
     /// When an image in it cannot be packed.
-    pub fn svg(&self) -> Result<String> {
+    pub fn svg(&self) -> Result<String, PaintError> {
         let (width, height, paper) = (self.width, self.height, name(Role::Paper));
         let mut text = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n<rect width=\"{width}\" height=\"{height}\" fill=\"{paper}\"/>\n"
@@ -22,14 +21,14 @@ impl Painter {
     }
 }
 
-fn write_shape(text: &mut String, shape: &Shape) -> Result<()> {
-    match shape {
+fn write_shape(text: &mut String, shape: &Shape) -> Result<(), PaintError> {
+    let written = match shape {
         Shape::Area { outline, role } => writeln!(
             text,
-            "<polygon points=\"{}\" fill=\"{}\"/>",
+            "<polygon points=\"{}\" {}/>",
             spots_of(outline),
-            name(*role)
-        )?,
+            fill(*role)
+        ),
         Shape::Line {
             spots,
             closed,
@@ -41,14 +40,14 @@ fn write_shape(text: &mut String, shape: &Shape) -> Result<()> {
             if *closed { "polygon" } else { "polyline" },
             spots_of(spots),
             name(*role)
-        )?,
+        ),
         Shape::Dot { at, radius, role } => writeln!(
             text,
-            "<circle cx=\"{:.2}\" cy=\"{:.2}\" r=\"{radius:.2}\" fill=\"{}\"/>",
+            "<circle cx=\"{:.2}\" cy=\"{:.2}\" r=\"{radius:.2}\" {}/>",
             at[0],
             at[1],
-            name(*role)
-        )?,
+            fill(*role)
+        ),
         Shape::Image { at, pixels } => writeln!(
             text,
             "<image x=\"{:.2}\" y=\"{:.2}\" width=\"{}\" height=\"{}\" href=\"data:image/png;base64,{}\"/>",
@@ -56,9 +55,10 @@ fn write_shape(text: &mut String, shape: &Shape) -> Result<()> {
             at[1],
             pixels.width(),
             pixels.height(),
-            base64(&pixels.encode_png()?)
-        )?,
-    }
+            base64(&pixels.encode_png().map_err(PaintError::packing("PNG"))?)
+        ),
+    };
+    written.expect("a string has room");
     Ok(())
 }
 
@@ -68,6 +68,14 @@ fn spots_of(spots: &[Spot]) -> String {
         .map(|[x, y]| format!("{x:.2},{y:.2}"))
         .collect();
     pairs.join(" ")
+}
+
+fn fill(role: Role) -> String {
+    let fill = format!("fill=\"{}\"", name(role));
+    match opacity(role) {
+        1.0 => fill,
+        share => format!("{fill} fill-opacity=\"{share}\""),
+    }
 }
 
 fn name(role: Role) -> String {

@@ -1,7 +1,6 @@
 //! Several moments: one after the other in a GIF, or side by side in one image.
 
-use super::Painter;
-use anyhow::{Context, Result};
+use crate::{PaintError, Painter};
 use gif::{Encoder, Frame, Repeat};
 use tiny_skia::Pixmap;
 
@@ -12,22 +11,30 @@ const GAP: u32 = 12;
 ///
 /// # Errors
 /// When there is no frame, or their sizes differ.
-pub fn gif(frames: &[Pixmap], hundredths: u16) -> Result<Vec<u8>> {
-    let first = frames.first().context("a film needs a frame")?;
-    let [width, height] = [first.width(), first.height()].map(u16::try_from);
-    let (width, height) = (width?, height?);
+pub fn gif(frames: &[Pixmap], hundredths: u16) -> Result<Vec<u8>, PaintError> {
+    let first = frames.first().ok_or(PaintError::NoFrame)?;
+    let expected = size(first);
+    let [width, height] = expected.map(u16::try_from);
+    let width = width.map_err(PaintError::packing("GIF"))?;
+    let height = height.map_err(PaintError::packing("GIF"))?;
     let mut bytes = Vec::new();
-    let mut encoder = Encoder::new(&mut bytes, width, height, &[])?;
-    encoder.set_repeat(Repeat::Infinite)?;
-    for pixels in frames {
-        anyhow::ensure!(
-            (pixels.width(), pixels.height()) == (first.width(), first.height()),
-            "the frames of a film differ in size"
-        );
+    let failed = PaintError::packing("GIF");
+    let mut encoder = Encoder::new(&mut bytes, width, height, &[]).map_err(&failed)?;
+    encoder.set_repeat(Repeat::Infinite).map_err(&failed)?;
+    for (k, pixels) in frames.iter().enumerate() {
+        let found = size(pixels);
+        if found != expected {
+            let frame = k + 1;
+            return Err(PaintError::FrameSize {
+                frame,
+                found,
+                expected,
+            });
+        }
         // 1 to 30, slow to fast: 10 is hardly worse than 1.
         let mut frame = Frame::from_rgba_speed(width, height, &mut pixels.data().to_vec(), 10);
         frame.delay = hundredths;
-        encoder.write_frame(&frame)?;
+        encoder.write_frame(&frame).map_err(&failed)?;
     }
     drop(encoder);
     Ok(bytes)
@@ -37,8 +44,8 @@ pub fn gif(frames: &[Pixmap], hundredths: u16) -> Result<Vec<u8>> {
 ///
 /// # Errors
 /// When there is no moment.
-pub fn strip(moments: &[Pixmap], columns: usize) -> Result<Painter> {
-    let first = moments.first().context("a strip needs a moment")?;
+pub fn strip(moments: &[Pixmap], columns: usize) -> Result<Painter, PaintError> {
+    let first = moments.first().ok_or(PaintError::NoFrame)?;
     let rows = moments.len().div_ceil(columns) as u32;
     let pitch = [first.width() + GAP, first.height() + GAP];
     let across = columns.min(moments.len()) as u32;
@@ -49,6 +56,10 @@ pub fn strip(moments: &[Pixmap], columns: usize) -> Result<Painter> {
         painter.image(at.map(|k| k as f32), pixels.clone());
     }
     Ok(painter)
+}
+
+fn size(pixels: &Pixmap) -> [u32; 2] {
+    [pixels.width(), pixels.height()]
 }
 
 #[cfg(test)]

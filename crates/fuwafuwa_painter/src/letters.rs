@@ -1,6 +1,6 @@
 //! Letters as strokes, so that no file needs a font and every back end writes alike.
 
-use super::Spot;
+use crate::Spot;
 
 /// The lines of a text: `at` is the top left of its first capital, `height` that of a capital.
 pub fn lines(at: Spot, height: f32, text: &str) -> Vec<Vec<Spot>> {

@@ -1,0 +1,84 @@
+//! A strip of moments of a scene of the plane in the look of the game, with faces and captions.
+//!
+//! ```text
+//! cargo run --release -p fuwafuwa_painter --example moments -- tear tear.png
+//! ```
+
+use fuwafuwa::world::TICK;
+use fuwafuwa::{Dim2, Event, Shape, World};
+use fuwafuwa_painter::soft::{self, Extras};
+use fuwafuwa_painter::{Face, Frame, Mood, Painter, film};
+use fuwafuwa_scenes::Scene;
+use std::error::Error;
+
+/// Moments in the strip, and how many stand side by side.
+const MOMENTS: u64 = 9;
+const COLUMNS: usize = 3;
+/// Width of a moment [px].
+const WIDTH: u32 = 460;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let name = arguments.next().unwrap_or("tear".into());
+    let path = arguments.next().unwrap_or("moments.png".into());
+    let scene = Scene::open(&name, &[])?;
+    let [low, high] = scene.view;
+    let unit = WIDTH as f32 / (high[0] - low[0]);
+    let height = unit * (high[1] - low[1]);
+    let frame = Frame {
+        origin: [-low[0] * unit, height + low[1] * unit],
+        unit,
+    };
+    let basket = Shape::Box {
+        centre: [high[0] - 0.45, 0.5, 0.0],
+        half: [0.35, 0.42, 1.0],
+    };
+    let mut world = scene.build::<Dim2>()?;
+    let mut moments = Vec::new();
+    let mut last_tear = None;
+    for tick in 0..scene.ticks() {
+        for (hand, goal) in scene.goals(tick).into_iter().enumerate() {
+            world.set_goal(hand, goal);
+        }
+        world.step();
+        let is_torn = world
+            .events()
+            .iter()
+            .any(|event| matches!(event, Event::Released { .. }));
+        last_tear = if is_torn { Some(tick) } else { last_tear };
+        if (tick + 1) % (scene.ticks() / MOMENTS) == 0 {
+            let mood = match last_tear {
+                _ if tick + 1 == scene.ticks() => Mood::Beam,
+                Some(tear) if tick - tear < 20 => Mood::Shock,
+                _ => mood(&world),
+            };
+            let hand = world.manipulators().first();
+            let look_at = hand.map_or([0.0, 2.0, 0.0], |hand| hand.position());
+            let extras = Extras {
+                basket: Some(basket),
+                faces: world
+                    .bodies()
+                    .iter()
+                    .filter_map(|body| Face::on(body, mood, look_at))
+                    .collect(),
+            };
+            let mut painter = Painter::new(WIDTH, height as u32);
+            soft::world(&mut painter, frame, &world, &extras);
+            painter.caption(&format!("{:.1} s, {mood:?}", (tick + 1) as f32 * TICK));
+            moments.push(painter.pixels()?);
+        }
+    }
+    std::fs::write(path, film::strip(&moments, COLUMNS)?.png()?)?;
+    Ok(())
+}
+
+/// It winces when some of it is squeezed by a tenth.
+fn mood(world: &World<Dim2>) -> Mood {
+    let views = world.bodies().iter().flat_map(|body| body.element_views());
+    let strained = views.filter(|view| view.strain > 0.2).count();
+    if strained > 60 {
+        Mood::Wince
+    } else {
+        Mood::Calm
+    }
+}
