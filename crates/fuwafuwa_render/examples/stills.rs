@@ -1,0 +1,118 @@
+//! Draws named scenes at several moments into PNG files:
+//! `cargo run --release -p fuwafuwa_render --example stills -- FOLDER [SCENE …]`.
+
+use fuwafuwa::{Dim2, Shape, World};
+use fuwafuwa_render::frame::ElementColour;
+use fuwafuwa_render::{Ages, Basket, Camera, Frame, Look, Particle, Renderer, Theme, anchor};
+use fuwafuwa_scenes::Scene;
+use std::error::Error;
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::Path;
+use std::time::Instant;
+
+const SIZE: [u32; 2] = [960, 600];
+/// Scenes, and when to look at them [ticks].
+const MOMENTS: [(&str, &[u64]); 5] = [
+    ("squeeze", &[1, 90, 130, 170]),
+    ("tear", &[20, 60, 90, 140]),
+    ("core", &[60, 120]),
+    ("diced", &[1, 40, 120]),
+    ("pile", &[60, 150]),
+];
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let folder = arguments.next().ok_or("expected a folder to write to")?;
+    let chosen: Vec<String> = arguments.collect();
+    std::fs::create_dir_all(&folder)?;
+    let instance = wgpu::Instance::default();
+    let adapter = pollster::block_on(instance.request_adapter(&Default::default()))?;
+    println!("{}", adapter.get_info().name);
+    let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+        required_limits: wgpu::Limits::downlevel_webgl2_defaults(),
+        ..Default::default()
+    }))?;
+    let mut renderer = Renderer::new(&device, wgpu::TextureFormat::Rgba8Unorm);
+    let (candy, safe) = (Theme::candy(), Theme::colour_safe());
+    for (name, moments) in MOMENTS {
+        if !chosen.is_empty() && !chosen.iter().any(|one| one == name) {
+            continue;
+        }
+        let scene = Scene::open(name, &[])?;
+        let mut world = scene.build::<Dim2>()?;
+        let mut ages = Ages::default();
+        let camera = Camera::fit(scene.view[0], scene.view[1], SIZE);
+        for tick in 0..=moments.iter().copied().max().unwrap_or(0) {
+            for (hand, goal) in scene.goals(tick).into_iter().enumerate() {
+                world.set_goal(hand, goal);
+            }
+            world.step();
+            ages.follow(&world, 1.0 / 60.0);
+            if !moments.contains(&tick) {
+                continue;
+            }
+            let elements = |colour| Look::Elements {
+                colour,
+                ages: &ages.seconds,
+                nodes: false,
+            };
+            let particles = crumbs(&world);
+            let looks = [
+                ("skin", Look::Skin, &candy),
+                ("levels", elements(ElementColour::Level), &candy),
+                ("strains", elements(ElementColour::Strain), &candy),
+                ("safe", Look::Skin, &safe),
+            ];
+            for (look_name, look, theme) in looks {
+                let frame = Frame {
+                    camera,
+                    theme,
+                    look,
+                    basket: (name == "squeeze").then_some(Basket {
+                        region: Shape::Box {
+                            centre: [1.75, 0.5, 0.0],
+                            half: [0.45, 0.425, 0.0],
+                        },
+                        fill: 0.0,
+                    }),
+                    particles: &particles,
+                    seconds: tick as f32 / 60.0,
+                };
+                let begin = Instant::now();
+                let image = renderer.render_to_image(&device, &queue, &world, &frame, SIZE)?;
+                let path = Path::new(&folder).join(format!("{name}-{tick:03}-{look_name}.png"));
+                println!("{} {:?}", path.display(), begin.elapsed());
+                write(&path, &image)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Dust around the largest piece of the first body, to see what particles look like.
+fn crumbs(world: &World<Dim2>) -> Vec<Particle> {
+    let Some(body) = world.bodies().first() else {
+        return Vec::new();
+    };
+    let anchor = anchor(body);
+    let around = (0..12).map(|k| {
+        let angle = k as f32 * 2.4;
+        let reach = anchor.scale * (1.15 + 0.02 * k as f32);
+        let [x, y] = anchor.position;
+        Particle {
+            at: [x + reach * angle.cos(), y + reach * angle.sin(), 0.0],
+            radius: 0.006 + 0.001 * k as f32,
+            colour: [1.0, 0.62, 0.55, 1.0 - 0.06 * k as f32],
+        }
+    });
+    around.collect()
+}
+
+fn write(path: &Path, image: &[u8]) -> Result<(), Box<dyn Error>> {
+    let file = BufWriter::new(File::create(path)?);
+    let mut encoder = png::Encoder::new(file, SIZE[0], SIZE[1]);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.write_header()?.write_image_data(image)?;
+    Ok(())
+}

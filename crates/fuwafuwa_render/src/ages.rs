@@ -1,0 +1,70 @@
+//! How long ago each element was remodelled.
+
+use fuwafuwa::mesh::Element;
+use fuwafuwa::{Dim2, World};
+
+/// What an element is, as far as remodelling changes it.
+type Form = ([i32; 3], u8, u8);
+
+/// How long ago each element was remodelled, by looking again and again.
+#[derive(Clone, Debug, Default)]
+pub struct Ages {
+    forms: Vec<Vec<Option<Form>>>,
+    /// [s], by body and element id: what [`crate::Look::Elements`] takes.
+    pub seconds: Vec<Vec<f32>>,
+}
+
+impl Ages {
+    /// Looks at a world `duration` [s] after it did last. At the first look all elements are old.
+    pub fn follow(&mut self, world: &World<Dim2>, duration: f32) {
+        let bodies = world.bodies();
+        self.forms.truncate(bodies.len());
+        self.seconds.truncate(bodies.len());
+        for (place, body) in bodies.iter().enumerate() {
+            let young = if place < self.forms.len() { 0.0 } else { f32::MAX };
+            if place == self.forms.len() {
+                self.forms.push(Vec::new());
+                self.seconds.push(Vec::new());
+            }
+            let (forms, ages) = (&mut self.forms[place], &mut self.seconds[place]);
+            let capacity = body.mesh().element_capacity();
+            forms.resize(capacity, None);
+            ages.resize(capacity, young);
+            for id in 0..capacity {
+                let form = body.mesh().element(id as u32).map(form);
+                ages[id] = match form == forms[id] {
+                    true => ages[id] + duration,
+                    false => young,
+                };
+                forms[id] = form;
+            }
+        }
+    }
+}
+
+fn form(element: &Element) -> Form {
+    (element.cell.at, element.cell.level, element.children)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fuwafuwa::{Blade, Body, Material, Settings, VoxelGrid};
+
+    #[test]
+    fn what_a_cut_remodels_is_young_and_grows_old() {
+        let mut world = World::<Dim2>::new(Settings::default()).unwrap();
+        let grid = VoxelGrid::ball(32, 1.0).unwrap();
+        world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+        let mut ages = Ages::default();
+        ages.follow(&world, 0.0);
+        let young = |ages: &Ages| ages.seconds[0].iter().filter(|&&age| age < 0.2).count();
+        assert_eq!(young(&ages), 0);
+        world.cut(0, &Blade::segment([0.5, 0.5], [0.5, 2.0]));
+        ages.follow(&world, 0.1);
+        let remodelled = young(&ages);
+        assert!(remodelled > 10 && remodelled < ages.seconds[0].len(), "{remodelled}");
+        ages.follow(&world, 0.3);
+        assert_eq!(young(&ages), 0);
+    }
+}

@@ -1,0 +1,224 @@
+//! Elements as coloured quads with lines around them.
+
+use crate::frame::ElementColour;
+use crate::plane::{Flat, flat, minus, plus, scaled, unit};
+use crate::theme::{Theme, bytes, mix};
+use bytemuck::{Pod, Zeroable};
+use fuwafuwa::dim::{add, corner, scale};
+use fuwafuwa::stencil::slot_index;
+use fuwafuwa::{Body, Dim2, ElementView};
+use std::collections::BTreeSet;
+
+/// For how long an element flashes after it was remodelled [s].
+const FLASH: f32 = 0.5;
+
+/// A corner of a triangle of the element view.
+#[repr(C)]
+#[derive(Copy, Clone, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct ElementVertex {
+    /// Where [m].
+    pub at: Flat,
+    /// How far it is moved, for the thickness of a line [px].
+    pub across: Flat,
+    /// Distance from the middle of the line and half its width [px].
+    pub line: [f32; 2],
+    /// Colour and opacity.
+    pub colour: [u8; 4],
+}
+
+/// A side of a child of an element, between two slots.
+type Edge = (usize, usize);
+
+/// Triangles of the element view.
+#[derive(Clone, Debug)]
+pub struct ElementMesh {
+    /// Corners.
+    pub vertices: Vec<ElementVertex>,
+    /// Three to a triangle.
+    pub indices: Vec<u32>,
+    /// By the mask of its children: the sides of an element that have nothing of it beyond.
+    edges: [Vec<Edge>; 16],
+    /// Of an element without children.
+    whole: Vec<Edge>,
+}
+
+impl Default for ElementMesh {
+    fn default() -> Self {
+        Self {
+            vertices: Vec::new(),
+            indices: Vec::new(),
+            edges: std::array::from_fn(|mask| edges(1, mask as u8)),
+            whole: edges(0, 15),
+        }
+    }
+}
+
+impl ElementMesh {
+    /// Forgets all triangles.
+    pub fn clear(&mut self) {
+        self.vertices.clear();
+        self.indices.clear();
+    }
+
+    /// Adds the elements of a body, then their edges, then their nodes.
+    pub fn add(
+        &mut self,
+        body: &Body<Dim2>,
+        theme: &Theme,
+        colour: ElementColour,
+        ages: &[f32],
+        nodes: bool,
+    ) {
+        let views: Vec<ElementView> = body.element_views().collect();
+        for view in &views {
+            let plain = match colour {
+                ElementColour::Level => theme.level(view.level),
+                ElementColour::Strain => theme.strain(view.strain),
+            };
+            let age = ages.get(view.id as usize).copied().unwrap_or(FLASH);
+            let flash = 0.9 * (1.0 - age / FLASH).clamp(0.0, 1.0);
+            self.add_fill(view, bytes(mix(plain, [1.0; 3], flash), 1.0));
+        }
+        let ink = bytes(theme.ink, 1.0);
+        for view in &views {
+            // The larger an element, the bolder: levels can be told apart without colours.
+            let half = 0.45 + 0.4 * f32::from(view.level);
+            self.add_edges(view, half, ink);
+        }
+        if nodes {
+            for (id, _) in body.mesh().nodes() {
+                let at = flat(body.node_state(id).0);
+                self.add_line(at, at, 1.8, ink);
+            }
+        }
+    }
+
+    /// Adds what an element fills, and nothing else.
+    pub fn add_fill(&mut self, view: &ElementView, colour: [u8; 4]) {
+        for round in fills(view) {
+            let first = self.vertices.len() as u32;
+            self.vertices.extend(round.map(|at| ElementVertex {
+                at,
+                across: [0.0; 2],
+                line: [0.0, 1e6],
+                colour,
+            }));
+            self.indices.extend([0, 1, 2, 0, 2, 3].map(|k| first + k));
+        }
+    }
+
+    fn add_edges(&mut self, view: &ElementView, half: f32, colour: [u8; 4]) {
+        let count = match view.level {
+            0 => self.whole.len(),
+            _ => self.edges[usize::from(view.children & 15)].len(),
+        };
+        for k in 0..count {
+            let (from, to) = match view.level {
+                0 => self.whole[k],
+                _ => self.edges[usize::from(view.children & 15)][k],
+            };
+            self.add_line(flat(view.slots[from]), flat(view.slots[to]), half, colour);
+        }
+    }
+
+    /// A line with square ends; between equal places a square.
+    fn add_line(&mut self, from: Flat, to: Flat, half: f32, colour: [u8; 4]) {
+        let along = match from == to {
+            true => [1.0, 0.0],
+            false => unit(minus(to, from)),
+        };
+        let first = self.vertices.len() as u32;
+        let reach = half + 0.7;
+        for (at, end, side) in [(from, -1.0, -1.0), (to, 1.0, -1.0), (to, 1.0, 1.0), (from, -1.0, 1.0)] {
+            let across = scaled([-along[1], along[0]], side * reach);
+            self.vertices.push(ElementVertex {
+                at,
+                across: plus(across, scaled(along, end * half)),
+                line: [side * reach, half],
+                colour,
+            });
+        }
+        self.indices.extend([0, 1, 2, 0, 2, 3].map(|k| first + k));
+    }
+}
+
+/// The quads that an element fills [m], anticlockwise.
+pub fn fills(view: &ElementView) -> impl Iterator<Item = [Flat; 4]> + '_ {
+    let blocks = blocks(view.level, view.children);
+    blocks.map(|(low, width)| round(low, width).map(|slot| flat(view.slots[slot])))
+}
+
+/// The slots at the corners of a block, anticlockwise.
+fn round(low: [i32; 3], width: i32) -> [usize; 4] {
+    [0, 1, 3, 2].map(|index| slot_index(add(low, scale(corner(index), width))))
+}
+
+/// The blocks of slots that an element fills: their low corners and their width in slots.
+fn blocks(level: u8, children: u8) -> impl Iterator<Item = ([i32; 3], i32)> {
+    let whole = (level == 0).then_some(([0; 3], 2));
+    let filled = (0..4).filter(move |child| level > 0 && children >> child & 1 == 1);
+    whole.into_iter().chain(filled.map(|child| (corner(child), 1)))
+}
+
+/// The sides of the blocks of an element that have no block of it beyond.
+///
+/// Blocks run round anticlockwise; a side that another block runs the other way is inside.
+fn edges(level: u8, children: u8) -> Vec<Edge> {
+    let mut edges = BTreeSet::new();
+    for (low, width) in blocks(level, children) {
+        let round = round(low, width);
+        for k in 0..4 {
+            let (from, to) = (round[k], round[(k + 1) % 4]);
+            if !edges.remove(&(to, from)) {
+                edges.insert((from, to));
+            }
+        }
+    }
+    edges.into_iter().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fuwafuwa::{Material, VoxelGrid};
+
+    #[test]
+    fn inner_sides_are_no_edges() {
+        assert_eq!(edges(0, 15).len(), 4);
+        assert_eq!(edges(1, 0b0001).len(), 4);
+        assert_eq!(edges(1, 0b0111).len(), 8, "an L");
+        assert_eq!(edges(1, 0b1001).len(), 8, "two that meet in a corner");
+        assert_eq!(edges(1, 0b1111).len(), 8);
+    }
+
+    #[test]
+    fn the_fills_of_a_disc_have_its_area() {
+        let grid = VoxelGrid::<Dim2>::ball(32, 1.0).unwrap();
+        let voxels = grid.solid_count() as f32;
+        let body = Body::new(grid, &[Material::default()]).unwrap();
+        let mut mesh = ElementMesh::default();
+        for view in body.element_views() {
+            mesh.add_fill(&view, [0; 4]);
+        }
+        let at = |index: u32| mesh.vertices[index as usize].at;
+        let areas = mesh.indices.chunks(3).map(|t| {
+            let (a, b) = (minus(at(t[1]), at(t[0])), minus(at(t[2]), at(t[0])));
+            0.5 * crate::plane::cross(a, b)
+        });
+        assert!((areas.sum::<f32>() - voxels / 1024.0).abs() < 1e-4);
+    }
+
+    #[test]
+    fn a_young_element_flashes_and_an_old_one_does_not() {
+        let grid = VoxelGrid::<Dim2>::from_fn([1, 1, 1], 1.0, |_| 1).unwrap();
+        let body = Body::new(grid, &[Material::default()]).unwrap();
+        let theme = Theme::candy();
+        let colour = |age: f32| {
+            let mut mesh = ElementMesh::default();
+            mesh.add(&body, &theme, ElementColour::Level, &[age], false);
+            mesh.vertices[0].colour
+        };
+        assert_eq!(colour(9.0), bytes(theme.level(0), 1.0));
+        assert!(colour(0.0)[2] > colour(9.0)[2]);
+    }
+}

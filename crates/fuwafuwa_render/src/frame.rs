@@ -1,0 +1,145 @@
+//! How to look at a world, as plain data.
+
+use crate::plane::{Flat, dot, flat, minus, plus, scaled};
+use crate::theme::Theme;
+use fuwafuwa::{Shape, Vector};
+
+/// Everything that a picture needs beside the world.
+#[derive(Clone, Debug)]
+pub struct Frame<'a> {
+    /// From where.
+    pub camera: Camera,
+    /// In which colours.
+    pub theme: &'a Theme,
+    /// The skin, or what is inside.
+    pub look: Look<'a>,
+    /// The region to get into.
+    pub basket: Option<Basket>,
+    /// Crumbs, dust, sparks.
+    pub particles: &'a [Particle],
+    /// A clock for slow motion that means nothing, like the march of dashes [s].
+    pub seconds: f32,
+}
+
+/// Where the camera is. What it looks at fills the target, whatever that measures.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Camera {
+    /// What is in the middle [m]; in the plane the third coordinate does not count.
+    pub centre: Vector,
+    /// How much of the world is to be seen from bottom to top [m].
+    pub height: f32,
+    /// By how much it leans to its left [rad].
+    pub tilt: f32,
+    /// By how much it is shaken out of place [m].
+    pub shake: Vector,
+}
+
+/// What to show of a body.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub enum Look<'a> {
+    /// Its skin.
+    Skin,
+    /// Its elements.
+    Elements {
+        /// What their colour tells.
+        colour: ElementColour,
+        /// How long ago each element was remodelled [s], by body and element id: the young ones
+        /// flash. [`crate::Ages`] keeps count. What is not listed is old.
+        ages: &'a [Vec<f32>],
+        /// Whether nodes are dots.
+        nodes: bool,
+    },
+}
+
+/// What the colour of an element tells.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum ElementColour {
+    /// Its level.
+    Level,
+    /// How far it is strained.
+    Strain,
+}
+
+/// The region to get into.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Basket {
+    /// Where it is; a box, a capsule or a ball.
+    pub region: Shape,
+    /// How far it is filled, 0 to 1: it glows the more.
+    pub fill: f32,
+}
+
+/// A round, soft dot.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Particle {
+    /// Its middle [m].
+    pub at: Vector,
+    /// [m]
+    pub radius: f32,
+    /// Red, green, blue (sRGB), opacity; 0 to 1.
+    pub colour: [f32; 4],
+}
+
+impl Camera {
+    /// The camera that sees all between two corners [m] in a target of `size` pixels.
+    pub fn fit(low: Vector, high: Vector, size: [u32; 2]) -> Self {
+        let aspect = size[0].max(1) as f32 / size[1].max(1) as f32;
+        let span = minus(flat(high), flat(low));
+        Self {
+            centre: [0, 1, 2].map(|axis| 0.5 * (low[axis] + high[axis])),
+            height: span[1].max(span[0] / aspect),
+            tilt: 0.0,
+            shake: [0.0; 3],
+        }
+    }
+
+    /// Where a place [m] of the plane is in a target of `size` pixels, from its upper left corner.
+    pub fn to_pixel(&self, at: Vector, size: [u32; 2]) -> [f32; 2] {
+        let [right, up] = self.axes();
+        let by = minus(flat(at), self.middle());
+        let scale = size[1] as f32 / self.height;
+        [
+            0.5 * size[0] as f32 + dot(by, right) * scale,
+            0.5 * size[1] as f32 - dot(by, up) * scale,
+        ]
+    }
+
+    /// The place [m] in the plane at a pixel of a target of `size` pixels.
+    pub fn to_world(&self, pixel: [f32; 2], size: [u32; 2]) -> Vector {
+        let [right, up] = self.axes();
+        let scale = self.height / size[1].max(1) as f32;
+        let along = scaled(right, (pixel[0] - 0.5 * size[0] as f32) * scale);
+        let across = scaled(up, (0.5 * size[1] as f32 - pixel[1]) * scale);
+        let [x, y] = plus(self.middle(), plus(along, across));
+        [x, y, 0.0]
+    }
+
+    /// What is in the middle of the picture [m].
+    pub(crate) fn middle(&self) -> Flat {
+        plus(flat(self.centre), flat(self.shake))
+    }
+
+    /// What is to the right and what is up.
+    pub(crate) fn axes(&self) -> [Flat; 2] {
+        let (sin, cos) = self.tilt.sin_cos();
+        [[cos, sin], [-sin, cos]]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pixels_and_places_agree() {
+        let size = [640, 480];
+        let mut camera = Camera::fit([-1.0, 0.0, 0.0], [3.0, 1.0, 0.0], size);
+        assert_eq!(camera.height, 3.0);
+        assert_eq!(camera.to_pixel([-1.0, 0.5, 0.0], size), [0.0, 240.0]);
+        camera.tilt = 0.3;
+        camera.shake = [0.1, -0.2, 0.0];
+        let place = [0.7, 0.9, 0.0];
+        let back = camera.to_world(camera.to_pixel(place, size), size);
+        assert!((0..3).all(|k| (back[k] - place[k]).abs() < 1e-5), "{back:?}");
+    }
+}

@@ -1,0 +1,100 @@
+//! A world as vertices: all that is worked out before a GPU is asked.
+
+use crate::elements::ElementMesh;
+use crate::frame::{Frame, Look};
+use crate::plane::Flat;
+use crate::rest::Rest;
+use crate::rigid::Rigid;
+use crate::skin::{Rings, SkinMesh};
+use crate::theme::bytes;
+use fuwafuwa::{Body, Dim2, World};
+use std::ops::Range;
+
+/// A world as vertices, with the buffers to make them again and again.
+#[derive(Clone, Debug, Default)]
+pub struct Geometry {
+    pub(crate) skin: SkinMesh,
+    pub(crate) bodies: Vec<BodyParts>,
+    pub(crate) elements: ElementMesh,
+    pub(crate) rigid: Rigid,
+    /// Radius of a disc with the area of the largest body at rest [m].
+    pub(crate) radius: f32,
+    rings: Rings,
+    rests: Vec<Rest>,
+}
+
+/// Which triangles of the skin belong to a body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyParts {
+    /// They wind around what is inside.
+    pub fan: Range<u32>,
+    /// They colour what is inside: first all of it, then what is of other materials.
+    pub cover: Range<u32>,
+}
+
+impl Geometry {
+    /// Works out the vertices of a world.
+    pub fn gather(&mut self, world: &World<Dim2>, frame: &Frame<'_>) {
+        self.skin.clear();
+        self.bodies.clear();
+        self.elements.clear();
+        let basket = frame.basket.as_ref();
+        self.rigid.gather(world, frame.theme, basket, frame.particles);
+        self.radius = world.bodies().iter().map(radius).fold(0.0, f32::max);
+        self.rests.resize_with(world.bodies().len(), Rest::default);
+        for (place, body) in world.bodies().iter().enumerate() {
+            match frame.look {
+                Look::Skin => self.add_skin(place, body, frame),
+                Look::Elements { colour, ages, nodes } => {
+                    let ages = ages.get(place).map_or(&[][..], Vec::as_slice);
+                    self.elements.add(body, frame.theme, colour, ages, nodes);
+                }
+            }
+        }
+    }
+
+    /// How many vertices there are.
+    pub fn vertex_count(&self) -> usize {
+        self.skin.vertices.len() + self.elements.vertices.len()
+    }
+
+    fn add_skin(&mut self, place: usize, body: &Body<Dim2>, frame: &Frame<'_>) {
+        let rest = &mut self.rests[place];
+        if !rest.fits(body.grid()) {
+            *rest = Rest::new(body.grid());
+        }
+        self.rings.trace(body, rest);
+        let start = self.skin.fans.len() as u32;
+        self.skin.add(&self.rings, body.grid().voxel_size());
+        let middle = self.skin.fans.len() as u32;
+        let (low, high) = bounds(self.rings.points.iter().map(|point| point.at));
+        let first = body.grid().voxels().map(|voxel| body.grid().material(voxel));
+        let first = first.filter(|&number| number > 0).min().unwrap_or(1);
+        let colour = |number| bytes(frame.theme.material(number), 1.0);
+        self.skin.add_rectangle(low, high, colour(first));
+        if body.materials().len() > 1 {
+            for view in body.element_views().filter(|view| view.material != first) {
+                let colour = colour(view.material);
+                self.skin.add_element(&view, colour);
+            }
+        }
+        self.bodies.push(BodyParts {
+            fan: start..middle,
+            cover: middle..self.skin.fans.len() as u32,
+        });
+    }
+}
+
+fn radius(body: &Body<Dim2>) -> f32 {
+    let grid = body.grid();
+    grid.voxel_size() * (grid.solid_count() as f32 / std::f32::consts::PI).sqrt()
+}
+
+fn bounds(points: impl Iterator<Item = Flat>) -> (Flat, Flat) {
+    points.fold(([f32::MAX; 2], [f32::MIN; 2]), |(low, high), at| {
+        (
+            [low[0].min(at[0]), low[1].min(at[1])],
+            [high[0].max(at[0]), high[1].max(at[1])],
+        )
+    })
+}

@@ -1,0 +1,128 @@
+//! A picture without a window.
+
+use super::Renderer;
+use crate::frame::Frame;
+use fuwafuwa::{Dim2, World};
+use std::fmt;
+use wgpu::*;
+
+/// Why there is no image.
+#[derive(Debug)]
+pub enum ImageError {
+    /// The renderer draws in a format that is not four bytes of colour.
+    Format(TextureFormat),
+    /// The device did not finish.
+    Poll(PollError),
+    /// What it drew cannot be read.
+    Map(BufferAsyncError),
+    /// What it drew lies where nothing can be read.
+    Range(MapRangeError),
+}
+
+impl fmt::Display for ImageError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Format(format) => write!(
+                f,
+                "an image needs a renderer for Rgba8 or Bgra8, this one is for {format:?}"
+            ),
+            Self::Poll(error) => write!(f, "the device did not finish drawing: {error}"),
+            Self::Map(error) => write!(f, "the image cannot be read from the device: {error}"),
+            Self::Range(error) => write!(f, "the image cannot be read from the device: {error}"),
+        }
+    }
+}
+
+impl std::error::Error for ImageError {}
+
+impl Renderer {
+    /// Draws a world into an image of `size` pixels: red, green, blue and opacity of each, row by
+    /// row from the upper left corner. Waits until it is there.
+    ///
+    /// # Errors
+    /// [`ImageError`] when the format is none for images, or the device fails.
+    pub fn render_to_image(
+        &mut self,
+        device: &Device,
+        queue: &Queue,
+        world: &World<Dim2>,
+        frame: &Frame<'_>,
+        size: [u32; 2],
+    ) -> Result<Vec<u8>, ImageError> {
+        let plain = self.format.remove_srgb_suffix();
+        if !matches!(plain, TextureFormat::Rgba8Unorm | TextureFormat::Bgra8Unorm) {
+            return Err(ImageError::Format(self.format));
+        }
+        let size = size.map(|side| side.max(1));
+        let extent = Extent3d {
+            width: size[0],
+            height: size[1],
+            depth_or_array_layers: 1,
+        };
+        let texture = device.create_texture(&TextureDescriptor {
+            label: Some("image"),
+            size: extent,
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: TextureDimension::D2,
+            format: self.format,
+            usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let view = texture.create_view(&TextureViewDescriptor::default());
+        let row = (4 * size[0]).next_multiple_of(COPY_BYTES_PER_ROW_ALIGNMENT);
+        let buffer = device.create_buffer(&BufferDescriptor {
+            label: Some("image"),
+            size: u64::from(row) * u64::from(size[1]),
+            usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let mut encoder = device.create_command_encoder(&CommandEncoderDescriptor::default());
+        self.prepare(device, queue, &mut encoder, world, frame, size);
+        let pass = encoder.begin_render_pass(&RenderPassDescriptor {
+            label: Some("image"),
+            color_attachments: &[Some(RenderPassColorAttachment {
+                view: &view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: Operations {
+                    load: LoadOp::Clear(Color::TRANSPARENT),
+                    store: StoreOp::Store,
+                },
+            })],
+            ..RenderPassDescriptor::default()
+        });
+        let mut pass = pass.forget_lifetime();
+        self.paint(&mut pass);
+        drop(pass);
+        let into = TexelCopyBufferInfo {
+            buffer: &buffer,
+            layout: TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(row),
+                rows_per_image: None,
+            },
+        };
+        encoder.copy_texture_to_buffer(texture.as_image_copy(), into, extent);
+        queue.submit([encoder.finish()]);
+
+        let (sender, receiver) = std::sync::mpsc::channel();
+        buffer.map_async(MapMode::Read, .., move |result| {
+            // Nobody listens any more when waiting failed.
+            let _ = sender.send(result);
+        });
+        device.poll(PollType::wait_indefinitely()).map_err(ImageError::Poll)?;
+        let mapped = receiver.recv().expect("a finished device calls back");
+        mapped.map_err(ImageError::Map)?;
+        let bytes = buffer.get_mapped_range(..).map_err(ImageError::Range)?;
+        let rows = bytes.chunks(row as usize);
+        let mut image: Vec<u8> = rows
+            .flat_map(|row| &row[..4 * size[0] as usize])
+            .copied()
+            .collect();
+        if plain == TextureFormat::Bgra8Unorm {
+            image.chunks_exact_mut(4).for_each(|pixel| pixel.swap(0, 2));
+        }
+        Ok(image)
+    }
+}

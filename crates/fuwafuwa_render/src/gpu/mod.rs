@@ -1,0 +1,265 @@
+//! Vertices on the GPU: passes of their own, then the window's.
+
+mod buffer;
+mod image;
+mod pipelines;
+mod targets;
+
+pub use image::ImageError;
+
+use crate::frame::{Frame, Look};
+use crate::geometry::Geometry;
+use buffer::GrowingBuffer;
+use bytemuck::{Pod, Zeroable};
+use fuwafuwa::{Dim2, World};
+use pipelines::Pipelines;
+use targets::{Targets, bind};
+use wgpu::*;
+
+/// Standard deviation of the wide blur, which makes a body look thick, as a share of the radius
+/// of the largest body. Smaller makes pancakes of balls, larger makes all pieces look flat.
+const THICKNESS: f32 = 0.30;
+/// That of the narrow blur, which rounds the edges of every piece.
+const EDGE: f32 = 0.038;
+
+/// Draws worlds.
+pub struct Renderer {
+    format: TextureFormat,
+    pipelines: Pipelines,
+    targets: Targets,
+    geometry: Geometry,
+    uniforms: Buffer,
+    globals: BindGroup,
+    skin_vertices: GrowingBuffer,
+    fans: GrowingBuffer,
+    bands: GrowingBuffer,
+    element_vertices: GrowingBuffer,
+    element_indices: GrowingBuffer,
+    shapes: GrowingBuffer,
+    dots: GrowingBuffer,
+}
+
+/// What every shader knows; see `globals.wgsl`.
+#[repr(C)]
+#[derive(Copy, Clone, Debug, Pod, Zeroable)]
+struct Globals {
+    axes: [f32; 4],
+    view: [f32; 4],
+    size: [f32; 4],
+    tune: [f32; 4],
+    scale: [f32; 4],
+    floor_middle: [f32; 4],
+    floor_rim: [f32; 4],
+    frame: [f32; 4],
+    fresh: [f32; 4],
+    walls: [[f32; 4]; crate::rigid::MOST_WALLS],
+}
+
+impl Renderer {
+    /// A renderer for passes with a single target of a format, best one without `Srgb`, as egui
+    /// has them; no depth and no multisampling.
+    pub fn new(device: &Device, target_format: TextureFormat) -> Self {
+        let pipelines = Pipelines::new(device, target_format);
+        let uniforms = device.create_buffer(&BufferDescriptor {
+            label: Some("globals"),
+            size: size_of::<Globals>() as u64,
+            usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let resource = uniforms.as_entire_binding();
+        let (vertex, index) = (BufferUsages::VERTEX, BufferUsages::INDEX);
+        let buffer = |label, usage| GrowingBuffer::new(device, label, usage);
+        Self {
+            format: target_format,
+            globals: bind(device, &pipelines.globals_layout, &[resource]),
+            targets: Targets::new(device, &pipelines, [1, 1]),
+            geometry: Geometry::default(),
+            skin_vertices: buffer("skin", vertex),
+            fans: buffer("fans", index),
+            bands: buffer("bands", index),
+            element_vertices: buffer("elements", vertex),
+            element_indices: buffer("element indices", index),
+            shapes: buffer("shapes", vertex),
+            dots: buffer("dots", vertex),
+            pipelines,
+            uniforms,
+        }
+    }
+
+    /// Makes a picture of a world ready for a target of `target_size` pixels: works out and
+    /// uploads its vertices, and draws the bodies into images of their own.
+    pub fn prepare(
+        &mut self,
+        device: &Device,
+        queue: &Queue,
+        encoder: &mut CommandEncoder,
+        world: &World<Dim2>,
+        frame: &Frame<'_>,
+        target_size: [u32; 2],
+    ) {
+        if self.targets.window != target_size.map(|side| side.max(1)) {
+            self.targets = Targets::new(device, &self.pipelines, target_size);
+        }
+        self.geometry.gather(world, frame);
+        self.upload(device, queue, frame);
+        self.draw_bodies(encoder);
+        if frame.look == Look::Skin || !self.geometry.elements.indices.is_empty() {
+            self.blur(encoder);
+        }
+    }
+
+    /// Puts the picture that was made ready into a pass, filling its viewport.
+    pub fn paint(&self, pass: &mut RenderPass<'static>) {
+        let (pipelines, rigid) = (&self.pipelines, &self.geometry.rigid);
+        let bars = 0..rigid.bar_count;
+        let hands = bars.end..bars.end + rigid.hand_count;
+        let basket = hands.end..rigid.shapes.len() as u32;
+        pass.set_bind_group(0, &self.globals, &[]);
+        pass.set_bind_group(1, &self.targets.body, &[]);
+        pass.set_vertex_buffer(0, self.shapes.all());
+        pass.set_pipeline(&pipelines.arena);
+        pass.draw(0..3, 0..1);
+        let mut draw = |pipeline, shapes| {
+            pass.set_pipeline(pipeline);
+            pass.draw(0..4, shapes);
+        };
+        draw(&pipelines.glow, basket.clone());
+        draw(&pipelines.shadow, 0..hands.end);
+        pass.set_pipeline(&pipelines.body);
+        pass.draw(0..3, 0..1);
+        let mut draw = |pipeline, shapes| {
+            pass.set_pipeline(pipeline);
+            pass.draw(0..4, shapes);
+        };
+        draw(&pipelines.border, basket);
+        draw(&pipelines.bar, bars);
+        draw(&pipelines.hand, hands);
+        pass.set_vertex_buffer(0, self.dots.all());
+        pass.set_pipeline(&pipelines.particle);
+        pass.draw(0..4, 0..rigid.dots.len() as u32);
+    }
+
+    fn upload(&mut self, device: &Device, queue: &Queue, frame: &Frame<'_>) {
+        let Geometry {
+            skin,
+            elements,
+            rigid,
+            radius,
+            ..
+        } = &self.geometry;
+        self.skin_vertices.write(device, queue, &skin.vertices);
+        self.fans.write(device, queue, &skin.fans);
+        self.bands.write(device, queue, &skin.bands);
+        self.element_vertices.write(device, queue, &elements.vertices);
+        self.element_indices.write(device, queue, &elements.indices);
+        self.shapes.write(device, queue, &rigid.shapes);
+        self.dots.write(device, queue, &rigid.dots);
+
+        let camera = &frame.camera;
+        let [right, up] = camera.axes();
+        let middle = camera.middle();
+        let [window, size] = [self.targets.window, self.targets.size].map(|size| size.map(|side| side as f32));
+        let (edge, thickness) = (EDGE * radius, THICKNESS * radius);
+        let pixels = size[1] / camera.height;
+        self.targets.set_blur(queue, edge * pixels, thickness * pixels);
+        let mut walls = [[0.0; 4]; crate::rigid::MOST_WALLS];
+        walls[..rigid.walls.len()].copy_from_slice(&rigid.walls);
+        let flag = |is: bool| f32::from(u8::from(is));
+        let colour = |[red, green, blue]: crate::theme::Colour| [red, green, blue, 1.0];
+        let theme = frame.theme;
+        let globals = Globals {
+            axes: [right[0], right[1], up[0], up[1]],
+            view: [middle[0], middle[1], camera.height, window[0] / window[1]],
+            size: [size[0], size[1], window[0], window[1]],
+            tune: [
+                frame.seconds,
+                rigid.walls.len() as f32,
+                flag(self.format.is_srgb()),
+                flag(frame.look == Look::Skin),
+            ],
+            scale: [*radius, edge, thickness, 0.0],
+            floor_middle: colour(theme.floor[0]),
+            floor_rim: colour(theme.floor[1]),
+            frame: colour(theme.frame),
+            fresh: colour(theme.fresh),
+            walls,
+        };
+        queue.write_buffer(&self.uniforms, 0, bytemuck::bytes_of(&globals));
+    }
+
+    fn draw_bodies(&self, encoder: &mut CommandEncoder) {
+        let (pipelines, targets) = (&self.pipelines, &self.targets);
+        let attachments = [0, 1].map(|k| {
+            Some(RenderPassColorAttachment {
+                view: &targets.rough[k],
+                depth_slice: None,
+                resolve_target: Some(&targets.skin[k]),
+                ops: Operations {
+                    load: LoadOp::Clear(Color::TRANSPARENT),
+                    store: StoreOp::Discard,
+                },
+            })
+        });
+        let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+            label: Some("bodies"),
+            color_attachments: &attachments,
+            depth_stencil_attachment: Some(RenderPassDepthStencilAttachment {
+                view: &targets.stencil,
+                depth_ops: Some(Operations {
+                    load: LoadOp::Clear(1.0),
+                    store: StoreOp::Discard,
+                }),
+                stencil_ops: Some(Operations {
+                    load: LoadOp::Clear(0),
+                    store: StoreOp::Discard,
+                }),
+            }),
+            ..RenderPassDescriptor::default()
+        });
+        pass.set_bind_group(0, &self.globals, &[]);
+        pass.set_vertex_buffer(0, self.skin_vertices.all());
+        pass.set_index_buffer(self.fans.all(), IndexFormat::Uint32);
+        for body in &self.geometry.bodies {
+            let whole = body.cover.start..body.cover.start + 6;
+            let steps = [
+                (&pipelines.fan, body.fan.clone()),
+                (&pipelines.cover, body.cover.clone()),
+                (&pipelines.wipe, whole),
+            ];
+            for (pipeline, indices) in steps {
+                pass.set_pipeline(pipeline);
+                pass.draw_indexed(indices, 0, 0..1);
+            }
+        }
+        pass.set_pipeline(&pipelines.band);
+        pass.set_index_buffer(self.bands.all(), IndexFormat::Uint32);
+        pass.draw_indexed(0..self.geometry.skin.bands.len() as u32, 0, 0..1);
+        pass.set_pipeline(&pipelines.element);
+        pass.set_vertex_buffer(0, self.element_vertices.all());
+        pass.set_index_buffer(self.element_indices.all(), IndexFormat::Uint32);
+        pass.draw_indexed(0..self.geometry.elements.indices.len() as u32, 0, 0..1);
+    }
+
+    fn blur(&self, encoder: &mut CommandEncoder) {
+        let drawn_into = self.targets.drawn_into();
+        for (k, (step, into)) in self.targets.steps.iter().zip(drawn_into).enumerate() {
+            let attachments = into.each_ref().map(|view| {
+                Some(RenderPassColorAttachment {
+                    view,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: Operations::default(),
+                })
+            });
+            let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+                label: Some("blur"),
+                color_attachments: &attachments,
+                ..RenderPassDescriptor::default()
+            });
+            pass.set_pipeline(if k % 3 == 0 { &self.pipelines.shrink } else { &self.pipelines.soften });
+            pass.set_bind_group(0, &self.globals, &[]);
+            pass.set_bind_group(1, step, &[]);
+            pass.draw(0..3, 0..1);
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! The images that bodies are drawn into, apart from the window.
+
+use super::pipelines::{Pipelines, SAMPLES, SKIN_FORMAT, SOFT_FORMAT, STENCIL_FORMAT};
+use bytemuck::{Pod, Zeroable};
+use wgpu::*;
+
+/// Pixels off the screen at most: on larger targets bodies are drawn smaller and stretched.
+const MOST_PIXELS: f32 = 2.6e6;
+/// By what the images for the narrow and for the wide blur are smaller.
+const NARROW: u32 = 4;
+const WIDE: u32 = 16;
+/// Room between the uniforms of the blurs, as the smallest devices ask for.
+const STRIDE: u64 = 256;
+
+/// An image with its coverage, and an image with the relief.
+type Pair = [TextureView; 2];
+
+/// The images that bodies are drawn into, and what is bound to draw from one into the next.
+pub struct Targets {
+    /// Of the window this is for [px].
+    pub window: [u32; 2],
+    /// Of the skin [px].
+    pub size: [u32; 2],
+    pub rough: Pair,
+    pub stencil: TextureView,
+    pub skin: Pair,
+    pub narrow: [Pair; 2],
+    pub wide: [Pair; 2],
+    /// Skin → narrow, along, across, narrow → wide, along, across.
+    pub steps: [BindGroup; 6],
+    /// All that the window's pass reads.
+    pub body: BindGroup,
+    uniforms: Buffer,
+}
+
+/// What a step of the blur is told.
+#[repr(C)]
+#[derive(Copy, Clone, Debug, Default, Pod, Zeroable)]
+struct Blur {
+    step: [f32; 2],
+    sigma: f32,
+    reach: f32,
+}
+
+impl Targets {
+    pub fn new(device: &Device, pipelines: &Pipelines, window: [u32; 2]) -> Self {
+        let window = window.map(|side| side.max(1));
+        let shrunk = (MOST_PIXELS / (window[0] as f32 * window[1] as f32)).sqrt().min(1.0);
+        let size = window.map(|side| ((side as f32 * shrunk) as u32).max(1));
+        let (inside, readable) = (
+            TextureUsages::RENDER_ATTACHMENT,
+            TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
+        );
+        let image = |label, divisor: u32, samples, format, usage| {
+            let [width, height] = size.map(|side| side.div_ceil(divisor));
+            let texture = device.create_texture(&TextureDescriptor {
+                label: Some(label),
+                size: Extent3d {
+                    width,
+                    height,
+                    depth_or_array_layers: 1,
+                },
+                mip_level_count: 1,
+                sample_count: samples,
+                dimension: TextureDimension::D2,
+                format,
+                usage,
+                view_formats: &[],
+            });
+            texture.create_view(&TextureViewDescriptor::default())
+        };
+        let pair = |label, divisor, samples, format, usage| {
+            [0, 1].map(|_| image(label, divisor, samples, format, usage))
+        };
+        let soft = |label, divisor| [0, 1].map(|_| pair(label, divisor, 1, SOFT_FORMAT, readable));
+        let skin = pair("skin", 1, 1, SKIN_FORMAT, readable);
+        let (narrow, wide) = (soft("narrow", NARROW), soft("wide", WIDE));
+        let uniforms = device.create_buffer(&BufferDescriptor {
+            label: Some("blurs"),
+            size: 6 * STRIDE,
+            usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let smooth = device.create_sampler(&SamplerDescriptor {
+            label: Some("smooth"),
+            mag_filter: FilterMode::Linear,
+            min_filter: FilterMode::Linear,
+            ..SamplerDescriptor::default()
+        });
+        let sources = [&skin, &narrow[0], &narrow[1], &narrow[0], &wide[0], &wide[1]];
+        let steps = std::array::from_fn(|k| {
+            let [colour, relief] = sources[k];
+            let uniform = BufferBinding {
+                buffer: &uniforms,
+                offset: k as u64 * STRIDE,
+                size: BufferSize::new(size_of::<Blur>() as u64),
+            };
+            bind(
+                device,
+                &pipelines.blur_layout,
+                &[
+                    BindingResource::TextureView(colour),
+                    BindingResource::TextureView(relief),
+                    BindingResource::Sampler(&smooth),
+                    BindingResource::Buffer(uniform),
+                ],
+            )
+        });
+        let read = [&skin, &narrow[0], &wide[0]].into_iter().flatten();
+        let resources: Vec<BindingResource<'_>> = read
+            .map(BindingResource::TextureView)
+            .chain([BindingResource::Sampler(&smooth)])
+            .collect();
+        Self {
+            body: bind(device, &pipelines.body_layout, &resources),
+            rough: pair("rough skin", 1, SAMPLES, SKIN_FORMAT, inside),
+            stencil: image("stencil", 1, SAMPLES, STENCIL_FORMAT, inside),
+            window,
+            size,
+            skin,
+            narrow,
+            wide,
+            steps,
+            uniforms,
+        }
+    }
+
+    /// What each step of the blur draws into.
+    pub fn drawn_into(&self) -> [&Pair; 6] {
+        let [narrow, wide] = [&self.narrow, &self.wide];
+        [&narrow[0], &narrow[1], &narrow[0], &wide[0], &wide[1], &wide[0]]
+    }
+
+    /// Tells the blurs how far to reach, in pixels of the skin.
+    pub fn set_blur(&self, queue: &Queue, narrow: f32, wide: f32) {
+        let texel = |divisor: u32| self.size.map(|side| 1.0 / side.div_ceil(divisor) as f32);
+        let shrink = |divisor: u32| Blur {
+            step: texel(divisor).map(|side| 0.5 * side),
+            ..Blur::default()
+        };
+        let soften = |divisor: u32, sigma: f32, axis: usize| {
+            let mut step = [0.0; 2];
+            step[axis] = texel(divisor)[axis];
+            let sigma = (sigma / divisor as f32).clamp(0.5, 16.0);
+            Blur {
+                step,
+                sigma,
+                reach: (2.6 * sigma).ceil(),
+            }
+        };
+        let steps = [
+            shrink(NARROW),
+            soften(NARROW, narrow, 0),
+            soften(NARROW, narrow, 1),
+            shrink(WIDE),
+            soften(WIDE, wide, 0),
+            soften(WIDE, wide, 1),
+        ];
+        for (k, step) in steps.iter().enumerate() {
+            queue.write_buffer(&self.uniforms, k as u64 * STRIDE, bytemuck::bytes_of(step));
+        }
+    }
+}
+
+pub fn bind(device: &Device, layout: &BindGroupLayout, resources: &[BindingResource<'_>]) -> BindGroup {
+    let entries = resources.iter().enumerate().map(|(binding, resource)| BindGroupEntry {
+        binding: binding as u32,
+        resource: resource.clone(),
+    });
+    let entries: Vec<BindGroupEntry<'_>> = entries.collect();
+    device.create_bind_group(&BindGroupDescriptor {
+        label: None,
+        layout,
+        entries: &entries,
+    })
+}

@@ -1,0 +1,34 @@
+//! Draws a world of fuwafuwa with wgpu: the skin of its bodies, or their elements.
+//!
+//! [`Frame`] says as plain data how to look at a world. [`Renderer::prepare`] makes triangles of
+//! it and draws what has to be drawn apart; [`Renderer::paint`] puts the picture into a pass of a
+//! window, and [`Renderer::render_to_image`] into an image, without any window.
+//!
+//! The way through: [`theme`] and [`frame`] are what a caller says → `rest` how a body is smooth
+//! before it moves → `skin`, `elements`, `rigid` turn a world into vertices, without a GPU →
+//! `geometry` all of them → `gpu` draws them. [`anchor`] and [`ages`] answer questions of those
+//! who paint on top.
+//!
+//! It needs no more than WebGL2 has: [`wgpu::Limits::downlevel_webgl2_defaults`].
+#![deny(unsafe_code)]
+#![warn(missing_docs)]
+#![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
+
+pub mod ages;
+pub mod anchor;
+mod elements;
+pub mod frame;
+pub mod geometry;
+mod gpu;
+mod plane;
+mod rest;
+mod rigid;
+mod skin;
+pub mod theme;
+
+pub use ages::Ages;
+pub use anchor::{Anchor, anchor};
+pub use frame::{Basket, Camera, Frame, Look, Particle};
+pub use geometry::Geometry;
+pub use gpu::{ImageError, Renderer};
+pub use theme::{Colour, Theme};

@@ -1,0 +1,197 @@
+//! How the stairs of a voxel shape are smoothed, once, before it moves.
+//!
+//! Every point of the surface gets an offset, in voxels and in the frame of the body at rest. A
+//! deformed body carries the offsets along by the deformation of its voxels: so the skin is as
+//! smooth after any motion as before, and no squash is smoothed away.
+
+use crate::plane::{Flat, dot, minus, mixed, plus, scaled};
+use fuwafuwa::{Dim2, VoxelGrid};
+
+/// Steps to the four sides, anticlockwise from the right.
+const STEPS: [[i32; 2]; 4] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
+/// Rounds of smoothing, each a step inwards and a step outwards [Taubin 1995]. What is longer
+/// than some 25 sides stays as it is; the longest stairs of a disc 64 voxels across have 22.
+const ROUNDS: usize = 80;
+const INWARDS: f32 = 0.6;
+const OUTWARDS: f32 = -0.611;
+/// A point is not moved by more [voxels], so that a nose of a few voxels stays a nose.
+const FARTHEST: f32 = 0.8;
+
+/// The offsets of a voxel shape.
+#[derive(Clone, Debug, Default)]
+pub struct Rest {
+    /// By voxel and direction: the place of a side in `offsets`, or none.
+    sides: Vec<u32>,
+    /// At the start and at the end of a side [voxels].
+    offsets: Vec<[Flat; 2]>,
+    /// Of the grid they belong to.
+    fingerprint: u64,
+}
+
+impl Rest {
+    /// Finds the offsets of a grid.
+    pub fn new(grid: &VoxelGrid<Dim2>) -> Self {
+        let mut sides = vec![u32::MAX; 4 * grid.voxels().count()];
+        let mut offsets = Vec::new();
+        for start in grid.voxels() {
+            for direction in 0..4 {
+                if !is_bare(grid, start, direction)
+                    || sides[4 * grid.index(start) + direction] != u32::MAX
+                {
+                    continue;
+                }
+                let mut ring = Vec::new();
+                let (mut voxel, mut facing) = (start, direction);
+                loop {
+                    let side = &mut sides[4 * grid.index(voxel) + facing];
+                    if *side != u32::MAX {
+                        break;
+                    }
+                    *side = (offsets.len() + ring.len()) as u32;
+                    ring.push(start_of(voxel, facing));
+                    (voxel, facing) = next_side(grid, voxel, facing);
+                }
+                let moved = smoothed(&ring);
+                let moved: Vec<Flat> = moved.iter().zip(&ring).map(|(a, b)| limited(minus(*a, *b))).collect();
+                let next = moved.iter().cycle().skip(1);
+                offsets.extend(moved.iter().zip(next).map(|(a, b)| [*a, *b]));
+            }
+        }
+        Self {
+            sides,
+            offsets,
+            fingerprint: fingerprint(grid),
+        }
+    }
+
+    /// Whether these are the offsets of a grid.
+    pub fn fits(&self, grid: &VoxelGrid<Dim2>) -> bool {
+        self.fingerprint == fingerprint(grid)
+    }
+
+    /// The offsets [voxels] at the start and at the end of a side of the original surface, which
+    /// runs along `step` with the voxel to its left.
+    pub fn offsets(&self, grid: &VoxelGrid<Dim2>, voxel: [i32; 3], step: [i32; 2]) -> [Flat; 2] {
+        let direction = STEPS.iter().position(|&known| known == step);
+        let side = direction.and_then(|direction| self.sides.get(4 * grid.index(voxel) + direction));
+        let found = side.and_then(|&side| self.offsets.get(side as usize));
+        found.copied().unwrap_or_default()
+    }
+}
+
+/// Whether the side of a solid voxel that runs in a direction, the voxel to its left, is bare.
+fn is_bare(grid: &VoxelGrid<Dim2>, voxel: [i32; 3], direction: usize) -> bool {
+    grid.is_solid(voxel) && !grid.is_solid(beside(voxel, (direction + 3) % 4))
+}
+
+fn beside([x, y, z]: [i32; 3], direction: usize) -> [i32; 3] {
+    let [dx, dy] = STEPS[direction];
+    [x + dx, y + dy, z]
+}
+
+/// Where a side of a voxel begins.
+fn start_of([x, y, _]: [i32; 3], direction: usize) -> Flat {
+    let [dx, dy] = [[0, 0], [1, 0], [1, 1], [0, 1]][direction];
+    [(x + dx) as f32, (y + dy) as f32]
+}
+
+/// The side that goes on where one ends. Voxels that only meet in a corner do not hang together.
+fn next_side(grid: &VoxelGrid<Dim2>, voxel: [i32; 3], direction: usize) -> ([i32; 3], usize) {
+    let ahead = beside(voxel, direction);
+    let right = beside(ahead, (direction + 3) % 4);
+    if !grid.is_solid(ahead) {
+        (voxel, (direction + 1) % 4)
+    } else if !grid.is_solid(right) {
+        (ahead, direction)
+    } else {
+        (right, (direction + 3) % 4)
+    }
+}
+
+/// A closed line without its stairs.
+fn smoothed(ring: &[Flat]) -> Vec<Flat> {
+    let mut points = ring.to_vec();
+    let mut before = points.clone();
+    // Middles of sides lie nearer to the shape that was meant than corners do.
+    for share in std::iter::once(0.5).chain([INWARDS, OUTWARDS].repeat(ROUNDS)) {
+        std::mem::swap(&mut points, &mut before);
+        let count = before.len();
+        for k in 0..count {
+            let neighbours = mixed(before[(k + count - 1) % count], before[(k + 1) % count], 0.5);
+            points[k] = mixed(before[k], neighbours, share);
+        }
+    }
+    points
+}
+
+fn limited(offset: Flat) -> Flat {
+    let length = dot(offset, offset).sqrt();
+    match length > FARTHEST {
+        true => scaled(offset, FARTHEST / length),
+        false => plus(offset, [0.0; 2]),
+    }
+}
+
+/// [FNV-1a] over all that the offsets depend on.
+fn fingerprint(grid: &VoxelGrid<Dim2>) -> u64 {
+    let size = grid.size();
+    let mut hash = 0xcbf2_9ce4_8422_2325u64;
+    let mut add = |bits: u64| hash = (hash ^ bits).wrapping_mul(0x0100_0000_01b3);
+    add(size[0] as u64);
+    for y in 0..size[1] {
+        for x in 0..size[0] {
+            add(u64::from(grid.is_solid([x, y, 0])));
+        }
+    }
+    hash
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The smoothed surface of a disc [voxels], as the starts of its sides.
+    fn surface(grid: &VoxelGrid<Dim2>) -> Vec<Flat> {
+        let rest = Rest::new(grid);
+        let mut points = Vec::new();
+        for voxel in grid.voxels() {
+            for direction in (0..4).filter(|&direction| is_bare(grid, voxel, direction)) {
+                let [offset, _] = rest.offsets(grid, voxel, STEPS[direction]);
+                points.push(plus(start_of(voxel, direction), offset));
+            }
+        }
+        points
+    }
+
+    #[test]
+    fn a_disc_is_round_to_a_quarter_of_a_voxel() {
+        for n in [24, 64, 128] {
+            let grid = VoxelGrid::<Dim2>::ball(n, 1.0).unwrap();
+            let half = 0.5 * n as f32;
+            let radii: Vec<f32> = surface(&grid)
+                .iter()
+                .map(|p| dot(minus(*p, [half; 2]), minus(*p, [half; 2])).sqrt())
+                .collect();
+            let mean = radii.iter().sum::<f32>() / radii.len() as f32;
+            assert!((mean - half).abs() < 0.3, "n = {n}: radius {mean}");
+            for radius in radii {
+                assert!((radius - mean).abs() < 0.25, "n = {n}: {radius} from {mean}");
+            }
+        }
+    }
+
+    #[test]
+    fn voxels_that_meet_in_a_corner_stay_apart() {
+        let grid = VoxelGrid::<Dim2>::from_fn([2, 2, 1], 1.0, |[x, y, _]| u8::from(x == y)).unwrap();
+        let (_, facing) = next_side(&grid, [0, 0, 0], 1);
+        assert_eq!(facing, 2, "around its own voxel");
+        assert_eq!(surface(&grid).len(), 8);
+    }
+
+    #[test]
+    fn another_shape_does_not_fit() {
+        let [disc, larger] = [24, 25].map(|n| VoxelGrid::<Dim2>::ball(n, 1.0).unwrap());
+        assert!(Rest::new(&disc).fits(&disc));
+        assert!(!Rest::new(&disc).fits(&larger));
+    }
+}

@@ -1,0 +1,137 @@
+//! Obstacles, hands and the basket as rectangles that a shader draws shapes into.
+
+use crate::frame::{Basket, Particle};
+use crate::plane::{Flat, flat};
+use crate::theme::{Colour, Theme};
+use bytemuck::{Pod, Zeroable};
+use fuwafuwa::{Dim2, Shape, World};
+
+/// Half-spaces that are drawn; more have no place in the uniforms of a small device.
+pub const MOST_WALLS: usize = 16;
+
+/// A shape with a colour.
+#[repr(C)]
+#[derive(Copy, Clone, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct RigidInstance {
+    /// One end, or the middle [m].
+    pub from: Flat,
+    /// The other end, or half of a box [m].
+    pub to: Flat,
+    /// [m]; 0 for a box.
+    pub radius: f32,
+    /// 0 = capsule, 1 = box, 2 = ball.
+    pub form: f32,
+    /// Which player's hand it is, or how far a basket is filled.
+    pub number: f32,
+    /// Red, green, blue.
+    pub colour: Colour,
+}
+
+/// A round dot.
+#[repr(C)]
+#[derive(Copy, Clone, Debug, PartialEq, Pod, Zeroable)]
+pub struct DotInstance {
+    /// Its middle [m].
+    pub at: Flat,
+    /// [m]
+    pub radius: f32,
+    /// Red, green, blue, opacity.
+    pub colour: [f32; 4],
+}
+
+/// Everything rigid.
+#[derive(Clone, Debug, Default)]
+pub struct Rigid {
+    /// Outward normal and offset of each half-space [m].
+    pub walls: Vec<[f32; 4]>,
+    /// First the bars, then the hands, then the basket.
+    pub shapes: Vec<RigidInstance>,
+    /// How many of the shapes are bars.
+    pub bar_count: u32,
+    /// How many are hands.
+    pub hand_count: u32,
+    /// Particles.
+    pub dots: Vec<DotInstance>,
+}
+
+impl Rigid {
+    /// Forgets what was there and gathers what is.
+    pub fn gather(
+        &mut self,
+        world: &World<Dim2>,
+        theme: &Theme,
+        basket: Option<&Basket>,
+        particles: &[Particle],
+    ) {
+        self.walls.clear();
+        self.shapes.clear();
+        self.dots.clear();
+        for obstacle in world.obstacles() {
+            if let Shape::HalfSpace { normal, offset } = obstacle.shape {
+                self.walls.push([normal[0], normal[1], offset, 0.0]);
+            }
+            self.shapes.extend(instance(obstacle.shape, theme.bar, 0.0));
+        }
+        self.walls.truncate(MOST_WALLS);
+        self.bar_count = self.shapes.len() as u32;
+        for (player, hand) in world.manipulators().iter().enumerate() {
+            let (centre, radius) = (hand.position(), hand.radius);
+            let ball = Shape::Ball { centre, radius };
+            self.shapes.extend(instance(ball, theme.hand(player), player as f32));
+        }
+        self.hand_count = self.shapes.len() as u32 - self.bar_count;
+        if let Some(basket) = basket {
+            self.shapes.extend(instance(basket.region, theme.basket, basket.fill));
+        }
+        self.dots.extend(particles.iter().map(|particle| DotInstance {
+            at: flat(particle.at),
+            radius: particle.radius,
+            colour: particle.colour,
+        }));
+    }
+}
+
+/// A shape that ends somewhere as a rectangle to draw it into.
+fn instance(shape: Shape, colour: Colour, number: f32) -> Option<RigidInstance> {
+    let (from, to, radius, form) = match shape {
+        Shape::HalfSpace { .. } => return None,
+        Shape::Capsule { from, to, radius } => (from, to, radius, 0.0),
+        Shape::Box { centre, half } => (centre, half, 0.0, 1.0),
+        Shape::Ball { centre, radius } => (centre, centre, radius, 2.0),
+    };
+    Some(RigidInstance {
+        from: flat(from),
+        to: flat(to),
+        radius,
+        form,
+        number,
+        colour,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fuwafuwa::{Manipulator, Settings};
+
+    #[test]
+    fn walls_bars_hands_and_basket_each_have_their_place() {
+        let mut world = World::<Dim2>::new(Settings::default()).unwrap();
+        let (from, to, radius) = ([0.0; 3], [1.0, 0.0, 0.0], 0.1);
+        world.add_obstacle(Shape::half_space([0.0, 1.0, 0.0], [0.0, -2.0, 0.0]), 0.2).unwrap();
+        world.add_obstacle(Shape::Capsule { from, to, radius }, 0.2).unwrap();
+        world.add_manipulator(Manipulator::new([0.0, 3.0, 0.0], 0.2)).unwrap();
+        world.add_manipulator(Manipulator::new([1.0, 3.0, 0.0], 0.2)).unwrap();
+        let region = Shape::Box { centre: [0.5; 3], half: [0.25; 3] };
+        let basket = Basket { region, fill: 0.5 };
+        let dot = Particle { at: [1.0, 2.0, 0.0], radius: 0.01, colour: [1.0; 4] };
+        let mut rigid = Rigid::default();
+        for _ in 0..2 {
+            rigid.gather(&world, &Theme::candy(), Some(&basket), &[dot]);
+        }
+        assert_eq!(rigid.walls, [[0.0, 1.0, -2.0, 0.0]]);
+        assert_eq!((rigid.bar_count, rigid.hand_count, rigid.shapes.len()), (1, 2, 4));
+        assert_ne!(rigid.shapes[1].colour, rigid.shapes[2].colour);
+        assert_eq!((rigid.shapes[3].number, rigid.dots.len()), (0.5, 1));
+    }
+}

@@ -1,0 +1,58 @@
+// Makes the two images of the bodies smaller and softer.
+struct Blur {
+    // One texel of what is read, along the direction of the blur or across a texel of the target.
+    step: vec2f,
+    // Standard deviation [texels].
+    sigma: f32,
+    // How many texels to each side count.
+    reach: f32,
+}
+@group(1) @binding(0) var colours: texture_2d<f32>;
+@group(1) @binding(1) var reliefs: texture_2d<f32>;
+@group(1) @binding(2) var smooth_sampler: sampler;
+@group(1) @binding(3) var<uniform> blur: Blur;
+
+struct Covering {
+    @builtin(position) clip: vec4f,
+    @location(0) uv: vec2f,
+}
+
+struct Images {
+    @location(0) colour: vec4f,
+    @location(1) relief: vec4f,
+}
+
+@vertex
+fn whole(@builtin(vertex_index) index: u32) -> Covering {
+    let clip = covering(index);
+    return Covering(vec4f(clip, 0.0, 1.0), to_uv(clip));
+}
+
+// The mean of four places inside a texel of the target.
+@fragment
+fn shrink(in: Covering) -> Images {
+    var images = Images(vec4f(0.0), vec4f(0.0));
+    for (var k = 0; k < 4; k++) {
+        let at = in.uv + blur.step * (vec2f(f32(k & 1), f32(k >> 1)) - 0.5);
+        images.colour += 0.25 * textureSampleLevel(colours, smooth_sampler, at, 0.0);
+        images.relief += 0.25 * textureSampleLevel(reliefs, smooth_sampler, at, 0.0);
+    }
+    return images;
+}
+
+@fragment
+fn soften(in: Covering) -> Images {
+    var images = Images(vec4f(0.0), vec4f(0.0));
+    var sum = 0.0;
+    let reach = i32(blur.reach);
+    for (var k = -reach; k <= reach; k++) {
+        let weight = exp(-0.5 * f32(k * k) / (blur.sigma * blur.sigma));
+        let at = in.uv + blur.step * f32(k);
+        images.colour += weight * textureSampleLevel(colours, smooth_sampler, at, 0.0);
+        images.relief += weight * textureSampleLevel(reliefs, smooth_sampler, at, 0.0);
+        sum += weight;
+    }
+    images.colour /= sum;
+    images.relief /= sum;
+    return images;
+}

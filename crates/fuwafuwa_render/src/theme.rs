@@ -1,0 +1,158 @@
+//! Which colour everything has.
+
+/// Red, green and blue as a screen takes them (sRGB), 0 to 1.
+pub type Colour = [f32; 3];
+
+/// The colour of a hexadecimal number, as in `rgb(0xff8a70)`.
+pub const fn rgb(hex: u32) -> Colour {
+    [
+        (hex >> 16 & 255) as f32 / 255.0,
+        (hex >> 8 & 255) as f32 / 255.0,
+        (hex & 255) as f32 / 255.0,
+    ]
+}
+
+/// Which colour everything has.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Theme {
+    /// The floor of the arena, in the middle and at its rim.
+    pub floor: [Colour; 2],
+    /// The frame around the arena: half-spaces.
+    pub frame: Colour,
+    /// Bars, boxes, pegs.
+    pub bar: Colour,
+    /// The glow of the basket.
+    pub basket: Colour,
+    /// Bodies by the number of their material, number 1 first; they start over after the last.
+    pub materials: Vec<Colour>,
+    /// The inside of a body, mixed into its own colour where it is torn.
+    pub fresh: Colour,
+    /// Hands by player; they start over after the last.
+    pub hands: Vec<Colour>,
+    /// Elements by level, 0 first; the last one serves all above.
+    pub levels: Vec<Colour>,
+    /// Elements by strain: none, some, much.
+    pub strains: [Colour; 3],
+    /// Lines between elements.
+    pub ink: Colour,
+}
+
+impl Theme {
+    /// Warm bodies on a cool floor.
+    pub fn candy() -> Self {
+        Self {
+            floor: [rgb(0xf3f6ee), rgb(0xcfe6e4)],
+            frame: rgb(0x7fb7b4),
+            bar: rgb(0xe6b877),
+            basket: rgb(0xffc94d),
+            materials: [
+                0xff8d78, 0xb65c8f, 0xffb84d, 0x8fc46a, 0x6aa9d8, 0xd98fd0, 0xc49a6c, 0xf2e3c9,
+            ]
+            .map(rgb)
+            .to_vec(),
+            fresh: rgb(0xffe1dc),
+            hands: [0x3f7fe0, 0x35a877].map(rgb).to_vec(),
+            levels: [0xf7e7a1, 0x8fd3c1, 0x5a9bd4, 0x5b5aa6, 0x3b2f63]
+                .map(rgb)
+                .to_vec(),
+            strains: [0x2c4875, 0xbc5090, 0xffc857].map(rgb),
+            ink: rgb(0x3a2b3f),
+        }
+    }
+
+    /// Colours that people who see few colours can tell apart, by lightness too [Okabe & Ito 2008].
+    pub fn colour_safe() -> Self {
+        Self {
+            floor: [rgb(0xf7f7f5), rgb(0xdde3e8)],
+            frame: rgb(0x66788a),
+            bar: rgb(0xb9b2a3),
+            basket: rgb(0xf0e442),
+            materials: [
+                0xe69f00, 0x7a3b00, 0xcc79a7, 0x009e73, 0x56b4e9, 0xd55e00, 0x999999, 0xf0e442,
+            ]
+            .map(rgb)
+            .to_vec(),
+            fresh: rgb(0xfff3d6),
+            hands: [0x0072b2, 0x2b2b2b].map(rgb).to_vec(),
+            levels: [0xfde725, 0x6ccd5a, 0x2a9d8f, 0x3b528b, 0x440154]
+                .map(rgb)
+                .to_vec(),
+            strains: [0x00224e, 0x7d7c78, 0xfee838].map(rgb),
+            ink: rgb(0x1b1b1b),
+        }
+    }
+
+    /// The colour of a material, by its number.
+    pub fn material(&self, number: u8) -> Colour {
+        among(&self.materials, usize::from(number.max(1)) - 1)
+    }
+
+    /// The colour of a player's hand.
+    pub fn hand(&self, player: usize) -> Colour {
+        among(&self.hands, player)
+    }
+
+    /// The colour of a level.
+    pub fn level(&self, level: u8) -> Colour {
+        let last = self.levels.len().saturating_sub(1);
+        among(&self.levels, usize::from(level).min(last))
+    }
+
+    /// The colour of a strain ‖F − R‖; 0.5 and above is much.
+    pub fn strain(&self, strain: f32) -> Colour {
+        let [none, some, much] = self.strains;
+        let share = (2.0 * strain).clamp(0.0, 1.0);
+        match share < 0.5 {
+            true => mix(none, some, 2.0 * share),
+            false => mix(some, much, 2.0 * share - 1.0),
+        }
+    }
+}
+
+impl Default for Theme {
+    fn default() -> Self {
+        Self::candy()
+    }
+}
+
+/// A colour between two.
+pub(crate) fn mix(a: Colour, b: Colour, share: f32) -> Colour {
+    [0, 1, 2].map(|k| a[k] + (b[k] - a[k]) * share)
+}
+
+/// As four bytes.
+pub(crate) fn bytes(colour: Colour, alpha: f32) -> [u8; 4] {
+    let byte = |k: f32| (k.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
+    let [red, green, blue] = colour.map(byte);
+    [red, green, blue, byte(alpha)]
+}
+
+fn among(colours: &[Colour], place: usize) -> Colour {
+    let some = colours.get(place % colours.len().max(1));
+    some.copied().unwrap_or([0.5; 3])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_start_over_and_levels_end() {
+        let theme = Theme::candy();
+        assert_eq!(theme.hand(0), theme.hand(2));
+        assert_ne!(theme.hand(0), theme.hand(1));
+        assert_eq!(theme.level(200), theme.levels[4]);
+        assert_eq!(theme.strain(0.0), theme.strains[0]);
+        assert_eq!(theme.strain(9.0), theme.strains[2]);
+        assert_eq!(bytes(rgb(0xff8000), 1.0), [255, 128, 0, 255]);
+    }
+
+    #[test]
+    fn safe_levels_differ_in_lightness() {
+        let theme = Theme::colour_safe();
+        let lightness = |c: Colour| 0.3 * c[0] + 0.59 * c[1] + 0.11 * c[2];
+        for pair in theme.levels.windows(2) {
+            assert!(lightness(pair[0]) > lightness(pair[1]) + 0.08, "{pair:?}");
+        }
+    }
+}
