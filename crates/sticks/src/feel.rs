@@ -1,0 +1,142 @@
+//! What a person means by what a stick says: functions of numbers and of time, without a device.
+
+use crate::{Button, Device, DeviceId};
+
+/// One of the four ways in which a focus moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Direction {
+    Up,
+    Right,
+    Down,
+    Left,
+}
+
+/// When to do something again that is held down, as keyboards do with letters.
+#[derive(Clone, Debug, Default)]
+pub struct Repeat {
+    held: Option<Direction>,
+    /// Until it is next repeated, s.
+    left: f32,
+}
+
+/// Moves a focus through a menu with a device: a step for each press of the d-pad or hat and each push of the stick, and
+/// further ones while it is held.
+#[derive(Clone, Debug, Default)]
+pub struct Navigator {
+    device: Option<DeviceId>,
+    hat: [Button; Direction::ALL.len()],
+    lean: Option<Direction>,
+    repeat: Repeat,
+}
+
+/// Takes away the middle, where a stick trembles or does not come back to 0, and the rim, which few sticks reach. Up to
+/// the length `inner` (usually 0.1 to 0.2) the answer is 0, from `outer` (usually 0.95) on it has length 1, and between
+/// them it grows evenly from 0, with the direction kept: an axis-wise dead zone would catch the stick on the axes.
+/// What is not finite is 0.
+pub fn radial_dead_zone(stick: [f32; 2], inner: f32, outer: f32) -> [f32; 2] {
+    let length = (stick[0] * stick[0] + stick[1] * stick[1]).sqrt();
+    if !length.is_finite() || length <= inner || length == 0.0 {
+        return [0.0; 2];
+    }
+    let wanted = if length < outer {
+        (length - inner) / (outer - inner)
+    } else {
+        1.0
+    };
+    stick.map(|component| component * (wanted / length))
+}
+
+impl Direction {
+    /// Clockwise from the top.
+    pub const ALL: [Direction; 4] = [
+        Direction::Up,
+        Direction::Right,
+        Direction::Down,
+        Direction::Left,
+    ];
+
+    /// x to the right, y up.
+    pub const fn vector(self) -> [f32; 2] {
+        match self {
+            Direction::Up => [0.0, 1.0],
+            Direction::Right => [1.0, 0.0],
+            Direction::Down => [0.0, -1.0],
+            Direction::Left => [-1.0, 0.0],
+        }
+    }
+
+    /// Where a stick leans that leaned `before`. It has to be pushed farther to lean than to go on leaning, so that neither
+    /// a trembling hand nor a diagonal makes it flicker.
+    pub fn of(stick: [f32; 2], before: Option<Direction>) -> Option<Direction> {
+        const BEGINS: f32 = 0.6;
+        const ENDS: f32 = 0.4;
+        let along = |direction: Direction| {
+            let [x, y] = direction.vector();
+            x * stick[0] + y * stick[1]
+        };
+        let strongest = Direction::ALL
+            .into_iter()
+            .max_by(|a, b| along(*a).total_cmp(&along(*b)));
+        before
+            .filter(|before| along(*before) >= ENDS)
+            .or(strongest.filter(|strongest| along(*strongest) >= BEGINS))
+    }
+}
+
+impl Repeat {
+    /// Until the first repetition, s. Shorter, and a slow finger moves two steps; longer, and it feels stuck.
+    pub const DELAY: f32 = 0.4;
+    /// Between repetitions, s.
+    pub const INTERVAL: f32 = 0.12;
+
+    /// Whether what is held has to be done again now, `seconds` after the last call. The first time, when it begins to be
+    /// held, is not a repetition. Once a call at most, so that a frame that took long does not run through a menu.
+    pub fn step(&mut self, held: Option<Direction>, seconds: f32) -> bool {
+        if held.is_none() || held != self.held {
+            self.held = held;
+            self.left = Repeat::DELAY;
+            return false;
+        }
+        self.left -= seconds;
+        let due = self.left <= 0.0;
+        if due {
+            self.left = Repeat::INTERVAL;
+        }
+        due
+    }
+}
+
+impl Navigator {
+    /// The steps to take now, `seconds` after the last call. A device seen for the first time moves nothing: whoever
+    /// joins with a button does not choose with it.
+    pub fn step(&mut self, device: &Device, seconds: f32) -> Vec<Direction> {
+        let hat = Direction::ALL.map(|direction| device.hat(direction));
+        if self.device != Some(device.id) {
+            *self = Navigator {
+                device: Some(device.id),
+                hat,
+                lean: Direction::of(device.aim(), None),
+                repeat: Repeat::default(),
+            };
+            return Vec::new();
+        }
+
+        let mut steps = Vec::new();
+        for direction in Direction::ALL {
+            let presses = hat[direction as usize].presses_since(self.hat[direction as usize]);
+            steps.extend((0..presses).map(|_| direction));
+        }
+        let lean = Direction::of(device.aim(), self.lean);
+        steps.extend(lean.filter(|_| lean != self.lean));
+
+        let down = Direction::ALL
+            .into_iter()
+            .find(|direction| hat[*direction as usize].down);
+        let held = down.or(lean);
+        if self.repeat.step(held, seconds) && steps.is_empty() {
+            steps.extend(held);
+        }
+        (self.hat, self.lean) = (hat, lean);
+        steps
+    }
+}

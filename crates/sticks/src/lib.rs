@@ -1,0 +1,116 @@
+//! Joysticks, flight sticks and pads.
+//!
+//! [`Sticks::open`] starts one thread that owns all of SDL: no other thread calls it, and it touches neither the window's
+//! events nor signals. Whatever happens there ends up in the latest [`Snapshot`], which any thread may take at any time.
+//! Presses are counted, so that whoever compares two snapshots misses none, however far apart they are:
+//!
+//! ```
+//! use sticks::{Change, Snapshot, Sticks};
+//!
+//! let sticks = Sticks::open()?;
+//! let mut before = sticks.snapshot();
+//! for _tick in 0..3 {
+//!     let now = sticks.snapshot();
+//!     for change in now.since(&before) {
+//!         match change {
+//!             Change::Connected(device) => println!("{device:?} is here"),
+//!             Change::Disconnected(device) => println!("{device:?} has gone"),
+//!             Change::Pressed { device, control } => println!("{device:?}: {control:?}"),
+//!         }
+//!     }
+//!     before = now;
+//! }
+//! # Ok::<(), sticks::NoSticks>(())
+//! ```
+//!
+//! What a device says is not tampered with: no dead zone, no calibration. Those are functions of numbers, such as
+//! [`radial_dead_zone`] and [`Navigator`], and the caller's choice.
+
+#![deny(unsafe_code)]
+
+mod device;
+mod feel;
+
+#[cfg(all(feature = "sdl", not(target_family = "wasm")))]
+mod owner;
+#[cfg(not(all(feature = "sdl", not(target_family = "wasm"))))]
+#[path = "nobody.rs"]
+mod owner;
+#[cfg(all(feature = "sdl", not(target_family = "wasm")))]
+mod sdl;
+
+#[cfg(all(
+    any(test, feature = "virtual"),
+    feature = "sdl",
+    not(target_family = "wasm")
+))]
+mod puppet;
+#[cfg(all(test, feature = "sdl"))]
+mod tests;
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+pub use device::{About, Button, Change, Control, Device, DeviceId, Hat, Pad, PadButton, Snapshot};
+pub use feel::{Direction, Navigator, Repeat, radial_dead_zone};
+#[cfg(all(
+    any(test, feature = "virtual"),
+    feature = "sdl",
+    not(target_family = "wasm")
+))]
+pub use puppet::Puppet;
+
+/// All sticks and pads that are plugged in. Dropping it closes them.
+pub struct Sticks {
+    latest: Latest,
+    #[cfg_attr(
+        not(any(test, feature = "virtual")),
+        expect(dead_code, reason = "held for its drop, which ends the thread")
+    )]
+    owner: owner::Owner,
+}
+
+/// Why no device can be read. The game goes on without.
+#[derive(Debug, thiserror::Error)]
+pub enum NoSticks {
+    #[error("sticks and pads are being read already: a process can open them only once at a time")]
+    AlreadyOpen,
+    #[error("SDL cannot read sticks and pads: {0}")]
+    Sdl(String),
+    #[error("no thread could be started to read sticks and pads: {0}")]
+    Thread(#[from] std::io::Error),
+}
+
+impl Sticks {
+    /// Starts to look for devices, which takes some ms; those that are there already appear within the first snapshot.
+    /// No device is no error. Where SDL is left out, as in the browser, none is ever found.
+    pub fn open() -> Result<Sticks, NoSticks> {
+        let latest = Latest::default();
+        Ok(Sticks {
+            owner: owner::Owner::start(latest.clone())?,
+            latest,
+        })
+    }
+
+    /// What all devices say now; at most 2 ms old unless a driver holds SDL up. Costs a lock and a count.
+    pub fn snapshot(&self) -> Arc<Snapshot> {
+        self.latest.get()
+    }
+}
+
+/// Where the owner leaves the latest snapshot. The lock is held only to exchange a pointer.
+#[derive(Clone, Default)]
+struct Latest(Arc<Mutex<Arc<Snapshot>>>);
+
+impl Latest {
+    fn get(&self) -> Arc<Snapshot> {
+        self.0
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clone()
+    }
+
+    #[cfg(all(feature = "sdl", not(target_family = "wasm")))]
+    fn set(&self, snapshot: Snapshot) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Arc::new(snapshot);
+    }
+}

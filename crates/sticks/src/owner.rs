@@ -1,0 +1,249 @@
+//! The one thread that owns SDL: it pumps, keeps what the devices say, and publishes it when that changed.
+
+use std::sync::Arc;
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use sdl3_sys::gamepad::{
+    SDL_GAMEPAD_AXIS_LEFT_TRIGGER, SDL_GAMEPAD_AXIS_LEFTX, SDL_GAMEPAD_AXIS_LEFTY,
+    SDL_GAMEPAD_AXIS_RIGHT_TRIGGER, SDL_GAMEPAD_AXIS_RIGHTX, SDL_GAMEPAD_AXIS_RIGHTY,
+};
+
+use crate::sdl::{Happened, HatBits, Open, Sdl, Turn};
+use crate::{Button, Device, DeviceId, Direction, Hat, Latest, NoSticks, Pad, PadButton, Snapshot};
+
+/// How old a snapshot may get while a device is there. Longer is felt as lag; at 1 ms the thread costs twice as much.
+const PERIOD: Duration = Duration::from_millis(2);
+/// How long it may take to notice the first device. Nobody feels it, and until then the thread costs next to nothing.
+const IDLE_PERIOD: Duration = Duration::from_millis(100);
+
+/// Holds the thread; dropping it ends the thread and waits for that.
+pub struct Owner {
+    /// None only while it is dropped.
+    orders: Option<Arc<Sender<Order>>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// Something to do on the thread that owns SDL.
+pub type Order = Box<dyn FnOnce(&mut Hub<'_>) + Send>;
+
+/// What the thread works on.
+pub struct Hub<'sdl> {
+    pub sdl: &'sdl Sdl,
+    connected: Vec<Connected<'sdl>>,
+    latest: Latest,
+    accepts: fn(&Sdl, DeviceId) -> bool,
+}
+
+struct Connected<'sdl> {
+    open: Open<'sdl>,
+    device: Device,
+}
+
+impl Owner {
+    pub fn start(latest: Latest) -> Result<Owner, NoSticks> {
+        let turn = Turn::take().ok_or(NoSticks::AlreadyOpen)?;
+        Owner::start_with(turn, latest, |_, _| true)
+    }
+
+    /// Starts the thread and waits until it has seen the devices that are there already.
+    pub fn start_with(
+        turn: Turn,
+        latest: Latest,
+        accepts: fn(&Sdl, DeviceId) -> bool,
+    ) -> Result<Owner, NoSticks> {
+        let (orders, inbox) = mpsc::channel();
+        let (ready, started) = mpsc::channel();
+        let thread =
+            thread::Builder::new()
+                .name("sticks".into())
+                .spawn(move || match Sdl::start(turn) {
+                    Ok(sdl) => {
+                        let mut hub = Hub {
+                            sdl: &sdl,
+                            connected: Vec::new(),
+                            latest,
+                            accepts,
+                        };
+                        hub.pump();
+                        // Nobody listens any more only if the caller panicked; the inbox is closed then too.
+                        let _ = ready.send(Ok(()));
+                        hub.run(&inbox);
+                    }
+                    Err(error) => {
+                        let _ = ready.send(Err(error));
+                    }
+                })?;
+        let owner = Owner {
+            orders: Some(Arc::new(orders)),
+            thread: Some(thread),
+        };
+        match started.recv() {
+            Ok(Ok(())) => Ok(owner),
+            Ok(Err(error)) => Err(NoSticks::Sdl(error)),
+            Err(_) => Err(NoSticks::Sdl("its thread panicked".into())),
+        }
+    }
+
+    /// Where to have something done on the thread. Weak, since the thread runs while somebody may still give orders.
+    #[cfg(any(test, feature = "virtual"))]
+    pub fn orders(&self) -> std::sync::Weak<Sender<Order>> {
+        self.orders.as_ref().map(Arc::downgrade).unwrap_or_default()
+    }
+}
+
+impl Drop for Owner {
+    fn drop(&mut self) {
+        self.orders = None;
+        if let Some(thread) = self.thread.take() {
+            // If it panicked, it said so, and the devices are gone.
+            let _ = thread.join();
+        }
+    }
+}
+
+impl<'sdl> Hub<'sdl> {
+    /// Until the owner is dropped. An order interrupts the wait.
+    fn run(&mut self, inbox: &Receiver<Order>) {
+        loop {
+            let period = if self.connected.is_empty() {
+                IDLE_PERIOD
+            } else {
+                PERIOD
+            };
+            match inbox.recv_timeout(period) {
+                Ok(order) => order(self),
+                Err(RecvTimeoutError::Timeout) => self.pump(),
+                Err(RecvTimeoutError::Disconnected) => return,
+            }
+        }
+    }
+
+    /// Takes in all that happened and publishes what changed.
+    pub fn pump(&mut self) {
+        self.sdl.pump(|what| self.take_in(what));
+        self.connected.iter_mut().for_each(Connected::read);
+
+        let before = self.latest.get();
+        if !self
+            .connected
+            .iter()
+            .map(|connected| &connected.device)
+            .eq(&before.devices)
+        {
+            let devices = self
+                .connected
+                .iter()
+                .map(|connected| connected.device.clone())
+                .collect();
+            self.latest.set(Snapshot { devices });
+        }
+    }
+
+    fn take_in(&mut self, what: Happened) {
+        match what {
+            Happened::Added(id) => self.add(id),
+            Happened::Removed(id) => self.connected.retain(|connected| connected.device.id != id),
+            Happened::ButtonDown(id, button) => {
+                if let Some(button) = self
+                    .device(id)
+                    .and_then(|device| device.buttons.get_mut(button))
+                {
+                    button.press();
+                }
+            }
+            Happened::PadButtonDown(id, button) => {
+                let pad = self.device(id).and_then(|device| device.pad.as_mut());
+                if let (Some(pad), Some(button)) = (pad, PadButton::ALL.get(button)) {
+                    pad.button_mut(*button).press();
+                }
+            }
+            Happened::HatMoved(id, hat, bits) => {
+                if let Some(hat) = self.device(id).and_then(|device| device.hats.get_mut(hat)) {
+                    move_hat(hat, bits);
+                }
+            }
+        }
+    }
+
+    /// A device that cannot be opened, most often for want of permission, is as good as absent.
+    fn add(&mut self, id: DeviceId) {
+        if self.device(id).is_some() || !(self.accepts)(self.sdl, id) {
+            return;
+        }
+        if let Some(open) = self.sdl.open(id) {
+            let (axes, buttons, hats) = (open.axis_count(), open.button_count(), open.hat_count());
+            let mut device = Device::at_rest(id, open.about(), axes, buttons, hats);
+            device.pad = open.is_pad().then(Pad::default);
+            self.connected.push(Connected { open, device });
+        }
+    }
+
+    #[cfg(any(test, feature = "virtual"))]
+    pub fn opened(&self, id: DeviceId) -> Option<&Open<'sdl>> {
+        let connected = self
+            .connected
+            .iter()
+            .find(|connected| connected.device.id == id);
+        connected.map(|connected| &connected.open)
+    }
+
+    fn device(&mut self, id: DeviceId) -> Option<&mut Device> {
+        let connected = self
+            .connected
+            .iter_mut()
+            .find(|connected| connected.device.id == id);
+        connected.map(|connected| &mut connected.device)
+    }
+}
+
+/// However the thread ends, nobody is left with a button that is held for ever.
+impl Drop for Hub<'_> {
+    fn drop(&mut self) {
+        self.latest.set(Snapshot::default());
+    }
+}
+
+impl Connected<'_> {
+    /// What is down and where axes are. Presses are counted from events, since one may begin and end between two reads.
+    fn read(&mut self) {
+        let Connected { open, device } = self;
+        for (number, axis) in device.axes.iter_mut().enumerate() {
+            *axis = open.axis(number);
+        }
+        for (number, button) in device.buttons.iter_mut().enumerate() {
+            button.down = open.button(number);
+        }
+        for (number, hat) in device.hats.iter_mut().enumerate() {
+            move_hat(hat, open.hat(number));
+        }
+        if let Some(pad) = &mut device.pad {
+            pad.left = [
+                open.pad_axis(SDL_GAMEPAD_AXIS_LEFTX),
+                -open.pad_axis(SDL_GAMEPAD_AXIS_LEFTY),
+            ];
+            pad.right = [
+                open.pad_axis(SDL_GAMEPAD_AXIS_RIGHTX),
+                -open.pad_axis(SDL_GAMEPAD_AXIS_RIGHTY),
+            ];
+            pad.triggers = [
+                open.pad_axis(SDL_GAMEPAD_AXIS_LEFT_TRIGGER),
+                open.pad_axis(SDL_GAMEPAD_AXIS_RIGHT_TRIGGER),
+            ];
+            for button in PadButton::ALL {
+                pad.button_mut(button).down = open.pad_button(button);
+            }
+        }
+    }
+}
+
+fn move_hat(hat: &mut Hat, bits: HatBits) {
+    for direction in Direction::ALL {
+        let button: &mut Button = hat.button_mut(direction);
+        match (button.down, bits.has(direction)) {
+            (false, true) => button.press(),
+            (_, down) => button.down = down,
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! Devices made of nothing, for tests: they go through all of SDL, and only the driver is not real.
+
+use std::sync::Weak;
+use std::sync::mpsc::{self, Sender};
+
+use crate::owner::{Hub, Order, Owner};
+use crate::sdl::{HatBits, PuppetAct, PuppetForm, Sdl, Turn};
+use crate::{DeviceId, Direction, Latest, NoSticks, PadButton, Sticks};
+
+/// A device made of nothing. Dropping it unplugs it. What is done with it is in the snapshot when the call returns.
+#[must_use = "a puppet is unplugged when it is dropped"]
+pub struct Puppet {
+    id: DeviceId,
+    owner: Weak<Sender<Order>>,
+}
+
+impl Sticks {
+    /// Sees puppets and no real device, so that it is the same wherever a test runs. Waits until no other is open in this
+    /// process: tests that open one run one after the other.
+    pub fn open_for_puppets() -> Result<Sticks, NoSticks> {
+        let latest = Latest::default();
+        Ok(Sticks {
+            owner: Owner::start_with(Turn::wait(), latest.clone(), Sdl::is_puppet)?,
+            latest,
+        })
+    }
+
+    /// Plugs in a pad, with every button that the standard layout has.
+    pub fn plug_in_pad(&self, name: &str) -> Result<Puppet, NoSticks> {
+        self.plug_in(name, PuppetForm::Pad)
+    }
+
+    /// Plugs in a flight stick.
+    pub fn plug_in_stick(
+        &self,
+        name: &str,
+        axes: u16,
+        buttons: u16,
+        hats: u16,
+    ) -> Result<Puppet, NoSticks> {
+        self.plug_in(
+            name,
+            PuppetForm::Stick {
+                axes,
+                buttons,
+                hats,
+            },
+        )
+    }
+
+    fn plug_in(&self, name: &str, form: PuppetForm) -> Result<Puppet, NoSticks> {
+        let owner = self.owner.orders();
+        let name = name.to_owned();
+        let id = done(&owner, move |hub| hub.sdl.plug_in(&name, form))
+            .unwrap_or_else(|| Err("its thread has ended".into()))
+            .map_err(NoSticks::Sdl)?;
+        Ok(Puppet { id, owner })
+    }
+}
+
+impl Puppet {
+    pub fn id(&self) -> DeviceId {
+        self.id
+    }
+
+    /// Moves an axis, -1 to 1, as the device numbers them: on pads 0 and 1 are the left stick, 2 and 3 the right one,
+    /// both growing towards the player, and 4 and 5 the triggers, -1 at rest. Whether there is such an axis.
+    pub fn axis(&self, axis: usize, value: f32) -> bool {
+        self.act(PuppetAct::Axis(axis, (value * 32767.0) as i16))
+    }
+
+    /// Presses a button down or lets it go. Whether there is such a button.
+    pub fn button(&self, button: usize, down: bool) -> bool {
+        self.act(PuppetAct::Button(button, down))
+    }
+
+    /// As `button`, on a pad.
+    pub fn pad_button(&self, button: PadButton, down: bool) -> bool {
+        self.button(button as usize, down)
+    }
+
+    /// Pushes a hat to a direction or, between two, to both; to none lets it go. Whether there is such a hat.
+    pub fn hat(&self, hat: usize, directions: &[Direction]) -> bool {
+        self.act(PuppetAct::Hat(hat, HatBits::of(directions)))
+    }
+
+    fn act(&self, act: PuppetAct) -> bool {
+        let id = self.id;
+        done(&self.owner, move |hub| {
+            hub.opened(id).is_some_and(|open| open.act(act))
+        })
+        .unwrap_or(false)
+    }
+}
+
+impl Drop for Puppet {
+    fn drop(&mut self) {
+        let id = self.id;
+        // If the thread has ended, so has the puppet.
+        let _ = done(&self.owner, move |hub| hub.sdl.unplug(id));
+    }
+}
+
+/// Has something done on the thread and taken in; None if the thread has ended.
+fn done<R: Send + 'static>(
+    owner: &Weak<Sender<Order>>,
+    act: impl FnOnce(&mut Hub<'_>) -> R + Send + 'static,
+) -> Option<R> {
+    let (answer, answered) = mpsc::channel();
+    let order = Box::new(move |hub: &mut Hub<'_>| {
+        let result = act(hub);
+        hub.pump();
+        // Its receiver waits below.
+        let _ = answer.send(result);
+    });
+    owner.upgrade()?.send(order).ok()?;
+    answered.recv().ok()
+}

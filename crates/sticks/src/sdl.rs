@@ -1,0 +1,402 @@
+//! All that is called in SDL, and with it all unsafe code of this crate, behind types that cannot be misused.
+//!
+//! Why it is sound, for every block below:
+//! - **One thread.** SDL is process-wide state, and its event pump belongs to the thread that started it. An [`Sdl`] needs
+//!   the one [`Turn`] there is, so there is one at a time; it is neither `Send` nor `Sync`, and neither are the [`Open`]
+//!   devices that borrow it. So all calls come from the thread that started SDL, between `SDL_Init` and `SDL_Quit`.
+//! - **Pointers.** An `Open` holds pointers that SDL gave it, counted by SDL for each open call, and gives them back once,
+//!   when it is dropped. SDL keeps them valid until then, also when the device is unplugged: reads then give 0 or false.
+//!   Indices out of range do too. They cannot outlive SDL, since `Open` borrows `Sdl`.
+//! - **Strings** from SDL are null or end in a zero, and are copied at once, before the next call that might change them.
+//! - **Events** are plain data without padding that matters, and a union member is read only after the type that stands for
+//!   it was seen.
+
+#![allow(unsafe_code)]
+
+use std::ffi::{CStr, c_char, c_int};
+use std::marker::PhantomData;
+use std::ptr::NonNull;
+use std::sync::{Condvar, Mutex, PoisonError};
+
+use sdl3_sys::error::SDL_GetError;
+use sdl3_sys::events::{
+    SDL_EVENT_FIRST, SDL_EVENT_GAMEPAD_BUTTON_DOWN, SDL_EVENT_JOYSTICK_ADDED,
+    SDL_EVENT_JOYSTICK_BUTTON_DOWN, SDL_EVENT_JOYSTICK_HAT_MOTION, SDL_EVENT_JOYSTICK_REMOVED,
+    SDL_EVENT_LAST, SDL_Event, SDL_GETEVENT, SDL_PeepEvents, SDL_PumpEvents,
+};
+use sdl3_sys::gamepad::{
+    SDL_CloseGamepad, SDL_Gamepad, SDL_GamepadAxis, SDL_GamepadButton, SDL_GetGamepadAxis,
+    SDL_GetGamepadButton, SDL_IsGamepad, SDL_OpenGamepad,
+};
+use sdl3_sys::guid::SDL_GUIDToString;
+use sdl3_sys::hints::{
+    SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, SDL_HINT_NO_SIGNAL_HANDLERS, SDL_HINT_OVERRIDE,
+    SDL_SetHintWithPriority,
+};
+use sdl3_sys::init::{SDL_INIT_GAMEPAD, SDL_Init, SDL_Quit};
+use sdl3_sys::joystick::{
+    SDL_CloseJoystick, SDL_GetJoystickAxis, SDL_GetJoystickButton, SDL_GetJoystickGUID,
+    SDL_GetJoystickHat, SDL_GetJoystickName, SDL_GetNumJoystickAxes, SDL_GetNumJoystickButtons,
+    SDL_GetNumJoystickHats, SDL_HAT_DOWN, SDL_HAT_LEFT, SDL_HAT_RIGHT, SDL_HAT_UP, SDL_Joystick,
+    SDL_JoystickID, SDL_OpenJoystick,
+};
+
+use crate::{About, DeviceId, Direction, PadButton};
+
+/// The right to run SDL, of which a process has one.
+pub struct Turn(());
+
+/// SDL, running on this thread, reading devices and nothing else.
+pub struct Sdl {
+    _turn: Turn,
+    _stays_on_this_thread: PhantomData<*const ()>,
+}
+
+/// A device that is held open.
+pub struct Open<'sdl> {
+    joystick: NonNull<SDL_Joystick>,
+    gamepad: Option<NonNull<SDL_Gamepad>>,
+    _sdl: PhantomData<&'sdl Sdl>,
+}
+
+/// What SDL saw happen, in that order.
+#[derive(Clone, Copy, Debug)]
+pub enum Happened {
+    Added(DeviceId),
+    Removed(DeviceId),
+    ButtonDown(DeviceId, usize),
+    PadButtonDown(DeviceId, usize),
+    HatMoved(DeviceId, usize, HatBits),
+}
+
+/// The directions of a hat that are down.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HatBits(pub u8);
+
+/// What a device made of nothing looks like.
+#[cfg(any(test, feature = "virtual"))]
+#[derive(Clone, Copy, Debug)]
+pub enum PuppetForm {
+    Pad,
+    Stick { axes: u16, buttons: u16, hats: u16 },
+}
+
+/// What is moved on a device made of nothing, and where to.
+#[cfg(any(test, feature = "virtual"))]
+#[derive(Clone, Copy, Debug)]
+pub enum PuppetAct {
+    Axis(usize, i16),
+    Button(usize, bool),
+    Hat(usize, HatBits),
+}
+
+/// Whether it may be taken.
+static TURN: Mutex<bool> = Mutex::new(true);
+static GIVEN_BACK: Condvar = Condvar::new();
+
+impl Turn {
+    /// None while somebody else has it. It is given back by being dropped.
+    pub fn take() -> Option<Turn> {
+        let mut free = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+        std::mem::take(&mut *free).then(|| Turn(()))
+    }
+
+    /// Waits until nobody else has it.
+    #[cfg(any(test, feature = "virtual"))]
+    pub fn wait() -> Turn {
+        let free = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+        let wait = GIVEN_BACK.wait_while(free, |free| !*free);
+        *wait.unwrap_or_else(PoisonError::into_inner) = false;
+        Turn(())
+    }
+}
+
+impl Drop for Turn {
+    fn drop(&mut self) {
+        *TURN.lock().unwrap_or_else(PoisonError::into_inner) = true;
+        GIVEN_BACK.notify_one();
+    }
+}
+
+impl Sdl {
+    pub fn start(turn: Turn) -> Result<Sdl, String> {
+        let sdl = Sdl {
+            _turn: turn,
+            _stays_on_this_thread: PhantomData,
+        };
+        // SAFETY: see the module; the hints are constants that end in a zero. SDL has no window, so it would never think
+        // itself in the background, but drivers ask for it. Signals belong to the program.
+        let started = unsafe {
+            SDL_SetHintWithPriority(
+                SDL_HINT_NO_SIGNAL_HANDLERS,
+                c"1".as_ptr(),
+                SDL_HINT_OVERRIDE,
+            );
+            SDL_SetHintWithPriority(
+                SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS,
+                c"1".as_ptr(),
+                SDL_HINT_OVERRIDE,
+            );
+            SDL_Init(SDL_INIT_GAMEPAD)
+        };
+        if started { Ok(sdl) } else { Err(sdl.error()) }
+    }
+
+    /// Lets SDL look at all devices and tells what happened since the last call.
+    pub fn pump(&self, mut happened: impl FnMut(Happened)) {
+        // SAFETY: see the module.
+        unsafe { SDL_PumpEvents() };
+        let mut event = SDL_Event::default();
+        // SAFETY: there is room for the one event asked for.
+        while unsafe {
+            SDL_PeepEvents(
+                &mut event,
+                1,
+                SDL_GETEVENT,
+                SDL_EVENT_FIRST.0,
+                SDL_EVENT_LAST.0,
+            )
+        } == 1
+        {
+            if let Some(what) = read(&event) {
+                happened(what);
+            }
+        }
+    }
+
+    /// Holds a device open, as a pad if SDL knows its layout. None if it is gone again or may not be read.
+    pub fn open(&self, id: DeviceId) -> Option<Open<'_>> {
+        let id = SDL_JoystickID(id.0);
+        // SAFETY: see the module; an id that SDL does not know gives null.
+        let joystick = NonNull::new(unsafe { SDL_OpenJoystick(id) })?;
+        // SAFETY: as above.
+        let gamepad = if unsafe { SDL_IsGamepad(id) } {
+            NonNull::new(unsafe { SDL_OpenGamepad(id) })
+        } else {
+            None
+        };
+        Some(Open {
+            joystick,
+            gamepad,
+            _sdl: PhantomData,
+        })
+    }
+
+    /// Plugs in a device made of nothing, which lasts until it is unplugged or SDL ends.
+    #[cfg(any(test, feature = "virtual"))]
+    pub fn plug_in(&self, name: &str, form: PuppetForm) -> Result<DeviceId, String> {
+        use sdl3_sys::joystick::{
+            SDL_AttachVirtualJoystick, SDL_JOYSTICK_TYPE_FLIGHT_STICK, SDL_JOYSTICK_TYPE_GAMEPAD,
+            SDL_VirtualJoystickDesc,
+        };
+        let name = std::ffi::CString::new(name).map_err(|error| error.to_string())?;
+        let mut wish = SDL_VirtualJoystickDesc::new();
+        wish.name = name.as_ptr();
+        let kind;
+        (kind, wish.naxes, wish.nbuttons, wish.nhats) = match form {
+            PuppetForm::Pad => (SDL_JOYSTICK_TYPE_GAMEPAD, 6, PadButton::ALL.len() as u16, 0),
+            PuppetForm::Stick {
+                axes,
+                buttons,
+                hats,
+            } => (SDL_JOYSTICK_TYPE_FLIGHT_STICK, axes, buttons, hats),
+        };
+        wish.r#type = kind.0 as u16;
+        // SAFETY: see the module; SDL copies the wish and its name, and there are no callbacks in it.
+        match unsafe { SDL_AttachVirtualJoystick(&wish) } {
+            SDL_JoystickID(0) => Err(self.error()),
+            SDL_JoystickID(id) => Ok(DeviceId(id)),
+        }
+    }
+
+    #[cfg(any(test, feature = "virtual"))]
+    pub fn unplug(&self, id: DeviceId) {
+        // SAFETY: see the module; an id that SDL does not know is refused.
+        unsafe { sdl3_sys::joystick::SDL_DetachVirtualJoystick(SDL_JoystickID(id.0)) };
+    }
+
+    #[cfg(any(test, feature = "virtual"))]
+    pub fn is_puppet(&self, id: DeviceId) -> bool {
+        // SAFETY: as above.
+        unsafe { sdl3_sys::joystick::SDL_IsJoystickVirtual(SDL_JoystickID(id.0)) }
+    }
+
+    fn error(&self) -> String {
+        // SAFETY: see the module.
+        text(SDL_GetError())
+    }
+}
+
+impl Drop for Sdl {
+    fn drop(&mut self) {
+        // SAFETY: no device is open, since each borrows self.
+        unsafe { SDL_Quit() };
+    }
+}
+
+impl Open<'_> {
+    pub fn about(&self) -> About {
+        let mut guid = [0 as c_char; 33];
+        // SAFETY: see the module; 33 is the room that a GUID needs with its zero, and SDL is told of it.
+        let name = unsafe {
+            let guid_of = SDL_GetJoystickGUID(self.joystick.as_ptr());
+            SDL_GUIDToString(guid_of, guid.as_mut_ptr(), guid.len() as c_int);
+            SDL_GetJoystickName(self.joystick.as_ptr())
+        };
+        About {
+            name: text(name),
+            guid: text(guid.as_ptr()),
+        }
+    }
+
+    pub fn axis_count(&self) -> usize {
+        // SAFETY: see the module, as in the next two.
+        count(unsafe { SDL_GetNumJoystickAxes(self.joystick.as_ptr()) })
+    }
+
+    pub fn button_count(&self) -> usize {
+        count(unsafe { SDL_GetNumJoystickButtons(self.joystick.as_ptr()) })
+    }
+
+    pub fn hat_count(&self) -> usize {
+        count(unsafe { SDL_GetNumJoystickHats(self.joystick.as_ptr()) })
+    }
+
+    /// From -1 to 1.
+    pub fn axis(&self, axis: usize) -> f32 {
+        // SAFETY: see the module, as in the next two.
+        unit(unsafe { SDL_GetJoystickAxis(self.joystick.as_ptr(), axis as c_int) })
+    }
+
+    pub fn button(&self, button: usize) -> bool {
+        unsafe { SDL_GetJoystickButton(self.joystick.as_ptr(), button as c_int) }
+    }
+
+    pub fn hat(&self, hat: usize) -> HatBits {
+        HatBits(unsafe { SDL_GetJoystickHat(self.joystick.as_ptr(), hat as c_int) })
+    }
+
+    /// Moves a part of a device made of nothing. Whether it has that part.
+    #[cfg(any(test, feature = "virtual"))]
+    pub fn act(&self, act: PuppetAct) -> bool {
+        use sdl3_sys::joystick::{
+            SDL_SetJoystickVirtualAxis, SDL_SetJoystickVirtualButton, SDL_SetJoystickVirtualHat,
+        };
+        let joystick = self.joystick.as_ptr();
+        // SAFETY: see the module; SDL refuses other devices and indices that they do not have.
+        unsafe {
+            match act {
+                PuppetAct::Axis(axis, value) => {
+                    SDL_SetJoystickVirtualAxis(joystick, axis as c_int, value)
+                }
+                PuppetAct::Button(button, down) => {
+                    SDL_SetJoystickVirtualButton(joystick, button as c_int, down)
+                }
+                PuppetAct::Hat(hat, bits) => {
+                    SDL_SetJoystickVirtualHat(joystick, hat as c_int, bits.0)
+                }
+            }
+        }
+    }
+
+    pub fn is_pad(&self) -> bool {
+        self.gamepad.is_some()
+    }
+
+    /// From -1 to 1, y towards the player; 0 if this is no pad.
+    pub fn pad_axis(&self, axis: SDL_GamepadAxis) -> f32 {
+        // SAFETY: see the module.
+        self.gamepad.map_or(0.0, |pad| {
+            unit(unsafe { SDL_GetGamepadAxis(pad.as_ptr(), axis) })
+        })
+    }
+
+    pub fn pad_button(&self, button: PadButton) -> bool {
+        let number = SDL_GamepadButton(button as c_int);
+        // SAFETY: see the module.
+        self.gamepad
+            .is_some_and(|pad| unsafe { SDL_GetGamepadButton(pad.as_ptr(), number) })
+    }
+}
+
+impl Drop for Open<'_> {
+    fn drop(&mut self) {
+        // SAFETY: see the module; each is closed as often as it was opened.
+        unsafe {
+            if let Some(gamepad) = self.gamepad {
+                SDL_CloseGamepad(gamepad.as_ptr());
+            }
+            SDL_CloseJoystick(self.joystick.as_ptr());
+        }
+    }
+}
+
+impl HatBits {
+    pub fn has(self, direction: Direction) -> bool {
+        self.0 & HatBits::bit(direction) != 0
+    }
+
+    #[cfg(any(test, feature = "virtual"))]
+    pub fn of(directions: &[Direction]) -> HatBits {
+        HatBits(
+            directions
+                .iter()
+                .fold(0, |bits, direction| bits | HatBits::bit(*direction)),
+        )
+    }
+
+    fn bit(direction: Direction) -> u8 {
+        match direction {
+            Direction::Up => SDL_HAT_UP,
+            Direction::Right => SDL_HAT_RIGHT,
+            Direction::Down => SDL_HAT_DOWN,
+            Direction::Left => SDL_HAT_LEFT,
+        }
+    }
+}
+
+/// The event, if it is one that matters here.
+fn read(event: &SDL_Event) -> Option<Happened> {
+    let id = |id: SDL_JoystickID| DeviceId(id.0);
+    // SAFETY: SDL fills in the member that belongs to the type of the event.
+    unsafe {
+        match event.event_type() {
+            SDL_EVENT_JOYSTICK_ADDED => Some(Happened::Added(id(event.jdevice.which))),
+            SDL_EVENT_JOYSTICK_REMOVED => Some(Happened::Removed(id(event.jdevice.which))),
+            SDL_EVENT_JOYSTICK_BUTTON_DOWN => Some(Happened::ButtonDown(
+                id(event.jbutton.which),
+                event.jbutton.button.into(),
+            )),
+            SDL_EVENT_GAMEPAD_BUTTON_DOWN => Some(Happened::PadButtonDown(
+                id(event.gbutton.which),
+                event.gbutton.button.into(),
+            )),
+            SDL_EVENT_JOYSTICK_HAT_MOTION => Some(Happened::HatMoved(
+                id(event.jhat.which),
+                event.jhat.hat.into(),
+                HatBits(event.jhat.value),
+            )),
+            _ => None,
+        }
+    }
+}
+
+/// -32768 to 32767 as -1 to 1, with 0 kept.
+fn unit(value: i16) -> f32 {
+    f32::from(value) / if value < 0 { 32768.0 } else { 32767.0 }
+}
+
+/// SDL's counts are -1 for a device that it does not know.
+fn count(number: c_int) -> usize {
+    usize::try_from(number).unwrap_or(0)
+}
+
+fn text(from: *const c_char) -> String {
+    if from.is_null() {
+        return String::new();
+    }
+    // SAFETY: see the module.
+    unsafe { CStr::from_ptr(from) }
+        .to_string_lossy()
+        .into_owned()
+}
