@@ -243,6 +243,7 @@ fn open_stream(
         .default_output_device()
         .ok_or(NoSound::NoDevice)?;
     let supported = device.default_output_config()?;
+    // With the buffer that the system prefers: ALSA's way to PulseAudio stalls with a size of our choice.
     let config = supported.config();
     let source = Source::new(mailbox.clone(), config.sample_rate);
     let build = match supported.sample_format() {
