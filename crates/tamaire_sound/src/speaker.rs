@@ -239,6 +239,9 @@ fn open_stream(
     mailbox: &Weak<Mutex<Mailbox>>,
     lost: Sender<NoSound>,
 ) -> Result<cpal::Stream, NoSound> {
+    // ALSA would write to the terminal what it tries in vain; what matters comes back as an error.
+    #[cfg(target_os = "linux")]
+    let _ = alsa::Output::local_error_handler();
     let device = cpal::default_host()
         .default_output_device()
         .ok_or(NoSound::NoDevice)?;

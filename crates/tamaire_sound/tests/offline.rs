@@ -200,11 +200,7 @@ fn changes_do_not_click() {
         for to in states {
             // At several moments: a tone that is cut off while it passes zero does not click.
             let change = |time: f32| {
-                if (8.0 * time) as u32 % 2 == 0 {
-                    from
-                } else {
-                    to
-                }
+                if (4.0 * time).fract() < 0.5 { from } else { to }
             };
             let found = roughest(&render(&mut Synth::new(RATE), 2.0, change));
             assert!(
