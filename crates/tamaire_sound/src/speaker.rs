@@ -239,10 +239,14 @@ fn open_stream(
     mailbox: &Weak<Mutex<Mailbox>>,
     lost: Sender<NoSound>,
 ) -> Result<cpal::Stream, NoSound> {
+    // ALSA would write to the terminal what it tries in vain; what matters comes back as an error.
+    #[cfg(target_os = "linux")]
+    let _ = alsa::Output::local_error_handler();
     let device = cpal::default_host()
         .default_output_device()
         .ok_or(NoSound::NoDevice)?;
     let supported = device.default_output_config()?;
+    // With the buffer that the system prefers: ALSA's way to PulseAudio stalls with a size of our choice.
     let config = supported.config();
     let source = Source::new(mailbox.clone(), config.sample_rate);
     let build = match supported.sample_format() {
