@@ -1,0 +1,51 @@
+//! What devices say becomes what players want: places for their hands, and actions.
+
+mod bindings;
+mod players;
+
+pub use bindings::{Bindings, PadKey};
+pub use players::{Devices, Manner, Players, Seat};
+
+use serde::{Deserialize, Serialize};
+
+/// Something that a player can want, beside moving about with a mouse or a stick.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Action {
+    /// The hand upwards.
+    Up,
+    /// The hand downwards.
+    Down,
+    /// The hand to the left.
+    Left,
+    /// The hand to the right.
+    Right,
+    /// The round from its start.
+    Retry,
+    /// A rest.
+    Pause,
+    /// The elements instead of the skin.
+    Elements,
+    /// A fifth of the speed.
+    Slow,
+    /// One tick.
+    Step,
+    /// A second player comes in on this device, or leaves.
+    Join,
+}
+
+impl Action {
+    /// All of them, in the order in which settings list them.
+    pub const ALL: [Self; 10] = [
+        Self::Up,
+        Self::Down,
+        Self::Left,
+        Self::Right,
+        Self::Retry,
+        Self::Pause,
+        Self::Elements,
+        Self::Slow,
+        Self::Step,
+        Self::Join,
+    ];
+}

@@ -1,0 +1,207 @@
+//! Who plays which hand with which device, and where they want it to be.
+
+use super::{Action, Bindings};
+use egui::{Key, Vec2};
+use fuwafuwa::Vector;
+use std::collections::BTreeSet;
+use sticks::{Device, DeviceId, Snapshot};
+use tamaire_play::{InputFrame, PLAYERS};
+
+/// A stick that leans less than this does nothing, and one that leans more than `RIM` leans fully.
+const DEAD: f32 = 0.15;
+const RIM: f32 = 0.95;
+/// How fast a key or a stick that leans fully moves the goal at the usual sensitivity [m/s].
+const PACE: f32 = 2.0;
+
+/// A place at the table: what a player holds.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Seat {
+    /// Mouse or touch.
+    Pointer,
+    /// Keys.
+    Keys,
+    /// A stick or pad.
+    Stick(DeviceId),
+}
+
+/// What the devices say at a moment.
+#[derive(Clone, Debug, Default)]
+pub struct Devices {
+    /// Where the mouse or a finger points in the world [m], when it moved or is down.
+    pub pointer: Option<Vector>,
+    /// Keys that are held.
+    pub keys: BTreeSet<Key>,
+    /// Sticks and pads.
+    pub sticks: Snapshot,
+}
+
+/// Who plays, and where they want their hands to be.
+#[derive(Clone, Debug, Default)]
+pub struct Players {
+    /// What the second player holds, while there is one; the first has all the rest.
+    second: Option<Seat>,
+    /// Where each wants to be [m].
+    goals: [Option<Vector>; PLAYERS],
+}
+
+/// How the devices of a player are taken.
+#[derive(Copy, Clone, Debug)]
+pub struct Manner {
+    /// 1 = usual.
+    pub sensitivity: f32,
+    /// Whether a stick points at a place in the arena, instead of saying how fast to go.
+    pub stick_places: bool,
+    /// Low and high corner of where goals may be [m].
+    pub arena: [Vector; 2],
+}
+
+impl Players {
+    /// What the second player holds.
+    pub fn second(&self) -> Option<Seat> {
+        self.second
+    }
+
+    /// A device asks to join, or to leave again.
+    pub fn join(&mut self, seat: Seat) {
+        self.second = match self.second {
+            Some(taken) if taken == seat => None,
+            // The mouse cannot press a button that the keyboard has: a keyboard that joins twice
+            // leaves, and one that is alone keeps the mouse for the first player.
+            _ => Some(seat),
+        };
+        self.goals[1] = None;
+    }
+
+    /// A new round: everybody wants to be where the hand is.
+    pub fn start(&mut self) {
+        self.goals = [None; PLAYERS];
+    }
+
+    /// What they want in the next tick, `seconds` long; `hands` are where the hands' goals are now [m].
+    pub fn frame(
+        &mut self,
+        devices: &Devices,
+        bindings: &Bindings,
+        manner: &Manner,
+        hands: &[Vector],
+        seconds: f32,
+    ) -> InputFrame {
+        if let Some(Seat::Stick(id)) = self.second
+            && devices.sticks.device(id).is_none()
+        {
+            self.second = None;
+        }
+        let mut frame = InputFrame::default();
+        for player in 0..PLAYERS {
+            if player == 1 && self.second.is_none() {
+                self.goals[1] = None;
+                continue;
+            }
+            let here = hands.get(player).copied();
+            self.move_goal(player, devices, bindings, manner, here, seconds);
+            if let Some(goal) = self.goals[player] {
+                frame = frame.with(player, goal);
+            } else if player == 1 {
+                // A new player comes in where the level says; the round knows where.
+                frame = frame.with(player, here.unwrap_or(manner.arena[0]));
+            }
+        }
+        frame
+    }
+
+    fn move_goal(
+        &mut self,
+        player: usize,
+        devices: &Devices,
+        bindings: &Bindings,
+        manner: &Manner,
+        here: Option<Vector>,
+        seconds: f32,
+    ) {
+        let holds = |seat: Seat| match player {
+            0 => self.second != Some(seat),
+            _ => self.second == Some(seat),
+        };
+        let mut lean = Vec2::ZERO;
+        let mut place = None;
+        if holds(Seat::Keys) {
+            lean += lean_of_keys(&devices.keys, bindings);
+        }
+        for device in devices
+            .sticks
+            .devices
+            .iter()
+            .filter(|device| holds(Seat::Stick(device.id)))
+        {
+            let stick = sticks::radial_dead_zone(device.aim(), DEAD, RIM);
+            if manner.stick_places {
+                let is_used = stick != [0.0; 2] || device.id == last_used(devices, device);
+                place = is_used.then(|| place_of(stick, manner)).or(place);
+            } else {
+                lean += Vec2::from(stick);
+            }
+            lean += lean_of_hat(device);
+        }
+        if holds(Seat::Pointer) {
+            place = devices.pointer.or(place);
+        }
+        if let Some(place) = place {
+            self.goals[player] = Some(place);
+        }
+        if lean != Vec2::ZERO {
+            // From where the goal is now: what pushes in vain winds nothing up.
+            let from = here.or(self.goals[player]).unwrap_or_default();
+            let step = lean * (1.0 / lean.length().max(1.0)) * PACE * manner.sensitivity * seconds;
+            let [low, high] = manner.arena;
+            let mut goal = from;
+            goal[0] = (from[0] + step.x).clamp(low[0], high[0]);
+            goal[1] = (from[1] + step.y).clamp(low[1], high[1]);
+            self.goals[player] = Some(goal);
+        }
+    }
+}
+
+fn lean_of_keys(keys: &BTreeSet<Key>, bindings: &Bindings) -> Vec2 {
+    let held = |action| keys.iter().any(|&key| bindings.of_key(key) == Some(action));
+    direction(held)
+}
+
+fn lean_of_hat(device: &Device) -> Vec2 {
+    use sticks::Direction;
+    direction(|action| {
+        let way = match action {
+            Action::Up => Direction::Up,
+            Action::Down => Direction::Down,
+            Action::Left => Direction::Left,
+            _ => Direction::Right,
+        };
+        device.hat(way).down
+    })
+}
+
+fn direction(held: impl Fn(Action) -> bool) -> Vec2 {
+    let axis = |more, less| f32::from(i8::from(held(more)) - i8::from(held(less)));
+    Vec2::new(
+        axis(Action::Right, Action::Left),
+        axis(Action::Up, Action::Down),
+    )
+}
+
+/// The place in the arena at which a stick points.
+fn place_of(stick: [f32; 2], manner: &Manner) -> Vector {
+    let [low, high] = manner.arena;
+    let mut place = [0.0; 3];
+    for axis in 0..2 {
+        let middle = 0.5 * (low[axis] + high[axis]);
+        place[axis] = middle + 0.5 * stick[axis] * (high[axis] - low[axis]);
+    }
+    place
+}
+
+/// The device itself when it is the only one: a stick let go points at the middle.
+fn last_used(devices: &Devices, device: &Device) -> DeviceId {
+    match devices.sticks.devices.as_slice() {
+        [only] => only.id,
+        _ => DeviceId(device.id.0.wrapping_add(1)),
+    }
+}

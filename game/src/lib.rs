@@ -1,0 +1,23 @@
+//! Tamaire (玉入れ): push a soft body into a basket that is too small for it, whole or in pieces.
+//!
+//! The way through, each module using only those above it:
+//! [`words`] what is said, in each language → [`settings`] what players chose → [`records`] what they reached
+//! → [`platform`] files, sound and sticks → [`input`] devices become wishes for the hands
+//! → [`session`] a round in time: played, watched or tried by a bot → [`look`] how it looks
+//! → [`game`] the state, and what can happen to it → [`screens`] what there is to see and to choose → [`app`] the loop.
+//!
+//! The rules, levels, bots and replays are the crate `tamaire_play`, which knows no window.
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+#![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
+
+pub mod app;
+pub mod game;
+pub mod input;
+pub mod look;
+pub mod platform;
+pub mod records;
+pub mod screens;
+pub mod session;
+pub mod settings;
+pub mod words;

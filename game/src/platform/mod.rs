@@ -1,0 +1,10 @@
+//! What differs between a desktop and a browser: where things are kept, how sound comes out, which
+//! sticks can be read. Nothing else in the game knows on which it runs.
+
+mod files;
+mod sound;
+mod sticks;
+
+pub use files::{Files, SavedReplay};
+pub use sound::Sound;
+pub use sticks::Pads;

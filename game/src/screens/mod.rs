@@ -1,0 +1,68 @@
+//! What there is to see and to choose. Each screen is a function of the game and asks it for what
+//! should happen.
+
+mod kit;
+mod levels;
+mod paused;
+mod play;
+mod replays;
+mod result;
+mod settings;
+mod title;
+
+use crate::game::{Game, Screen};
+use crate::look::Stage;
+use egui::{Align2, Color32, FontId, Rect, Ui, pos2, vec2};
+
+/// Shows the screen that is on.
+pub fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
+    play::world(game, stage, ui);
+    match game.screen.clone() {
+        Screen::Title => title::show(game, ui),
+        Screen::Levels => levels::show(game, ui),
+        Screen::Play => play::show(game, ui),
+        Screen::Paused => paused::show(game, ui),
+        Screen::Result => result::show(game, ui),
+        Screen::Settings(from) => settings::show(game, ui, *from),
+        Screen::Replays => replays::show(game, ui),
+    }
+    notices(game, ui);
+}
+
+fn notices(game: &Game, ui: &Ui) {
+    let screen = ui.max_rect();
+    let mut y = screen.top() + 18.0;
+    let font = FontId::proportional(18.0);
+    for (text, left) in &game.notices {
+        let strength = left.min(1.0);
+        let ink = Color32::WHITE.gamma_multiply(strength);
+        let width = screen.width() - 80.0;
+        let galley = ui.painter().layout(text.clone(), font.clone(), ink, width);
+        let size = galley.size() + vec2(36.0, 18.0);
+        let rect = Rect::from_min_size(pos2(screen.center().x - 0.5 * size.x, y), size);
+        let shade = Color32::from_black_alpha((190.0 * strength) as u8);
+        ui.painter().rect_filled(rect, 16.0, shade);
+        ui.painter().galley(rect.min + vec2(18.0, 9.0), galley, ink);
+        y += size.y + 8.0;
+    }
+}
+
+/// Dims the world behind a menu.
+fn veil(ui: &Ui, strength: u8) {
+    ui.painter().rect_filled(
+        ui.max_rect(),
+        0.0,
+        Color32::from_rgba_unmultiplied(255, 248, 238, strength),
+    );
+}
+
+/// Words in the middle of a place.
+fn words(ui: &Ui, at: egui::Pos2, text: &str, size: f32, colour: Color32) {
+    ui.painter().text(
+        at,
+        Align2::CENTER_CENTER,
+        text,
+        FontId::proportional(size),
+        colour,
+    );
+}

@@ -1,0 +1,49 @@
+//! The round, standing still.
+
+use super::kit::{Weight, button, card, column, title};
+use super::veil;
+use crate::game::{Game, Screen};
+use egui::{Ui, vec2};
+use tamaire_sound::Menu;
+
+pub(super) fn show(game: &mut Game, ui: &mut Ui) {
+    veil(ui, 130);
+    let (theme, said) = (game.theme(), game.words());
+    let mut wanted: Option<fn(&mut Game)> = None;
+    column(ui, 380.0, 440.0, |ui| {
+        card(ui, &theme, |ui| {
+            title(ui, &theme, said.paused);
+            ui.add_space(14.0);
+            let options: [(&str, fn(&mut Game)); 4] = [
+                (said.go_on, |game| game.go(Screen::Play)),
+                (said.again, Game::retry),
+                (said.settings, |game| {
+                    game.go(Screen::Settings(Box::new(Screen::Paused)))
+                }),
+                (said.levels, |game| {
+                    game.go(Screen::Title);
+                    game.go(Screen::Levels);
+                }),
+            ];
+            for (place, (text, act)) in options.into_iter().enumerate() {
+                let weight = if place == 0 {
+                    Weight::Main
+                } else {
+                    Weight::Other
+                };
+                let response = button(ui, &theme, text, vec2(300.0, 58.0), weight);
+                if place == 0 {
+                    super::play::focus_first(ui, &response);
+                }
+                if response.clicked() {
+                    wanted = Some(act);
+                }
+                ui.add_space(10.0);
+            }
+        });
+    });
+    if let Some(act) = wanted {
+        game.blip(Menu::Confirm);
+        act(game);
+    }
+}

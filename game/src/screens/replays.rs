@@ -1,0 +1,84 @@
+//! Rounds that were kept.
+
+use super::kit::{Weight, button, card, title};
+use super::veil;
+use crate::game::{Game, Screen};
+use crate::platform::{Files, SavedReplay};
+use egui::{RichText, Ui, vec2};
+use std::sync::Arc;
+use tamaire_play::{Replay, ReplayError};
+use tamaire_sound::Menu;
+
+/// What to do with a replay.
+#[derive(Copy, Clone)]
+enum Wish {
+    Watch,
+    Race,
+    Delete,
+}
+
+pub(super) fn show(game: &mut Game, ui: &mut Ui) {
+    veil(ui, 235);
+    let (theme, said) = (game.theme(), game.words());
+    let replays = game.files.replays();
+    let mut wanted: Option<(usize, Wish)> = None;
+    let mut back = ui.input(|input| input.key_pressed(egui::Key::Escape));
+    let area = ui.max_rect().shrink2(vec2(32.0, 24.0));
+    ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
+        ui.horizontal(|ui| {
+            let response = button(ui, &theme, said.back, vec2(140.0, 48.0), Weight::Other);
+            super::play::focus_first(ui, &response);
+            back |= response.clicked();
+            ui.add_space(16.0);
+            title(ui, &theme, said.replays);
+        });
+        ui.add_space(12.0);
+        if replays.is_empty() {
+            ui.label(RichText::new(said.no_replays).size(22.0).color(theme.faint));
+        }
+        egui::ScrollArea::vertical().show(ui, |ui| {
+            ui.set_width(ui.available_width());
+            for (place, saved) in replays.iter().enumerate() {
+                card(ui, &theme, |ui| {
+                    ui.horizontal(|ui| {
+                        let name = saved.path.file_stem().unwrap_or_default().to_string_lossy();
+                        ui.label(RichText::new(name).size(22.0).color(theme.ink));
+                        for (text, wish) in [
+                            (said.watch, Wish::Watch),
+                            (said.race, Wish::Race),
+                            (said.delete, Wish::Delete),
+                        ] {
+                            if button(ui, &theme, text, vec2(130.0, 44.0), Weight::Other).clicked()
+                            {
+                                wanted = Some((place, wish));
+                            }
+                        }
+                    });
+                });
+                ui.add_space(8.0);
+            }
+        });
+    });
+    if back {
+        game.blip(Menu::Back);
+        game.go(Screen::Title);
+    } else if let Some((place, wish)) = wanted {
+        game.blip(Menu::Confirm);
+        fulfil(game, &replays[place], wish);
+    }
+}
+
+fn fulfil(game: &mut Game, saved: &SavedReplay, wish: Wish) {
+    let open = |act: fn(&mut Game, Arc<Replay>) -> Result<(), ReplayError>, game: &mut Game| {
+        let played = Files::replay(&saved.path).and_then(|replay| act(game, Arc::new(replay)));
+        played.map_err(|error| format!("{}: {error}", saved.path.display()))
+    };
+    let outcome = match wish {
+        Wish::Watch => open(Game::watch, game),
+        Wish::Race => open(Game::race, game),
+        Wish::Delete => game.files.delete(saved).map_err(|error| error.to_string()),
+    };
+    if let Err(reason) = outcome {
+        game.notify(reason);
+    }
+}

@@ -1,0 +1,187 @@
+//! What players choose.
+
+use super::kit::{Weight, button, card, choice, slider, title};
+use super::veil;
+use crate::game::{Game, Screen};
+use crate::input::Action;
+use crate::settings::Settings;
+use crate::words::Language;
+use egui::{RichText, Ui, vec2};
+use tamaire_sound::Menu;
+
+pub(super) fn show(game: &mut Game, ui: &mut Ui, from: Screen) {
+    veil(ui, 235);
+    let (theme, said) = (game.theme(), game.words());
+    let before = game.settings.clone();
+    let mut chosen = before.clone();
+    let listens = game.rebinding.is_some();
+    let mut back = !listens && ui.input(|input| input.key_pressed(egui::Key::Escape));
+    let area = ui.max_rect().shrink2(vec2(32.0, 24.0));
+    ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
+        ui.horizontal(|ui| {
+            let response = button(ui, &theme, said.back, vec2(140.0, 48.0), Weight::Other);
+            super::play::focus_first(ui, &response);
+            back |= response.clicked();
+            ui.add_space(16.0);
+            title(ui, &theme, said.settings);
+        });
+        ui.add_space(12.0);
+        egui::ScrollArea::vertical().show(ui, |ui| {
+            ui.set_width(ui.available_width());
+            let options = [(false, said.off), (true, said.on)];
+            card(ui, &theme, |ui| {
+                choice(
+                    ui,
+                    &theme,
+                    said.language,
+                    &mut chosen.language,
+                    &Language::ALL,
+                );
+            });
+            section(ui, game, said.sound_section, |ui| {
+                slider(ui, &theme, said.volume, &mut chosen.volume, 0.0, 1.0, 0.05);
+                slider(
+                    ui,
+                    &theme,
+                    said.effects,
+                    &mut chosen.effects,
+                    0.0,
+                    1.0,
+                    0.05,
+                );
+                slider(ui, &theme, said.music, &mut chosen.music, 0.0, 1.0, 0.05);
+                slider(
+                    ui,
+                    &theme,
+                    said.interface,
+                    &mut chosen.interface,
+                    0.0,
+                    1.0,
+                    0.05,
+                );
+            });
+            section(ui, game, said.play_section, |ui| {
+                slider(ui, &theme, said.speed, &mut chosen.speed, 0.5, 1.0, 0.05);
+                slider(
+                    ui,
+                    &theme,
+                    said.sensitivity,
+                    &mut chosen.sensitivity,
+                    0.3,
+                    3.0,
+                    0.1,
+                );
+                choice(
+                    ui,
+                    &theme,
+                    said.stick_places,
+                    &mut chosen.stick_places,
+                    &options,
+                );
+                slider(
+                    ui,
+                    &theme,
+                    said.haptics,
+                    &mut chosen.haptics,
+                    0.0,
+                    1.0,
+                    0.05,
+                );
+            });
+            section(ui, game, said.look_section, |ui| {
+                choice(
+                    ui,
+                    &theme,
+                    said.reduced_motion,
+                    &mut chosen.reduced_motion,
+                    &options,
+                );
+                choice(
+                    ui,
+                    &theme,
+                    said.colour_safe,
+                    &mut chosen.colour_safe,
+                    &options,
+                );
+                slider(
+                    ui,
+                    &theme,
+                    said.text_size,
+                    &mut chosen.text_size,
+                    0.8,
+                    1.6,
+                    0.1,
+                );
+            });
+            controls(ui, game, &mut chosen);
+            ui.add_space(8.0);
+            if button(ui, &theme, said.reset, vec2(240.0, 48.0), Weight::Other).clicked() {
+                let language = chosen.language;
+                chosen = Settings {
+                    language,
+                    ..Settings::default()
+                };
+            }
+        });
+    });
+    if chosen != before {
+        game.settings = chosen.in_range();
+        game.keep_settings();
+    }
+    if back {
+        game.rebinding = None;
+        game.blip(Menu::Back);
+        game.go(from);
+    }
+}
+
+fn section(ui: &mut Ui, game: &Game, name: &str, contents: impl FnOnce(&mut Ui)) {
+    let theme = game.theme();
+    ui.add_space(10.0);
+    card(ui, &theme, |ui| {
+        ui.label(RichText::new(name).size(26.0).color(theme.accent).strong());
+        contents(ui);
+    });
+}
+
+/// Which key and which button does what; a click, then a press, changes it.
+fn controls(ui: &mut Ui, game: &mut Game, chosen: &mut Settings) {
+    let (theme, said) = (game.theme(), game.words());
+    section_of_controls(ui, game, |ui, game| {
+        for action in Action::ALL {
+            let keys = chosen.bindings.keys.get(&action).into_iter().flatten();
+            let keys: Vec<&str> = keys.map(|key| key.symbol_or_name()).collect();
+            let buttons = chosen.bindings.buttons.get(&action).into_iter().flatten();
+            let buttons: Vec<&str> = buttons.map(|button| button.0.as_str()).collect();
+            let listens = game.rebinding == Some(action);
+            let text = match listens {
+                true => said.press_any.to_string(),
+                false => format!(
+                    "{}: {}  ·  {}",
+                    (said.action)(action),
+                    keys.join(" "),
+                    buttons.join(" ")
+                ),
+            };
+            let weight = if listens { Weight::Main } else { Weight::Other };
+            if button(ui, &theme, &text, vec2(560.0, 44.0), weight).clicked() && !listens {
+                game.rebinding = Some(action);
+            }
+            ui.add_space(4.0);
+        }
+    });
+}
+
+fn section_of_controls(ui: &mut Ui, game: &mut Game, contents: impl FnOnce(&mut Ui, &mut Game)) {
+    let (theme, said) = (game.theme(), game.words());
+    ui.add_space(10.0);
+    card(ui, &theme, |ui| {
+        ui.label(
+            RichText::new(said.controls)
+                .size(26.0)
+                .color(theme.accent)
+                .strong(),
+        );
+        contents(ui, game);
+    });
+}

@@ -1,0 +1,140 @@
+//! A round in time: played by people, tried by a bot, or watched again.
+
+use fuwafuwa::Dim2;
+use fuwafuwa::world::TICK;
+use std::sync::Arc;
+use tamaire_play::{Bot, InputFrame, Level, Playback, Replay, ReplayError, Round};
+
+/// After a long frame no more ticks than this are caught up on; the rest of the time is dropped.
+const MOST_TICKS: u32 = 4;
+
+/// A round in time.
+pub struct Session {
+    player: Player,
+    /// The same level as somebody played it before, to race against.
+    ghost: Option<Playback<Dim2>>,
+    /// Time that has passed and was not played yet [s].
+    owed: f32,
+    /// Why a replay was stopped.
+    complaint: Option<ReplayError>,
+}
+
+/// Who plays.
+enum Player {
+    /// Whoever holds the devices.
+    People(Round<Dim2>),
+    Bot(Round<Dim2>, Bot),
+    Replay(Playback<Dim2>),
+}
+
+impl Session {
+    /// A new round for people.
+    pub fn of_people(level: Arc<Level>) -> Self {
+        Self::of(Player::People(Round::new(level)))
+    }
+
+    /// A round that a bot plays.
+    pub fn of_bot(level: Arc<Level>, bot: Bot) -> Self {
+        Self::of(Player::Bot(Round::new(level), bot))
+    }
+
+    /// A round as it was played.
+    ///
+    /// # Errors
+    /// [`ReplayError`] when its level is broken or was changed.
+    pub fn of_replay(replay: Arc<Replay>) -> Result<Self, ReplayError> {
+        Ok(Self::of(Player::Replay(Playback::new(replay)?)))
+    }
+
+    fn of(player: Player) -> Self {
+        let (ghost, owed, complaint) = (None, 0.0, None);
+        Self {
+            player,
+            ghost,
+            owed,
+            complaint,
+        }
+    }
+
+    /// The same against somebody who played the level before.
+    pub fn against(mut self, ghost: Playback<Dim2>) -> Self {
+        self.ghost = Some(ghost);
+        self
+    }
+
+    /// The round as it is now.
+    pub fn round(&self) -> &Round<Dim2> {
+        match &self.player {
+            Player::People(round) | Player::Bot(round, _) => round,
+            Player::Replay(playback) => playback.round(),
+        }
+    }
+
+    /// The round that is raced against.
+    pub fn ghost(&self) -> Option<&Round<Dim2>> {
+        self.ghost.as_ref().map(Playback::round)
+    }
+
+    /// Whether people play.
+    pub fn is_played(&self) -> bool {
+        matches!(self.player, Player::People(_))
+    }
+
+    /// Whether there is nothing more to watch.
+    pub fn is_over(&self) -> bool {
+        match &self.player {
+            Player::Replay(playback) => playback.is_over() || self.complaint.is_some(),
+            _ => self.round().progress().outcome.is_some(),
+        }
+    }
+
+    /// Why a replay was stopped.
+    pub fn complaint(&self) -> Option<&ReplayError> {
+        self.complaint.as_ref()
+    }
+
+    /// Lets `seconds` pass, a whole number of ticks of them. `wish` says what people want, in the
+    /// very tick in which it counts; `seen` looks at the round after each tick.
+    pub fn advance(
+        &mut self,
+        seconds: f32,
+        mut wish: impl FnMut(&Round<Dim2>) -> InputFrame,
+        mut seen: impl FnMut(&Round<Dim2>),
+    ) {
+        self.owed += seconds;
+        let mut ticks = 0;
+        while self.owed >= TICK {
+            self.owed -= TICK;
+            if ticks == MOST_TICKS {
+                self.owed = 0.0;
+                break;
+            }
+            ticks += 1;
+            self.tick(&mut wish);
+            seen(self.round());
+        }
+    }
+
+    fn tick(&mut self, wish: &mut impl FnMut(&Round<Dim2>) -> InputFrame) {
+        match &mut self.player {
+            Player::People(round) => {
+                let frame = wish(round);
+                round.step(frame);
+            }
+            Player::Bot(round, bot) => {
+                let frame = bot.frame(round);
+                round.step(frame);
+            }
+            Player::Replay(playback) if self.complaint.is_none() => {
+                self.complaint = playback.step().err();
+            }
+            Player::Replay(_) => {}
+        }
+        if let Some(ghost) = &mut self.ghost
+            && ghost.step().is_err()
+        {
+            // A ghost that goes astray is no ghost.
+            self.ghost = None;
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! What players chose. It is kept in a file that a person can read.
+
+use crate::input::Bindings;
+use crate::words::Language;
+use serde::{Deserialize, Serialize};
+use tamaire_sound::Volumes;
+
+/// What players chose.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// What the game speaks.
+    pub language: Language,
+    /// All sound, 0 to 1.
+    pub volume: f32,
+    /// What the world does, 0 to 1.
+    pub effects: f32,
+    /// The music, 0 to 1.
+    pub music: f32,
+    /// Menus and jingles, 0 to 1.
+    pub interface: f32,
+    /// How strongly sticks and pads push back, 0 to 1.
+    pub haptics: f32,
+    /// Share of the usual speed, 0.5 to 1.
+    pub speed: f32,
+    /// How far keys and sticks move the hand, 0.3 to 3; 1 = usual.
+    pub sensitivity: f32,
+    /// Whether a stick points at a place in the arena, instead of saying how fast to go.
+    pub stick_places: bool,
+    /// No shaking, no leaning, fewer particles.
+    pub reduced_motion: bool,
+    /// Colours that nobody mixes up.
+    pub colour_safe: bool,
+    /// 0.8 to 1.6; 1 = usual.
+    pub text_size: f32,
+    /// Keys and buttons.
+    pub bindings: Bindings,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        let Volumes {
+            master,
+            effects,
+            music,
+            interface,
+        } = Volumes::default();
+        Self {
+            language: Language::default(),
+            volume: master,
+            effects,
+            music,
+            interface,
+            haptics: 0.7,
+            speed: 1.0,
+            sensitivity: 1.0,
+            stick_places: false,
+            reduced_motion: false,
+            colour_safe: false,
+            text_size: 1.0,
+            bindings: Bindings::default(),
+        }
+    }
+}
+
+impl Settings {
+    /// The same with every number in its range.
+    pub fn in_range(mut self) -> Self {
+        let usual = Self::default();
+        let fit = |value: &mut f32, low: f32, high: f32, usual: f32| {
+            *value = if value.is_finite() {
+                value.clamp(low, high)
+            } else {
+                usual
+            };
+        };
+        fit(&mut self.volume, 0.0, 1.0, usual.volume);
+        fit(&mut self.effects, 0.0, 1.0, usual.effects);
+        fit(&mut self.music, 0.0, 1.0, usual.music);
+        fit(&mut self.interface, 0.0, 1.0, usual.interface);
+        fit(&mut self.haptics, 0.0, 1.0, usual.haptics);
+        fit(&mut self.speed, 0.5, 1.0, usual.speed);
+        fit(&mut self.sensitivity, 0.3, 3.0, usual.sensitivity);
+        fit(&mut self.text_size, 0.8, 1.6, usual.text_size);
+        self
+    }
+
+    /// How loud what is.
+    pub fn volumes(&self) -> Volumes {
+        Volumes {
+            master: self.volume,
+            effects: self.effects,
+            music: self.music,
+            interface: self.interface,
+        }
+    }
+}

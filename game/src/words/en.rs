@@ -1,0 +1,105 @@
+//! English.
+
+use super::Words;
+use crate::input::Action;
+use tamaire_play::Route;
+
+pub(super) const WORDS: Words = Words {
+    play: "Play",
+    replays: "Replays",
+    settings: "Settings",
+    quit: "Quit",
+    back: "Back",
+    paused: "Paused",
+    go_on: "Go on",
+    again: "Again",
+    levels: "Levels",
+    next: "Next",
+    other_way: |route| match route {
+        Route::Squeeze => "Now try tearing bits off!",
+        Route::Shave | Route::Mix => "Now try it whole!",
+    },
+    route: |route| match route {
+        Route::Squeeze => "Squeezed in!",
+        Route::Shave => "Shaved to fit!",
+        Route::Mix => "Shaved and squeezed!",
+    },
+    wish: |wish| {
+        let mut parts = Vec::new();
+        if let Some(route) = wish.route {
+            parts.push(match route {
+                Route::Squeeze => "squeeze it in whole".to_string(),
+                Route::Shave => "shave it to fit".to_string(),
+                Route::Mix => "a bit of both".to_string(),
+            });
+        }
+        parts.extend(wish.seconds.map(|most| format!("within {most} s")));
+        parts.extend(
+            wish.kept
+                .map(|least| format!("keep {:.0} %", 100.0 * least)),
+        );
+        parts.extend(wish.pieces.map(|least| format!("{least} pieces")));
+        parts.join(", ")
+    },
+    summary: |outcome| {
+        [
+            ("Time", format!("{:.1} s", outcome.seconds())),
+            ("In one piece", format!("{:.0} %", 100.0 * outcome.kept)),
+            ("In the basket", format!("{:.0} %", 100.0 * outcome.inside)),
+            ("Pieces", outcome.pieces.to_string()),
+        ]
+    },
+    best: "Best",
+    new_best: "New best!",
+    watch: "Watch",
+    race: "Race it",
+    save: "Save replay",
+    delete: "Delete",
+    saved: "Saved",
+    no_replays: "No replays yet. Save one after a win, or drop a file here.",
+    drop_here: "Drop it!",
+    language: "Language",
+    volume: "Volume",
+    effects: "Effects",
+    music: "Music",
+    interface: "Menus",
+    haptics: "Rumble",
+    speed: "Game speed",
+    sensitivity: "Sensitivity",
+    stick_places: "Stick points at the place",
+    reduced_motion: "Less motion",
+    colour_safe: "Safe colours",
+    text_size: "Text size",
+    controls: "Controls",
+    press_any: "Press a key or button…",
+    reset: "Reset",
+    sound_section: "Sound",
+    play_section: "Play",
+    look_section: "Look",
+    action: |action| match action {
+        Action::Up => "Up",
+        Action::Down => "Down",
+        Action::Left => "Left",
+        Action::Right => "Right",
+        Action::Retry => "Try again",
+        Action::Pause => "Pause",
+        Action::Elements => "Elements",
+        Action::Slow => "Slow motion",
+        Action::Step => "Single step",
+        Action::Join => "Second player",
+    },
+    on: "On",
+    off: "Off",
+    no_sound: "There is no sound device: the game is silent.",
+    no_sticks: "Sticks and pads cannot be read here.",
+    elements_hint: "Elements",
+    join_hint: "2 players",
+    player: |player| match player {
+        0 => "Player 1",
+        _ => "Player 2",
+    },
+    free_play: "Free play",
+    watching: "Replay",
+    settings_kept: "The settings could not be read. They were kept aside as",
+    not_written: "This could not be written:",
+};

@@ -1,0 +1,105 @@
+//! 日本語
+
+use super::Words;
+use crate::input::Action;
+use tamaire_play::Route;
+
+pub(super) const WORDS: Words = Words {
+    play: "あそぶ",
+    replays: "リプレイ",
+    settings: "せってい",
+    quit: "おわる",
+    back: "もどる",
+    paused: "ひとやすみ",
+    go_on: "つづける",
+    again: "もういちど",
+    levels: "ステージ",
+    next: "つぎへ",
+    other_way: |route| match route {
+        Route::Squeeze => "こんどは けずってみよう！",
+        Route::Shave | Route::Mix => "こんどは まるごと おしこもう！",
+    },
+    route: |route| match route {
+        Route::Squeeze => "押し込み！",
+        Route::Shave => "削り！",
+        Route::Mix => "けずって 押し込み！",
+    },
+    wish: |wish| {
+        let mut parts = Vec::new();
+        if let Some(route) = wish.route {
+            parts.push(match route {
+                Route::Squeeze => "まるごと押し込む".to_string(),
+                Route::Shave => "けずって入れる".to_string(),
+                Route::Mix => "りょうほう".to_string(),
+            });
+        }
+        parts.extend(wish.seconds.map(|most| format!("{most}びょういない")));
+        parts.extend(
+            wish.kept
+                .map(|least| format!("{:.0}％のこす", 100.0 * least)),
+        );
+        parts.extend(wish.pieces.map(|least| format!("{least}こにわける")));
+        parts.join("・")
+    },
+    summary: |outcome| {
+        [
+            ("タイム", format!("{:.1}びょう", outcome.seconds())),
+            ("のこった大きさ", format!("{:.0}％", 100.0 * outcome.kept)),
+            ("かごの中", format!("{:.0}％", 100.0 * outcome.inside)),
+            ("かけら", format!("{}こ", outcome.pieces)),
+        ]
+    },
+    best: "ベスト",
+    new_best: "新記録！",
+    watch: "見る",
+    race: "きょうそう",
+    save: "リプレイをのこす",
+    delete: "けす",
+    saved: "のこしました",
+    no_replays: "まだありません。かったあとにのこすか、ファイルをここへ。",
+    drop_here: "ここにおとして！",
+    language: "ことば",
+    volume: "音量",
+    effects: "効果音",
+    music: "音楽",
+    interface: "メニュー音",
+    haptics: "しんどう",
+    speed: "はやさ",
+    sensitivity: "うごきの大きさ",
+    stick_places: "スティックで場所をさす",
+    reduced_motion: "うごきをへらす",
+    colour_safe: "見分けやすい色",
+    text_size: "文字の大きさ",
+    controls: "そうさ",
+    press_any: "キーかボタンをおしてね…",
+    reset: "もとにもどす",
+    sound_section: "おと",
+    play_section: "あそび",
+    look_section: "見た目",
+    action: |action| match action {
+        Action::Up => "上",
+        Action::Down => "下",
+        Action::Left => "左",
+        Action::Right => "右",
+        Action::Retry => "やりなおす",
+        Action::Pause => "ひとやすみ",
+        Action::Elements => "要素を見る",
+        Action::Slow => "スロー",
+        Action::Step => "コマおくり",
+        Action::Join => "ふたりで",
+    },
+    on: "オン",
+    off: "オフ",
+    no_sound: "音の出る機器がありません。",
+    no_sticks: "スティックやパッドは使えません。",
+    elements_hint: "要素",
+    join_hint: "ふたりで",
+    player: |player| match player {
+        0 => "1P",
+        _ => "2P",
+    },
+    free_play: "じゆうにあそぶ",
+    watching: "リプレイ",
+    settings_kept: "設定が読めませんでした。もとのファイル：",
+    not_written: "書きこめませんでした：",
+};

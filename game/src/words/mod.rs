@@ -1,0 +1,99 @@
+//! Everything that the game says. A word that a language lacks is a compile error.
+
+mod en;
+mod ja;
+
+use crate::input::Action;
+use serde::{Deserialize, Serialize};
+use tamaire_play::{Outcome, Route, Wish, Words as Name};
+
+/// A language of the game.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Language {
+    /// English.
+    #[default]
+    English,
+    /// 日本語
+    Japanese,
+}
+
+impl Language {
+    /// All of them, with their own names.
+    pub const ALL: [(Self, &'static str); 2] =
+        [(Self::English, "English"), (Self::Japanese, "日本語")];
+
+    /// What the game says in it.
+    pub fn words(self) -> &'static Words {
+        match self {
+            Self::English => &en::WORDS,
+            Self::Japanese => &ja::WORDS,
+        }
+    }
+
+    /// The name of something in it.
+    pub fn of(self, name: &Name) -> &str {
+        match (self, &name.ja) {
+            (Self::Japanese, Some(ja)) => ja,
+            _ => &name.en,
+        }
+    }
+}
+
+/// What the game says.
+#[allow(missing_docs)] // each field says what it is
+pub struct Words {
+    pub play: &'static str,
+    pub replays: &'static str,
+    pub settings: &'static str,
+    pub quit: &'static str,
+    pub back: &'static str,
+    pub paused: &'static str,
+    pub go_on: &'static str,
+    pub again: &'static str,
+    pub levels: &'static str,
+    pub next: &'static str,
+    pub other_way: fn(Route) -> &'static str,
+    pub route: fn(Route) -> &'static str,
+    pub wish: fn(&Wish) -> String,
+    pub summary: fn(&Outcome) -> [(&'static str, String); 4],
+    pub best: &'static str,
+    pub new_best: &'static str,
+    pub watch: &'static str,
+    pub race: &'static str,
+    pub save: &'static str,
+    pub delete: &'static str,
+    pub saved: &'static str,
+    pub no_replays: &'static str,
+    pub drop_here: &'static str,
+    pub language: &'static str,
+    pub volume: &'static str,
+    pub effects: &'static str,
+    pub music: &'static str,
+    pub interface: &'static str,
+    pub haptics: &'static str,
+    pub speed: &'static str,
+    pub sensitivity: &'static str,
+    pub stick_places: &'static str,
+    pub reduced_motion: &'static str,
+    pub colour_safe: &'static str,
+    pub text_size: &'static str,
+    pub controls: &'static str,
+    pub press_any: &'static str,
+    pub reset: &'static str,
+    pub sound_section: &'static str,
+    pub play_section: &'static str,
+    pub look_section: &'static str,
+    pub action: fn(Action) -> &'static str,
+    pub on: &'static str,
+    pub off: &'static str,
+    pub no_sound: &'static str,
+    pub no_sticks: &'static str,
+    pub elements_hint: &'static str,
+    pub join_hint: &'static str,
+    pub player: fn(usize) -> &'static str,
+    pub free_play: &'static str,
+    pub watching: &'static str,
+    pub settings_kept: &'static str,
+    pub not_written: &'static str,
+}
