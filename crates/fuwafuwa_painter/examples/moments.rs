@@ -48,9 +48,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         last_tear = if is_torn { Some(tick) } else { last_tear };
         if (tick + 1) % (scene.ticks() / MOMENTS) == 0 {
             let mood = match last_tear {
-                _ if tick + 1 == scene.ticks() => Mood::Beam,
+                _ if is_in(&world, &basket) => Mood::Beam,
                 Some(tear) if tick - tear < 20 => Mood::Shock,
-                _ => mood(&world),
+                _ if is_squeezed(&world) => Mood::Wince,
+                _ => Mood::Calm,
             };
             let hand = world.manipulators().first();
             let look_at = hand.map_or([0.0, 2.0, 0.0], |hand| hand.position());
@@ -72,13 +73,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// It winces when some of it is squeezed by a tenth.
-fn mood(world: &World<Dim2>) -> Mood {
+fn is_in(world: &World<Dim2>, basket: &Shape) -> bool {
+    let bodies = || world.bodies().iter();
+    let inside: f32 = bodies().map(|body| body.mass_inside(basket)).sum();
+    let whole: f64 = bodies().map(|body| body.total_mass()).sum();
+    inside > 0.6 * whole as f32
+}
+
+fn is_squeezed(world: &World<Dim2>) -> bool {
     let views = world.bodies().iter().flat_map(|body| body.element_views());
-    let strained = views.filter(|view| view.strain > 0.2).count();
-    if strained > 60 {
-        Mood::Wince
-    } else {
-        Mood::Calm
-    }
+    views.filter(|view| view.strain > 0.2).count() > 60
 }

@@ -162,7 +162,7 @@ fn give_back(points: &mut [Vector], wanted: f32) {
         return;
     }
     let mean = whole / count as f32 * STEPS as f32;
-    let lost = ((wanted - area(points)) / whole).clamp(-0.25 * mean, 0.25 * mean);
+    let lost = ((wanted - area(points)) / whole).clamp(-0.5 * mean, 0.5 * mean);
     let old = points.to_vec();
     for k in 0..count {
         let way = minus(old[after(k, count)], old[before(k, count)]);

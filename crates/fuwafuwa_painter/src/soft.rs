@@ -21,6 +21,8 @@ const BODY_RIM: f32 = 0.045;
 const RIGID_RIM: f32 = 0.02;
 /// How wide the fresh inside shows along a torn rim [voxels].
 const FRESH_BAND: f32 = 1.7;
+/// Its width at most, as a share of the width of a piece.
+const FRESH_SHARE: f32 = 0.2;
 /// Width of outlines [m], and of those around what was inside.
 const LINE: f32 = 0.011;
 const THIN_LINE: f32 = 0.007;
@@ -333,11 +335,13 @@ impl Layer {
         let region = puff.mask.region;
         let fresh = piece.runs(self.frame, true);
         if !is_crumb {
-            let band = region.stroked(&fresh, 2.0 * FRESH_BAND * voxel * unit);
+            // On a small piece a narrower one, so that something of its colour is left.
+            let most = FRESH_SHARE * puff.mask.share.iter().sum::<f32>().sqrt();
+            let band = region.stroked(&fresh, 2.0 * most.min(FRESH_BAND * voxel * unit));
             puff.tint(&band.blurred(0.4 * voxel * unit), Role::Fresh);
         }
         for (&material, outlines) in &piece.inner {
-            let cells = region.filled(outlines).blurred(0.9 * voxel * unit);
+            let cells = region.filled(outlines).blurred(1.2 * voxel * unit);
             puff.tint(&cells.steeper(), Role::Material(material));
         }
         self.add(&puff);
@@ -369,10 +373,9 @@ fn tone(role: Role) -> Tone {
     colour(role).map(f32::from)
 }
 
-/// A colour in the shade: darker, and stronger, as on something that light shines into.
+/// A colour in the shade: darker and stronger, as of something that light shines into.
 fn shaded(tone: Tone) -> Tone {
-    let grey = (tone[0] + tone[1] + tone[2]) / 3.0;
-    tone.map(|k| 0.82 * (grey + 1.3 * (k - grey)).clamp(0.0, 255.0))
+    tone.map(|k| 0.94 * k * (k / 255.0).sqrt())
 }
 
 /// The colour of the line around something.
