@@ -349,4 +349,13 @@ mod tests {
             "an eighth of a voxel away at most"
         );
     }
+
+    #[test]
+    fn what_is_no_outline_stays_what_it_is() {
+        for count in 0..3 {
+            let points = vec![[1.0, 2.0, 0.0]; count];
+            let curve = rounded(&points, &vec![true; count]);
+            assert!(curve.points.iter().all(|&at| at == [1.0, 2.0, 0.0]));
+        }
+    }
 }
