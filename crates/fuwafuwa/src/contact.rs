@@ -24,6 +24,9 @@ const BEHIND: f32 = 0.3;
 /// a heap the forces of a substep alone would give as much to what rests.
 const WAKE_SPEED: f32 = 0.15;
 
+/// The pair of a contact that starts from nothing in every substep.
+const NO_PAIR: u32 = u32::MAX;
+
 /// A node against something rigid.
 #[derive(Copy, Clone, Debug)]
 struct NodeContact {
@@ -85,6 +88,7 @@ impl Contacts {
         }
         self.find_nodes(bodies, colliders, nearby, duration, &mut hits);
         self.find_skins(bodies, &mut nearby.skins, duration, &mut hits);
+        self.find_exits(bodies, &nearby.skins, duration);
         hits.sort_unstable();
         hits.dedup();
         hits
@@ -143,12 +147,19 @@ impl Contacts {
         let furthest = (1.0 + MARGIN) * sizes.fold(0.0, f32::max);
         let waking = WAKE_SPEED * duration;
         let frictions: Vec<f32> = bodies.iter().map(Body::friction).collect();
-        for (place, pair) in skins.pairs.iter_mut().enumerate() {
+        let mut pairs = std::mem::take(&mut skins.pairs);
+        for (place, pair) in pairs.iter_mut().enumerate() {
             let [a, b] = [pair.skins[0] as usize, pair.skins[1] as usize];
             let apart = minus(skins.centres[a], skins.centres[b]);
             let squared = inner::<D>(apart, apart);
             if squared > furthest * furthest {
                 pair.met_in_front = false;
+                pair.impulse.release();
+                continue;
+            }
+            if skins.is_inside(a, b) {
+                // What came out is not to be drawn in again.
+                pair.met_in_front = true;
                 pair.impulse.release();
                 continue;
             }
@@ -184,10 +195,41 @@ impl Contacts {
             let contact = Contact::new(normal, gap, duration, 1.0 / lightness, friction);
             self.skins.push(SkinContact {
                 contact: contact.known_as::<D>(place, &pair.impulse),
-                grips: [a, b]
-                    .map(|skin| skin.nodes.map(|node| node + self.first[skin.body as usize])),
+                grips: self.grips([a, b]),
             });
         }
+        skins.pairs = pairs;
+    }
+
+    /// Lets those who are inside a piece out of it.
+    fn find_exits<D: Dim>(&mut self, bodies: &[Body<D>], skins: &Skins, duration: f32) {
+        for captive in &skins.captives {
+            let [a, b] = [captive.skin, captive.exit].map(|place| place as usize);
+            let both = [&skins.list[a], &skins.list[b]];
+            let out = both[1].outward::<D>(&bodies[both[1].body as usize].position);
+            let normal = scaled(out, 1.0 / inner::<D>(out, out).sqrt().max(1e-9));
+            let apart = minus(skins.centres[a], skins.centres[b]);
+            let gap = inner::<D>(apart, normal) - both[0].radius - both[1].radius;
+            let relative = minus(skins.velocities[a], skins.velocities[b]);
+            let lightness = skins.lightness[a] + skins.lightness[b];
+            let is_close = is_close(gap, inner::<D>(relative, normal), both[0].radius, duration);
+            if !is_close || lightness == 0.0 {
+                continue;
+            }
+            let frictions = both.map(|skin| bodies[skin.body as usize].friction());
+            let friction = 0.5 * (frictions[0] + frictions[1]);
+            let mut contact = Contact::new(normal, gap, duration, 1.0 / lightness, friction);
+            contact.pair = NO_PAIR;
+            self.skins.push(SkinContact {
+                contact,
+                grips: self.grips(both),
+            });
+        }
+    }
+
+    /// The places of the corner nodes of two skins.
+    fn grips(&self, both: [&Skin; 2]) -> [Grip; 2] {
+        both.map(|skin| skin.nodes.map(|node| node + self.first[skin.body as usize]))
     }
 
     /// Finds the contacts of the hands with obstacles, the first `obstacles` of the colliders, and
@@ -271,9 +313,9 @@ impl Contacts {
                 .note(contact);
         }
         for SkinContact { contact, .. } in &self.skins {
-            nearby.skins.pairs[contact.pair as usize]
-                .impulse
-                .note(contact);
+            if let Some(pair) = nearby.skins.pairs.get_mut(contact.pair as usize) {
+                pair.impulse.note(contact);
+            }
         }
     }
 

@@ -6,6 +6,7 @@
 //! and hold until something may have moved by that much [Verlet 1967].
 
 mod bins;
+mod captives;
 mod skins;
 
 use crate::body::Body;
@@ -98,6 +99,7 @@ impl Nearby {
         let nodes = self.node_pairs.iter_mut().map(|pair| &mut pair.impulse);
         let skins = self.skins.pairs.iter_mut().map(|pair| &mut pair.impulse);
         nodes.chain(skins).for_each(|impulse| impulse.total = 0.0);
+        self.skins.start_tick();
     }
 
     /// Follows the bodies, and brings the lists up to date where something may have moved further

@@ -7,6 +7,7 @@
 
 use super::Impulse;
 use super::bins::Bins;
+use super::captives::Captive;
 use crate::body::Body;
 use crate::dim::{Dim, Point};
 use crate::solve::Row;
@@ -70,8 +71,12 @@ pub struct Skins {
     pub velocities: Vec<Row>,
     /// One over the mass that a push on a skin meets [1/kg].
     pub lightness: Vec<f32>,
+    /// Those inside another piece, ascending, and by skin the body and number of that piece.
+    pub captives: Vec<Captive>,
+    pub(super) captors: Vec<Option<(u32, u32)>>,
+    captives_are_good: bool,
     /// Places of those awake, ascending.
-    awake: Vec<u32>,
+    pub(super) awake: Vec<u32>,
     /// Where each was when its pairs were found, as seen from a frame that has come as far as all
     /// skins have on the average, while none sleeps: falling together changes no pair.
     anchors: Vec<Row>,
@@ -89,6 +94,11 @@ impl Skins {
     /// Somebody woke or fell asleep.
     pub fn expire_rest(&mut self) {
         self.rest_is_good = false;
+    }
+
+    /// A new tick: somebody may have been forced into another piece.
+    pub fn start_tick(&mut self) {
+        self.captives_are_good = false;
     }
 
     /// Follows the bodies: where the skins are now, and which pairs are close; `size` [m] is that
@@ -115,6 +125,10 @@ impl Skins {
         if any || !is_same {
             self.find_pairs::<D>(&strayed, size);
         }
+        if !(self.is_good && self.captives_are_good) {
+            self.find_captives(bodies);
+        }
+        self.captives_are_good = true;
         (self.is_good, self.rest_is_good) = (true, true);
         is_same.then_some(furthest)
     }
@@ -288,6 +302,11 @@ impl Skin {
     /// Whether it is a piece of its own.
     pub fn is_crumb<D: Dim>(&self) -> bool {
         self.bare.count_ones() as usize == 2 * D::N
+    }
+
+    /// Whether a bare face of it has none opposite.
+    pub fn leads_out(&self) -> bool {
+        (self.bare ^ self.bare >> 1) & 0b1_0101 != 0
     }
 
     /// From its middle out of the body, through the bare faces; nothing for a crumb or a sheet.
