@@ -59,8 +59,6 @@ pub struct Contacts {
     nodes: Vec<NodeContact>,
     skins: Vec<SkinContact>,
     hands: Vec<HandContact>,
-    /// The place of the first node of each body among all.
-    first: Vec<u32>,
     motion: Motion,
 }
 
@@ -77,12 +75,7 @@ impl Contacts {
         duration: f32,
     ) -> Vec<Hit> {
         let mut hits = Vec::new();
-        self.first.clear();
-        let mut first = 0;
-        for body in bodies {
-            self.first.push(first);
-            first += body.velocity.len() as u32;
-        }
+        self.motion.clear(bodies);
         self.find_nodes(bodies, colliders, nearby, duration, &mut hits);
         self.find_skins(bodies, &mut nearby.skins, duration, &mut hits);
         hits.sort_unstable();
@@ -125,7 +118,7 @@ impl Contacts {
             let contact = Contact::new(normal, gap, duration, 1.0 / lightness, friction);
             self.nodes.push(NodeContact {
                 contact: contact.known_as::<D>(place, &pair.impulse),
-                node: self.first[pair.body as usize] + pair.node,
+                node: self.motion.place(pair.body, pair.node),
                 hand: pair.collider.checked_sub(first_hand),
             });
         }
@@ -184,8 +177,7 @@ impl Contacts {
             let contact = Contact::new(normal, gap, duration, 1.0 / lightness, friction);
             self.skins.push(SkinContact {
                 contact: contact.known_as::<D>(place, &pair.impulse),
-                grips: [a, b]
-                    .map(|skin| skin.nodes.map(|node| node + self.first[skin.body as usize])),
+                grips: [a, b].map(|skin| self.motion.grip::<D>(skin)),
             });
         }
     }
@@ -229,11 +221,7 @@ impl Contacts {
         duration: f32,
     ) {
         let motion = &mut self.motion;
-        if self.nodes.is_empty() && self.skins.is_empty() {
-            motion.rows.clear();
-        } else {
-            motion.load(bodies);
-        }
+        motion.load(bodies);
         for row in &self.nodes {
             motion.push_node(row, hands, row.contact.start(), duration);
         }
@@ -285,9 +273,6 @@ impl Contacts {
         duration: f32,
     ) {
         let motion = &mut self.motion;
-        if self.nodes.is_empty() && self.skins.is_empty() {
-            return;
-        }
         motion.load(bodies);
         for row in &mut self.skins {
             if row.contact.was_pushed_out() {
