@@ -100,6 +100,12 @@ impl Nearby {
         nodes.chain(skins).for_each(|impulse| impulse.total = 0.0);
     }
 
+    /// The bodies have moved, no node of them further than by `distance` [m].
+    pub fn pass(&mut self, distance: f32) {
+        self.travel += distance;
+        self.skins.pass(distance);
+    }
+
     /// Follows the bodies, and brings the lists up to date where something may have moved further
     /// than they bear; a substep takes `duration` [s].
     pub fn refresh<D: Dim>(&mut self, bodies: &[Body<D>], colliders: &[Collider], duration: f32) {
@@ -107,11 +113,9 @@ impl Nearby {
         let size = sizes.fold(0.0, f32::max);
         let hands = colliders.iter().map(|collider| length(collider.velocity));
         let hand_speed = hands.fold(0.0, f32::max);
-        match self.skins.follow(bodies, size) {
-            Some(moved) => self.travel += moved + hand_speed * duration,
-            None => self.nodes_are_good = false,
-        }
-        // Corners move faster than the middle of what turns: half of the slack is theirs.
+        self.nodes_are_good &= self.skins.follow(bodies, size);
+        self.travel += hand_speed * duration;
+        // What gets faster may be looked for further out: half of the slack is kept for it.
         self.nodes_are_good &= self.travel < 0.5 * self.slack;
         if !self.nodes_are_good {
             let speed = fastest(bodies).max(hand_speed);
