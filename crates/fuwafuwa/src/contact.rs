@@ -62,8 +62,6 @@ pub struct Contacts {
     nodes: Vec<NodeContact>,
     skins: Vec<SkinContact>,
     hands: Vec<HandContact>,
-    /// The place of the first node of each body among all.
-    first: Vec<u32>,
     motion: Motion,
 }
 
@@ -80,12 +78,7 @@ impl Contacts {
         duration: f32,
     ) -> Vec<Hit> {
         let mut hits = Vec::new();
-        self.first.clear();
-        let mut first = 0;
-        for body in bodies {
-            self.first.push(first);
-            first += body.velocity.len() as u32;
-        }
+        self.motion.clear(bodies);
         self.find_nodes(bodies, colliders, nearby, duration, &mut hits);
         self.find_skins(bodies, &mut nearby.skins, duration, &mut hits);
         self.find_exits(bodies, &nearby.skins, duration);
@@ -129,7 +122,7 @@ impl Contacts {
             let contact = Contact::new(normal, gap, duration, 1.0 / lightness, friction);
             self.nodes.push(NodeContact {
                 contact: contact.known_as::<D>(place, &pair.impulse),
-                node: self.first[pair.body as usize] + pair.node,
+                node: self.motion.place(pair.body, pair.node),
                 hand: pair.collider.checked_sub(first_hand),
             });
         }
@@ -195,7 +188,7 @@ impl Contacts {
             let contact = Contact::new(normal, gap, duration, 1.0 / lightness, friction);
             self.skins.push(SkinContact {
                 contact: contact.known_as::<D>(place, &pair.impulse),
-                grips: self.grips([a, b]),
+                grips: [a, b].map(|skin| self.motion.grip::<D>(skin)),
             });
         }
         skins.pairs = pairs;
@@ -222,14 +215,9 @@ impl Contacts {
             contact.pair = NO_PAIR;
             self.skins.push(SkinContact {
                 contact,
-                grips: self.grips(both),
+                grips: both.map(|skin| self.motion.grip::<D>(skin)),
             });
         }
-    }
-
-    /// The places of the corner nodes of two skins.
-    fn grips(&self, both: [&Skin; 2]) -> [Grip; 2] {
-        both.map(|skin| skin.nodes.map(|node| node + self.first[skin.body as usize]))
     }
 
     /// Finds the contacts of the hands with obstacles, the first `obstacles` of the colliders, and
@@ -271,11 +259,7 @@ impl Contacts {
         duration: f32,
     ) {
         let motion = &mut self.motion;
-        if self.nodes.is_empty() && self.skins.is_empty() {
-            motion.rows.clear();
-        } else {
-            motion.load(bodies);
-        }
+        motion.load(bodies);
         for row in &self.nodes {
             motion.push_node(row, hands, row.contact.start(), duration);
         }
@@ -327,9 +311,6 @@ impl Contacts {
         duration: f32,
     ) {
         let motion = &mut self.motion;
-        if self.nodes.is_empty() && self.skins.is_empty() {
-            return;
-        }
         motion.load(bodies);
         for row in &mut self.skins {
             if row.contact.was_pushed_out() {

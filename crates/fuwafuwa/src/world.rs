@@ -286,10 +286,12 @@ impl<D: Dim> World<D> {
 
     /// Moves everything by its velocity, and takes back what only pushed overlaps out.
     fn drift(&mut self, duration: f32) {
+        let mut furthest = 0.0f32;
         for body in &mut self.bodies {
             let (lead, _) = body.damping(duration);
-            body.drift(duration, lead);
+            furthest = furthest.max(body.drift(duration, lead));
         }
+        self.nearby.pass(furthest);
         for hand in &mut self.manipulators {
             hand.drift(duration);
         }
