@@ -8,8 +8,8 @@
 //!   when it is dropped. SDL keeps them valid until then, also when the device is unplugged: reads then give 0 or false.
 //!   Indices out of range do too. They cannot outlive SDL, since `Open` borrows `Sdl`.
 //! - **Strings** from SDL are null or end in a zero, and are copied at once, before the next call that might change them.
-//! - **Events** are plain data without padding that matters, and a union member is read only after the type that stands for
-//!   it was seen.
+//! - **Events** are a union of plain data, zeroed here before SDL writes to it; a member is read only after the type that
+//!   stands for it was seen.
 
 #![allow(unsafe_code)]
 
@@ -179,7 +179,7 @@ impl Sdl {
 
     fn error(&self) -> String {
         // SAFETY: see the module.
-        text(SDL_GetError())
+        unsafe { text(SDL_GetError()) }
     }
 }
 
@@ -194,14 +194,13 @@ impl Open<'_> {
     pub fn about(&self) -> About {
         let mut guid = [0 as c_char; 33];
         // SAFETY: see the module; 33 is the room that a GUID needs with its zero, and SDL is told of it.
-        let name = unsafe {
+        unsafe {
             let guid_of = SDL_GetJoystickGUID(self.joystick.as_ptr());
             SDL_GUIDToString(guid_of, guid.as_mut_ptr(), guid.len() as c_int);
-            SDL_GetJoystickName(self.joystick.as_ptr())
-        };
-        About {
-            name: text(name),
-            guid: text(guid.as_ptr()),
+            About {
+                name: text(SDL_GetJoystickName(self.joystick.as_ptr())),
+                guid: text(guid.as_ptr()),
+            }
         }
     }
 
@@ -315,11 +314,13 @@ fn count(number: c_int) -> usize {
     usize::try_from(number).unwrap_or(0)
 }
 
-fn text(from: *const c_char) -> String {
+/// # Safety
+/// It is null, or a string that ends in a zero and stays as it is during the call.
+unsafe fn text(from: *const c_char) -> String {
     if from.is_null() {
         return String::new();
     }
-    // SAFETY: see the module.
+    // SAFETY: the caller's, and it is not null.
     unsafe { CStr::from_ptr(from) }
         .to_string_lossy()
         .into_owned()
