@@ -29,19 +29,20 @@ pub struct Extras {
     pub faces: Vec<Face>,
 }
 
-/// Paints a moment: basket, obstacles, bodies, faces, and hands, the first hand being player 1's.
+/// Paints a moment: basket, bodies, faces, obstacles, hands, the first hand being player 1's.
 pub fn world(painter: &mut Painter, frame: Frame, world: &World<Dim2>, extras: &Extras) {
     if let Some(region) = extras.basket {
         basket(painter, frame, region);
-    }
-    for obstacle in world.obstacles() {
-        bar(painter, frame, obstacle.shape);
     }
     for each in world.bodies() {
         body(painter, frame, each);
     }
     for face in &extras.faces {
         face.paint(painter, frame);
+    }
+    // A smooth outline may reach a little into what the body touches: on top, that stays whole.
+    for obstacle in world.obstacles() {
+        bar(painter, frame, obstacle.shape);
     }
     for (number, each) in world.manipulators().iter().enumerate() {
         hand(painter, frame, each.position(), each.radius, number);
