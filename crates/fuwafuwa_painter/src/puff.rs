@@ -140,11 +140,12 @@ impl Layer {
         self.strokes(&closed, width, tone);
     }
 
-    /// Adds open lines of a width [m].
+    /// Adds open lines of a width [m]; what is thinner than a pixel is pale instead.
     pub fn strokes(&mut self, lines: &[Vec<Spot>], width: f32, tone: Tone) {
-        let width = (width * self.frame.unit).max(1.0);
+        let thin = width * self.frame.unit;
+        let width = thin.max(1.0);
         if let Some(region) = Region::around(lines, width, self.paper) {
-            self.cover(&region.stroked(lines, width), 1.0, |_, _| tone);
+            self.cover(&region.stroked(lines, width), thin.min(1.0), |_, _| tone);
         }
     }
 

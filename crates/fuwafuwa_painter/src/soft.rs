@@ -20,6 +20,9 @@ const RIGID_RIM: f32 = 0.02;
 const FRESH_BAND: f32 = 1.7;
 /// Its width at most, as a share of the width of a piece.
 const FRESH_SHARE: f32 = 0.2;
+/// Width of the line around a crumb at most [voxels], so that a heap is not all lines.
+const CRUMB_LINE: f32 = 0.2;
+
 /// What a game adds to a world.
 #[derive(Clone, Debug, Default)]
 pub struct Extras {
@@ -191,7 +194,8 @@ fn paint_piece(layer: &mut Layer, piece: &Piece, voxel: f32) {
     }
     layer.add(&puff);
     if is_crumb {
-        layer.lines(&rings, THIN_LINE, line_tone(Role::Crumb));
+        let width = THIN_LINE.min(CRUMB_LINE * voxel);
+        layer.lines(&rings, width, line_tone(Role::Crumb));
     } else {
         layer.strokes(&fresh, THIN_LINE, line_tone(Role::Crumb));
         layer.strokes(&piece.runs(layer.frame, false), LINE, line_tone(Role::Skin));
