@@ -11,7 +11,7 @@ impl Pads {
     /// Starts to listen to them.
     pub fn open() -> Self {
         Self {
-            sticks: Sticks::open(),
+            sticks: Some(Sticks::open()),
         }
     }
 
