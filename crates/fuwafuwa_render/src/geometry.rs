@@ -39,13 +39,18 @@ impl Geometry {
         self.bodies.clear();
         self.elements.clear();
         let basket = frame.basket.as_ref();
-        self.rigid.gather(world, frame.theme, basket, frame.particles);
+        self.rigid
+            .gather(world, frame.theme, basket, frame.particles);
         self.radius = world.bodies().iter().map(radius).fold(0.0, f32::max);
         self.rests.resize_with(world.bodies().len(), Rest::default);
         for (place, body) in world.bodies().iter().enumerate() {
             match frame.look {
                 Look::Skin => self.add_skin(place, body, frame),
-                Look::Elements { colour, ages, nodes } => {
+                Look::Elements {
+                    colour,
+                    ages,
+                    nodes,
+                } => {
                     let ages = ages.get(place).map_or(&[][..], Vec::as_slice);
                     self.elements.add(body, frame.theme, colour, ages, nodes);
                 }
@@ -68,7 +73,10 @@ impl Geometry {
         self.skin.add(&self.rings, body.grid().voxel_size());
         let middle = self.skin.fans.len() as u32;
         let (low, high) = bounds(self.rings.points.iter().map(|point| point.at));
-        let first = body.grid().voxels().map(|voxel| body.grid().material(voxel));
+        let first = body
+            .grid()
+            .voxels()
+            .map(|voxel| body.grid().material(voxel));
         let first = first.filter(|&number| number > 0).min().unwrap_or(1);
         let colour = |number| bytes(frame.theme.material(number), 1.0);
         self.skin.add_rectangle(low, high, colour(first));
@@ -78,6 +86,7 @@ impl Geometry {
                 self.skin.add_element(&view, colour);
             }
         }
+        self.skin.add_strains(body);
         self.bodies.push(BodyParts {
             fan: start..middle,
             cover: middle..self.skin.fans.len() as u32,

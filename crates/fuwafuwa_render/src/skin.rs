@@ -2,15 +2,17 @@
 //!
 //! A ring of bare voxel sides becomes a smooth curve in three steps. Its points move by the
 //! offsets of the shape at rest, carried along by the deformation of their voxels; torn sides have
-//! none. Torn corners are then planed off a little. The result is the control polygon of a
+//! none. Corners are then planed off, torn ones a little. The result is the control polygon of a
 //! quadratic B-spline, of which the corners get more points than the rest. What is smoothed on
 //! one lip of a crack is smoothed in the same way on the other, so that a closed crack stays closed.
 
 use crate::elements::fills;
 use crate::plane::{Flat, cross, dot, flat, minus, mixed, plus, scaled, unit};
-use crate::rest::Rest;
+use crate::rest::{Rest, SMALL};
 use bytemuck::{Pod, Zeroable};
-use fuwafuwa::{Body, Dim2, ElementView};
+use fuwafuwa::dim::{corner, scale};
+use fuwafuwa::stencil::slot_index;
+use fuwafuwa::{Body, Dim, Dim2, ElementView};
 
 /// A corner of a triangle of the skin.
 #[repr(C)]
@@ -89,6 +91,9 @@ struct Control {
 }
 
 const NONE: u32 = u32::MAX;
+/// How often the points of the original surface and those of torn ones are drawn together.
+const SURFACE_ROUNDS: usize = 4;
+const TORN_ROUNDS: usize = 1;
 
 impl Rings {
     /// Finds the curves of a body.
@@ -99,7 +104,7 @@ impl Rings {
         for first in 0..self.sides.len() {
             self.gather_ring(first);
             if !self.ring.is_empty() {
-                self.plane_torn_corners();
+                self.plane_corners();
                 self.draw_curve();
             }
         }
@@ -115,9 +120,7 @@ impl Rings {
                 continue;
             };
             let corner = |index: usize| flat(body.node_state(element.nodes[index]).0);
-            let [a, b, c, d] = [0, 1, 2, 3].map(corner);
-            let right = scaled(plus(minus(b, a), minus(d, c)), 0.5);
-            let up = scaled(plus(minus(c, a), minus(d, b)), 0.5);
+            let (right, up) = sides([0, 1, 2, 3].map(corner));
             let [from, to] = [0, 1].map(|end| mesh.node(facet.nodes[end]).at);
             let offsets = match facet.is_fresh {
                 true => Default::default(),
@@ -155,18 +158,30 @@ impl Rings {
         }
     }
 
-    /// Draws torn corners half-way to the middle of their neighbours.
-    fn plane_torn_corners(&mut self) {
-        let ring = &mut self.ring;
-        let count = ring.len();
-        self.planed.clear();
-        self.planed.extend((0..count).map(|k| {
-            let torn = 0.5 * (ring[k].fresh[0] + ring[k].fresh[1]);
-            let [before, after] = [(k + count - 1) % count, (k + 1) % count].map(|k| ring[k].at);
-            mixed(ring[k].at, mixed(before, after, 0.5), 0.5 * torn)
-        }));
-        for (control, &at) in ring.iter_mut().zip(&self.planed) {
-            control.at = at;
+    /// Draws points half-way to the middle of their neighbours: torn ones once, for they are to
+    /// look rough; others more often, for what presses on a surface presses on its stairs.
+    fn plane_corners(&mut self) {
+        let count = self.ring.len();
+        if count < SMALL {
+            return;
+        }
+        for round in 0..SURFACE_ROUNDS {
+            self.planed.clear();
+            let ring = &self.ring;
+            self.planed.extend((0..count).map(|k| {
+                let is_torn = ring[k].fresh != [0.0; 2];
+                let [before, after] =
+                    [(k + count - 1) % count, (k + 1) % count].map(|k| ring[k].at);
+                let share = if is_torn && round >= TORN_ROUNDS {
+                    0.0
+                } else {
+                    0.5
+                };
+                mixed(ring[k].at, mixed(before, after, 0.5), share)
+            }));
+            for (control, &at) in self.ring.iter_mut().zip(&self.planed) {
+                control.at = at;
+            }
         }
     }
 
@@ -185,7 +200,11 @@ impl Rings {
                 _ => &[0.2, 0.5, 0.8],
             };
             for &share in places {
-                let at = mixed(mixed(from, control.at, share), mixed(control.at, to, share), share);
+                let at = mixed(
+                    mixed(from, control.at, share),
+                    mixed(control.at, to, share),
+                    share,
+                );
                 let along = unit(mixed(into, out, share));
                 self.points.push(RingPoint {
                     at,
@@ -200,7 +219,10 @@ impl Rings {
         let next = curve.iter().cycle().skip(1);
         let pivot = curve[0].at;
         let doubled = |a: &RingPoint, b: &RingPoint| cross(minus(a.at, pivot), minus(b.at, pivot));
-        let area = curve.iter().zip(next).fold(0.0, |sum, (a, b)| sum + 0.5 * doubled(a, b));
+        let area = curve
+            .iter()
+            .zip(next)
+            .fold(0.0, |sum, (a, b)| sum + 0.5 * doubled(a, b));
         let end = self.points.len();
         self.spans.push(Span { start, end, area });
     }
@@ -222,7 +244,18 @@ impl Control {
     }
 }
 
-/// ‖F − R‖ of a voxel with the given sides [m].
+fn byte(share: f32) -> u8 {
+    (share.clamp(0.0, 1.0) * 255.0) as u8
+}
+
+/// The mean sides to the right and upwards [m] of a cell with corners in the order of
+/// [`fuwafuwa::dim::corner`].
+fn sides([a, b, c, d]: [Flat; 4]) -> (Flat, Flat) {
+    let right = scaled(plus(minus(b, a), minus(d, c)), 0.5);
+    (right, scaled(plus(minus(c, a), minus(d, b)), 0.5))
+}
+
+/// ‖F − R‖ of a cell with the given sides and the given size at rest [m].
 fn strain(right: Flat, up: Flat, size: f32) -> f32 {
     let (cos, sin) = (right[0] + up[1], right[1] - up[0]);
     let squared = dot(right, right) + dot(up, up);
@@ -262,21 +295,22 @@ impl SkinMesh {
         for span in &rings.spans {
             let points = &rings.points[span.start..span.end];
             let pivot = self.vertices.len() as u32;
-            let sum = points.iter().fold([0.0; 2], |sum, point| plus(sum, point.at));
+            let sum = points
+                .iter()
+                .fold([0.0; 2], |sum, point| plus(sum, point.at));
             self.vertices.push(SkinVertex {
                 at: scaled(sum, 1.0 / points.len() as f32),
                 ..SkinVertex::default()
             });
-            // A band wider than a crumb would show on its far side.
+            // In a crumb the bands meet; wider ones would show on the far side.
             let most = match span.area > 0.0 {
-                true => 0.4 * span.area.sqrt(),
+                true => 0.55 * span.area.sqrt(),
                 false => f32::MAX,
             };
             let count = points.len() as u32;
             for (k, point) in points.iter().enumerate() {
                 let torn = voxel * (0.9 + 0.9 * point.grain);
                 let depth = (0.8 * voxel + (torn - 0.8 * voxel) * point.fresh).min(most);
-                let byte = |k: f32| (k.clamp(0.0, 1.0) * 255.0) as u8;
                 let relief = [0, byte(point.fresh), byte(2.0 * point.strain), 255];
                 self.vertices.push(SkinVertex {
                     at: point.at,
@@ -291,7 +325,8 @@ impl SkinMesh {
                 let outer = |k: u32| pivot + 1 + 2 * (k % count);
                 let (here, next) = (outer(k as u32), outer(k as u32 + 1));
                 self.fans.extend([pivot, here, next]);
-                self.bands.extend([here, here + 1, next, next, here + 1, next + 1]);
+                self.bands
+                    .extend([here, here + 1, next, next, here + 1, next + 1]);
             }
         }
     }
@@ -299,23 +334,43 @@ impl SkinMesh {
     /// Adds a rectangle of one colour.
     pub fn add_rectangle(&mut self, low: Flat, high: Flat, colour: [u8; 4]) {
         let round = [low, [high[0], low[1]], high, [low[0], high[1]]];
-        self.add_quad(round, colour);
+        self.add_quad(round, colour, 0.0);
     }
 
     /// Adds what an element fills.
     pub fn add_element(&mut self, view: &ElementView, colour: [u8; 4]) {
         for round in fills(view) {
-            self.add_quad(round, colour);
+            self.add_quad(round, colour, 0.0);
         }
     }
 
-    fn add_quad(&mut self, round: [Flat; 4], colour: [u8; 4]) {
+    /// Adds how far the large elements of a body are strained, whatever their colour.
+    pub fn add_strains(&mut self, body: &Body<Dim2>) {
+        let (mesh, voxel) = (body.mesh(), body.grid().voxel_size());
+        for (_, element) in mesh.elements() {
+            if element.cell.level == 0 || element.children != Dim2::ALL_CORNERS {
+                continue;
+            }
+            let slots = &mesh.stencil(element).slots;
+            let corners = [0, 1, 2, 3].map(|index| {
+                let slot = slot_index(scale(corner(index), 2)) as u8;
+                let place = slots.iter().position(|&known| known == slot)?;
+                Some(flat(body.node_state(element.nodes[place]).0))
+            });
+            let [Some(a), Some(b), Some(c), Some(d)] = corners else {
+                continue;
+            };
+            let (right, up) = sides([a, b, c, d]);
+            let strain = strain(right, up, voxel * element.cell.width() as f32);
+            self.add_quad([a, b, d, c], [0; 4], strain);
+        }
+    }
+
+    fn add_quad(&mut self, round: [Flat; 4], colour: [u8; 4], strain: f32) {
         let first = self.vertices.len() as u32;
-        self.vertices.extend(round.map(|at| SkinVertex {
-            at,
-            colour,
-            relief: [255, 0, 0, 255],
-        }));
+        let relief = [255, 0, byte(2.0 * strain), 255];
+        self.vertices
+            .extend(round.map(|at| SkinVertex { at, colour, relief }));
         self.fans.extend([0, 1, 2, 0, 2, 3].map(|k| first + k));
     }
 }
@@ -339,19 +394,26 @@ mod tests {
         world
     }
 
+    /// The radius of a disc of as many voxels [m].
+    fn round(world: &World<Dim2>) -> f32 {
+        let grid = world.bodies()[0].grid();
+        grid.voxel_size() * (grid.solid_count() as f32 / std::f32::consts::PI).sqrt()
+    }
+
     fn total_area(rings: &Rings) -> f32 {
         rings.spans.iter().fold(0.0, |sum, span| sum + span.area)
     }
 
     #[test]
     fn the_skin_of_a_disc_is_a_circle() {
-        let rings = rings(&disc(64));
+        let world = disc(64);
+        let (rings, round) = (rings(&world), round(&world));
         assert_eq!(rings.spans.len(), 1);
         let voxel = 1.0 / 64.0;
         for point in &rings.points {
             let away = minus(point.at, [0.5, 0.5]);
             let radius = dot(away, away).sqrt();
-            assert!((radius - 0.5).abs() < 0.3 * voxel, "{radius}");
+            assert!((radius - round).abs() < 0.25 * voxel, "{radius}");
             assert!(dot(point.normal, unit(away)) > 0.995);
             assert_eq!((point.fresh, point.strain < 1e-3), (0.0, true));
         }
@@ -360,6 +422,7 @@ mod tests {
     #[test]
     fn a_stretched_disc_is_an_ellipse() {
         let mut world = disc(64);
+        let round = round(&world);
         let body = world.body_mut(0);
         let ids: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in ids {
@@ -368,8 +431,8 @@ mod tests {
         }
         for point in rings(&world).points {
             let [x, y] = minus(point.at, [1.0, 0.25]);
-            let round = ((x / 2.0).powi(2) + (y * 2.0).powi(2)).sqrt();
-            assert!((round - 0.5).abs() < 0.3 / 64.0, "{round}");
+            let radius = ((x / 2.0).powi(2) + (y * 2.0).powi(2)).sqrt();
+            assert!((radius - round).abs() < 0.25 / 64.0, "{radius}");
             assert!(point.strain > 0.5);
         }
     }
@@ -382,7 +445,7 @@ mod tests {
         let halves = rings(&world);
         assert_eq!(halves.spans.len(), 2);
         let gap = (total_area(&halves) - whole).abs() / whole;
-        assert!(gap < 2e-3, "{gap}");
+        assert!(gap < 5e-3, "{gap}");
         let torn: Vec<&RingPoint> = halves.points.iter().filter(|p| p.fresh == 1.0).collect();
         assert!(torn.len() > 40);
         for point in torn {
@@ -408,7 +471,8 @@ mod tests {
         assert!(crumb.points.len() >= 12);
         for point in &crumb.points {
             let away = minus(point.at, [0.5, 0.5]);
-            assert!((0.2..0.5).contains(&dot(away, away).sqrt()));
+            let radius = dot(away, away).sqrt();
+            assert!((0.35..0.55).contains(&radius), "{radius}");
         }
     }
 

@@ -103,9 +103,7 @@ impl Renderer {
         self.geometry.gather(world, frame);
         self.upload(device, queue, frame);
         self.draw_bodies(encoder);
-        if frame.look == Look::Skin || !self.geometry.elements.indices.is_empty() {
-            self.blur(encoder);
-        }
+        self.blur(encoder);
     }
 
     /// Puts the picture that was made ready into a pass, filling its viewport.
@@ -124,7 +122,6 @@ impl Renderer {
             pass.draw(0..4, shapes);
         };
         draw(&pipelines.glow, basket.clone());
-        draw(&pipelines.shadow, 0..hands.end);
         pass.set_pipeline(&pipelines.body);
         pass.draw(0..3, 0..1);
         let mut draw = |pipeline, shapes| {
@@ -132,6 +129,7 @@ impl Renderer {
             pass.draw(0..4, shapes);
         };
         draw(&pipelines.border, basket);
+        draw(&pipelines.shadow, 0..hands.end);
         draw(&pipelines.bar, bars);
         draw(&pipelines.hand, hands);
         pass.set_vertex_buffer(0, self.dots.all());
@@ -150,7 +148,8 @@ impl Renderer {
         self.skin_vertices.write(device, queue, &skin.vertices);
         self.fans.write(device, queue, &skin.fans);
         self.bands.write(device, queue, &skin.bands);
-        self.element_vertices.write(device, queue, &elements.vertices);
+        self.element_vertices
+            .write(device, queue, &elements.vertices);
         self.element_indices.write(device, queue, &elements.indices);
         self.shapes.write(device, queue, &rigid.shapes);
         self.dots.write(device, queue, &rigid.dots);
@@ -158,10 +157,12 @@ impl Renderer {
         let camera = &frame.camera;
         let [right, up] = camera.axes();
         let middle = camera.middle();
-        let [window, size] = [self.targets.window, self.targets.size].map(|size| size.map(|side| side as f32));
+        let [window, size] =
+            [self.targets.window, self.targets.size].map(|size| size.map(|side| side as f32));
         let (edge, thickness) = (EDGE * radius, THICKNESS * radius);
         let pixels = size[1] / camera.height;
-        self.targets.set_blur(queue, edge * pixels, thickness * pixels);
+        self.targets
+            .set_blur(queue, edge * pixels, thickness * pixels);
         let mut walls = [[0.0; 4]; crate::rigid::MOST_WALLS];
         walls[..rigid.walls.len()].copy_from_slice(&rigid.walls);
         let flag = |is: bool| f32::from(u8::from(is));
@@ -241,8 +242,8 @@ impl Renderer {
     }
 
     fn blur(&self, encoder: &mut CommandEncoder) {
-        let drawn_into = self.targets.drawn_into();
-        for (k, (step, into)) in self.targets.steps.iter().zip(drawn_into).enumerate() {
+        let (pipelines, targets) = (&self.pipelines, &self.targets);
+        let mut step = |pipeline, from, into: &[TextureView; 2]| {
             let attachments = into.each_ref().map(|view| {
                 Some(RenderPassColorAttachment {
                     view,
@@ -256,10 +257,16 @@ impl Renderer {
                 color_attachments: &attachments,
                 ..RenderPassDescriptor::default()
             });
-            pass.set_pipeline(if k % 3 == 0 { &self.pipelines.shrink } else { &self.pipelines.soften });
+            pass.set_pipeline(pipeline);
             pass.set_bind_group(0, &self.globals, &[]);
-            pass.set_bind_group(1, step, &[]);
+            pass.set_bind_group(1, from, &[]);
             pass.draw(0..3, 0..1);
+        };
+        let (shrink, soften) = (&pipelines.shrink, &pipelines.soften);
+        let doing = [shrink, soften, soften, shrink, soften, soften];
+        for (k, into) in targets.drawn_into().into_iter().enumerate() {
+            step(doing[k], &targets.steps[k], into);
         }
+        step(&pipelines.shape, &targets.shape, &targets.narrow[1]);
     }
 }
