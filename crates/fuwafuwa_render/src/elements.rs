@@ -10,7 +10,7 @@ use fuwafuwa::{Body, Dim2, ElementView};
 use std::collections::BTreeSet;
 
 /// For how long an element flashes after it was remodelled [s].
-const FLASH: f32 = 0.5;
+const FLASH: f32 = 0.4;
 
 /// A corner of a triangle of the element view.
 #[repr(C)]
@@ -76,7 +76,7 @@ impl ElementMesh {
                 ElementColour::Strain => theme.strain(view.strain),
             };
             let age = ages.get(view.id as usize).copied().unwrap_or(FLASH);
-            let flash = 0.9 * (1.0 - age / FLASH).clamp(0.0, 1.0);
+            let flash = 0.65 * (1.0 - age / FLASH).clamp(0.0, 1.0);
             self.add_fill(view, bytes(mix(plain, [1.0; 3], flash), 1.0));
         }
         for view in &views {

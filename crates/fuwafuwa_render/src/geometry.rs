@@ -19,6 +19,8 @@ pub struct Geometry {
     pub(crate) rigid: Rigid,
     /// Radius of a disc with the area of the largest body at rest [m].
     pub(crate) radius: f32,
+    /// All bodies lie between these corners [m], the low one above the high one if there are none.
+    pub(crate) bounds: [Flat; 2],
     rings: Rings,
     rests: Vec<Rest>,
 }
@@ -42,6 +44,7 @@ impl Geometry {
         self.rigid
             .gather(world, frame.theme, basket, frame.particles);
         self.radius = world.bodies().iter().map(radius).fold(0.0, f32::max);
+        self.bounds = NOWHERE;
         self.rests.resize_with(world.bodies().len(), Rest::default);
         for (place, body) in world.bodies().iter().enumerate() {
             match frame.look {
@@ -53,6 +56,8 @@ impl Geometry {
                 } => {
                     let ages = ages.get(place).map_or(&[][..], Vec::as_slice);
                     self.elements.add(body, frame.theme, colour, ages, nodes);
+                    let corners = self.elements.vertices.iter().map(|vertex| vertex.at);
+                    self.bounds = corners.fold(self.bounds, around);
                 }
             }
         }
@@ -72,14 +77,16 @@ impl Geometry {
         let start = self.skin.fans.len() as u32;
         self.skin.add(&self.rings, body.grid().voxel_size());
         let middle = self.skin.fans.len() as u32;
-        let (low, high) = bounds(self.rings.points.iter().map(|point| point.at));
+        let points = self.rings.points.iter().map(|point| point.at);
+        let bounds = points.fold(NOWHERE, around);
+        self.bounds = bounds.into_iter().fold(self.bounds, around);
         let first = body
             .grid()
             .voxels()
             .map(|voxel| body.grid().material(voxel));
         let first = first.filter(|&number| number > 0).min().unwrap_or(1);
         let colour = |number| bytes(frame.theme.material(number), 1.0);
-        self.skin.add_rectangle(low, high, colour(first));
+        self.skin.add_rectangle(bounds, colour(first));
         if body.materials().len() > 1 {
             for view in body.element_views().filter(|view| view.material != first) {
                 let colour = colour(view.material);
@@ -99,11 +106,12 @@ fn radius(body: &Body<Dim2>) -> f32 {
     grid.voxel_size() * (grid.solid_count() as f32 / std::f32::consts::PI).sqrt()
 }
 
-fn bounds(points: impl Iterator<Item = Flat>) -> (Flat, Flat) {
-    points.fold(([f32::MAX; 2], [f32::MIN; 2]), |(low, high), at| {
-        (
-            [low[0].min(at[0]), low[1].min(at[1])],
-            [high[0].max(at[0]), high[1].max(at[1])],
-        )
-    })
+const NOWHERE: [Flat; 2] = [[f32::MAX; 2], [f32::MIN; 2]];
+
+/// The smallest bounds around bounds and a place.
+fn around([low, high]: [Flat; 2], at: Flat) -> [Flat; 2] {
+    [
+        [low[0].min(at[0]), low[1].min(at[1])],
+        [high[0].max(at[0]), high[1].max(at[1])],
+    ]
 }

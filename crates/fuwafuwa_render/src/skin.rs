@@ -332,7 +332,7 @@ impl SkinMesh {
     }
 
     /// Adds a rectangle of one colour.
-    pub fn add_rectangle(&mut self, low: Flat, high: Flat, colour: [u8; 4]) {
+    pub fn add_rectangle(&mut self, [low, high]: [Flat; 2], colour: [u8; 4]) {
         let round = [low, [high[0], low[1]], high, [low[0], high[1]]];
         self.add_quad(round, colour, 0.0);
     }

@@ -141,7 +141,6 @@ impl Pipelines {
             blend: Some(OVER),
             mask: all,
         };
-        let wholes = |entry| stage(Some(&body_layout), &body, ("whole", entry)).build(&shown);
         let shapes = |entries| {
             stage(None, &rigid, entries).build(&Target {
                 buffers: &[Some(RigidInstance::layout())],
@@ -165,8 +164,11 @@ impl Pipelines {
             shrink: blurs(&blur_layout, &blur, "shrink"),
             soften: blurs(&blur_layout, &blur, "soften"),
             shape: blurs(&shape_layout, &shape, "shape"),
-            arena: wholes("arena"),
-            body: wholes("body"),
+            arena: stage(Some(&body_layout), &body, ("whole", "arena")).build(&shown),
+            body: stage(Some(&body_layout), &body, ("bounding", "body")).build(&Target {
+                topology: PrimitiveTopology::TriangleStrip,
+                ..shown
+            }),
             shadow: shapes(("wide_corner", "shadow")),
             bar: shapes(("close_corner", "bar")),
             hand: shapes(("close_corner", "hand")),

@@ -7,8 +7,10 @@ use wgpu::*;
 /// Pixels off the screen at most: on larger targets bodies are drawn smaller and stretched.
 const MOST_PIXELS: f32 = 2.6e6;
 /// By what the images for the narrow and for the wide blur are smaller.
-const NARROW: u32 = 4;
+pub const NARROW: u32 = 4;
 const WIDE: u32 = 16;
+/// How far a blur reaches, in standard deviations.
+pub const REACH: f32 = 2.6;
 /// Room between the uniforms of the blurs, as the smallest devices ask for.
 const STRIDE: u64 = 256;
 
@@ -149,12 +151,11 @@ impl Targets {
         }
     }
 
-    /// What each step of the blur draws into.
-    pub fn drawn_into(&self) -> [&Pair; 6] {
-        let [narrow, wide] = [&self.narrow, &self.wide];
-        [
-            &narrow[0], &narrow[1], &narrow[0], &wide[0], &wide[1], &wide[0],
-        ]
+    /// What each step of the blur draws into, and by what that is smaller than the skin.
+    pub fn drawn_into(&self) -> [(&Pair, u32); 6] {
+        let narrow = [0, 1, 0].map(|k| (&self.narrow[k], NARROW));
+        let wide = [0, 1, 0].map(|k| (&self.wide[k], WIDE));
+        [narrow[0], narrow[1], narrow[2], wide[0], wide[1], wide[2]]
     }
 
     /// Tells the blurs how far to reach, in pixels of the skin.
@@ -171,7 +172,7 @@ impl Targets {
             Blur {
                 step,
                 sigma,
-                reach: (2.6 * sigma).ceil(),
+                reach: (REACH * sigma).ceil(),
             }
         };
         let steps = [

@@ -19,6 +19,14 @@ fn whole(@builtin(vertex_index) index: u32) -> Covering {
     return Covering(vec4f(clip, 0.0, 1.0), to_uv(clip), to_world(clip));
 }
 
+// The rectangle around all bodies.
+@vertex
+fn bounding(@builtin(vertex_index) index: u32) -> Covering {
+    let at = mix(globals.bounds.xy, globals.bounds.zw, vec2f(f32(index & 1u), f32(index >> 1u)));
+    let clip = to_clip(at);
+    return Covering(clip, to_uv(clip.xy), at);
+}
+
 // How deep inside the arena a place is [m], its corners a little rounded, and the way inside.
 fn depth(at: vec2f) -> vec3f {
     let count = i32(globals.tune.y);
@@ -52,12 +60,12 @@ fn arena(in: Covering) -> @location(0) vec4f {
     let grid = abs(fract(in.at / 0.125) - 0.5) * 0.125;
     floor_light *= 0.93 + 0.07 * smoothstep(0.006 - pixel, 0.006 + pixel, length(grid));
     // The frame throws a shadow from above and from the left.
-    let shade = depth(in.at + normalize(LIGHT.xy) * 0.04).z;
+    let facing = dot(inside.xy, normalize(LIGHT.xy));
+    let shade = inside.z + 0.04 * facing;
     floor_light *= 1.0 - 0.22 * (1.0 - smoothstep(-0.04, 0.05, shade)) - 0.10 * exp(-max(inside.z, 0.0) / 0.06);
     floor_light *= mix(vec3f(1.0), vec3f(0.40, 0.38, 0.52), shadow(in.uv));
 
     // The frame is a rounded rail.
-    let facing = dot(inside.xy, normalize(LIGHT.xy));
     let outside = max(-inside.z, 0.0);
     var frame_light = to_linear(globals.frame.rgb) * (1.0 - 0.25 * smoothstep(0.0, 0.5, outside));
     frame_light *= 1.0 + 0.5 * facing * exp(-outside / 0.014);
@@ -112,8 +120,8 @@ fn body(in: Covering) -> @location(0) vec4f {
     colour += base * vec3f(1.0, 0.62, 0.5) * rim * low * 0.9;
     // Reflections: a soft one, and a sharp one on what is round enough.
     let wet = 1.0 - 0.7 * torn;
-    colour += vec3f(1.0, 0.97, 0.94) * wet * (0.30 * fourth * fourth * fourth * smoothstep(0.0, 0.25, 1.0 - normal.z)
-        + 0.6 * smoothstep(0.970, 0.993, towards) * smoothstep(0.75, 0.95, soft.a));
+    colour += vec3f(1.0, 0.97, 0.94) * wet * (0.24 * fourth * fourth * fourth * smoothstep(0.0, 0.25, 1.0 - normal.z)
+        + 0.6 * smoothstep(0.974, 0.994, towards) * smoothstep(0.75, 0.95, soft.a));
     // A thin line of deeper colour holds the shape together.
     colour *= mix(0.74, 1.0, smoothstep(0.2, 0.7, soft.a + 0.2 * torn));
     return shown(colour, alpha);
