@@ -105,8 +105,8 @@ fn body(in: Covering) -> @location(0) vec4f {
     colour = mix(colour, colour * vec3f(1.0, 0.55, 0.62), 0.75 * shape.w);
     // The inside, where it is fresh.
     let fresh = mix(to_linear(globals.fresh.rgb), base, 0.15);
-    let torn = smoothstep(0.0, 0.55, relief.g);
-    colour = mix(colour, fresh, 0.8 * torn);
+    let torn = smoothstep(0.0, 0.6, relief.g);
+    colour = mix(colour, fresh, 0.9 * torn);
 
     let light = normalize(LIGHT);
     let half_way = normalize(light + vec3f(0.0, 0.0, 1.0));
@@ -115,14 +115,15 @@ fn body(in: Covering) -> @location(0) vec4f {
     let fourth = towards * towards * towards * towards;
     let rim = (1.0 - normal.z) * sqrt(1.0 - normal.z);
     let low = clamp(dot(normal.xy, -normalize(LIGHT.xy)), 0.0, 1.0);
-    colour *= mix(0.50, 1.13, smoothstep(0.1, 1.0, wrapped));
+    // What is torn is rough: its light comes from all sides.
+    colour *= mix(mix(0.50, 1.13, smoothstep(0.1, 1.0, wrapped)), 1.0, 0.7 * torn);
     // Light that went through comes out on the far side.
-    colour += base * vec3f(1.0, 0.62, 0.5) * rim * low * 0.9;
+    colour += base * vec3f(1.0, 0.62, 0.5) * rim * low * 0.9 * (1.0 - torn);
     // Reflections: a soft one, and a sharp one on what is round enough.
     let wet = 1.0 - 0.7 * torn;
     colour += vec3f(1.0, 0.97, 0.94) * wet * (0.24 * fourth * fourth * fourth * smoothstep(0.0, 0.25, 1.0 - normal.z)
         + 0.6 * smoothstep(0.974, 0.994, towards) * smoothstep(0.75, 0.95, soft.a));
     // A thin line of deeper colour holds the shape together.
-    colour *= mix(0.74, 1.0, smoothstep(0.2, 0.7, soft.a + 0.2 * torn));
+    colour *= mix(0.74, 1.0, smoothstep(0.2, 0.7, soft.a + 0.3 * torn));
     return shown(colour, alpha);
 }
