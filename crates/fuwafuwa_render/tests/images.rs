@@ -305,3 +305,9 @@ fn nothing_is_a_picture_too_and_so_is_what_cannot_tear() {
         }
     }
 }
+
+#[test]
+fn a_renderer_can_lie_among_what_egui_keeps_for_callbacks() {
+    fn is_kept<T: Send + Sync + 'static>() {}
+    is_kept::<Renderer>();
+}
