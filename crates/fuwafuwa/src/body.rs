@@ -356,7 +356,10 @@ impl<D: Dim> Body<D> {
             let node = id as usize;
             let mut velocity = self.velocity[node];
             let squared = dot(velocity, velocity);
-            fastest = fastest.max(squared);
+            // Not `max`, which would have every node wait for the one before.
+            if squared > fastest {
+                fastest = squared;
+            }
             if squared > top_speed * top_speed {
                 velocity = scaled(velocity, top_speed / squared.sqrt());
                 self.velocity[node] = velocity;
