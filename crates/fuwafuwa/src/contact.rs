@@ -6,6 +6,7 @@
 //! substeps are the iterations [Macklin 2019]. What is pushed out of an overlap gains no speed by it:
 //! after the move the same rows are solved again without the push [Catto 2023].
 
+mod exit;
 mod motion;
 mod row;
 
@@ -15,6 +16,7 @@ use crate::manipulator::Manipulator;
 use crate::solve::Row;
 use crate::touch::{Collider, Impulse, MARGIN, Nearby, Skin, Skins};
 use crate::vector::{as_row, minus, scaled, three};
+use exit::Exit;
 use motion::Motion;
 use row::{Contact, inner};
 
@@ -23,9 +25,6 @@ const BEHIND: f32 = 0.3;
 /// A sleeper wakes when what touches it moves at this speed [m/s]: what it did move, since deep in
 /// a heap the forces of a substep alone would give as much to what rests.
 const WAKE_SPEED: f32 = 0.15;
-
-/// The pair of a contact that starts from nothing in every substep.
-const NO_PAIR: u32 = u32::MAX;
 
 /// A node against something rigid.
 #[derive(Copy, Clone, Debug)]
@@ -61,6 +60,7 @@ struct HandContact {
 pub struct Contacts {
     nodes: Vec<NodeContact>,
     skins: Vec<SkinContact>,
+    exits: Vec<Exit>,
     hands: Vec<HandContact>,
     motion: Motion,
 }
@@ -81,7 +81,11 @@ impl Contacts {
         self.motion.clear(bodies);
         self.find_nodes(bodies, colliders, nearby, duration, &mut hits);
         self.find_skins(bodies, &mut nearby.skins, duration, &mut hits);
-        self.find_exits(bodies, &nearby.skins, duration);
+        self.exits.clear();
+        let (skins, motion) = (&nearby.skins, &mut self.motion);
+        let exits = skins.captives.iter();
+        let exits = exits.filter_map(|captive| Exit::new(captive, bodies, skins, motion, duration));
+        self.exits.extend(exits);
         hits.sort_unstable();
         hits.dedup();
         hits
@@ -194,32 +198,6 @@ impl Contacts {
         skins.pairs = pairs;
     }
 
-    /// Lets those who are inside a piece out of it.
-    fn find_exits<D: Dim>(&mut self, bodies: &[Body<D>], skins: &Skins, duration: f32) {
-        for captive in &skins.captives {
-            let [a, b] = [captive.skin, captive.exit].map(|place| place as usize);
-            let both = [&skins.list[a], &skins.list[b]];
-            let out = both[1].outward::<D>(&bodies[both[1].body as usize].position);
-            let normal = scaled(out, 1.0 / inner::<D>(out, out).sqrt().max(1e-9));
-            let apart = minus(skins.centres[a], skins.centres[b]);
-            let gap = inner::<D>(apart, normal) - both[0].radius - both[1].radius;
-            let relative = minus(skins.velocities[a], skins.velocities[b]);
-            let lightness = skins.lightness[a] + skins.lightness[b];
-            let is_close = is_close(gap, inner::<D>(relative, normal), both[0].radius, duration);
-            if !is_close || lightness == 0.0 {
-                continue;
-            }
-            let frictions = both.map(|skin| bodies[skin.body as usize].friction());
-            let friction = 0.5 * (frictions[0] + frictions[1]);
-            let mut contact = Contact::new(normal, gap, duration, 1.0 / lightness, friction);
-            contact.pair = NO_PAIR;
-            self.skins.push(SkinContact {
-                contact,
-                grips: both.map(|skin| self.motion.grip::<D>(skin)),
-            });
-        }
-    }
-
     /// Finds the contacts of the hands with obstacles, the first `obstacles` of the colliders, and
     /// with each other.
     pub fn find_hands(&mut self, hands: &[Manipulator], obstacles: &[Collider], duration: f32) {
@@ -266,6 +244,10 @@ impl Contacts {
         for row in self.skins.iter().filter(|row| row.contact.pressed > 0.0) {
             motion.push_skins::<D>(&row.grips, row.contact.start());
         }
+        // Once only: what is held fast inside must not pull its way out.
+        for exit in &self.exits {
+            exit.solve::<D>(motion);
+        }
         for backwards in [false, true] {
             for_each(&mut self.skins, backwards, |row| {
                 let relative = motion.between::<D>(&row.grips);
@@ -297,9 +279,9 @@ impl Contacts {
                 .note(contact);
         }
         for SkinContact { contact, .. } in &self.skins {
-            if let Some(pair) = nearby.skins.pairs.get_mut(contact.pair as usize) {
-                pair.impulse.note(contact);
-            }
+            nearby.skins.pairs[contact.pair as usize]
+                .impulse
+                .note(contact);
         }
     }
 
@@ -312,6 +294,9 @@ impl Contacts {
     ) {
         let motion = &mut self.motion;
         motion.load(bodies);
+        for exit in &self.exits {
+            exit.relax::<D>(motion);
+        }
         for row in &mut self.skins {
             if row.contact.was_pushed_out() {
                 let change = row.contact.relax::<D>(motion.between::<D>(&row.grips));

@@ -14,6 +14,7 @@ use crate::dim::Dim;
 use crate::shape::Shape;
 use crate::solve::Row;
 use crate::vector::{dot, length, minus, plus, scaled, three};
+pub use captives::Captive;
 pub use skins::{MARGIN, Skin, Skins, mean};
 
 /// Something rigid that nodes can touch.

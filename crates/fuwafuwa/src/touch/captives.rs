@@ -13,7 +13,7 @@ use crate::mesh::Element;
 use crate::shape::Vector;
 use crate::solve::Row;
 use crate::stencil::slot_at;
-use crate::vector::{cross, dot, length, minus, plus, scaled, three};
+use crate::vector::{cross, dot, minus, plus, scaled, three};
 
 /// An element that is flatter than this holds nobody: its volume over that at rest.
 const FLAT: f32 = 0.01;
@@ -36,50 +36,61 @@ impl Skins {
         self.captors.resize(self.list.len(), None);
         let counts: Vec<Vec<u32>> = bodies.iter().map(element_counts).collect();
         let largest = counts.iter().flatten().copied().max().unwrap_or(0);
-        let count = |body: u32, piece: u32| counts[body as usize][piece as usize];
         let own = |skin: u32| {
             let skin = &self.list[skin as usize];
-            count(skin.body, skin.piece)
+            counts[skin.body as usize][skin.piece as usize]
         };
         let small = self.awake.iter().copied();
         let small: Vec<u32> = small.filter(|&skin| own(skin) < largest).collect();
         if small.is_empty() {
             return;
         }
-        let centres: Vec<Row> = small
-            .iter()
-            .map(|&skin| self.centres[skin as usize])
-            .collect();
-        for level in 0.. {
-            let holders = holders(bodies, &counts, level);
-            let Some(widest) = holders.iter().map(|holder| holder.radius).reduce(f32::max) else {
-                break;
-            };
+        // Surface elements hold skins that are close to their own.
+        for pair in &self.pairs {
+            let [a, b] = pair.skins.map(|skin| &self.list[skin as usize]);
+            let [at, other] = pair.skins.map(|skin| self.centres[skin as usize]);
+            let (apart, reach) = (minus(at, other), a.radius + b.radius);
+            if dot(apart, apart) > reach * reach {
+                continue;
+            }
+            for (inner, outer, at) in [(0, b, at), (1, a, other)] {
+                let skin = pair.skins[inner];
+                let captor = (outer.body, outer.piece);
+                let is_smaller = own(skin) < own(pair.skins[1 - inner]);
+                let body = &bodies[outer.body as usize];
+                if is_smaller && body.holds(outer.element, three(at)) {
+                    self.captors[skin as usize] = Some(captor);
+                }
+            }
+        }
+        let centres = small.iter().map(|&skin| self.centres[skin as usize]);
+        let centres: Vec<Row> = centres.collect();
+        for same in inner_elements(bodies, &counts).chunk_by(|a, b| a.level == b.level) {
+            let widest = same.iter().map(|inner| inner.radius).fold(0.0, f32::max);
             let bins = Bins::new::<D>(&centres, widest);
-            for holder in &holders {
-                let body = &bodies[holder.body as usize];
-                let piece = body.pieces.of_element(holder.element);
-                bins.near::<D>(holder.centre, holder.radius, |place| {
-                    let skin = small[place as usize];
-                    let is_smaller = own(skin) < count(holder.body, piece);
-                    let at = three(centres[place as usize]);
-                    if is_smaller && body.holds(holder.element, at) {
-                        self.captors[skin as usize] = Some((holder.body, piece));
+            for inner in same {
+                bins.near::<D>(inner.centre, inner.radius, |place| {
+                    let (skin, at) = (small[place as usize], three(centres[place as usize]));
+                    let body = &bodies[inner.captor.0 as usize];
+                    if own(skin) < inner.count && body.holds(inner.element, at) {
+                        self.captors[skin as usize] = Some(inner.captor);
                     }
                 });
             }
         }
         for skin in small {
-            self.captors[skin as usize] = self.captors[skin as usize].and_then(|captor| {
-                let exit = self.exit::<D>(self.centres[skin as usize], captor)?;
-                self.captives.push(Captive { skin, exit });
-                Some(captor)
-            });
+            let Some(captor) = self.captors[skin as usize] else {
+                continue;
+            };
+            match self.exit(self.centres[skin as usize], captor) {
+                Some(exit) => self.captives.push(Captive { skin, exit }),
+                None => self.captors[skin as usize] = None,
+            }
         }
     }
 
     /// The skin of a piece that is nearest to a place [m] and leads out.
-    fn exit<D: Dim>(&self, at: Row, captor: (u32, u32)) -> Option<u32> {
+    fn exit(&self, at: Row, captor: (u32, u32)) -> Option<u32> {
         let skins = self.list.iter().enumerate();
         let exits = skins.filter(|(_, skin)| (skin.body, skin.piece) == captor && skin.leads_out());
         let mut nearest = (f32::INFINITY, None);
@@ -104,37 +115,44 @@ impl Skins {
     }
 }
 
-/// An element that may have somebody inside, and a ball around it.
-struct Holder {
-    body: u32,
+/// An element that has no bare face, and a ball around it.
+struct Inner {
+    level: u8,
     element: u32,
+    /// Body and number of its piece, and how many elements that has.
+    captor: (u32, u32),
+    count: u32,
     centre: Row,
     radius: f32,
 }
 
-/// The elements of a level, but for crumbs; nothing above the highest level.
-fn holders<D: Dim>(bodies: &[Body<D>], counts: &[Vec<u32>], level: u8) -> Vec<Holder> {
-    let mut holders = Vec::new();
+/// The elements without a bare face, by level.
+fn inner_elements<D: Dim>(bodies: &[Body<D>], counts: &[Vec<u32>]) -> Vec<Inner> {
+    let mut found = Vec::new();
     for (place, body) in bodies.iter().enumerate() {
         for (id, element) in body.mesh.elements() {
-            let count = counts[place][body.pieces.of_element(id) as usize];
-            if element.cell.level != level || count == 1 {
+            let level = element.cell.level;
+            if level == 0 && body.bare[id as usize] != 0 {
                 continue;
             }
+            let piece = body.pieces.of_element(id);
             let nodes = element.nodes.iter();
             let places = nodes.map(|&node| body.position[node as usize]);
             let sum = places.clone().fold([0.0; 4], plus);
             let centre = scaled(sum, 1.0 / element.nodes.len() as f32);
-            let radius = places.map(|at| length(minus(at, centre)));
-            holders.push(Holder {
-                body: place as u32,
+            let furthest = places.map(|at| minus(at, centre)).map(|way| dot(way, way));
+            found.push(Inner {
+                level,
                 element: id,
+                captor: (place as u32, piece),
+                count: counts[place][piece as usize],
                 centre,
-                radius: radius.fold(0.0, f32::max),
+                radius: furthest.fold(0.0, f32::max).sqrt(),
             });
         }
     }
-    holders
+    found.sort_by_key(|inner| inner.level);
+    found
 }
 
 /// The number of elements of each piece.
@@ -149,11 +167,11 @@ fn element_counts<D: Dim>(body: &Body<D>) -> Vec<u32> {
 impl<D: Dim> Body<D> {
     /// Whether a place [m] lies in an element, taken for evenly deformed.
     fn holds(&self, id: u32, at: Vector) -> bool {
-        let element = self.mesh.element(id);
-        element.is_some_and(|element| {
-            self.child_at(element, at)
-                .is_some_and(|child| element.children >> child & 1 == 1)
-        })
+        let Some(element) = self.mesh.element(id) else {
+            return false;
+        };
+        let child = self.child_at(element, at);
+        child.is_some_and(|child| element.children >> child & 1 == 1)
     }
 
     /// The child of an element's cell that a place [m] lies in.
