@@ -40,10 +40,21 @@ pub enum LevelError {
 }
 
 /// The levels that come along, in the order in which they are offered.
-pub const NAMED: [(&str, &str); 1] = [("classic", include_str!("../levels/classic.toml"))];
+pub const NAMED: [(&str, &str); 10] = [
+    ("classic", include_str!("../levels/classic.toml")),
+    ("gravity", include_str!("../levels/gravity.toml")),
+    ("neck", include_str!("../levels/neck.toml")),
+    ("twins", include_str!("../levels/twins.toml")),
+    ("core", include_str!("../levels/core.toml")),
+    ("donut", include_str!("../levels/donut.toml")),
+    ("cat", include_str!("../levels/cat.toml")),
+    ("rubber", include_str!("../levels/rubber.toml")),
+    ("biscuit", include_str!("../levels/biscuit.toml")),
+    ("sandbox", include_str!("../levels/sandbox.toml")),
+];
 
 /// Pictures that those levels are made from.
-const FILES: [(&str, &[u8]); 0] = [];
+const FILES: [(&str, &[u8]); 1] = [("cat.png", include_bytes!("../levels/cat.png"))];
 
 /// The level that a picture is put into, in place of its body.
 const FRAME: &str = "classic";
