@@ -185,3 +185,46 @@ fn crumbs_of_a_tear_stay_outside() {
         [-0.3 + 0.9 * seconds.min(1.5), 0.55, 0.0]
     });
 }
+
+/// Dust that begins inside a body drifts out of it: nothing pops, and momentum is kept.
+fn check_way_out<D: Dim>(n: usize) {
+    let mut world = World::<D>::new(Settings {
+        gravity: [0.0; 3],
+        ..Settings::default()
+    })
+    .unwrap();
+    let ball = |n, width| VoxelGrid::<D>::ball(n, width).unwrap();
+    let tough = Material {
+        strength: f32::INFINITY,
+        ..Material::default()
+    };
+    let mut dust = Body::new(ball(n / 4, 0.25), &[tough]).unwrap();
+    dust.crumble().unwrap();
+    let depth = if D::N == 3 { 0.37 } else { 0.0 };
+    world.add_body(dust.moved([0.1, 0.37, depth]));
+    world.add_body(Body::new(ball(n, 1.0), &[tough]).unwrap());
+    let (before, count) = crumbs_inside(&world);
+    assert!(5 * before.len() > 4 * count, "{} of {count}", before.len());
+    for tick in 0..60 {
+        world.step();
+        for crumb in world.bodies()[0].piece_views() {
+            let speed = length(crumb.velocity);
+            assert!(speed < 1.5, "tick {tick}: {speed} m/s");
+        }
+        // Later the body touches who is out, and what is slow and touches something is slowed down.
+        if tick < 10 {
+            let linear = world.bodies().iter().map(|body| body.momentum().linear);
+            let linear = linear.fold([0.0; 3], plus);
+            let most = 1e-3 * world.bodies()[0].total_mass();
+            assert!(linear.iter().all(|k| k.abs() < most), "{linear:?} kg m/s");
+        }
+    }
+    let (after, _) = crumbs_inside(&world);
+    assert!(after.is_empty(), "{} of {count} are inside", after.len());
+}
+
+#[test]
+fn who_begins_inside_drifts_out() {
+    check_way_out::<Dim2>(48);
+    check_way_out::<Dim3>(16);
+}

@@ -178,7 +178,7 @@ impl<D: Dim> Body<D> {
     fn child_at(&self, element: &Element, at: Vector) -> Option<usize> {
         let (centre, [x, y, z]) = self.deformation(element);
         let volume = dot(x, cross(y, z));
-        if !(volume.abs() > FLAT) {
+        if volume.abs() < FLAT {
             return None;
         }
         // Cramer's rule: where the place was at rest, as seen from the centroid.
