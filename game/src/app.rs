@@ -88,12 +88,11 @@ impl App {
             for direction in self.navigators[place].1.step(device, seconds) {
                 if in_menu {
                     self.press(match direction {
-                            sticks::Direction::Up => Key::ArrowUp,
-                            sticks::Direction::Down => Key::ArrowDown,
-                            sticks::Direction::Left => Key::ArrowLeft,
-                            sticks::Direction::Right => Key::ArrowRight,
-                        },
-                    );
+                        sticks::Direction::Up => Key::ArrowUp,
+                        sticks::Direction::Down => Key::ArrowDown,
+                        sticks::Direction::Left => Key::ArrowLeft,
+                        sticks::Direction::Right => Key::ArrowRight,
+                    });
                 }
             }
         }
@@ -101,7 +100,11 @@ impl App {
 
     /// As if a key were pressed and let go in the next frame.
     fn press(&self, key: Key) {
-        self.presses.0.lock().unwrap_or_else(PoisonError::into_inner).push(key);
+        self.presses
+            .0
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .push(key);
     }
 
     /// Takes in keys and the pointer.

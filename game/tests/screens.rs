@@ -11,7 +11,9 @@ use tamaire::words::Language;
 
 /// A window of the size of a small tablet, with settings and replays in a folder of its own.
 fn window(files: Files) -> Harness<'static, App> {
-    let builder = Harness::builder().with_size(egui::vec2(1024.0, 640.0)).wgpu();
+    let builder = Harness::builder()
+        .with_size(egui::vec2(1024.0, 640.0))
+        .wgpu();
     let builder = builder.with_step_dt(1.0 / 60.0);
     builder.build_eframe(|context| {
         let game = Game::new(files, Sound::none(), Pads::none());
@@ -71,7 +73,10 @@ fn every_screen_in_both_languages() {
         window.state_mut().game.go(Screen::Levels);
         frames(&mut window, 20);
         picture(&mut window, &format!("levels_{tag}"));
-        window.state_mut().game.go(Screen::Settings(Box::new(Screen::Title)));
+        window
+            .state_mut()
+            .game
+            .go(Screen::Settings(Box::new(Screen::Title)));
         frames(&mut window, 20);
         picture(&mut window, &format!("settings_{tag}"));
     }

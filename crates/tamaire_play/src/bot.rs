@@ -141,7 +141,11 @@ impl Bot {
         match self.stroke {
             Stroke::Rest => {
                 self.strokes += 1;
-                let side = if self.strokes.is_multiple_of(2) { 1.0 } else { -1.0 };
+                let side = if self.strokes.is_multiple_of(2) {
+                    1.0
+                } else {
+                    -1.0
+                };
                 let aside = [-axis[1] * side, axis[0] * side, 0.0];
                 let from = add(scale(*axis, -1.15 * reach), scale(aside, 0.75 * reach));
                 self.stroke = Stroke::Reach(from, 90);
