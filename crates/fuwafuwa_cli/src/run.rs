@@ -5,7 +5,7 @@ use anyhow::{Context, Result};
 use fuwafuwa::{Dim, Dim2, Dim3, World};
 use fuwafuwa_painter::solid::{Camera, Solid};
 use fuwafuwa_painter::stage;
-use fuwafuwa_painter::{Frame, Painter, Pixmap, film};
+use fuwafuwa_painter::{Painter, Pixmap, film};
 use fuwafuwa_scenes::{Recording, Scene};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -70,14 +70,7 @@ trait Filmed: Dim {
 
 impl Filmed for Dim2 {
     fn painted(world: &World<Self>, scene: &Scene, elements: bool) -> Result<Painter> {
-        let [low, high] = scene.view;
-        let unit = WIDTH as f32 / (high[0] - low[0]);
-        let height = (unit * (high[1] - low[1])).round().clamp(50.0, 2000.0);
-        let mut painter = Painter::new(WIDTH, height as u32);
-        let frame = Frame {
-            origin: [-low[0] * unit, height + low[1] * unit],
-            unit,
-        };
+        let (mut painter, frame) = Painter::for_view(scene.view, WIDTH);
         let draw = if elements {
             stage::plane_elements
         } else {

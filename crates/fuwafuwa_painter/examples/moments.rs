@@ -7,7 +7,7 @@
 use fuwafuwa::world::TICK;
 use fuwafuwa::{Dim2, Event, Shape, World};
 use fuwafuwa_painter::soft::{self, Extras};
-use fuwafuwa_painter::{Face, Frame, Mood, Painter, film};
+use fuwafuwa_painter::{Face, Mood, Painter, film};
 use fuwafuwa_scenes::Scene;
 use std::error::Error;
 
@@ -22,13 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let name = arguments.next().unwrap_or("tear".into());
     let path = arguments.next().unwrap_or("moments.png".into());
     let scene = Scene::open(&name, &[])?;
-    let [low, high] = scene.view;
-    let unit = WIDTH as f32 / (high[0] - low[0]);
-    let height = unit * (high[1] - low[1]);
-    let frame = Frame {
-        origin: [-low[0] * unit, height + low[1] * unit],
-        unit,
-    };
+    let [_, high] = scene.view;
     let basket = Shape::Box {
         centre: [high[0] - 0.45, 0.5, 0.0],
         half: [0.35, 0.42, 1.0],
@@ -48,9 +42,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         last_tear = if is_torn { Some(tick) } else { last_tear };
         if (tick + 1) % (scene.ticks() / MOMENTS) == 0 {
             let mood = match last_tear {
-                _ if tick + 1 == scene.ticks() => Mood::Beam,
                 Some(tear) if tick - tear < 20 => Mood::Shock,
-                _ => mood(&world),
+                _ if is_in(&world, &basket) => Mood::Beam,
+                _ if is_squeezed(&world) => Mood::Wince,
+                _ => Mood::Calm,
             };
             let hand = world.manipulators().first();
             let look_at = hand.map_or([0.0, 2.0, 0.0], |hand| hand.position());
@@ -62,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                     .filter_map(|body| Face::on(body, mood, look_at))
                     .collect(),
             };
-            let mut painter = Painter::new(WIDTH, height as u32);
+            let (mut painter, frame) = Painter::for_view(scene.view, WIDTH);
             soft::world(&mut painter, frame, &world, &extras);
             painter.caption(&format!("{:.1} s, {mood:?}", (tick + 1) as f32 * TICK));
             moments.push(painter.pixels()?);
@@ -72,13 +67,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// It winces when some of it is squeezed by a tenth.
-fn mood(world: &World<Dim2>) -> Mood {
+fn is_in(world: &World<Dim2>, basket: &Shape) -> bool {
+    let bodies = || world.bodies().iter();
+    let inside: f32 = bodies().map(|body| body.mass_inside(basket)).sum();
+    let whole: f64 = bodies().map(|body| body.total_mass()).sum();
+    inside > 0.6 * whole as f32
+}
+
+fn is_squeezed(world: &World<Dim2>) -> bool {
     let views = world.bodies().iter().flat_map(|body| body.element_views());
-    let strained = views.filter(|view| view.strain > 0.2).count();
-    if strained > 60 {
-        Mood::Wince
-    } else {
-        Mood::Calm
-    }
+    views.filter(|view| view.strain > 0.2).count() > 60
 }

@@ -121,9 +121,9 @@ impl Face {
                     let [from, to] = [0.24, 0.66].map(|u| [u * side, 0.1]);
                     pen.curve(painter, from, [0.45 * side, 0.56], to, 1.3);
                 }
-                let mouth = bow([-0.34, -0.2], [0.0, -0.95], [0.34, -0.2]);
+                let mouth = ellipse([0.0, -0.22], [0.32, 0.4]).filter(|at| at[1] < -0.2);
                 painter.area(mouth.map(|at| pen.spot(at)).collect(), Role::Mouth);
-                pen.area(painter, [0.0, -0.46], [0.15, 0.09], Role::Tongue);
+                pen.area(painter, [0.0, -0.5], [0.17, 0.1], Role::Tongue);
             }
         }
     }

@@ -1,4 +1,5 @@
-//! Letters as strokes, so that no file needs a font and every back end writes alike.
+//! Letters as strokes, so that no file needs a font and every back end writes alike. There are those
+//! of English, digits and some signs; what is not there leaves a gap.
 
 use crate::Spot;
 
@@ -40,7 +41,7 @@ fn advance(letter: char) -> f32 {
 /// Empty columns on the left of a letter, and the columns it fills.
 fn room(letter: char) -> (f32, f32) {
     match letter {
-        'i' | '.' | ',' | ':' | '\'' | '|' => (2.0, 0.4),
+        'i' | '.' | ',' | ':' | '!' | '\'' | '|' => (2.0, 0.4),
         'l' | '(' | ')' | 'I' => (1.0, 2.0),
         'j' => (1.0, 1.4),
         't' | 'f' | 'r' => (0.5, 3.0),
@@ -163,6 +164,8 @@ fn strokes(letter: char) -> &'static str {
         'Y' => "00 23 40|23 26",
         'Z' => "00 40 06 46",
         '.' => "26 26",
+        '!' => "20 24|26 26",
+        '?' => "01 10 30 41 42 24|26 26",
         ',' => "26 17",
         ':' => "22 22|26 26",
         '\'' => "20 21",

@@ -97,6 +97,15 @@ impl Painter {
         }
     }
 
+    /// Empty paper of a width [px] for a view from one corner to the other [m], and where its places
+    /// fall; 50 to 2000 px high.
+    pub fn for_view([low, high]: [[f32; 3]; 2], width: u32) -> (Self, Frame) {
+        let unit = width as f32 / (high[0] - low[0]);
+        let height = (unit * (high[1] - low[1])).round().clamp(50.0, 2000.0);
+        let origin = [-low[0] * unit, height + low[1] * unit];
+        (Self::new(width, height as u32), Frame { origin, unit })
+    }
+
     /// Adds a filled outline without an edge.
     pub fn area(&mut self, outline: Vec<Spot>, role: Role) {
         self.shapes.push(Shape::Area { outline, role });
@@ -273,6 +282,32 @@ pub fn rectangle([x, y]: Spot, size: Spot) -> Vec<Spot> {
 mod tests {
     use super::*;
     use theme::colour;
+
+    #[test]
+    fn dashes_run_all_the_way_round() {
+        let mut painter = Painter::new(40, 40);
+        let square = rectangle([10.0; 2], [20.0; 2]);
+        painter.dashed(&square, [6.0, 4.0], 1.0, Role::Ink);
+        let lengths = painter.shapes.iter().map(|shape| match shape {
+            Shape::Line { spots, .. } => spots
+                .windows(2)
+                .map(|ends| distance(ends[0], ends[1]))
+                .sum(),
+            _ => 0.0,
+        });
+        let lengths: Vec<f32> = lengths.collect();
+        assert_eq!(lengths.len(), 8);
+        assert!(lengths.iter().all(|length| (length - 6.0).abs() < 0.01));
+    }
+
+    #[test]
+    fn a_caption_stands_on_paper_of_its_own() {
+        let mut painter = Painter::new(120, 40);
+        painter.caption("2.5 s: it is in!");
+        let pixels = painter.pixels().unwrap();
+        let is_ink = |y: u32| (0..120).any(|x| pixels.pixel(x, y).is_some_and(|at| at.red() < 100));
+        assert!(pixels.height() > 60 && !(0..42).any(is_ink) && (42..pixels.height()).any(is_ink));
+    }
 
     #[test]
     fn drawing_and_image_hold_the_same_shapes() {

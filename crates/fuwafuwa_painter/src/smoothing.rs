@@ -162,7 +162,7 @@ fn give_back(points: &mut [Vector], wanted: f32) {
         return;
     }
     let mean = whole / count as f32 * STEPS as f32;
-    let lost = ((wanted - area(points)) / whole).clamp(-0.25 * mean, 0.25 * mean);
+    let lost = ((wanted - area(points)) / whole).clamp(-0.5 * mean, 0.5 * mean);
     let old = points.to_vec();
     for k in 0..count {
         let way = minus(old[after(k, count)], old[before(k, count)]);
@@ -348,5 +348,14 @@ mod tests {
             near(right) && near(left),
             "an eighth of a voxel away at most"
         );
+    }
+
+    #[test]
+    fn what_is_no_outline_stays_what_it_is() {
+        for count in 0..3 {
+            let points = vec![[1.0, 2.0, 0.0]; count];
+            let curve = rounded(&points, &vec![true; count]);
+            assert!(curve.points.iter().all(|&at| at == [1.0, 2.0, 0.0]));
+        }
     }
 }

@@ -21,6 +21,8 @@ const BODY_RIM: f32 = 0.045;
 const RIGID_RIM: f32 = 0.02;
 /// How wide the fresh inside shows along a torn rim [voxels].
 const FRESH_BAND: f32 = 1.7;
+/// Its width at most, as a share of the width of a piece.
+const FRESH_SHARE: f32 = 0.2;
 /// Width of outlines [m], and of those around what was inside.
 const LINE: f32 = 0.011;
 const THIN_LINE: f32 = 0.007;
@@ -333,18 +335,20 @@ impl Layer {
         let region = puff.mask.region;
         let fresh = piece.runs(self.frame, true);
         if !is_crumb {
-            let band = region.stroked(&fresh, 2.0 * FRESH_BAND * voxel * unit);
+            // On a small piece a narrower one, so that something of its colour is left.
+            let most = FRESH_SHARE * puff.mask.share.iter().sum::<f32>().sqrt();
+            let band = region.stroked(&fresh, 2.0 * most.min(FRESH_BAND * voxel * unit));
             puff.tint(&band.blurred(0.4 * voxel * unit), Role::Fresh);
         }
         for (&material, outlines) in &piece.inner {
-            let cells = region.filled(outlines).blurred(0.9 * voxel * unit);
+            let cells = region.filled(outlines).blurred(1.2 * voxel * unit);
             puff.tint(&cells.steeper(), Role::Material(material));
         }
         self.add(&puff);
         if is_crumb {
             self.lines(&rings, THIN_LINE, line_tone(Role::Crumb));
         } else {
-            self.strokes(&fresh, THIN_LINE, line_tone(Role::Fresh));
+            self.strokes(&fresh, THIN_LINE, line_tone(Role::Crumb));
             self.strokes(&piece.runs(self.frame, false), LINE, line_tone(Role::Skin));
         }
     }
@@ -369,10 +373,9 @@ fn tone(role: Role) -> Tone {
     colour(role).map(f32::from)
 }
 
-/// A colour in the shade: darker, and stronger, as on something that light shines into.
+/// A colour in the shade: darker and stronger, as of something that light shines into.
 fn shaded(tone: Tone) -> Tone {
-    let grey = (tone[0] + tone[1] + tone[2]) / 3.0;
-    tone.map(|k| 0.82 * (grey + 1.3 * (k - grey)).clamp(0.0, 255.0))
+    tone.map(|k| 0.94 * k * (k / 255.0).sqrt())
 }
 
 /// The colour of the line around something.
@@ -398,4 +401,112 @@ pub(crate) fn ellipse(middle: Spot, size: Spot) -> impl Iterator<Item = Spot> {
             middle[1] + size[1] * turn.sin(),
         ]
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fuwafuwa::{Blade, Material, Settings, VoxelGrid};
+
+    const FRAME: Frame = Frame {
+        origin: [20.0, 120.0],
+        unit: 100.0,
+    };
+
+    fn paper() -> Painter {
+        Painter::new(140, 140)
+    }
+
+    fn at(pixels: &Pixmap, place: [f32; 2]) -> Tone {
+        let [x, y] = FRAME.spot([place[0], place[1], 0.0]).map(|k| k as u32);
+        let pixel = pixels.pixel(x, y).unwrap();
+        [pixel.red(), pixel.green(), pixel.blue()].map(f32::from)
+    }
+
+    /// How far two colours are apart.
+    fn apart(a: Tone, b: Tone) -> f32 {
+        (0..3).map(|k| (a[k] - b[k]).abs()).sum()
+    }
+
+    /// A disc that is cut from its left side to its middle.
+    fn cut_disc() -> Body<Dim2> {
+        let mut world = World::<Dim2>::new(Settings::default()).unwrap();
+        let body = Body::new(VoxelGrid::ball(32, 1.0).unwrap(), &[Material::default()]);
+        world.add_body(body.unwrap());
+        let blade = Blade {
+            from: [-0.1, 0.5, 0.0],
+            across: [0.6, 0.0, 0.0],
+            along: [0.0, 0.0, 1.0],
+        };
+        assert!(world.cut(0, &blade) > 0);
+        world.remove_body(0)
+    }
+
+    #[test]
+    fn a_body_is_pink_outside_and_pale_where_it_is_cut() {
+        let mut painter = paper();
+        body(&mut painter, FRAME, &cut_disc());
+        let pixels = painter.pixels().unwrap();
+        let near = |place, role| apart(at(&pixels, place), tone(role)) < 60.0;
+        assert!(near([0.5, 0.75], Role::Skin) && near([0.5, 0.3], Role::Skin));
+        assert!(near([0.3, 0.53], Role::Fresh) && near([0.3, 0.47], Role::Fresh));
+        assert!(near([0.02, 0.98], Role::Paper), "beside the disc");
+        let [lit, dark] = [[0.28, 0.89], [0.72, 0.11]].map(|place| at(&pixels, place));
+        assert!(
+            lit[1] > dark[1] + 30.0,
+            "the light comes from the upper left"
+        );
+    }
+
+    #[test]
+    fn two_hands_differ_in_more_than_colour() {
+        let marks = [0, 1].map(|number| {
+            let mut painter = paper();
+            hand(&mut painter, FRAME, [0.5, 0.5, 0.0], 0.3, number);
+            let pixels = painter.pixels().unwrap();
+            let mark = tone(Role::HandMark);
+            let cells =
+                (0..400).map(|k| [0.3 + 0.02 * (k % 20) as f32, 0.3 + 0.02 * (k / 20) as f32]);
+            cells
+                .map(|cell| apart(at(&pixels, cell), mark) < 120.0)
+                .collect::<Vec<bool>>()
+        });
+        let differences = marks[0]
+            .iter()
+            .zip(&marks[1])
+            .filter(|(a, b)| a != b)
+            .count();
+        assert!(differences > 40, "{differences} of 400 places");
+    }
+
+    #[test]
+    fn what_is_off_the_paper_or_nowhere_leaves_it_empty() {
+        let mut painter = paper();
+        hand(&mut painter, FRAME, [50.0, 0.0, 0.0], 0.1, 0);
+        let far = cut_disc().moved([0.0, -30.0, 0.0]);
+        body(&mut painter, FRAME, &far);
+        bar(
+            &mut painter,
+            FRAME,
+            Shape::half_space([0.0, 1.0, 0.0], [0.0, -9.0, 0.0]),
+        );
+        let pixels = painter.pixels().unwrap();
+        let empty = paper().pixels().unwrap();
+        assert!(pixels.data() == empty.data());
+    }
+
+    #[test]
+    fn a_basket_lets_through_what_is_behind_it() {
+        let region = Shape::Box {
+            centre: [0.5, 0.5, 0.0],
+            half: [0.3, 0.3, 1.0],
+        };
+        let mut painter = paper();
+        hand(&mut painter, FRAME, [0.5, 0.5, 0.0], 0.1, 0);
+        let before = at(&painter.pixels().unwrap(), [0.5, 0.5]);
+        basket(&mut painter, FRAME, region);
+        let pixels = painter.pixels().unwrap();
+        assert!(apart(at(&pixels, [0.5, 0.5]), before) > 20.0);
+        assert!(apart(at(&pixels, [0.5, 0.5]), at(&pixels, [0.3, 0.7])) > 20.0);
+    }
 }
