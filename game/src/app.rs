@@ -5,7 +5,7 @@ use crate::input::{Action, Seat};
 use crate::look::Stage;
 use crate::screens;
 use egui::{Event, Key, Modifiers, PointerButton, RawInput};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use sticks::{Change, Control, Navigator, PadButton};
 
 /// The font that the game writes with.
@@ -17,6 +17,7 @@ pub struct App {
     pub game: Game,
     stage: Stage,
     navigators: Vec<(sticks::DeviceId, Navigator)>,
+    presses: Presses,
     text_size: f32,
     screen_before: Screen,
 }
@@ -36,34 +37,37 @@ impl App {
         let stage = Stage::new(context.wgpu_render_state.as_ref().ok_or(NoGpu)?);
         let screen_before = game.screen.clone();
         let (navigators, text_size) = (Vec::new(), 0.0);
+        let presses = Presses::default();
+        context.egui_ctx.add_plugin(presses.clone());
         Ok(Self {
             game,
             stage,
             navigators,
+            presses,
             text_size,
             screen_before,
         })
     }
 
     /// Takes in sticks and pads: in a round they ask for actions, in a menu they move the focus.
-    fn hear_sticks(&mut self, raw: &mut RawInput) {
+    fn hear_sticks(&mut self, seconds: f32) {
         let changes = self.game.hear_sticks();
         let in_menu = !matches!(self.game.screen, Screen::Play);
         for change in changes {
             let Change::Pressed { device, control } = change else {
                 continue;
             };
-            if let Some(action) = self.game.rebinding.take_if(|_| true) {
+            if let Some(action) = self.game.rebinding.take() {
                 self.game.settings.bindings.bind_button(action, control);
                 self.game.keep_settings();
                 continue;
             }
             match (in_menu, control) {
                 (true, Control::Pad(PadButton::South) | Control::Button(0)) => {
-                    press(raw, Key::Enter)
+                    self.press(Key::Enter)
                 }
                 (true, Control::Pad(PadButton::East) | Control::Button(1)) => {
-                    press(raw, Key::Escape)
+                    self.press(Key::Escape)
                 }
                 _ => {
                     if let Some(action) = self.game.settings.bindings.of_button(control) {
@@ -72,7 +76,6 @@ impl App {
                 }
             }
         }
-        let seconds = raw.predicted_dt;
         let devices = self.game.devices.sticks.devices.clone();
         self.navigators
             .retain(|(id, _)| devices.iter().any(|device| device.id == *id));
@@ -84,9 +87,7 @@ impl App {
             });
             for direction in self.navigators[place].1.step(device, seconds) {
                 if in_menu {
-                    press(
-                        raw,
-                        match direction {
+                    self.press(match direction {
                             sticks::Direction::Up => Key::ArrowUp,
                             sticks::Direction::Down => Key::ArrowDown,
                             sticks::Direction::Left => Key::ArrowLeft,
@@ -96,6 +97,11 @@ impl App {
                 }
             }
         }
+    }
+
+    /// As if a key were pressed and let go in the next frame.
+    fn press(&self, key: Key) {
+        self.presses.0.lock().unwrap_or_else(PoisonError::into_inner).push(key);
     }
 
     /// Takes in keys and the pointer.
@@ -152,18 +158,15 @@ impl App {
 }
 
 impl eframe::App for App {
-    fn raw_input_hook(&mut self, _: &egui::Context, raw: &mut RawInput) {
-        self.hear_sticks(raw);
-    }
-
     fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
         if self.text_size != self.game.settings.text_size {
             self.text_size = self.game.settings.text_size;
             ctx.set_zoom_factor(self.text_size);
         }
-        self.hear_window(&ctx);
         let seconds = ctx.input(|input| input.stable_dt).min(0.1);
+        self.hear_sticks(seconds);
+        self.hear_window(&ctx);
         self.game.pass(seconds);
         if self.screen_before != self.game.screen {
             // What had the focus is gone.
@@ -179,16 +182,27 @@ impl eframe::App for App {
     }
 }
 
-/// As if a key had been pressed and let go.
-fn press(raw: &mut RawInput, key: Key) {
-    for pressed in [true, false] {
-        raw.events.push(Event::Key {
-            key,
-            physical_key: None,
-            pressed,
-            repeat: false,
-            modifiers: Modifiers::NONE,
-        });
+/// Keys that sticks and pads press in menus, on their way into egui.
+#[derive(Clone, Default)]
+struct Presses(Arc<Mutex<Vec<Key>>>);
+
+impl egui::Plugin for Presses {
+    fn debug_name(&self) -> &'static str {
+        "sticks and pads"
+    }
+
+    fn input_hook(&mut self, _: &egui::Context, input: &mut RawInput) {
+        let mut keys = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        for key in keys.drain(..) {
+            let event = |pressed| Event::Key {
+                key,
+                physical_key: None,
+                pressed,
+                repeat: false,
+                modifiers: Modifiers::NONE,
+            };
+            input.events.extend([event(true), event(false)]);
+        }
     }
 }
 

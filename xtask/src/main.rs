@@ -1,24 +1,14 @@
 //! The chores of this repository, run as `cargo xtask <task>`. Plain std, so that it builds in a moment.
 
+mod packages;
+mod task;
 mod wasm;
 
+use packages::{IfMissing, Purpose, has_display};
 use std::env;
 use std::path::Path;
 use std::process::{Command, ExitCode, Stdio};
-use wasm::IfMissing;
-
-const USAGE: &str = "\
-usage: cargo xtask <task>
-
-tasks:
-  check            what a change must pass: formatting, lints, documentation, then all of `test`
-  test             all tests in debug, then the engine's in release and on one to eight threads
-  wasm             the golden scenes on wasm32 under Node: the same bits as natively?
-  wasm --install   the same; what is missing comes from Debian's packages, which takes root
-  rapier           whether crates/against_rapier, a workspace of its own, still compiles
-  help             this text
-
-exit status: 0 passed, 1 failed, 2 no such task, 3 this machine lacks what `wasm` needs";
+use task::{Task, USAGE};
 
 /// Exit status where a step failed.
 const FAILED: u8 = 1;
@@ -43,8 +33,15 @@ fn main() -> ExitCode {
             println!("{USAGE}");
             Ok(())
         }
-        Task::Check => run_all(CHECK).and_then(|()| run_all(TEST)),
-        Task::Test => run_all(TEST),
+        Task::Play(if_missing, words) => return play(if_missing, &words),
+        Task::Test(if_missing) => {
+            packages::provide(FOR_TESTS, if_missing);
+            run_all(TEST)
+        }
+        Task::Check(if_missing) => {
+            packages::provide(FOR_TESTS, if_missing);
+            run_all(CHECK).and_then(|()| run_all(TEST))
+        }
         Task::Wasm(if_missing) => wasm::run(if_missing),
         Task::Rapier => run_all(RAPIER),
     };
@@ -57,30 +54,35 @@ fn main() -> ExitCode {
     }
 }
 
-#[derive(Debug, PartialEq)]
-enum Task {
-    Check,
-    Test,
-    Wasm(IfMissing),
-    Rapier,
-    Help,
-}
-
-impl Task {
-    fn parse(arguments: &[String]) -> Result<Task, String> {
-        let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
-        match words[..] {
-            [] => Err("no task given".to_string()),
-            ["check"] => Ok(Task::Check),
-            ["test"] => Ok(Task::Test),
-            ["wasm"] => Ok(Task::Wasm(IfMissing::Say)),
-            ["wasm", "--install"] => Ok(Task::Wasm(IfMissing::Install)),
-            ["rapier"] => Ok(Task::Rapier),
-            ["help" | "--help" | "-h"] => Ok(Task::Help),
-            _ => Err(format!("there is no task `{}`", words.join(" "))),
+/// Builds and runs the game; its exit status. In the folder of the caller, so that the files it is
+/// told to open are found.
+fn play(if_missing: IfMissing, words: &[String]) -> ExitCode {
+    let mut purposes = vec![Purpose::Build];
+    if has_display() {
+        purposes.push(Purpose::Window);
+    }
+    packages::provide(&purposes, if_missing);
+    let mut command = cargo();
+    command.args(["run", "--release", "--package", "tamaire", "--"]);
+    command.args(words);
+    eprintln!("xtask: {}", show(&command));
+    match command.status() {
+        Ok(status) => exit_code(status.code()),
+        Err(error) => {
+            eprintln!("xtask: cargo could not be started: {error}");
+            ExitCode::from(FAILED)
         }
     }
 }
+
+/// The exit status to hand on. A program that was killed has none.
+fn exit_code(code: Option<i32>) -> ExitCode {
+    let code = code.and_then(|code| u8::try_from(code).ok());
+    ExitCode::from(code.unwrap_or(FAILED))
+}
+
+/// Tests draw into images, and open no window.
+const FOR_TESTS: &[Purpose] = &[Purpose::Build, Purpose::Drawing];
 
 /// One call of cargo.
 struct Step {
@@ -220,29 +222,16 @@ fn answers(program: &str) -> bool {
 mod tests {
     use super::*;
 
-    fn check(arguments: &[&str], expect: Result<Task, &str>) {
-        let arguments: Vec<String> = arguments.iter().map(ToString::to_string).collect();
-        assert_eq!(
-            Task::parse(&arguments),
-            expect.map_err(str::to_string),
-            "{arguments:?}"
-        );
-    }
-
     #[test]
-    fn one_known_task_and_nothing_else_is_a_command_line() {
-        check(&["check"], Ok(Task::Check));
-        check(&["test"], Ok(Task::Test));
-        check(&["wasm"], Ok(Task::Wasm(IfMissing::Say)));
-        check(&["wasm", "--install"], Ok(Task::Wasm(IfMissing::Install)));
-        check(&["--help"], Ok(Task::Help));
-        check(&[], Err("no task given"));
-        check(&["chekc"], Err("there is no task `chekc`"));
-        check(&["test", "fast"], Err("there is no task `test fast`"));
-        check(
-            &["test", "--install"],
-            Err("there is no task `test --install`"),
-        );
+    fn the_status_of_the_game_is_handed_on_where_it_has_one() {
+        for (code, expect) in [
+            (Some(0), 0),
+            (Some(101), 101),
+            (Some(-1), FAILED),
+            (None, FAILED),
+        ] {
+            assert_eq!(exit_code(code), ExitCode::from(expect), "{code:?}");
+        }
     }
 
     #[cfg(unix)]

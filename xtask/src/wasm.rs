@@ -4,6 +4,7 @@
 //! it has not been told to, or cannot reach its server, Debian's packages do: a compiler, the
 //! sources of its standard library, which cargo then builds too, and a linker.
 
+use crate::packages::{IfMissing, apt_get, install_arguments};
 use crate::{CANNOT, Failure, answers, cargo, execute, root};
 use std::env;
 use std::path::{Path, PathBuf};
@@ -14,15 +15,6 @@ const TARGET: &str = "wasm32-unknown-unknown";
 const DEBIAN_RUSTC: &str = "/usr/bin/rustc";
 /// The oldest Rust that this workspace promises to build with.
 const OLDEST: &str = env!("CARGO_PKG_RUST_VERSION");
-
-/// What to do on a machine that lacks something.
-#[derive(Debug, PartialEq, Clone, Copy)]
-pub enum IfMissing {
-    /// Say what, and stop.
-    Say,
-    /// Install it, with apt-get.
-    Install,
-}
 
 /// Builds the golden scenes, runs them, and fails where one ends in other bits than it must.
 pub fn run(if_missing: IfMissing) -> Result<(), Failure> {
@@ -144,23 +136,9 @@ fn is_new_enough(release: &str) -> bool {
 
 /// Installs the packages; whether that went well.
 fn install(lacks: &[Lack]) -> bool {
-    // rustc-web conflicts with Debian's rustc and rustup: those must not go without a word.
-    let mut arguments = vec!["install", "--quiet", "--yes", "--no-remove"];
-    arguments.push("--no-install-recommends");
-    arguments.extend(lacks.iter().map(|lack| lack.package.as_str()));
-    apt_get(&arguments)
-}
-
-/// Runs apt-get; whether that went well.
-fn apt_get(arguments: &[&str]) -> bool {
-    let mut command = Command::new("apt-get");
-    command.args(arguments);
-    command.env("DEBIAN_FRONTEND", "noninteractive");
-    let outcome = execute(&mut command, "it needs Debian, root and a network");
-    if let Err(failure) = &outcome {
-        eprintln!("xtask: {}", failure.message);
-    }
-    outcome.is_ok()
+    // rustc-web conflicts with Debian's rustc and rustup, which is why nothing may be removed for it.
+    let names = lacks.iter().map(|lack| lack.package.as_str());
+    apt_get(&install_arguments(names))
 }
 
 /// Builds the scenes, in a folder of their own beside the native build. Returns where the module is.

@@ -345,8 +345,9 @@ impl<D: Dim> Body<D> {
     /// Moves every awake node by its velocity, and looks `lead` seconds ahead for the next forces,
     /// as seen from the rigid motion of its piece: what only turns must not be braked.
     /// No node moves by more than a voxel: faster ones would turn elements inside out, and the
-    /// forces would grow from substep to substep.
-    pub(crate) fn drift(&mut self, duration: f32, lead: f32) {
+    /// forces would grow from substep to substep. Returns how far the fastest has come [m].
+    pub(crate) fn drift(&mut self, duration: f32, lead: f32) -> f32 {
+        let mut fastest = 0.0f32;
         let top_speed = self.grid.voxel_size() / duration;
         // Pieces born since the last round of damping have no motion yet.
         self.rigid
@@ -355,6 +356,10 @@ impl<D: Dim> Body<D> {
             let node = id as usize;
             let mut velocity = self.velocity[node];
             let squared = dot(velocity, velocity);
+            // Not `max`, which would have every node wait for the one before.
+            if squared > fastest {
+                fastest = squared;
+            }
             if squared > top_speed * top_speed {
                 velocity = scaled(velocity, top_speed / squared.sqrt());
                 self.velocity[node] = velocity;
@@ -364,6 +369,7 @@ impl<D: Dim> Body<D> {
             let whole = self.rigid[self.pieces.of_node(id) as usize].at::<D>(position);
             self.ahead[node] = plus(position, scaled(minus(velocity, whole), lead));
         }
+        fastest.sqrt().min(top_speed) * duration
     }
 
     /// Wakes or puts to sleep all pieces whose number is marked.

@@ -6,6 +6,7 @@
 //! substeps are the iterations [Macklin 2019]. What is pushed out of an overlap gains no speed by it:
 //! after the move the same rows are solved again without the push [Catto 2023].
 
+mod exit;
 mod motion;
 mod row;
 
@@ -15,6 +16,7 @@ use crate::manipulator::Manipulator;
 use crate::solve::Row;
 use crate::touch::{Collider, Impulse, MARGIN, Nearby, Skin, Skins};
 use crate::vector::{as_row, minus, scaled, three};
+use exit::Exit;
 use motion::Motion;
 use row::{Contact, inner};
 
@@ -58,9 +60,8 @@ struct HandContact {
 pub struct Contacts {
     nodes: Vec<NodeContact>,
     skins: Vec<SkinContact>,
+    exits: Vec<Exit>,
     hands: Vec<HandContact>,
-    /// The place of the first node of each body among all.
-    first: Vec<u32>,
     motion: Motion,
 }
 
@@ -77,14 +78,14 @@ impl Contacts {
         duration: f32,
     ) -> Vec<Hit> {
         let mut hits = Vec::new();
-        self.first.clear();
-        let mut first = 0;
-        for body in bodies {
-            self.first.push(first);
-            first += body.velocity.len() as u32;
-        }
+        self.motion.clear(bodies);
         self.find_nodes(bodies, colliders, nearby, duration, &mut hits);
         self.find_skins(bodies, &mut nearby.skins, duration, &mut hits);
+        self.exits.clear();
+        let (skins, motion) = (&nearby.skins, &mut self.motion);
+        let exits = skins.captives.iter();
+        let exits = exits.filter_map(|captive| Exit::new(captive, bodies, skins, motion, duration));
+        self.exits.extend(exits);
         hits.sort_unstable();
         hits.dedup();
         hits
@@ -125,7 +126,7 @@ impl Contacts {
             let contact = Contact::new(normal, gap, duration, 1.0 / lightness, friction);
             self.nodes.push(NodeContact {
                 contact: contact.known_as::<D>(place, &pair.impulse),
-                node: self.first[pair.body as usize] + pair.node,
+                node: self.motion.place(pair.body, pair.node),
                 hand: pair.collider.checked_sub(first_hand),
             });
         }
@@ -143,12 +144,19 @@ impl Contacts {
         let furthest = (1.0 + MARGIN) * sizes.fold(0.0, f32::max);
         let waking = WAKE_SPEED * duration;
         let frictions: Vec<f32> = bodies.iter().map(Body::friction).collect();
-        for (place, pair) in skins.pairs.iter_mut().enumerate() {
+        let mut pairs = std::mem::take(&mut skins.pairs);
+        for (place, pair) in pairs.iter_mut().enumerate() {
             let [a, b] = [pair.skins[0] as usize, pair.skins[1] as usize];
             let apart = minus(skins.centres[a], skins.centres[b]);
             let squared = inner::<D>(apart, apart);
             if squared > furthest * furthest {
                 pair.met_in_front = false;
+                pair.impulse.release();
+                continue;
+            }
+            if skins.is_inside(a, b) {
+                // What came out is not to be drawn in again.
+                pair.met_in_front = true;
                 pair.impulse.release();
                 continue;
             }
@@ -184,10 +192,10 @@ impl Contacts {
             let contact = Contact::new(normal, gap, duration, 1.0 / lightness, friction);
             self.skins.push(SkinContact {
                 contact: contact.known_as::<D>(place, &pair.impulse),
-                grips: [a, b]
-                    .map(|skin| skin.nodes.map(|node| node + self.first[skin.body as usize])),
+                grips: [a, b].map(|skin| self.motion.grip::<D>(skin)),
             });
         }
+        skins.pairs = pairs;
     }
 
     /// Finds the contacts of the hands with obstacles, the first `obstacles` of the colliders, and
@@ -229,16 +237,16 @@ impl Contacts {
         duration: f32,
     ) {
         let motion = &mut self.motion;
-        if self.nodes.is_empty() && self.skins.is_empty() {
-            motion.rows.clear();
-        } else {
-            motion.load(bodies);
-        }
+        motion.load(bodies);
         for row in &self.nodes {
             motion.push_node(row, hands, row.contact.start(), duration);
         }
         for row in self.skins.iter().filter(|row| row.contact.pressed > 0.0) {
             motion.push_skins::<D>(&row.grips, row.contact.start());
+        }
+        // Once only: what is held fast inside must not pull its way out.
+        for exit in &self.exits {
+            exit.solve::<D>(motion);
         }
         for backwards in [false, true] {
             for_each(&mut self.skins, backwards, |row| {
@@ -285,10 +293,10 @@ impl Contacts {
         duration: f32,
     ) {
         let motion = &mut self.motion;
-        if self.nodes.is_empty() && self.skins.is_empty() {
-            return;
-        }
         motion.load(bodies);
+        for exit in &self.exits {
+            exit.relax::<D>(motion);
+        }
         for row in &mut self.skins {
             if row.contact.was_pushed_out() {
                 let change = row.contact.relax::<D>(motion.between::<D>(&row.grips));

@@ -37,6 +37,9 @@ const GROUP: usize = 8;
 #[cfg(feature = "parallel")]
 const LEAST_PARALLEL: usize = 256;
 
+/// Numbers after the last force, so that four can be read from where it begins.
+const PAD: usize = 4;
+
 const VACANT: u32 = u32::MAX;
 const ALL_LANES: u8 = u8::MAX;
 
@@ -65,7 +68,9 @@ pub struct Blocks<D: Dim> {
     slots: Vec<[u32; 8]>,
     /// The nodes of all blocks: node k of lane l at k · LANES + l after the block's first.
     nodes: Vec<u32>,
-    forces: Vec<Row>,
+    /// The forces on them, each of as many numbers as there are dimensions: a pad would be a quarter
+    /// of what a substep has to move, or half of it.
+    forces: Vec<f32>,
     /// Kept for the next evaluation, so that it need not be cleared.
     #[cfg_attr(feature = "serde", serde(skip))]
     desk: Option<Box<[Scratch; GROUP]>>,
@@ -142,7 +147,7 @@ struct Shared<'a> {
 /// Some blocks, and the forces that they write, the first of which has the number `first`.
 struct Group<'a> {
     blocks: &'a mut [Block],
-    forces: &'a mut [Row],
+    forces: &'a mut [f32],
     first: usize,
     shared: Shared<'a>,
 }
@@ -166,10 +171,10 @@ impl Block {
 
     /// What the kernel works on; `first` is the number of the first of the forces.
     #[inline(always)]
-    fn seats<'a>(
+    fn seats<'a, D: Dim>(
         &'a mut self,
         shared: &Shared<'a>,
-        forces: &'a mut [Row],
+        forces: &'a mut [f32],
         first: usize,
     ) -> Seats<'a> {
         let places = self.first as usize..self.end();
@@ -177,7 +182,7 @@ impl Block {
             nodes: &shared.nodes[places.clone()],
             half_size: &self.half_size,
             rotation: &mut self.rotation,
-            forces: &mut forces[places.start - first..places.end - first],
+            forces: &mut forces[(places.start - first) * D::N..(places.end - first) * D::N],
             inverted: &mut self.inverted,
         }
     }
@@ -192,7 +197,7 @@ fn evaluate_group<D: Dim, L: Lanes>(
 ) {
     let Group {
         blocks,
-        forces: rows,
+        forces: all,
         first,
         shared,
     } = group;
@@ -202,7 +207,7 @@ fn evaluate_group<D: Dim, L: Lanes>(
             continue;
         }
         let (home, stencil) = (block.home, block.stencil(&shared));
-        let seats = block.seats(&shared, rows, first);
+        let seats = block.seats::<D>(&shared, all, first);
         match (home, stencil) {
             (Home::Plain(_), _) => plain_gradient::<D, L>(position, &seats, scratch),
             (_, (same, [])) => gradient::<D, L>(&Same(same), position, &seats, scratch),
@@ -214,7 +219,7 @@ fn evaluate_group<D: Dim, L: Lanes>(
             continue;
         }
         let moduli = &shared.moduli[block.home.material() as usize - 1];
-        let mut seats = block.seats(&shared, rows, first);
+        let mut seats = block.seats::<D>(&shared, all, first);
         stress::<D, L>(law, moduli, &mut seats, scratch);
     }
     for (block, scratch) in blocks.iter_mut().zip(&*scratch) {
@@ -223,7 +228,7 @@ fn evaluate_group<D: Dim, L: Lanes>(
         }
         let (home, stencil) = (block.home, block.stencil(&shared));
         let moduli = &shared.moduli[home.material() as usize - 1];
-        let seats = &mut block.seats(&shared, rows, first);
+        let seats = &mut block.seats::<D>(&shared, all, first);
         match (home, stencil) {
             (Home::Plain(_), _) => plain_forces::<D, L>(moduli, seats, scratch),
             (_, (same, [])) => {
@@ -273,7 +278,7 @@ impl<D: Dim> Blocks<D> {
             seats: Vec::new(),
             slots: Vec::new(),
             nodes: vec![VACANT; LANES],
-            forces: vec![[0.0; 4]; LANES],
+            forces: vec![0.0; LANES * D::N + PAD],
             desk: None,
             dim: PhantomData,
         }
@@ -331,12 +336,12 @@ impl<D: Dim> Blocks<D> {
             pooled,
             nodes,
         };
-        let mut forces = &mut self.forces[LANES..];
+        let mut forces = &mut self.forces[LANES * D::N..];
         let mut first = LANES;
         self.blocks.chunks_mut(GROUP).map(move |blocks| {
             // Blocks stand in the order of their forces.
             let end = blocks.last().map_or(first, Block::end);
-            let (own, rest) = std::mem::take(&mut forces).split_at_mut(end - first);
+            let (own, rest) = std::mem::take(&mut forces).split_at_mut((end - first) * D::N);
             let group = Group {
                 blocks,
                 forces: own,
@@ -351,7 +356,7 @@ impl<D: Dim> Blocks<D> {
     /// The force [N] on a node, as of the last evaluation.
     #[inline]
     pub fn force_on(&self, node: u32) -> Row {
-        Portable::sum(&self.forces, &self.slots[node as usize], D::CORNERS)
+        self.force_by::<Portable>(node)
     }
 
     /// The forces [N] of the elements on a node, in the order of the octants around it, as of the
@@ -360,7 +365,18 @@ impl<D: Dim> Blocks<D> {
     pub fn parts_on(&self, node: u32) -> impl Iterator<Item = Row> + '_ {
         let places = self.slots[node as usize].iter();
         let places = places.take_while(|&&place| place != 0);
-        places.map(|&place| self.forces[place as usize])
+        places.map(|&place| {
+            let mut force = [0.0; 4];
+            force[..D::N].copy_from_slice(&self.forces[place as usize..][..D::N]);
+            force
+        })
+    }
+
+    #[inline(always)]
+    fn force_by<L: Lanes>(&self, node: u32) -> Row {
+        let mut sum = L::sum(&self.forces, &self.slots[node as usize], D::CORNERS);
+        sum[D::N..].fill(0.0);
+        sum
     }
 
     /// The rotation of an element as of the last evaluation, by rows.
@@ -421,8 +437,7 @@ impl<D: Dim> Blocks<D> {
             if lightness == 0.0 {
                 continue;
             }
-            let force = L::sum(&self.forces, &self.slots[node], D::CORNERS);
-            let acceleration = plus(scaled(force, lightness), kick.gravity);
+            let acceleration = plus(scaled(self.force_by::<L>(id), lightness), kick.gravity);
             velocity[node] = plus(velocity[node], scaled(acceleration, kick.duration));
         }
     }

@@ -6,6 +6,7 @@
 //! and hold until something may have moved by that much [Verlet 1967].
 
 mod bins;
+mod captives;
 mod skins;
 
 use crate::body::Body;
@@ -13,6 +14,7 @@ use crate::dim::Dim;
 use crate::shape::Shape;
 use crate::solve::Row;
 use crate::vector::{dot, length, minus, plus, scaled, three};
+pub use captives::Captive;
 pub use skins::{MARGIN, Skin, Skins, mean};
 
 /// Something rigid that nodes can touch.
@@ -76,6 +78,9 @@ pub struct Nearby {
 const SLACK: f32 = 0.5;
 const SLACK_TIME: f32 = 1.0 / 60.0;
 
+/// Nodes that are tested against a rigid shape together before each is on its own.
+const STRETCH: usize = 32;
+
 impl Nearby {
     /// The lists are out of date: the meshes have changed.
     pub fn expire(&mut self) {
@@ -98,6 +103,13 @@ impl Nearby {
         let nodes = self.node_pairs.iter_mut().map(|pair| &mut pair.impulse);
         let skins = self.skins.pairs.iter_mut().map(|pair| &mut pair.impulse);
         nodes.chain(skins).for_each(|impulse| impulse.total = 0.0);
+        self.skins.start_tick();
+    }
+
+    /// The bodies have moved, no node of them further than by `distance` [m].
+    pub fn pass(&mut self, distance: f32) {
+        self.travel += distance;
+        self.skins.pass(distance);
     }
 
     /// Follows the bodies, and brings the lists up to date where something may have moved further
@@ -107,11 +119,9 @@ impl Nearby {
         let size = sizes.fold(0.0, f32::max);
         let hands = colliders.iter().map(|collider| length(collider.velocity));
         let hand_speed = hands.fold(0.0, f32::max);
-        match self.skins.follow(bodies, size) {
-            Some(moved) => self.travel += moved + hand_speed * duration,
-            None => self.nodes_are_good = false,
-        }
-        // Corners move faster than the middle of what turns: half of the slack is theirs.
+        self.nodes_are_good &= self.skins.follow(bodies, size);
+        self.travel += hand_speed * duration;
+        // What gets faster may be looked for further out: half of the slack is kept for it.
         self.nodes_are_good &= self.travel < 0.5 * self.slack;
         if !self.nodes_are_good {
             let speed = fastest(bodies).max(hand_speed);
@@ -125,18 +135,17 @@ impl Nearby {
     fn find_node_pairs<D: Dim>(&mut self, bodies: &[Body<D>], colliders: &[Collider], reach: f32) {
         let old = std::mem::take(&mut self.node_pairs);
         let mut old = old.into_iter().peekable();
-        let boxes: Vec<(Row, f32)> = bodies.iter().map(bounding_ball).collect();
+        let stretches: Vec<Vec<Stretch>> = bodies.iter().map(stretches).collect();
         for (index, collider) in colliders.iter().enumerate() {
             for (place, body) in bodies.iter().enumerate() {
-                let (centre, radius) = boxes[place];
-                if collider.shape.distance(three(centre)).0 > radius + reach {
-                    continue;
-                }
+                let all = stretches[place].iter().filter(|stretch| {
+                    let (gap, _) = collider.shape.distance(three(stretch.centre));
+                    gap <= stretch.radius + reach
+                });
                 // What sleeps is touched by hands alone.
-                let every = body.mesh.nodes().map(|(node, _)| node);
-                let every = every.filter(|_| collider.is_hand);
-                let awake = body.awake.iter().copied().filter(|_| !collider.is_hand);
-                for node in every.chain(awake) {
+                let touchable = |node: &u32| collider.is_hand || !body.pieces.sleeps(*node);
+                let nodes = all.flat_map(|stretch| stretch.nodes.iter().copied());
+                for node in nodes.filter(touchable) {
                     let at = three(body.position[node as usize]);
                     if collider.shape.distance(at).0 > reach {
                         continue;
@@ -169,16 +178,31 @@ fn fastest<D: Dim>(bodies: &[Body<D>]) -> f32 {
     fastest.sqrt()
 }
 
-/// A ball around all nodes of a body.
-fn bounding_ball<D: Dim>(body: &Body<D>) -> (Row, f32) {
-    let (mut low, mut high) = ([f32::MAX; 4], [f32::MIN; 4]);
-    for (node, _) in body.mesh.nodes() {
-        let at = body.position[node as usize];
-        for axis in 0..4 {
-            low[axis] = low[axis].min(at[axis]);
-            high[axis] = high[axis].max(at[axis]);
+/// Some nodes of a body, ascending and mostly side by side, and a ball around them.
+struct Stretch {
+    nodes: Vec<u32>,
+    centre: Row,
+    radius: f32,
+}
+
+/// All nodes of a body in stretches: most are out of reach as a whole.
+fn stretches<D: Dim>(body: &Body<D>) -> Vec<Stretch> {
+    let nodes: Vec<u32> = body.mesh.nodes().map(|(node, _)| node).collect();
+    let stretch = |nodes: &[u32]| {
+        let (mut low, mut high) = ([f32::MAX; 4], [f32::MIN; 4]);
+        for &node in nodes {
+            let at = body.position[node as usize];
+            for axis in 0..4 {
+                low[axis] = low[axis].min(at[axis]);
+                high[axis] = high[axis].max(at[axis]);
+            }
         }
-    }
-    let centre = scaled(plus(low, high), 0.5);
-    (centre, length(minus(high, centre)))
+        let centre = scaled(plus(low, high), 0.5);
+        Stretch {
+            nodes: nodes.to_vec(),
+            centre,
+            radius: length(minus(high, centre)),
+        }
+    };
+    nodes.chunks(STRETCH).map(stretch).collect()
 }

@@ -286,10 +286,12 @@ impl<D: Dim> World<D> {
 
     /// Moves everything by its velocity, and takes back what only pushed overlaps out.
     fn drift(&mut self, duration: f32) {
+        let mut furthest = 0.0f32;
         for body in &mut self.bodies {
             let (lead, _) = body.damping(duration);
-            body.drift(duration, lead);
+            furthest = furthest.max(body.drift(duration, lead));
         }
+        self.nearby.pass(furthest);
         for hand in &mut self.manipulators {
             hand.drift(duration);
         }
@@ -325,9 +327,11 @@ impl<D: Dim> World<D> {
         let handled =
             pairs.filter(|pair| pair.collider >= first_hand && pair.impulse.pressed > 0.0);
         let piece = |body: u32, node| self.bodies[body as usize].pieces.of_node(node);
-        let handled: Vec<Hit> = handled
-            .map(|pair| (pair.body, piece(pair.body, pair.node)))
-            .collect();
+        let handled = handled.map(|pair| (pair.body, piece(pair.body, pair.node)));
+        let captives = self.nearby.skins.captives.iter();
+        let captives = captives.map(|captive| &self.nearby.skins.list[captive.skin as usize]);
+        let captives = captives.map(|skin| (skin.body, skin.piece));
+        let handled: Vec<Hit> = handled.chain(captives).collect();
         let fallen = fall_asleep(&mut self.bodies, &motions, &handled, TICK);
         if !fallen.is_empty() {
             self.nearby.expire_rest();

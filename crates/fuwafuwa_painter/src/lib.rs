@@ -3,8 +3,10 @@
 //!
 //! A [`Painter`] is a list of shapes; it becomes a drawing ([`Painter::svg`]), an image
 //! ([`Painter::pixels`]) or a frame of a [`film`], the same in all of them. Bodies in space are
-//! painted by [`solid`] into an image that lies on the paper like any other shape. [`stage`] puts
-//! whole worlds on a painter.
+//! painted by [`solid`] into an image that lies on the paper like any other shape.
+//!
+//! Whole worlds are put on a painter by [`stage`], which shows elements and voxels as they are, or by
+//! [`soft`], the look of the game, with outlines from [`smoothing`] and [faces](Face).
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 // Units and sources stand in brackets: [m], [RFC 4648].
@@ -13,9 +15,10 @@
 mod canvas;
 mod cover;
 mod error;
-pub mod face;
+mod face;
 pub mod film;
 mod letters;
+mod puff;
 mod raster;
 mod shadow;
 pub mod smoothing;

@@ -30,8 +30,9 @@ const INWARDS: f32 = 0.5;
 const OUTWARDS: f32 = -0.51;
 /// The farthest neighbours are as many points away as the root of their number, divided by this.
 const REACH: f32 = 3.0;
-/// How far a point may go, in lengths of its segments. With less the flat runs of a disc leave
-/// kinks, with more small parts lose their shape.
+/// How far a point may go, in lengths of a segment: about voxels, whether they are squashed just
+/// there or not. With less the flat runs of a disc leave kinks, with more small parts lose their
+/// shape.
 const FARTHEST: f32 = 0.8;
 /// An outline with no more points than this is a crumb, round all over.
 const CRUMB: usize = 12;
@@ -69,10 +70,9 @@ pub fn smoothed(points: &[Vector], is_fresh: &[bool]) -> Vec<Vector> {
             smooth_once(&mut places, &skins, reach, torn);
         }
     }
+    let sides = (0..count).map(|k| length(minus(points[after(k, count)], points[k])));
+    let most = FARTHEST * sides.sum::<f32>() / count as f32;
     for k in 0..count {
-        let sides =
-            [before(k, count), after(k, count)].map(|n| length(minus(points[n], points[k])));
-        let most = FARTHEST * 0.5 * (sides[0] + sides[1]);
         let way = minus(places[k], points[k]);
         let far = length(way);
         if far > most {

@@ -1,19 +1,16 @@
 //! The look of the game: soft things with round rims, under a light from the upper left.
 //!
-//! A shape is blurred, and the blur is taken for its height: where it falls off is the rim, and
-//! which way it falls tells how the light meets it. Everything is painted on one layer of pixels,
-//! which lies on the paper as an image. To see elements exactly, use [`crate::stage`].
+//! Each thing is painted pixel by pixel and lies on the paper as an image. To see elements exactly,
+//! use [`crate::stage`].
 
-use crate::cover::{Cover, Region};
 use crate::face::Face;
+use crate::puff::{LINE, Layer, Puff, THIN_LINE, layered, line_tone};
 use crate::smoothing::{self, Curve};
 use crate::stage;
-use crate::theme::{Role, colour};
-use crate::{Frame, Painter, Spot};
+use crate::{Frame, Painter, Role, Spot};
 use fuwafuwa::shape::{Shape, Vector};
 use fuwafuwa::{Body, Dim2, World};
 use std::collections::BTreeMap;
-use tiny_skia::{Pixmap, PremultipliedColorU8};
 
 /// How far the roundness of a body reaches in from its rim [m].
 const BODY_RIM: f32 = 0.045;
@@ -23,15 +20,8 @@ const RIGID_RIM: f32 = 0.02;
 const FRESH_BAND: f32 = 1.7;
 /// Its width at most, as a share of the width of a piece.
 const FRESH_SHARE: f32 = 0.2;
-/// Width of outlines [m], and of those around what was inside.
-const LINE: f32 = 0.011;
-const THIN_LINE: f32 = 0.007;
-/// Towards the light on the paper, y downwards; of length 1.
-const LIGHT: Spot = [-0.5, -0.866];
-/// How far shadows fall [m], how soft they are [m] and how dark.
-const SHADOW_FALL: f32 = 0.02;
-const SHADOW_WIDTH: f32 = 0.02;
-const SHADOW: f32 = 0.16;
+/// Width of the line around a crumb at most [voxels], so that a heap is not all lines.
+const CRUMB_LINE: f32 = 0.2;
 
 /// What a game adds to a world.
 #[derive(Clone, Debug, Default)]
@@ -42,19 +32,20 @@ pub struct Extras {
     pub faces: Vec<Face>,
 }
 
-/// Paints a moment: basket, obstacles, bodies, faces, and hands, the first hand being player 1's.
+/// Paints a moment: basket, bodies, faces, obstacles, hands, the first hand being player 1's.
 pub fn world(painter: &mut Painter, frame: Frame, world: &World<Dim2>, extras: &Extras) {
     if let Some(region) = extras.basket {
         basket(painter, frame, region);
-    }
-    for obstacle in world.obstacles() {
-        bar(painter, frame, obstacle.shape);
     }
     for each in world.bodies() {
         body(painter, frame, each);
     }
     for face in &extras.faces {
         face.paint(painter, frame);
+    }
+    // A smooth outline may reach a little into what the body touches: on top, that stays whole.
+    for obstacle in world.obstacles() {
+        bar(painter, frame, obstacle.shape);
     }
     for (number, each) in world.manipulators().iter().enumerate() {
         hand(painter, frame, each.position(), each.radius, number);
@@ -126,7 +117,7 @@ pub fn body(painter: &mut Painter, frame: Frame, body: &Body<Dim2>) {
     let voxel = body.grid().voxel_size();
     layered(painter, frame, &all, |layer| {
         for piece in &pieces {
-            layer.piece(piece, voxel);
+            paint_piece(layer, piece, voxel);
         }
     });
 }
@@ -139,28 +130,6 @@ fn toy(painter: &mut Painter, frame: Frame, rings: &[Vec<Spot>], rim: f32, role:
         }
         layer.lines(rings, LINE, line_tone(role));
     });
-}
-
-/// Paints on pixels of their own what lies in and around rings, their shadow first.
-fn layered(painter: &mut Painter, frame: Frame, rings: &[Vec<Spot>], paint: impl Fn(&mut Layer)) {
-    let paper = painter.size();
-    let margin = (SHADOW_FALL + 3.0 * SHADOW_WIDTH + LINE) * frame.unit + 2.0;
-    let Some(region) = Region::around(rings, margin, paper).and_then(|all| all.on(paper)) else {
-        return;
-    };
-    let [width, height] = region.size.map(|k| k as u32);
-    let Some(pixels) = Pixmap::new(width, height) else {
-        return;
-    };
-    let mut layer = Layer {
-        frame,
-        paper,
-        region,
-        pixels,
-    };
-    layer.shadow(rings);
-    paint(&mut layer);
-    painter.image(region.low.map(|k| k as f32), layer.pixels);
 }
 
 /// A piece of a body, to be painted.
@@ -202,189 +171,35 @@ impl Piece {
     }
 }
 
-/// Red, green and blue, from 0 to 255.
-type Tone = [f32; 3];
-
-/// A shape with its colours and its height.
-struct Puff {
-    mask: Cover,
-    height: Cover,
-    /// Width of its rim [px].
-    rim: f32,
-    tones: Vec<Tone>,
-}
-
-impl Puff {
-    /// What rings cover, with a rim of at most some width [px]; nothing when that is off the paper.
-    fn new(rings: &[Vec<Spot>], rim: f32, role: Role, paper: [u32; 2]) -> Option<Self> {
-        let region = Region::around(rings, 3.0 * rim + 1.0, paper)?;
-        let mask = region.filled(rings);
-        let covered: f32 = mask.share.iter().sum();
-        let rim = rim.min(0.22 * covered.sqrt());
-        Some(Self {
-            height: mask.blurred(rim),
-            rim: rim.round().max(0.5),
-            tones: vec![tone(role); mask.share.len()],
-            mask,
-        })
+/// Paints a piece of a body with voxels of a width [m].
+fn paint_piece(layer: &mut Layer, piece: &Piece, voxel: f32) {
+    let unit = layer.frame.unit;
+    let rings = piece.rings(layer.frame);
+    let is_crumb = piece.element_count == 1;
+    let role = if is_crumb { Role::Crumb } else { Role::Skin };
+    let Some(mut puff) = Puff::new(&rings, BODY_RIM * unit, role, layer.paper) else {
+        return;
+    };
+    let region = puff.mask.region;
+    let fresh = piece.runs(layer.frame, true);
+    if !is_crumb {
+        // On a small piece a narrower one, so that something of its colour is left.
+        let most = FRESH_SHARE * puff.mask.share.iter().sum::<f32>().sqrt();
+        let band = region.stroked(&fresh, 2.0 * most.min(FRESH_BAND * voxel * unit));
+        puff.tint(&band.blurred(0.4 * voxel * unit), Role::Fresh);
     }
-
-    /// Gives it another colour where a cover of the same region is.
-    fn tint(&mut self, cover: &Cover, role: Role) {
-        let new = tone(role);
-        for (tone, &share) in self.tones.iter_mut().zip(&cover.share) {
-            *tone = mixed(*tone, new, share);
-        }
+    for (&material, outlines) in &piece.inner {
+        let cells = region.filled(outlines).blurred(1.2 * voxel * unit);
+        puff.tint(&cells.steeper(), Role::Material(material));
     }
-
-    /// The colour of a pixel under the light.
-    fn lit(&self, x: usize, y: usize) -> Tone {
-        let [columns, rows] = self.mask.region.size;
-        let pixel = y * columns + x;
-        let base = self.tones[pixel];
-        let deep = shaded(base);
-        // At a straight rim the blur is a half; one width further in it is nearly whole.
-        let inside = (2.0 * self.height.share[pixel] - 1.0).clamp(0.0, 1.0);
-        let slope = self.height.slope(x, y).map(|k| -2.2 * self.rim * k);
-        let facing = slope[0] * LIGHT[0] + slope[1] * LIGHT[1];
-        // Over the whole of a thing the light grows weaker downwards.
-        let below = y as f32 / rows as f32 - 0.5;
-        let tone = mixed(deep, base, 0.45 + 0.55 * inside);
-        let tone = mixed(
-            tone,
-            [255.0, 250.0, 240.0],
-            (0.42 * facing - 0.12 * below).clamp(0.0, 0.6),
-        );
-        mixed(tone, deep, (-0.75 * facing + 0.25 * below).clamp(0.0, 0.8))
+    layer.add(&puff);
+    if is_crumb {
+        let width = THIN_LINE.min(CRUMB_LINE * voxel);
+        layer.lines(&rings, width, line_tone(Role::Crumb));
+    } else {
+        layer.strokes(&fresh, THIN_LINE, line_tone(Role::Crumb));
+        layer.strokes(&piece.runs(layer.frame, false), LINE, line_tone(Role::Skin));
     }
-}
-
-/// Pixels for a part of the paper, clear at first.
-struct Layer {
-    frame: Frame,
-    paper: [u32; 2],
-    region: Region,
-    pixels: Pixmap,
-}
-
-impl Layer {
-    fn shadow(&mut self, rings: &[Vec<Spot>]) {
-        let unit = self.frame.unit;
-        let fall = SHADOW_FALL * unit;
-        let fallen = |ring: &Vec<Spot>| {
-            ring.iter()
-                .map(|[x, y]| [x + 0.5 * fall, y + fall])
-                .collect()
-        };
-        let fallen: Vec<Vec<Spot>> = rings.iter().map(fallen).collect();
-        let cover = self
-            .region
-            .filled(&fallen)
-            .blurred(0.6 * SHADOW_WIDTH * unit);
-        let ink = tone(Role::Ink);
-        for (pixel, share) in self.pixels.pixels_mut().iter_mut().zip(cover.share) {
-            blend(pixel, ink, SHADOW * share);
-        }
-    }
-
-    fn add(&mut self, puff: &Puff) {
-        let Region {
-            low,
-            size: [columns, rows],
-        } = puff.mask.region;
-        let [width, height] = self.region.size;
-        for y in 0..rows {
-            for x in 0..columns {
-                let share = puff.mask.share[y * columns + x];
-                let column = low[0] + x as i32 - self.region.low[0];
-                let row = low[1] + y as i32 - self.region.low[1];
-                let is_here =
-                    (0..width as i32).contains(&column) && (0..height as i32).contains(&row);
-                if share > 0.0 && is_here {
-                    let pixel = row as usize * width + column as usize;
-                    blend(&mut self.pixels.pixels_mut()[pixel], puff.lit(x, y), share);
-                }
-            }
-        }
-    }
-
-    /// Adds closed lines of a width [m].
-    fn lines(&mut self, rings: &[Vec<Spot>], width: f32, tone: Tone) {
-        let close = |ring: &Vec<Spot>| ring.iter().chain(ring.first()).copied().collect();
-        let closed: Vec<Vec<Spot>> = rings.iter().map(close).collect();
-        self.strokes(&closed, width, tone);
-    }
-
-    /// Adds open lines of a width [m].
-    fn strokes(&mut self, lines: &[Vec<Spot>], width: f32, tone: Tone) {
-        let width = (width * self.frame.unit).max(1.0);
-        let cover = self.region.stroked(lines, width);
-        for (pixel, share) in self.pixels.pixels_mut().iter_mut().zip(cover.share) {
-            blend(pixel, tone, share);
-        }
-    }
-
-    fn piece(&mut self, piece: &Piece, voxel: f32) {
-        let unit = self.frame.unit;
-        let rings = piece.rings(self.frame);
-        let is_crumb = piece.element_count == 1;
-        let role = if is_crumb { Role::Crumb } else { Role::Skin };
-        let Some(mut puff) = Puff::new(&rings, BODY_RIM * unit, role, self.paper) else {
-            return;
-        };
-        let region = puff.mask.region;
-        let fresh = piece.runs(self.frame, true);
-        if !is_crumb {
-            // On a small piece a narrower one, so that something of its colour is left.
-            let most = FRESH_SHARE * puff.mask.share.iter().sum::<f32>().sqrt();
-            let band = region.stroked(&fresh, 2.0 * most.min(FRESH_BAND * voxel * unit));
-            puff.tint(&band.blurred(0.4 * voxel * unit), Role::Fresh);
-        }
-        for (&material, outlines) in &piece.inner {
-            let cells = region.filled(outlines).blurred(1.2 * voxel * unit);
-            puff.tint(&cells.steeper(), Role::Material(material));
-        }
-        self.add(&puff);
-        if is_crumb {
-            self.lines(&rings, THIN_LINE, line_tone(Role::Crumb));
-        } else {
-            self.strokes(&fresh, THIN_LINE, line_tone(Role::Crumb));
-            self.strokes(&piece.runs(self.frame, false), LINE, line_tone(Role::Skin));
-        }
-    }
-}
-
-/// Puts a share of a colour over a pixel.
-fn blend(pixel: &mut PremultipliedColorU8, tone: Tone, share: f32) {
-    let share = share.clamp(0.0, 1.0);
-    let old = [pixel.red(), pixel.green(), pixel.blue(), pixel.alpha()].map(f32::from);
-    let new = [tone[0], tone[1], tone[2], 255.0];
-    let mut sum = [0u8; 4];
-    for k in 0..4 {
-        sum[k] = (old[k] + (new[k].clamp(0.0, 255.0) - old[k]) * share).round() as u8;
-    }
-    let [red, green, blue, alpha] = sum;
-    let whole =
-        PremultipliedColorU8::from_rgba(red.min(alpha), green.min(alpha), blue.min(alpha), alpha);
-    *pixel = whole.expect("no part is above the whole");
-}
-
-fn tone(role: Role) -> Tone {
-    colour(role).map(f32::from)
-}
-
-/// A colour in the shade: darker and stronger, as of something that light shines into.
-fn shaded(tone: Tone) -> Tone {
-    tone.map(|k| 0.94 * k * (k / 255.0).sqrt())
-}
-
-/// The colour of the line around something.
-fn line_tone(role: Role) -> Tone {
-    mixed(shaded(tone(role)), tone(Role::Ink), 0.4)
-}
-
-fn mixed(a: Tone, b: Tone, share: f32) -> Tone {
-    [0, 1, 2].map(|k: usize| a[k] + (b[k] - a[k]) * share)
 }
 
 fn spots(frame: Frame, places: &[Vector]) -> Vec<Spot> {
@@ -406,6 +221,8 @@ pub(crate) fn ellipse(middle: Spot, size: Spot) -> impl Iterator<Item = Spot> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Pixmap;
+    use crate::puff::{Tone, tone};
     use fuwafuwa::{Blade, Material, Settings, VoxelGrid};
 
     const FRAME: Frame = Frame {

@@ -21,7 +21,11 @@ impl Ages {
         self.forms.truncate(bodies.len());
         self.seconds.truncate(bodies.len());
         for (place, body) in bodies.iter().enumerate() {
-            let young = if place < self.forms.len() { 0.0 } else { f32::MAX };
+            let young = if place < self.forms.len() {
+                0.0
+            } else {
+                f32::MAX
+            };
             if place == self.forms.len() {
                 self.forms.push(Vec::new());
                 self.seconds.push(Vec::new());
@@ -63,7 +67,10 @@ mod tests {
         world.cut(0, &Blade::segment([0.5, 0.5], [0.5, 2.0]));
         ages.follow(&world, 0.1);
         let remodelled = young(&ages);
-        assert!(remodelled > 10 && remodelled < ages.seconds[0].len(), "{remodelled}");
+        assert!(
+            remodelled > 10 && remodelled < ages.seconds[0].len(),
+            "{remodelled}"
+        );
         ages.follow(&world, 0.3);
         assert_eq!(young(&ages), 0);
     }

@@ -10,7 +10,7 @@ use fuwafuwa::{Body, Dim2, ElementView};
 use std::collections::BTreeSet;
 
 /// For how long an element flashes after it was remodelled [s].
-const FLASH: f32 = 0.5;
+const FLASH: f32 = 0.4;
 
 /// A corner of a triangle of the element view.
 #[repr(C)]
@@ -76,16 +76,20 @@ impl ElementMesh {
                 ElementColour::Strain => theme.strain(view.strain),
             };
             let age = ages.get(view.id as usize).copied().unwrap_or(FLASH);
-            let flash = 0.9 * (1.0 - age / FLASH).clamp(0.0, 1.0);
+            let flash = 0.65 * (1.0 - age / FLASH).clamp(0.0, 1.0);
             self.add_fill(view, bytes(mix(plain, [1.0; 3], flash), 1.0));
         }
-        let ink = bytes(theme.ink, 1.0);
         for view in &views {
             // The larger an element, the bolder: levels can be told apart without colours.
-            let half = 0.45 + 0.4 * f32::from(view.level);
-            self.add_edges(view, half, ink);
+            let level = f32::from(view.level.min(4));
+            self.add_edges(
+                view,
+                0.4 + 0.25 * level,
+                bytes(theme.ink, 0.45 + 0.12 * level),
+            );
         }
         if nodes {
+            let ink = bytes(theme.ink, 1.0);
             for (id, _) in body.mesh().nodes() {
                 let at = flat(body.node_state(id).0);
                 self.add_line(at, at, 1.8, ink);
@@ -129,7 +133,12 @@ impl ElementMesh {
         };
         let first = self.vertices.len() as u32;
         let reach = half + 0.7;
-        for (at, end, side) in [(from, -1.0, -1.0), (to, 1.0, -1.0), (to, 1.0, 1.0), (from, -1.0, 1.0)] {
+        for (at, end, side) in [
+            (from, -1.0, -1.0),
+            (to, 1.0, -1.0),
+            (to, 1.0, 1.0),
+            (from, -1.0, 1.0),
+        ] {
             let across = scaled([-along[1], along[0]], side * reach);
             self.vertices.push(ElementVertex {
                 at,
@@ -157,7 +166,9 @@ fn round(low: [i32; 3], width: i32) -> [usize; 4] {
 fn blocks(level: u8, children: u8) -> impl Iterator<Item = ([i32; 3], i32)> {
     let whole = (level == 0).then_some(([0; 3], 2));
     let filled = (0..4).filter(move |child| level > 0 && children >> child & 1 == 1);
-    whole.into_iter().chain(filled.map(|child| (corner(child), 1)))
+    whole
+        .into_iter()
+        .chain(filled.map(|child| (corner(child), 1)))
 }
 
 /// The sides of the blocks of an element that have no block of it beyond.

@@ -140,6 +140,9 @@ mod tests {
         camera.shake = [0.1, -0.2, 0.0];
         let place = [0.7, 0.9, 0.0];
         let back = camera.to_world(camera.to_pixel(place, size), size);
-        assert!((0..3).all(|k| (back[k] - place[k]).abs() < 1e-5), "{back:?}");
+        assert!(
+            (0..3).all(|k| (back[k] - place[k]).abs() < 1e-5),
+            "{back:?}"
+        );
     }
 }

@@ -5,7 +5,8 @@ use crate::frame::{Frame, Look};
 use crate::plane::Flat;
 use crate::rest::Rest;
 use crate::rigid::Rigid;
-use crate::skin::{Rings, SkinMesh};
+use crate::rings::Rings;
+use crate::skin::SkinMesh;
 use crate::theme::bytes;
 use fuwafuwa::{Body, Dim2, World};
 use std::ops::Range;
@@ -19,6 +20,8 @@ pub struct Geometry {
     pub(crate) rigid: Rigid,
     /// Radius of a disc with the area of the largest body at rest [m].
     pub(crate) radius: f32,
+    /// All bodies lie between these corners [m], the low one above the high one if there are none.
+    pub(crate) bounds: [Flat; 2],
     rings: Rings,
     rests: Vec<Rest>,
 }
@@ -39,15 +42,23 @@ impl Geometry {
         self.bodies.clear();
         self.elements.clear();
         let basket = frame.basket.as_ref();
-        self.rigid.gather(world, frame.theme, basket, frame.particles);
+        self.rigid
+            .gather(world, frame.theme, basket, frame.particles);
         self.radius = world.bodies().iter().map(radius).fold(0.0, f32::max);
+        self.bounds = NOWHERE;
         self.rests.resize_with(world.bodies().len(), Rest::default);
         for (place, body) in world.bodies().iter().enumerate() {
             match frame.look {
                 Look::Skin => self.add_skin(place, body, frame),
-                Look::Elements { colour, ages, nodes } => {
+                Look::Elements {
+                    colour,
+                    ages,
+                    nodes,
+                } => {
                     let ages = ages.get(place).map_or(&[][..], Vec::as_slice);
                     self.elements.add(body, frame.theme, colour, ages, nodes);
+                    let corners = self.elements.vertices.iter().map(|vertex| vertex.at);
+                    self.bounds = corners.fold(self.bounds, around);
                 }
             }
         }
@@ -67,17 +78,23 @@ impl Geometry {
         let start = self.skin.fans.len() as u32;
         self.skin.add(&self.rings, body.grid().voxel_size());
         let middle = self.skin.fans.len() as u32;
-        let (low, high) = bounds(self.rings.points.iter().map(|point| point.at));
-        let first = body.grid().voxels().map(|voxel| body.grid().material(voxel));
+        let points = self.rings.points.iter().map(|point| point.at);
+        let bounds = points.fold(NOWHERE, around);
+        self.bounds = bounds.into_iter().fold(self.bounds, around);
+        let first = body
+            .grid()
+            .voxels()
+            .map(|voxel| body.grid().material(voxel));
         let first = first.filter(|&number| number > 0).min().unwrap_or(1);
         let colour = |number| bytes(frame.theme.material(number), 1.0);
-        self.skin.add_rectangle(low, high, colour(first));
+        self.skin.add_rectangle(bounds, colour(first));
         if body.materials().len() > 1 {
             for view in body.element_views().filter(|view| view.material != first) {
                 let colour = colour(view.material);
                 self.skin.add_element(&view, colour);
             }
         }
+        self.skin.add_strains(body);
         self.bodies.push(BodyParts {
             fan: start..middle,
             cover: middle..self.skin.fans.len() as u32,
@@ -90,11 +107,12 @@ fn radius(body: &Body<Dim2>) -> f32 {
     grid.voxel_size() * (grid.solid_count() as f32 / std::f32::consts::PI).sqrt()
 }
 
-fn bounds(points: impl Iterator<Item = Flat>) -> (Flat, Flat) {
-    points.fold(([f32::MAX; 2], [f32::MIN; 2]), |(low, high), at| {
-        (
-            [low[0].min(at[0]), low[1].min(at[1])],
-            [high[0].max(at[0]), high[1].max(at[1])],
-        )
-    })
+const NOWHERE: [Flat; 2] = [[f32::MAX; 2], [f32::MIN; 2]];
+
+/// The smallest bounds around bounds and a place.
+fn around([low, high]: [Flat; 2], at: Flat) -> [Flat; 2] {
+    [
+        [low[0].min(at[0]), low[1].min(at[1])],
+        [high[0].max(at[0]), high[1].max(at[1])],
+    ]
 }

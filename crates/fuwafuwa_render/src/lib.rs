@@ -5,7 +5,7 @@
 //! window, and [`Renderer::render_to_image`] into an image, without any window.
 //!
 //! The way through: [`theme`] and [`frame`] are what a caller says → `rest` how a body is smooth
-//! before it moves → `skin`, `elements`, `rigid` turn a world into vertices, without a GPU →
+//! before it moves → `rings` its smooth outlines now → `skin`, `elements`, `rigid` turn a world into vertices, without a GPU →
 //! `geometry` all of them → `gpu` draws them. [`anchor`] and [`ages`] answer questions of those
 //! who paint on top.
 //!
@@ -23,6 +23,7 @@ mod gpu;
 mod plane;
 mod rest;
 mod rigid;
+mod rings;
 mod skin;
 pub mod theme;
 

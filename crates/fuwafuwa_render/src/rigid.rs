@@ -77,17 +77,20 @@ impl Rigid {
         for (player, hand) in world.manipulators().iter().enumerate() {
             let (centre, radius) = (hand.position(), hand.radius);
             let ball = Shape::Ball { centre, radius };
-            self.shapes.extend(instance(ball, theme.hand(player), player as f32));
+            self.shapes
+                .extend(instance(ball, theme.hand(player), player as f32));
         }
         self.hand_count = self.shapes.len() as u32 - self.bar_count;
         if let Some(basket) = basket {
-            self.shapes.extend(instance(basket.region, theme.basket, basket.fill));
+            self.shapes
+                .extend(instance(basket.region, theme.basket, basket.fill));
         }
-        self.dots.extend(particles.iter().map(|particle| DotInstance {
-            at: flat(particle.at),
-            radius: particle.radius,
-            colour: particle.colour,
-        }));
+        self.dots
+            .extend(particles.iter().map(|particle| DotInstance {
+                at: flat(particle.at),
+                radius: particle.radius,
+                colour: particle.colour,
+            }));
     }
 }
 
@@ -118,19 +121,37 @@ mod tests {
     fn walls_bars_hands_and_basket_each_have_their_place() {
         let mut world = World::<Dim2>::new(Settings::default()).unwrap();
         let (from, to, radius) = ([0.0; 3], [1.0, 0.0, 0.0], 0.1);
-        world.add_obstacle(Shape::half_space([0.0, 1.0, 0.0], [0.0, -2.0, 0.0]), 0.2).unwrap();
-        world.add_obstacle(Shape::Capsule { from, to, radius }, 0.2).unwrap();
-        world.add_manipulator(Manipulator::new([0.0, 3.0, 0.0], 0.2)).unwrap();
-        world.add_manipulator(Manipulator::new([1.0, 3.0, 0.0], 0.2)).unwrap();
-        let region = Shape::Box { centre: [0.5; 3], half: [0.25; 3] };
+        world
+            .add_obstacle(Shape::half_space([0.0, 1.0, 0.0], [0.0, -2.0, 0.0]), 0.2)
+            .unwrap();
+        world
+            .add_obstacle(Shape::Capsule { from, to, radius }, 0.2)
+            .unwrap();
+        world
+            .add_manipulator(Manipulator::new([0.0, 3.0, 0.0], 0.2))
+            .unwrap();
+        world
+            .add_manipulator(Manipulator::new([1.0, 3.0, 0.0], 0.2))
+            .unwrap();
+        let region = Shape::Box {
+            centre: [0.5; 3],
+            half: [0.25; 3],
+        };
         let basket = Basket { region, fill: 0.5 };
-        let dot = Particle { at: [1.0, 2.0, 0.0], radius: 0.01, colour: [1.0; 4] };
+        let dot = Particle {
+            at: [1.0, 2.0, 0.0],
+            radius: 0.01,
+            colour: [1.0; 4],
+        };
         let mut rigid = Rigid::default();
         for _ in 0..2 {
             rigid.gather(&world, &Theme::candy(), Some(&basket), &[dot]);
         }
         assert_eq!(rigid.walls, [[0.0, 1.0, -2.0, 0.0]]);
-        assert_eq!((rigid.bar_count, rigid.hand_count, rigid.shapes.len()), (1, 2, 4));
+        assert_eq!(
+            (rigid.bar_count, rigid.hand_count, rigid.shapes.len()),
+            (1, 2, 4)
+        );
         assert_ne!(rigid.shapes[1].colour, rigid.shapes[2].colour);
         assert_eq!((rigid.shapes[3].number, rigid.dots.len()), (0.5, 1));
     }

@@ -44,13 +44,13 @@ impl Theme {
             floor: [rgb(0xf3f6ee), rgb(0xcfe6e4)],
             frame: rgb(0x7fb7b4),
             bar: rgb(0xe6b877),
-            basket: rgb(0xffc94d),
+            basket: rgb(0xffbe3d),
             materials: [
-                0xff8d78, 0xb65c8f, 0xffb84d, 0x8fc46a, 0x6aa9d8, 0xd98fd0, 0xc49a6c, 0xf2e3c9,
+                0xff8d78, 0x9c4f93, 0xffb84d, 0x8fc46a, 0x6aa9d8, 0xd98fd0, 0xc49a6c, 0xf2e3c9,
             ]
             .map(rgb)
             .to_vec(),
-            fresh: rgb(0xffe1dc),
+            fresh: rgb(0xffcfd0),
             hands: [0x3f7fe0, 0x35a877].map(rgb).to_vec(),
             levels: [0xf7e7a1, 0x8fd3c1, 0x5a9bd4, 0x5b5aa6, 0x3b2f63]
                 .map(rgb)

@@ -140,3 +140,157 @@ impl Navigator {
         steps
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::About;
+
+    #[test]
+    fn the_dead_zone_is_round_and_keeps_the_direction() {
+        assert_eq!(radial_dead_zone([0.1, -0.1], 0.15, 0.95), [0.0, 0.0]);
+        assert_eq!(radial_dead_zone([0.15, 0.0], 0.15, 0.95), [0.0, 0.0]);
+        near(radial_dead_zone([0.55, 0.0], 0.15, 0.95), [0.5, 0.0]);
+        near(radial_dead_zone([0.0, -1.0], 0.15, 0.95), [0.0, -1.0]);
+        near(
+            radial_dead_zone([1.0, 1.0], 0.15, 0.95),
+            [0.5_f32.sqrt(); 2],
+        );
+        let [x, y] = radial_dead_zone([0.3, 0.4], 0.1, 0.9);
+        near([x / y, 0.0], [0.75, 0.0]);
+        near([(x * x + y * y).sqrt(), 0.0], [0.5, 0.0]);
+    }
+
+    #[test]
+    fn the_dead_zone_begins_and_ends_without_a_step() {
+        near(radial_dead_zone([0.1501, 0.0], 0.15, 0.95), [0.0, 0.0]);
+        near(radial_dead_zone([0.9499, 0.0], 0.15, 0.95), [1.0, 0.0]);
+    }
+
+    #[test]
+    fn what_is_not_finite_is_at_rest() {
+        for broken in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            assert_eq!(radial_dead_zone([broken, 0.5], 0.1, 0.9), [0.0; 2]);
+            assert_eq!(radial_dead_zone([0.5, broken], 0.1, 0.9), [0.0; 2]);
+        }
+        assert_eq!(Direction::of([f32::NAN; 2], None), None);
+        assert_eq!(radial_dead_zone([0.0; 2], 0.0, 0.0), [0.0; 2]);
+        near(radial_dead_zone([0.5, 0.0], 0.5, 0.5), [0.0, 0.0]);
+    }
+
+    #[test]
+    fn a_stick_leans_one_way_at_a_time() {
+        assert_eq!(Direction::of([0.0, 0.5], None), None);
+        assert_eq!(Direction::of([0.0, 0.7], None), Some(Direction::Up));
+        assert_eq!(
+            Direction::of([0.0, 0.5], Some(Direction::Up)),
+            Some(Direction::Up)
+        );
+        assert_eq!(Direction::of([0.0, 0.3], Some(Direction::Up)), None);
+        assert_eq!(
+            Direction::of([0.8, 0.6], Some(Direction::Up)),
+            Some(Direction::Up)
+        );
+        assert_eq!(
+            Direction::of([0.95, 0.3], Some(Direction::Up)),
+            Some(Direction::Right)
+        );
+        assert_eq!(
+            Direction::of([0.0, -1.0], Some(Direction::Up)),
+            Some(Direction::Down)
+        );
+    }
+
+    #[test]
+    fn what_is_held_is_repeated_after_a_delay() {
+        let mut repeat = Repeat::default();
+        let at: Vec<_> = (0..10)
+            .map(|_| repeat.step(Some(Direction::Up), 0.11))
+            .collect();
+        let wanted = [
+            false, false, false, false, true, false, true, false, true, false,
+        ];
+        assert_eq!(
+            at, wanted,
+            "first after 0.4 s, then at the first call past 0.12 s"
+        );
+        assert!(
+            !repeat.step(Some(Direction::Down), 0.5),
+            "another direction begins anew"
+        );
+        assert!(!repeat.step(None, 0.5));
+        assert!(!repeat.step(Some(Direction::Down), 0.5));
+        assert!(repeat.step(Some(Direction::Down), 60.0));
+        assert!(
+            !repeat.step(Some(Direction::Down), 0.01),
+            "a frame of a minute is one step"
+        );
+    }
+
+    #[test]
+    fn a_push_of_the_stick_is_one_step_and_holding_it_more() {
+        let (mut navigator, mut stick) = (Navigator::default(), stick(1));
+        let mut steps = Vec::new();
+        for tick in 0..60 {
+            stick.axes[1] = if (5..50).contains(&tick) { 1.0 } else { 0.0 };
+            steps.extend(
+                navigator
+                    .step(&stick, 1.0 / 60.0)
+                    .into_iter()
+                    .map(|step| (tick, step)),
+            );
+        }
+        let ticks: Vec<_> = steps.iter().map(|(tick, _)| *tick).collect();
+        assert_eq!(
+            ticks,
+            [5, 29, 37, 45],
+            "0.4 s, then every 0.12 s or the tick after it"
+        );
+        assert!(
+            steps.iter().all(|(_, step)| *step == Direction::Down),
+            "towards the player is down"
+        );
+    }
+
+    #[test]
+    fn taps_between_two_calls_all_move() {
+        let (mut navigator, mut stick) = (Navigator::default(), stick(1));
+        navigator.step(&stick, 0.0);
+        for direction in [Direction::Left, Direction::Left, Direction::Up] {
+            let button = stick.hats[0].button_mut(direction);
+            button.press();
+            button.down = false;
+        }
+        let wanted = [Direction::Up, Direction::Left, Direction::Left];
+        assert_eq!(navigator.step(&stick, 0.016), wanted);
+        assert!(navigator.step(&stick, 0.016).is_empty());
+    }
+
+    #[test]
+    fn another_device_moves_nothing_at_first() {
+        let (mut navigator, mut one, mut two) = (Navigator::default(), stick(1), stick(2));
+        navigator.step(&one, 0.016);
+        two.axes[0] = 1.0;
+        two.hats[0].button_mut(Direction::Right).press();
+        assert!(navigator.step(&two, 0.016).is_empty());
+        assert!(
+            navigator.step(&two, 0.016).is_empty(),
+            "it leans and holds as before"
+        );
+        one.axes[0] = -1.0;
+        assert!(navigator.step(&one, 0.016).is_empty());
+    }
+
+    fn stick(id: u32) -> Device {
+        let about = About {
+            name: "Stick".into(),
+            guid: String::new(),
+        };
+        Device::at_rest(DeviceId(id), about, 2, 0, 1)
+    }
+
+    fn near(is: [f32; 2], wanted: [f32; 2]) {
+        let close = |index: usize| (is[index] - wanted[index]).abs() < 1e-3;
+        assert!(close(0) && close(1), "{is:?} is not {wanted:?}");
+    }
+}

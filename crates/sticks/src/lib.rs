@@ -62,10 +62,7 @@ pub use puppet::Puppet;
 /// All sticks and pads that are plugged in. Dropping it closes them.
 pub struct Sticks {
     latest: Latest,
-    #[cfg_attr(
-        not(any(test, feature = "virtual")),
-        expect(dead_code, reason = "held for its drop, which ends the thread")
-    )]
+    #[allow(dead_code, reason = "held for its drop, which ends the thread")]
     owner: owner::Owner,
 }
 

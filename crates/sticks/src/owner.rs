@@ -10,7 +10,7 @@ use sdl3_sys::gamepad::{
     SDL_GAMEPAD_AXIS_RIGHT_TRIGGER, SDL_GAMEPAD_AXIS_RIGHTX, SDL_GAMEPAD_AXIS_RIGHTY,
 };
 
-use crate::sdl::{Happened, HatBits, Open, Sdl, Turn};
+use crate::sdl::{HatBits, Open, Part, Sdl, Turn, What};
 use crate::{Button, Device, DeviceId, Direction, Hat, Latest, NoSticks, Pad, PadButton, Snapshot};
 
 /// How old a snapshot may get while a device is there. Longer is felt as lag; at 1 ms the thread costs twice as much.
@@ -120,18 +120,14 @@ impl<'sdl> Hub<'sdl> {
         }
     }
 
-    /// Takes in all that happened and publishes what changed.
+    /// Takes in all that happened and publishes it.
     pub fn pump(&mut self) {
-        self.sdl.pump(|what| self.take_in(what));
-        self.connected.iter_mut().for_each(Connected::read);
-
-        let before = self.latest.get();
-        if !self
-            .connected
-            .iter()
-            .map(|connected| &connected.device)
-            .eq(&before.devices)
-        {
+        let mut news = false;
+        self.sdl.pump(|id, what| {
+            news = true;
+            self.take_in(id, what);
+        });
+        if news {
             let devices = self
                 .connected
                 .iter()
@@ -141,27 +137,14 @@ impl<'sdl> Hub<'sdl> {
         }
     }
 
-    fn take_in(&mut self, what: Happened) {
+    fn take_in(&mut self, id: DeviceId, what: What) {
         match what {
-            Happened::Added(id) => self.add(id),
-            Happened::Removed(id) => self.connected.retain(|connected| connected.device.id != id),
-            Happened::ButtonDown(id, button) => {
-                if let Some(button) = self
-                    .device(id)
-                    .and_then(|device| device.buttons.get_mut(button))
-                {
-                    button.press();
-                }
-            }
-            Happened::PadButtonDown(id, button) => {
-                let pad = self.device(id).and_then(|device| device.pad.as_mut());
-                if let (Some(pad), Some(button)) = (pad, PadButton::ALL.get(button)) {
-                    pad.button_mut(*button).press();
-                }
-            }
-            Happened::HatMoved(id, hat, bits) => {
-                if let Some(hat) = self.device(id).and_then(|device| device.hats.get_mut(hat)) {
-                    move_hat(hat, bits);
+            What::Added => self.add(id),
+            What::Removed => self.connected.retain(|connected| connected.device.id != id),
+            What::Moved(part) => {
+                let mut all = self.connected.iter_mut();
+                if let Some(connected) = all.find(|connected| connected.device.id == id) {
+                    connected.take_in(part);
                 }
             }
         }
@@ -169,14 +152,20 @@ impl<'sdl> Hub<'sdl> {
 
     /// A device that cannot be opened, most often for want of permission, is as good as absent.
     fn add(&mut self, id: DeviceId) {
-        if self.device(id).is_some() || !(self.accepts)(self.sdl, id) {
+        let is_known = self
+            .connected
+            .iter()
+            .any(|connected| connected.device.id == id);
+        if is_known || !(self.accepts)(self.sdl, id) {
             return;
         }
         if let Some(open) = self.sdl.open(id) {
             let (axes, buttons, hats) = (open.axis_count(), open.button_count(), open.hat_count());
             let mut device = Device::at_rest(id, open.about(), axes, buttons, hats);
             device.pad = open.is_pad().then(Pad::default);
-            self.connected.push(Connected { open, device });
+            let mut connected = Connected { open, device };
+            connected.read();
+            self.connected.push(connected);
         }
     }
 
@@ -188,14 +177,6 @@ impl<'sdl> Hub<'sdl> {
             .find(|connected| connected.device.id == id);
         connected.map(|connected| &connected.open)
     }
-
-    fn device(&mut self, id: DeviceId) -> Option<&mut Device> {
-        let connected = self
-            .connected
-            .iter_mut()
-            .find(|connected| connected.device.id == id);
-        connected.map(|connected| &mut connected.device)
-    }
 }
 
 /// However the thread ends, nobody is left with a button that is held for ever.
@@ -206,6 +187,28 @@ impl Drop for Hub<'_> {
 }
 
 impl Connected<'_> {
+    fn take_in(&mut self, part: Part) {
+        let device = &mut self.device;
+        match part {
+            Part::ButtonDown(number) => {
+                if let Some(button) = device.buttons.get_mut(number) {
+                    button.press();
+                }
+            }
+            Part::PadButtonDown(number) => {
+                if let (Some(pad), Some(button)) = (&mut device.pad, PadButton::ALL.get(number)) {
+                    pad.button_mut(*button).press();
+                }
+            }
+            Part::Hat(number, bits) => {
+                if let Some(hat) = device.hats.get_mut(number) {
+                    move_hat(hat, bits);
+                }
+            }
+            Part::All => self.read(),
+        }
+    }
+
     /// What is down and where axes are. Presses are counted from events, since one may begin and end between two reads.
     fn read(&mut self) {
         let Connected { open, device } = self;

@@ -4,7 +4,8 @@ use std::sync::Weak;
 use std::sync::mpsc::{self, Sender};
 
 use crate::owner::{Hub, Order, Owner};
-use crate::sdl::{HatBits, PuppetAct, PuppetForm, Sdl, Turn};
+use crate::sdl::puppets::{PuppetAct, PuppetForm};
+use crate::sdl::{HatBits, Sdl, Turn};
 use crate::{DeviceId, Direction, Latest, NoSticks, PadButton, Sticks};
 
 /// A device made of nothing. Dropping it unplugs it. What is done with it is in the snapshot when the call returns.

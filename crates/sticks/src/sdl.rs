@@ -8,10 +8,13 @@
 //!   when it is dropped. SDL keeps them valid until then, also when the device is unplugged: reads then give 0 or false.
 //!   Indices out of range do too. They cannot outlive SDL, since `Open` borrows `Sdl`.
 //! - **Strings** from SDL are null or end in a zero, and are copied at once, before the next call that might change them.
-//! - **Events** are plain data without padding that matters, and a union member is read only after the type that stands for
-//!   it was seen.
+//! - **Events** are a union of plain data, zeroed here before SDL writes to it; a member is read only after the type that
+//!   stands for it was seen.
 
 #![allow(unsafe_code)]
+
+#[cfg(any(test, feature = "virtual"))]
+pub mod puppets;
 
 use std::ffi::{CStr, c_char, c_int};
 use std::marker::PhantomData;
@@ -22,7 +25,8 @@ use sdl3_sys::error::SDL_GetError;
 use sdl3_sys::events::{
     SDL_EVENT_FIRST, SDL_EVENT_GAMEPAD_BUTTON_DOWN, SDL_EVENT_JOYSTICK_ADDED,
     SDL_EVENT_JOYSTICK_BUTTON_DOWN, SDL_EVENT_JOYSTICK_HAT_MOTION, SDL_EVENT_JOYSTICK_REMOVED,
-    SDL_EVENT_LAST, SDL_Event, SDL_GETEVENT, SDL_PeepEvents, SDL_PumpEvents,
+    SDL_EVENT_JOYSTICK_UPDATE_COMPLETE, SDL_EVENT_LAST, SDL_Event, SDL_GETEVENT, SDL_PeepEvents,
+    SDL_PumpEvents,
 };
 use sdl3_sys::gamepad::{
     SDL_CloseGamepad, SDL_Gamepad, SDL_GamepadAxis, SDL_GamepadButton, SDL_GetGamepadAxis,
@@ -59,36 +63,27 @@ pub struct Open<'sdl> {
     _sdl: PhantomData<&'sdl Sdl>,
 }
 
-/// What SDL saw happen, in that order.
+/// What SDL saw happen to a device.
 #[derive(Clone, Copy, Debug)]
-pub enum Happened {
-    Added(DeviceId),
-    Removed(DeviceId),
-    ButtonDown(DeviceId, usize),
-    PadButtonDown(DeviceId, usize),
-    HatMoved(DeviceId, usize, HatBits),
+pub enum What {
+    Added,
+    Removed,
+    Moved(Part),
+}
+
+/// What moved on a device.
+#[derive(Clone, Copy, Debug)]
+pub enum Part {
+    ButtonDown(usize),
+    PadButtonDown(usize),
+    Hat(usize, HatBits),
+    /// Comes last, and stands for all that happened at once, named before or not.
+    All,
 }
 
 /// The directions of a hat that are down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HatBits(pub u8);
-
-/// What a device made of nothing looks like.
-#[cfg(any(test, feature = "virtual"))]
-#[derive(Clone, Copy, Debug)]
-pub enum PuppetForm {
-    Pad,
-    Stick { axes: u16, buttons: u16, hats: u16 },
-}
-
-/// What is moved on a device made of nothing, and where to.
-#[cfg(any(test, feature = "virtual"))]
-#[derive(Clone, Copy, Debug)]
-pub enum PuppetAct {
-    Axis(usize, i16),
-    Button(usize, bool),
-    Hat(usize, HatBits),
-}
 
 /// Whether it may be taken.
 static TURN: Mutex<bool> = Mutex::new(true);
@@ -143,7 +138,7 @@ impl Sdl {
     }
 
     /// Lets SDL look at all devices and tells what happened since the last call.
-    pub fn pump(&self, mut happened: impl FnMut(Happened)) {
+    pub fn pump(&self, mut happened: impl FnMut(DeviceId, What)) {
         // SAFETY: see the module.
         unsafe { SDL_PumpEvents() };
         let mut event = SDL_Event::default();
@@ -158,8 +153,8 @@ impl Sdl {
             )
         } == 1
         {
-            if let Some(what) = read(&event) {
-                happened(what);
+            if let Some((id, what)) = read(&event) {
+                happened(id, what);
             }
         }
     }
@@ -182,48 +177,9 @@ impl Sdl {
         })
     }
 
-    /// Plugs in a device made of nothing, which lasts until it is unplugged or SDL ends.
-    #[cfg(any(test, feature = "virtual"))]
-    pub fn plug_in(&self, name: &str, form: PuppetForm) -> Result<DeviceId, String> {
-        use sdl3_sys::joystick::{
-            SDL_AttachVirtualJoystick, SDL_JOYSTICK_TYPE_FLIGHT_STICK, SDL_JOYSTICK_TYPE_GAMEPAD,
-            SDL_VirtualJoystickDesc,
-        };
-        let name = std::ffi::CString::new(name).map_err(|error| error.to_string())?;
-        let mut wish = SDL_VirtualJoystickDesc::new();
-        wish.name = name.as_ptr();
-        let kind;
-        (kind, wish.naxes, wish.nbuttons, wish.nhats) = match form {
-            PuppetForm::Pad => (SDL_JOYSTICK_TYPE_GAMEPAD, 6, PadButton::ALL.len() as u16, 0),
-            PuppetForm::Stick {
-                axes,
-                buttons,
-                hats,
-            } => (SDL_JOYSTICK_TYPE_FLIGHT_STICK, axes, buttons, hats),
-        };
-        wish.r#type = kind.0 as u16;
-        // SAFETY: see the module; SDL copies the wish and its name, and there are no callbacks in it.
-        match unsafe { SDL_AttachVirtualJoystick(&wish) } {
-            SDL_JoystickID(0) => Err(self.error()),
-            SDL_JoystickID(id) => Ok(DeviceId(id)),
-        }
-    }
-
-    #[cfg(any(test, feature = "virtual"))]
-    pub fn unplug(&self, id: DeviceId) {
-        // SAFETY: see the module; an id that SDL does not know is refused.
-        unsafe { sdl3_sys::joystick::SDL_DetachVirtualJoystick(SDL_JoystickID(id.0)) };
-    }
-
-    #[cfg(any(test, feature = "virtual"))]
-    pub fn is_puppet(&self, id: DeviceId) -> bool {
-        // SAFETY: as above.
-        unsafe { sdl3_sys::joystick::SDL_IsJoystickVirtual(SDL_JoystickID(id.0)) }
-    }
-
     fn error(&self) -> String {
         // SAFETY: see the module.
-        text(SDL_GetError())
+        unsafe { text(SDL_GetError()) }
     }
 }
 
@@ -238,14 +194,13 @@ impl Open<'_> {
     pub fn about(&self) -> About {
         let mut guid = [0 as c_char; 33];
         // SAFETY: see the module; 33 is the room that a GUID needs with its zero, and SDL is told of it.
-        let name = unsafe {
+        unsafe {
             let guid_of = SDL_GetJoystickGUID(self.joystick.as_ptr());
             SDL_GUIDToString(guid_of, guid.as_mut_ptr(), guid.len() as c_int);
-            SDL_GetJoystickName(self.joystick.as_ptr())
-        };
-        About {
-            name: text(name),
-            guid: text(guid.as_ptr()),
+            About {
+                name: text(SDL_GetJoystickName(self.joystick.as_ptr())),
+                guid: text(guid.as_ptr()),
+            }
         }
     }
 
@@ -274,29 +229,6 @@ impl Open<'_> {
 
     pub fn hat(&self, hat: usize) -> HatBits {
         HatBits(unsafe { SDL_GetJoystickHat(self.joystick.as_ptr(), hat as c_int) })
-    }
-
-    /// Moves a part of a device made of nothing. Whether it has that part.
-    #[cfg(any(test, feature = "virtual"))]
-    pub fn act(&self, act: PuppetAct) -> bool {
-        use sdl3_sys::joystick::{
-            SDL_SetJoystickVirtualAxis, SDL_SetJoystickVirtualButton, SDL_SetJoystickVirtualHat,
-        };
-        let joystick = self.joystick.as_ptr();
-        // SAFETY: see the module; SDL refuses other devices and indices that they do not have.
-        unsafe {
-            match act {
-                PuppetAct::Axis(axis, value) => {
-                    SDL_SetJoystickVirtualAxis(joystick, axis as c_int, value)
-                }
-                PuppetAct::Button(button, down) => {
-                    SDL_SetJoystickVirtualButton(joystick, button as c_int, down)
-                }
-                PuppetAct::Hat(hat, bits) => {
-                    SDL_SetJoystickVirtualHat(joystick, hat as c_int, bits.0)
-                }
-            }
-        }
     }
 
     pub fn is_pad(&self) -> bool {
@@ -336,15 +268,6 @@ impl HatBits {
         self.0 & HatBits::bit(direction) != 0
     }
 
-    #[cfg(any(test, feature = "virtual"))]
-    pub fn of(directions: &[Direction]) -> HatBits {
-        HatBits(
-            directions
-                .iter()
-                .fold(0, |bits, direction| bits | HatBits::bit(*direction)),
-        )
-    }
-
     fn bit(direction: Direction) -> u8 {
         match direction {
             Direction::Up => SDL_HAT_UP,
@@ -356,29 +279,29 @@ impl HatBits {
 }
 
 /// The event, if it is one that matters here.
-fn read(event: &SDL_Event) -> Option<Happened> {
-    let id = |id: SDL_JoystickID| DeviceId(id.0);
+fn read(event: &SDL_Event) -> Option<(DeviceId, What)> {
     // SAFETY: SDL fills in the member that belongs to the type of the event.
-    unsafe {
+    let (id, what) = unsafe {
         match event.event_type() {
-            SDL_EVENT_JOYSTICK_ADDED => Some(Happened::Added(id(event.jdevice.which))),
-            SDL_EVENT_JOYSTICK_REMOVED => Some(Happened::Removed(id(event.jdevice.which))),
-            SDL_EVENT_JOYSTICK_BUTTON_DOWN => Some(Happened::ButtonDown(
-                id(event.jbutton.which),
-                event.jbutton.button.into(),
-            )),
-            SDL_EVENT_GAMEPAD_BUTTON_DOWN => Some(Happened::PadButtonDown(
-                id(event.gbutton.which),
-                event.gbutton.button.into(),
-            )),
-            SDL_EVENT_JOYSTICK_HAT_MOTION => Some(Happened::HatMoved(
-                id(event.jhat.which),
-                event.jhat.hat.into(),
-                HatBits(event.jhat.value),
-            )),
-            _ => None,
+            SDL_EVENT_JOYSTICK_ADDED => (event.jdevice.which, What::Added),
+            SDL_EVENT_JOYSTICK_REMOVED => (event.jdevice.which, What::Removed),
+            SDL_EVENT_JOYSTICK_BUTTON_DOWN => {
+                let moved = Part::ButtonDown(event.jbutton.button.into());
+                (event.jbutton.which, What::Moved(moved))
+            }
+            SDL_EVENT_GAMEPAD_BUTTON_DOWN => {
+                let moved = Part::PadButtonDown(event.gbutton.button.into());
+                (event.gbutton.which, What::Moved(moved))
+            }
+            SDL_EVENT_JOYSTICK_HAT_MOTION => {
+                let moved = Part::Hat(event.jhat.hat.into(), HatBits(event.jhat.value));
+                (event.jhat.which, What::Moved(moved))
+            }
+            SDL_EVENT_JOYSTICK_UPDATE_COMPLETE => (event.jdevice.which, What::Moved(Part::All)),
+            _ => return None,
         }
-    }
+    };
+    Some((DeviceId(id.0), what))
 }
 
 /// -32768 to 32767 as -1 to 1, with 0 kept.
@@ -391,11 +314,13 @@ fn count(number: c_int) -> usize {
     usize::try_from(number).unwrap_or(0)
 }
 
-fn text(from: *const c_char) -> String {
+/// # Safety
+/// It is null, or a string that ends in a zero and stays as it is during the call.
+unsafe fn text(from: *const c_char) -> String {
     if from.is_null() {
         return String::new();
     }
-    // SAFETY: see the module.
+    // SAFETY: the caller's, and it is not null.
     unsafe { CStr::from_ptr(from) }
         .to_string_lossy()
         .into_owned()

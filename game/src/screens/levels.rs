@@ -86,7 +86,7 @@ fn tile(ui: &mut Ui, game: &Game, place: usize) -> Response {
     for (route, mark) in [
         (Route::Squeeze, "●"),
         (Route::Shave, "◆"),
-        (Route::Mix, "◐"),
+        (Route::Mix, "▲"),
     ] {
         if record.is_some_and(|record| record.best.contains_key(&route)) {
             stars.push(' ');

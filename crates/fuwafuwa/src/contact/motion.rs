@@ -5,36 +5,74 @@ use crate::body::Body;
 use crate::dim::Dim;
 use crate::manipulator::Manipulator;
 use crate::solve::Row;
-use crate::touch::mean;
+use crate::touch::{Skin, mean};
 use crate::vector::{as_row, minus, plus, scaled};
 
-/// The velocities of all nodes side by side [m/s], one over their mass as the fourth component
-/// [1/kg]: what a push needs is in one place.
+/// The velocities of the nodes that contacts push on [m/s], one over their mass as the fourth
+/// component [1/kg]: what a push needs is in one place.
 #[derive(Clone, Debug, Default)]
 pub struct Motion {
-    pub rows: Vec<Row>,
+    /// By place of the node among those of all bodies; of those that nothing touches, anything.
+    rows: Vec<Row>,
+    /// Place of the first node of each body.
+    first: Vec<u32>,
+    /// The nodes that something touches, each once: body and place. Of a large body they are few.
+    touched: Vec<(u32, u32)>,
+    is_touched: Vec<bool>,
 }
 
 impl Motion {
+    /// Nothing is touched yet.
+    pub fn clear<D: Dim>(&mut self, bodies: &[Body<D>]) {
+        for (_, place) in self.touched.drain(..) {
+            self.is_touched[place as usize] = false;
+        }
+        self.first.clear();
+        let mut count = 0;
+        for body in bodies {
+            self.first.push(count as u32);
+            count += body.velocity.len();
+        }
+        self.rows.resize(count, [0.0; 4]);
+        self.is_touched.resize(count, false);
+    }
+
+    /// The place of a node of a body, which something touches, among those of all.
+    #[inline(always)]
+    pub fn place(&mut self, body: u32, node: u32) -> u32 {
+        let place = self.first[body as usize] + node;
+        let is_touched = &mut self.is_touched[place as usize];
+        if !*is_touched {
+            *is_touched = true;
+            self.touched.push((body, place));
+        }
+        place
+    }
+
+    /// The places of the corner nodes of a skin that something touches.
+    pub fn grip<D: Dim>(&mut self, skin: &Skin) -> Grip {
+        let mut grip = [0; 8];
+        for (place, &node) in grip.iter_mut().zip(&skin.nodes[..D::CORNERS]) {
+            *place = self.place(skin.body, node);
+        }
+        grip
+    }
+
     /// Takes the velocities from the bodies.
     pub fn load<D: Dim>(&mut self, bodies: &[Body<D>]) {
-        self.rows.clear();
-        for body in bodies {
-            let nodes = body.velocity.iter().zip(&body.lightness);
-            let rows = nodes.map(|(velocity, &lightness)| with_fourth(*velocity, lightness));
-            self.rows.extend(rows);
+        for &(body, place) in &self.touched {
+            let node = (place - self.first[body as usize]) as usize;
+            let body = &bodies[body as usize];
+            self.rows[place as usize] = with_fourth(body.velocity[node], body.lightness[node]);
         }
     }
 
     /// Gives them back.
     pub fn store<D: Dim>(&self, bodies: &mut [Body<D>]) {
-        let mut rest = &self.rows[..];
-        for body in bodies.iter_mut().filter(|_| !self.rows.is_empty()) {
-            let (own, others) = rest.split_at(body.velocity.len());
-            rest = others;
-            for (velocity, row) in body.velocity.iter_mut().zip(own) {
-                *velocity = with_fourth(*row, 0.0);
-            }
+        for &(body, place) in &self.touched {
+            let node = (place - self.first[body as usize]) as usize;
+            let row = self.rows[place as usize];
+            bodies[body as usize].velocity[node] = with_fourth(row, 0.0);
         }
     }
 

@@ -9,7 +9,7 @@ use crate::vector::{minus, plus, scaled};
 const WARM_START: f32 = 0.9;
 /// How much of an overlap is pushed out in a substep, and how fast at most [m/s].
 const PUSH_OUT: f32 = 0.2;
-const PUSH_OUT_SPEED: f32 = 0.5;
+pub const PUSH_OUT_SPEED: f32 = 0.5;
 
 /// One contact in one substep.
 #[derive(Copy, Clone, Debug)]

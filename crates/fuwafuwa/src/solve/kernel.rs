@@ -31,8 +31,8 @@ pub struct Seats<'a> {
     pub half_size: &'a Eight,
     /// In space a quaternion; in the plane cosine and sine.
     pub rotation: &'a mut [Eight; 4],
-    /// The forces on the nodes, in their order.
-    pub forces: &'a mut [Row],
+    /// The forces on the nodes, in their order, each of as many numbers as there are dimensions.
+    pub forces: &'a mut [f32],
     /// The lanes whose element is inside out, as a mask.
     pub inverted: &'a mut u8,
 }
@@ -265,7 +265,7 @@ pub fn plain_forces<D: Dim, L: Lanes>(moduli: &Moduli, seats: &mut Seats, scratc
         }
     }
     for node in 0..D::CORNERS {
-        L::scatter(force[node], target(seats.forces, node));
+        L::scatter(force[node], D::N, target::<D>(seats.forces, node));
     }
 }
 
@@ -328,7 +328,7 @@ pub fn forces<D: Dim, L: Lanes>(
                 force[i] = force[i] + (pull[i][j] * b + shear[i][j] * wr);
             }
         }
-        L::scatter(force, target(seats.forces, node));
+        L::scatter(force, D::N, target::<D>(seats.forces, node));
     }
 }
 
@@ -502,8 +502,6 @@ fn places(nodes: &[u32], node: usize) -> &[u32; LANES] {
 }
 
 #[inline(always)]
-fn target(forces: &mut [Row], node: usize) -> &mut [Row; LANES] {
-    (&mut forces[node * LANES..][..LANES])
-        .try_into()
-        .expect("a node has a force for every lane")
+fn target<D: Dim>(forces: &mut [f32], node: usize) -> &mut [f32] {
+    &mut forces[node * D::N * LANES..][..D::N * LANES]
 }

@@ -27,10 +27,10 @@ pub trait Lanes:
     fn positive(self) -> u8;
     /// The three columns of the rows at eight places.
     fn gather(rows: &[Row], places: &[u32; LANES]) -> [Self; 3];
-    /// Eight rows from three columns, the fourth number 0.
-    fn scatter(columns: [Self; 3], rows: &mut [Row; LANES]);
-    /// The sum of the rows at the first `count` places, in their order.
-    fn sum(rows: &[Row], places: &[u32; LANES], count: usize) -> Row;
+    /// Eight vectors of so many components, one after the other, from three columns.
+    fn scatter(columns: [Self; 3], components: usize, vectors: &mut [f32]);
+    /// The sum of the four numbers that begin at each of the first `count` places, in their order.
+    fn sum(numbers: &[f32], places: &[u32; LANES], count: usize) -> Row;
 }
 
 /// Eight numbers in an array.
@@ -101,22 +101,23 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
-    fn scatter(columns: [Self; 3], rows: &mut [Row; LANES]) {
-        for (lane, row) in rows.iter_mut().enumerate() {
-            *row = [
-                columns[0].0[lane],
-                columns[1].0[lane],
-                columns[2].0[lane],
-                0.0,
-            ];
+    fn scatter(columns: [Self; 3], components: usize, vectors: &mut [f32]) {
+        for (lane, vector) in vectors.chunks_exact_mut(components).enumerate() {
+            for (number, column) in vector.iter_mut().zip(&columns) {
+                *number = column.0[lane];
+            }
         }
     }
 
     #[inline(always)]
-    fn sum(rows: &[Row], places: &[u32; LANES], count: usize) -> Row {
-        let mut sum = rows[places[0] as usize];
+    fn sum(numbers: &[f32], places: &[u32; LANES], count: usize) -> Row {
+        let four = |place: u32| {
+            let four = &numbers[place as usize..][..4];
+            [four[0], four[1], four[2], four[3]]
+        };
+        let mut sum = four(places[0]);
         for &place in &places[1..count] {
-            sum = plus(sum, rows[place as usize]);
+            sum = plus(sum, four(place));
         }
         sum
     }
@@ -159,7 +160,8 @@ mod wide {
     /// SAFETY of every function here: they need AVX, and are only reached from
     /// `evaluate_group_wide` and `kick_wide` in `solve`, which are called after the machine was asked for
     /// AVX2. Loads and stores go through references to arrays of the right length and need no alignment;
-    /// rows are read unchecked only at places that `check` let pass.
+    /// rows and numbers are read unchecked only at places that `check` let pass, and vectors written
+    /// where their length was compared.
     #[derive(Copy, Clone)]
     pub struct Wide(__m256);
 
@@ -209,7 +211,7 @@ mod wide {
         #[inline(always)]
         fn gather(rows: &[Row], places: &[u32; LANES]) -> [Self; 3] {
             unsafe {
-                check(rows, places);
+                check(rows.len(), places);
                 let row = |lane: usize| rows.get_unchecked(places[lane] as usize);
                 let (a, b) = (pair(row(0), row(4)), pair(row(1), row(5)));
                 let (c, d) = (pair(row(2), row(6)), pair(row(3), row(7)));
@@ -224,35 +226,41 @@ mod wide {
         }
 
         #[inline(always)]
-        fn scatter(columns: [Self; 3], rows: &mut [Row; LANES]) {
+        fn scatter(columns: [Self; 3], components: usize, vectors: &mut [f32]) {
             let [x, y, z] = columns.map(|column| column.0);
+            assert!(vectors.len() == components * LANES && matches!(components, 2 | 3));
             unsafe {
-                let zero = _mm256_setzero_ps();
-                let (xy, xy_high) = (_mm256_unpacklo_ps(x, y), _mm256_unpackhi_ps(x, y));
-                let (z, z_high) = (_mm256_unpacklo_ps(z, zero), _mm256_unpackhi_ps(z, zero));
-                let pairs = [
-                    _mm256_shuffle_ps::<0x44>(xy, z),
-                    _mm256_shuffle_ps::<0xEE>(xy, z),
-                    _mm256_shuffle_ps::<0x44>(xy_high, z_high),
-                    _mm256_shuffle_ps::<0xEE>(xy_high, z_high),
-                ];
-                for lane in 0..LANES / 2 {
-                    _mm_storeu_ps(rows[lane].as_mut_ptr(), _mm256_castps256_ps128(pairs[lane]));
-                    let high = _mm256_extractf128_ps::<1>(pairs[lane]);
-                    _mm_storeu_ps(rows[lane + LANES / 2].as_mut_ptr(), high);
+                // The first half of the vectors in the low halves of the registers.
+                let quads = if components == 2 {
+                    [_mm256_unpacklo_ps(x, y), _mm256_unpackhi_ps(x, y), x]
+                } else {
+                    let xy = _mm256_shuffle_ps::<0x88>(x, y);
+                    let yz = _mm256_shuffle_ps::<0xDD>(y, z);
+                    let zx = _mm256_shuffle_ps::<0xD8>(z, x);
+                    [
+                        _mm256_shuffle_ps::<0x88>(xy, zx),
+                        _mm256_shuffle_ps::<0xD8>(yz, xy),
+                        _mm256_shuffle_ps::<0xDD>(zx, yz),
+                    ]
+                };
+                let start = vectors.as_mut_ptr();
+                for (place, &quad) in quads[..components].iter().enumerate() {
+                    _mm_storeu_ps(start.add(4 * place), _mm256_castps256_ps128(quad));
+                    let high = start.add(4 * (place + components));
+                    _mm_storeu_ps(high, _mm256_extractf128_ps::<1>(quad));
                 }
             }
         }
 
         #[inline(always)]
-        fn sum(rows: &[Row], places: &[u32; LANES], count: usize) -> Row {
+        fn sum(numbers: &[f32], places: &[u32; LANES], count: usize) -> Row {
             let mut total = [0.0; 4];
             unsafe {
-                check(rows, places);
-                let row = |k: usize| rows.get_unchecked(places[k] as usize).as_ptr();
-                let mut sum = _mm_loadu_ps(row(0));
+                check(numbers.len().saturating_sub(3), places);
+                let four = |k: usize| numbers.as_ptr().add(places[k] as usize);
+                let mut sum = _mm_loadu_ps(four(0));
                 for k in 1..count {
-                    sum = _mm_add_ps(sum, _mm_loadu_ps(row(k)));
+                    sum = _mm_add_ps(sum, _mm_loadu_ps(four(k)));
                 }
                 _mm_storeu_ps(total.as_mut_ptr(), sum);
             }
@@ -260,18 +268,18 @@ mod wide {
         }
     }
 
-    /// Panics when one of the places is not among the rows: one comparison for all eight.
+    /// Panics when one of the places is not below `end`: one comparison for all eight.
     #[inline(always)]
-    unsafe fn check(rows: &[Row], places: &[u32; LANES]) {
+    unsafe fn check(end: usize, places: &[u32; LANES]) {
         unsafe {
             // An opaque load: of a plain one the compiler would take the places out of the
             // register again, one by one, where loading each is cheaper.
             let wanted = _mm256_lddqu_si256(places.as_ptr().cast());
-            // Of more rows than a place can name the low bits alone: a smaller number, or all.
-            let last = _mm256_set1_epi32((rows.len() as i32).wrapping_sub(1));
+            // Of an end that no place can name the low bits alone: a smaller number, or all.
+            let last = _mm256_set1_epi32((end as i32).wrapping_sub(1));
             let greatest = _mm256_max_epu32(wanted, last);
             let within = _mm256_cmpeq_epi32(greatest, last);
-            assert!(!rows.is_empty() && _mm256_movemask_epi8(within) == -1);
+            assert!(end > 0 && _mm256_movemask_epi8(within) == -1);
         }
     }
 
@@ -309,7 +317,9 @@ mod tests {
     /// Whether rows at these places are refused, by a gather and by a sum.
     fn refuses<L: Lanes>(rows: &[Row], places: [u32; LANES]) -> [bool; 2] {
         let gather = catch_unwind(|| L::gather(rows, &places).len());
-        let sum = catch_unwind(|| L::sum(rows, &places, LANES));
+        // The last of so many numbers where four begin is the last of the rows.
+        let numbers = vec![1.0; (rows.len() + 3) * usize::from(!rows.is_empty())];
+        let sum = catch_unwind(|| L::sum(&numbers, &places, LANES));
         [gather.is_err(), sum.is_err()]
     }
 

@@ -1,7 +1,7 @@
 //! Which block an element sits in: how blocks follow a remodelling.
 
 use super::kernel::{numbers, numbers_a_node, symmetric};
-use super::{ALL_LANES, Block, Blocks, Home, LANES, VACANT};
+use super::{ALL_LANES, Block, Blocks, Home, LANES, PAD, VACANT};
 use crate::dim::Dim;
 use crate::grid::VoxelGrid;
 use crate::law::Law;
@@ -57,7 +57,7 @@ impl<D: Dim> Blocks<D> {
         let place = lane_nodes
             .position(|&other| other == node)
             .expect("the element carries the node");
-        (first + place * LANES) as u32
+        ((first + place * LANES) * D::N) as u32
     }
 
     fn take_out(&mut self, id: u32) {
@@ -129,7 +129,7 @@ impl<D: Dim> Blocks<D> {
         let stencil = self.pooled.len() as u32;
         let rows = self.nodes.len() + count as usize * LANES;
         self.nodes.resize(rows, VACANT);
-        self.forces.resize(rows, [0.0; 4]);
+        self.forces.resize(rows * D::N + PAD, 0.0);
         if home.is_pool() {
             let length = self.pooled.len() + numbers::<D>(count as usize);
             self.pooled.resize(length, [0.0; LANES]);

@@ -7,6 +7,7 @@
 
 use super::Impulse;
 use super::bins::Bins;
+use super::captives::Captive;
 use crate::body::Body;
 use crate::dim::{Dim, Point};
 use crate::solve::Row;
@@ -63,19 +64,28 @@ pub struct Skins {
     pub list: Vec<Skin>,
     /// Close to each other, ascending.
     pub pairs: Vec<SkinPair>,
-    /// Where the middles of the skins are [m], how far they came in the last substep, squared [m²],
-    /// and how fast they would go on if nothing touched them [m/s].
+    /// Where the middles of the skins are [m]. Those that are in no pair are looked at only when
+    /// one of them may have strayed.
     pub centres: Vec<Row>,
+    /// Of those in pairs: how far they came in the last substep, squared [m²], and how fast they
+    /// would go on if nothing touched them [m/s].
     pub moved: Vec<f32>,
     pub velocities: Vec<Row>,
     /// One over the mass that a push on a skin meets [1/kg].
     pub lightness: Vec<f32>,
-    /// Places of those awake, ascending.
-    awake: Vec<u32>,
+    /// Those inside another piece, ascending, and by skin the body and number of that piece.
+    pub captives: Vec<Captive>,
+    pub(super) captors: Vec<Option<(u32, u32)>>,
+    captives_are_good: bool,
+    /// Places of those awake, ascending, and of those that are in pairs or captives or exits.
+    pub(super) awake: Vec<u32>,
+    close: Vec<u32>,
     /// Where each was when its pairs were found, as seen from a frame that has come as far as all
     /// skins have on the average, while none sleeps: falling together changes no pair.
     anchors: Vec<Row>,
     frame: Row,
+    /// How far anything may still come before one may have strayed [m].
+    spare: f32,
     is_good: bool,
     rest_is_good: bool,
 }
@@ -91,32 +101,59 @@ impl Skins {
         self.rest_is_good = false;
     }
 
+    /// A new tick: somebody may have been forced into another piece.
+    pub fn start_tick(&mut self) {
+        self.captives_are_good = false;
+    }
+
+    /// Something has moved, nothing further than by `distance` [m].
+    pub fn pass(&mut self, distance: f32) {
+        self.spare -= distance;
+    }
+
     /// Follows the bodies: where the skins are now, and which pairs are close; `size` [m] is that
-    /// of the largest voxels. Returns how far the fastest has come [m], or nothing when the list of
-    /// skins or of sleepers is another one.
-    pub fn follow<D: Dim>(&mut self, bodies: &[Body<D>], size: f32) -> Option<f32> {
+    /// of the largest voxels. Returns whether the list of skins and of sleepers is still the same.
+    pub fn follow<D: Dim>(&mut self, bodies: &[Body<D>], size: f32) -> bool {
         let is_same = self.is_good && self.rest_is_good;
         if !self.is_good {
             self.find(bodies);
         }
-        let mut strayed = vec![!self.is_good; self.list.len()];
-        if self.is_good && !self.rest_is_good {
+        let mut strayed = Vec::new();
+        if !is_same {
+            strayed.resize(self.list.len(), !self.is_good);
             for (skin, strayed) in self.list.iter_mut().zip(&mut strayed) {
                 let asleep = sleeps(bodies, skin);
-                *strayed = skin.asleep && !asleep;
+                *strayed |= skin.asleep && !asleep;
                 skin.asleep = asleep;
             }
-        }
-        if !is_same {
             self.note_rest(bodies);
         }
-        let furthest = self.move_on(bodies);
-        let any = self.find_strayed(&mut strayed, size);
-        if any || !is_same {
-            self.find_pairs::<D>(&strayed, size);
+        self.move_close(bodies);
+        let is_spent = !is_same || self.spare <= 0.0;
+        let finds_captives = !(self.is_good && self.captives_are_good);
+        if is_spent || finds_captives {
+            self.move_all(bodies);
         }
-        (self.is_good, self.rest_is_good) = (true, true);
-        is_same.then_some(furthest)
+        if is_spent {
+            strayed.resize(self.list.len(), false);
+            if self.find_strayed(&mut strayed, size) || !is_same {
+                self.find_pairs::<D>(&strayed, size);
+            }
+            (self.is_good, self.rest_is_good) = (true, true);
+        }
+        if finds_captives {
+            self.find_captives(bodies);
+            self.captives_are_good = true;
+        }
+        if is_spent || finds_captives {
+            self.note_close();
+        }
+        for &place in &self.close {
+            let skin = &self.list[place as usize];
+            let velocity = &bodies[skin.body as usize].velocity;
+            self.velocities[place as usize] = skin.mean::<D>(velocity);
+        }
+        is_same
     }
 
     /// Lists the skins of all bodies.
@@ -148,6 +185,7 @@ impl Skins {
         self.centres.extend(self.list.iter().map(position));
         self.anchors.clone_from(&self.centres);
         self.frame = [0.0; 4];
+        self.close.clear();
     }
 
     /// Notes who is awake, and what a push meets.
@@ -157,6 +195,7 @@ impl Skins {
         self.awake.clear();
         self.awake
             .extend(places.filter(|&place| !list[place as usize].asleep));
+        self.close.retain(|&place| !list[place as usize].asleep);
         self.velocities.clear();
         self.velocities.resize(list.len(), [0.0; 4]);
         self.moved.clear();
@@ -166,43 +205,51 @@ impl Skins {
             .extend(list.iter().map(|skin| skin.lightness(bodies)));
     }
 
-    /// Moves the skins along with the bodies; returns how far the fastest has come [m].
-    fn move_on<D: Dim>(&mut self, bodies: &[Body<D>]) -> f32 {
-        let mut furthest = 0.0f32;
+    /// Moves those that are in pairs along with the bodies.
+    fn move_close<D: Dim>(&mut self, bodies: &[Body<D>]) {
+        for &place in &self.close {
+            let place = place as usize;
+            let skin = &self.list[place];
+            let centre = skin.mean::<D>(&bodies[skin.body as usize].position);
+            let moved = minus(centre, self.centres[place]);
+            self.moved[place] = dot(moved, moved);
+            self.centres[place] = centre;
+        }
+    }
+
+    /// Moves all skins along with the bodies.
+    fn move_all<D: Dim>(&mut self, bodies: &[Body<D>]) {
         let mut sum = [0.0; 4];
         for &place in &self.awake {
             let place = place as usize;
             let skin = &self.list[place];
-            let body = &bodies[skin.body as usize];
-            let centre = skin.mean::<D>(&body.position);
-            let moved = minus(centre, self.centres[place]);
-            self.moved[place] = dot(moved, moved);
-            furthest = furthest.max(self.moved[place]);
+            let centre = skin.mean::<D>(&bodies[skin.body as usize].position);
             self.centres[place] = centre;
-            self.velocities[place] = skin.mean::<D>(&body.velocity);
             sum = plus(sum, minus(centre, self.anchors[place]));
         }
         if self.awake.len() == self.list.len() && !self.awake.is_empty() {
             self.frame = scaled(sum, 1.0 / self.awake.len() as f32);
         }
-        furthest.sqrt()
     }
 
     /// Marks those that have strayed too far, and if there are any, those that soon will have;
-    /// returns whether any are marked.
+    /// returns whether any are marked. Notes what the others have to spare.
     fn find_strayed(&mut self, strayed: &mut [bool], size: f32) -> bool {
-        let mut any = strayed.contains(&true);
-        let is_beyond = |place: u32, share: f32| {
+        let slack = SLACK * size;
+        let strays = self.awake.iter().map(|&place| {
             let place = place as usize;
             let moved = minus(minus(self.centres[place], self.anchors[place]), self.frame);
-            let bearable = share * SLACK * size;
-            dot(moved, moved) > bearable * bearable
-        };
-        any |= self.awake.iter().any(|&place| is_beyond(place, 1.0));
+            dot(moved, moved)
+        });
+        let furthest = strays.clone().fold(0.0, f32::max);
+        let any = furthest > slack * slack || strayed.contains(&true);
+        self.spare = slack - furthest.sqrt();
         if any {
-            for &place in &self.awake {
-                strayed[place as usize] |= is_beyond(place, SPARE);
+            let bearable = SPARE * slack * SPARE * slack;
+            for (&place, stray) in self.awake.iter().zip(strays) {
+                strayed[place as usize] |= stray > bearable;
             }
+            self.spare = (1.0 - SPARE) * slack;
         }
         any
     }
@@ -228,6 +275,19 @@ impl Skins {
             });
         }
         self.merge(&sorted(&found, self.list.len()), strayed);
+    }
+
+    /// Notes which skins matter to contact in the next substeps.
+    fn note_close(&mut self) {
+        let mut is_close = vec![false; self.list.len()];
+        let pairs = self.pairs.iter().flat_map(|pair| pair.skins);
+        let captives = self.captives.iter();
+        let captives = captives.flat_map(|captive| [captive.skin, captive.exit]);
+        for place in pairs.chain(captives) {
+            is_close[place as usize] = true;
+        }
+        self.close.clone_from(&self.awake);
+        self.close.retain(|&place| is_close[place as usize]);
     }
 
     /// Makes the new list of pairs from those just found and the old ones of which neither has
@@ -288,6 +348,11 @@ impl Skin {
     /// Whether it is a piece of its own.
     pub fn is_crumb<D: Dim>(&self) -> bool {
         self.bare.count_ones() as usize == 2 * D::N
+    }
+
+    /// Whether a bare face of it has none opposite.
+    pub fn leads_out(&self) -> bool {
+        (self.bare ^ self.bare >> 1) & 0b1_0101 != 0
     }
 
     /// From its middle out of the body, through the bare faces; nothing for a crumb or a sheet.
@@ -398,6 +463,7 @@ mod tests {
                 }
             }
             let before = skins.pairs.len();
+            skins.pass(0.5 * size);
             skins.follow(std::slice::from_ref(&body), size);
             changes += usize::from(before != skins.pairs.len());
             assert!(skins.pairs.is_sorted_by(|a, b| a.skins < b.skins));

@@ -111,7 +111,9 @@ impl Renderer {
             // Nobody listens any more when waiting failed.
             let _ = sender.send(result);
         });
-        device.poll(PollType::wait_indefinitely()).map_err(ImageError::Poll)?;
+        device
+            .poll(PollType::wait_indefinitely())
+            .map_err(ImageError::Poll)?;
         let mapped = receiver.recv().expect("a finished device calls back");
         mapped.map_err(ImageError::Map)?;
         let bytes = buffer.get_mapped_range(..).map_err(ImageError::Range)?;

@@ -7,13 +7,13 @@ mod targets;
 
 pub use image::ImageError;
 
-use crate::frame::{Frame, Look};
+use crate::frame::{Camera, Frame, Look};
 use crate::geometry::Geometry;
 use buffer::GrowingBuffer;
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::{Dim2, World};
 use pipelines::Pipelines;
-use targets::{Targets, bind};
+use targets::{NARROW, REACH, Targets, bind};
 use wgpu::*;
 
 /// Standard deviation of the wide blur, which makes a body look thick, as a share of the radius
@@ -30,6 +30,9 @@ pub struct Renderer {
     geometry: Geometry,
     uniforms: Buffer,
     globals: BindGroup,
+    /// Low and high corner of what is drawn of bodies, blurs included, as shares of the picture
+    /// from its upper left corner; none when there are no bodies in it.
+    covered: Option<[[f32; 2]; 2]>,
     skin_vertices: GrowingBuffer,
     fans: GrowingBuffer,
     bands: GrowingBuffer,
@@ -52,6 +55,7 @@ struct Globals {
     floor_rim: [f32; 4],
     frame: [f32; 4],
     fresh: [f32; 4],
+    bounds: [f32; 4],
     walls: [[f32; 4]; crate::rigid::MOST_WALLS],
 }
 
@@ -74,6 +78,7 @@ impl Renderer {
             globals: bind(device, &pipelines.globals_layout, &[resource]),
             targets: Targets::new(device, &pipelines, [1, 1]),
             geometry: Geometry::default(),
+            covered: None,
             skin_vertices: buffer("skin", vertex),
             fans: buffer("fans", index),
             bands: buffer("bands", index),
@@ -101,11 +106,10 @@ impl Renderer {
             self.targets = Targets::new(device, &self.pipelines, target_size);
         }
         self.geometry.gather(world, frame);
+        self.covered = self.covered(&frame.camera, target_size);
         self.upload(device, queue, frame);
         self.draw_bodies(encoder);
-        if frame.look == Look::Skin || !self.geometry.elements.indices.is_empty() {
-            self.blur(encoder);
-        }
+        self.blur(encoder);
     }
 
     /// Puts the picture that was made ready into a pass, filling its viewport.
@@ -124,19 +128,41 @@ impl Renderer {
             pass.draw(0..4, shapes);
         };
         draw(&pipelines.glow, basket.clone());
-        draw(&pipelines.shadow, 0..hands.end);
-        pass.set_pipeline(&pipelines.body);
-        pass.draw(0..3, 0..1);
+        if self.covered.is_some() {
+            pass.set_pipeline(&pipelines.body);
+            pass.draw(0..4, 0..1);
+        }
         let mut draw = |pipeline, shapes| {
             pass.set_pipeline(pipeline);
             pass.draw(0..4, shapes);
         };
         draw(&pipelines.border, basket);
+        draw(&pipelines.shadow, 0..hands.end);
         draw(&pipelines.bar, bars);
         draw(&pipelines.hand, hands);
         pass.set_vertex_buffer(0, self.dots.all());
         pass.set_pipeline(&pipelines.particle);
         pass.draw(0..4, 0..rigid.dots.len() as u32);
+    }
+
+    fn covered(&self, camera: &Camera, target_size: [u32; 2]) -> Option<[[f32; 2]; 2]> {
+        let [low, high] = self.geometry.bounds;
+        if low[0] > high[0] {
+            return None;
+        }
+        let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
+        let pixels = corners.map(|[x, y]| camera.to_pixel([x, y, 0.0], target_size));
+        let reach = REACH * THICKNESS * self.geometry.radius / camera.height;
+        let share = |axis: usize| {
+            let side = target_size[axis].max(1) as f32;
+            let reach = reach * target_size[1] as f32 / side + 2.0 / side;
+            let shares = pixels.map(|pixel| pixel[axis] / side);
+            let least = shares.into_iter().fold(f32::MAX, f32::min) - reach;
+            let most = shares.into_iter().fold(f32::MIN, f32::max) + reach;
+            [least.clamp(0.0, 1.0), most.clamp(0.0, 1.0)]
+        };
+        let ([left, right], [top, bottom]) = (share(0), share(1));
+        (left < right && top < bottom).then_some([[left, top], [right, bottom]])
     }
 
     fn upload(&mut self, device: &Device, queue: &Queue, frame: &Frame<'_>) {
@@ -145,12 +171,14 @@ impl Renderer {
             elements,
             rigid,
             radius,
+            bounds,
             ..
         } = &self.geometry;
         self.skin_vertices.write(device, queue, &skin.vertices);
         self.fans.write(device, queue, &skin.fans);
         self.bands.write(device, queue, &skin.bands);
-        self.element_vertices.write(device, queue, &elements.vertices);
+        self.element_vertices
+            .write(device, queue, &elements.vertices);
         self.element_indices.write(device, queue, &elements.indices);
         self.shapes.write(device, queue, &rigid.shapes);
         self.dots.write(device, queue, &rigid.dots);
@@ -158,10 +186,12 @@ impl Renderer {
         let camera = &frame.camera;
         let [right, up] = camera.axes();
         let middle = camera.middle();
-        let [window, size] = [self.targets.window, self.targets.size].map(|size| size.map(|side| side as f32));
+        let [window, size] =
+            [self.targets.window, self.targets.size].map(|size| size.map(|side| side as f32));
         let (edge, thickness) = (EDGE * radius, THICKNESS * radius);
         let pixels = size[1] / camera.height;
-        self.targets.set_blur(queue, edge * pixels, thickness * pixels);
+        self.targets
+            .set_blur(queue, edge * pixels, thickness * pixels);
         let mut walls = [[0.0; 4]; crate::rigid::MOST_WALLS];
         walls[..rigid.walls.len()].copy_from_slice(&rigid.walls);
         let flag = |is: bool| f32::from(u8::from(is));
@@ -182,6 +212,17 @@ impl Renderer {
             floor_rim: colour(theme.floor[1]),
             frame: colour(theme.frame),
             fresh: colour(theme.fresh),
+            bounds: {
+                // Edges reach half a pixel further.
+                let margin = 2.0 * camera.height / size[1];
+                let [low, high] = *bounds;
+                [
+                    low[0] - margin,
+                    low[1] - margin,
+                    high[0] + margin,
+                    high[1] + margin,
+                ]
+            },
             walls,
         };
         queue.write_buffer(&self.uniforms, 0, bytemuck::bytes_of(&globals));
@@ -241,14 +282,17 @@ impl Renderer {
     }
 
     fn blur(&self, encoder: &mut CommandEncoder) {
-        let drawn_into = self.targets.drawn_into();
-        for (k, (step, into)) in self.targets.steps.iter().zip(drawn_into).enumerate() {
+        let (pipelines, targets) = (&self.pipelines, &self.targets);
+        let mut step = |pipeline, from, into: &[TextureView; 2], divisor| {
             let attachments = into.each_ref().map(|view| {
                 Some(RenderPassColorAttachment {
                     view,
                     depth_slice: None,
                     resolve_target: None,
-                    ops: Operations::default(),
+                    ops: Operations {
+                        load: LoadOp::Clear(Color::TRANSPARENT),
+                        store: StoreOp::Store,
+                    },
                 })
             });
             let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
@@ -256,10 +300,27 @@ impl Renderer {
                 color_attachments: &attachments,
                 ..RenderPassDescriptor::default()
             });
-            pass.set_pipeline(if k % 3 == 0 { &self.pipelines.shrink } else { &self.pipelines.soften });
+            let Some([low, high]) = self.covered else {
+                return;
+            };
+            let side = |axis: usize| {
+                let side = targets.size[axis].div_ceil(divisor);
+                let first = (low[axis] * side as f32) as u32;
+                let end = ((high[axis] * side as f32).ceil() as u32).min(side);
+                (first, end.saturating_sub(first))
+            };
+            let ((x, width), (y, height)) = (side(0), side(1));
+            pass.set_scissor_rect(x, y, width, height);
+            pass.set_pipeline(pipeline);
             pass.set_bind_group(0, &self.globals, &[]);
-            pass.set_bind_group(1, step, &[]);
+            pass.set_bind_group(1, from, &[]);
             pass.draw(0..3, 0..1);
+        };
+        let (shrink, soften) = (&pipelines.shrink, &pipelines.soften);
+        let doing = [shrink, soften, soften, shrink, soften, soften];
+        for (k, (into, divisor)) in targets.drawn_into().into_iter().enumerate() {
+            step(doing[k], &targets.steps[k], into, divisor);
         }
+        step(&pipelines.shape, &targets.shape, &targets.narrow[1], NARROW);
     }
 }

@@ -24,6 +24,7 @@ macro_rules! shader {
 pub struct Pipelines {
     pub globals_layout: BindGroupLayout,
     pub blur_layout: BindGroupLayout,
+    pub shape_layout: BindGroupLayout,
     pub body_layout: BindGroupLayout,
     /// Counts how often curves wind around a place.
     pub fan: RenderPipeline,
@@ -36,6 +37,8 @@ pub struct Pipelines {
     pub element: RenderPipeline,
     pub shrink: RenderPipeline,
     pub soften: RenderPipeline,
+    /// Finds slopes and thickness where bodies are blurred.
+    pub shape: RenderPipeline,
     pub arena: RenderPipeline,
     pub body: RenderPipeline,
     pub shadow: RenderPipeline,
@@ -70,8 +73,12 @@ impl Pipelines {
             "blur",
             &[texture(0), texture(1), sampler(2), uniform(3)],
         );
-        let images: Vec<BindGroupLayoutEntry> = (0..6).map(texture).chain([sampler(6)]).collect();
-        let body_layout = layout(device, "body", &images);
+        let images = |count| {
+            let images: Vec<BindGroupLayoutEntry> =
+                (0..count).map(texture).chain([sampler(count)]).collect();
+            layout(device, "images", &images)
+        };
+        let (shape_layout, body_layout) = (images(4), images(6));
         let module = |label, text: &'static str| {
             device.create_shader_module(ShaderModuleDescriptor {
                 label: Some(label),
@@ -80,12 +87,14 @@ impl Pipelines {
         };
         let skin = module("skin", shader!("skin.wgsl"));
         let blur = module("blur", shader!("blur.wgsl"));
+        let shape = module("shape", shader!("shape.wgsl"));
         let body = module("body", shader!("light.wgsl", "body.wgsl"));
         let rigid = module("rigid", shader!("light.wgsl", "rigid.wgsl"));
         let stage = |extra: Option<&BindGroupLayout>, module, entries| Stage {
             layout: device.create_pipeline_layout(&PipelineLayoutDescriptor {
                 label: None,
-                bind_group_layouts: &[Some(&globals_layout), extra][..1 + usize::from(extra.is_some())],
+                bind_group_layouts: &[Some(&globals_layout), extra]
+                    [..1 + usize::from(extra.is_some())],
                 immediate_size: 0,
             }),
             device,
@@ -94,7 +103,10 @@ impl Pipelines {
         };
         let plain = |front, back| stencil(CompareFunction::Always, front, back);
         let (keep, zero) = (StencilOperation::Keep, StencilOperation::Zero);
-        let (more, less) = (StencilOperation::IncrementWrap, StencilOperation::DecrementWrap);
+        let (more, less) = (
+            StencilOperation::IncrementWrap,
+            StencilOperation::DecrementWrap,
+        );
         let inside = |pass| stencil(CompareFunction::NotEqual, pass, pass);
         let skins = |entries, stencil, blend, mask| {
             stage(None, &skin, entries).build(&Target {
@@ -106,9 +118,13 @@ impl Pipelines {
                 mask,
             })
         };
-        let (skin_entries, all, none) = (("skin_corner", "skin"), ColorWrites::ALL, ColorWrites::empty());
-        let blurs = |entry| {
-            stage(Some(&blur_layout), &blur, ("whole", entry)).build(&Target {
+        let (skin_entries, all, none) = (
+            ("skin_corner", "skin"),
+            ColorWrites::ALL,
+            ColorWrites::empty(),
+        );
+        let blurs = |layout, module, entry| {
+            stage(Some(layout), module, ("whole", entry)).build(&Target {
                 buffers: &[],
                 topology: PrimitiveTopology::TriangleList,
                 formats: &[SOFT_FORMAT; 2],
@@ -125,7 +141,6 @@ impl Pipelines {
             blend: Some(OVER),
             mask: all,
         };
-        let wholes = |entry| stage(Some(&body_layout), &body, ("whole", entry)).build(&shown);
         let shapes = |entries| {
             stage(None, &rigid, entries).build(&Target {
                 buffers: &[Some(RigidInstance::layout())],
@@ -146,10 +161,14 @@ impl Pipelines {
                 blend: Some(OVER),
                 mask: all,
             }),
-            shrink: blurs("shrink"),
-            soften: blurs("soften"),
-            arena: wholes("arena"),
-            body: wholes("body"),
+            shrink: blurs(&blur_layout, &blur, "shrink"),
+            soften: blurs(&blur_layout, &blur, "soften"),
+            shape: blurs(&shape_layout, &shape, "shape"),
+            arena: stage(Some(&body_layout), &body, ("whole", "arena")).build(&shown),
+            body: stage(Some(&body_layout), &body, ("bounding", "body")).build(&Target {
+                topology: PrimitiveTopology::TriangleStrip,
+                ..shown
+            }),
             shadow: shapes(("wide_corner", "shadow")),
             bar: shapes(("close_corner", "bar")),
             hand: shapes(("close_corner", "hand")),
@@ -162,6 +181,7 @@ impl Pipelines {
             }),
             globals_layout,
             blur_layout,
+            shape_layout,
             body_layout,
         }
     }
@@ -212,33 +232,34 @@ impl Stage<'_> {
             },
             bias: DepthBiasState::default(),
         });
-        self.device.create_render_pipeline(&RenderPipelineDescriptor {
-            label: Some(fragment),
-            layout: Some(&self.layout),
-            vertex: VertexState {
-                module: self.module,
-                entry_point: Some(vertex),
-                compilation_options: PipelineCompilationOptions::default(),
-                buffers: target.buffers,
-            },
-            primitive: PrimitiveState {
-                topology: target.topology,
-                ..PrimitiveState::default()
-            },
-            multisample: MultisampleState {
-                count: if target.stencil.is_some() { SAMPLES } else { 1 },
-                ..MultisampleState::default()
-            },
-            depth_stencil,
-            fragment: Some(FragmentState {
-                module: self.module,
-                entry_point: Some(fragment),
-                compilation_options: PipelineCompilationOptions::default(),
-                targets: &targets,
-            }),
-            multiview_mask: None,
-            cache: None,
-        })
+        self.device
+            .create_render_pipeline(&RenderPipelineDescriptor {
+                label: Some(fragment),
+                layout: Some(&self.layout),
+                vertex: VertexState {
+                    module: self.module,
+                    entry_point: Some(vertex),
+                    compilation_options: PipelineCompilationOptions::default(),
+                    buffers: target.buffers,
+                },
+                primitive: PrimitiveState {
+                    topology: target.topology,
+                    ..PrimitiveState::default()
+                },
+                multisample: MultisampleState {
+                    count: if target.stencil.is_some() { SAMPLES } else { 1 },
+                    ..MultisampleState::default()
+                },
+                depth_stencil,
+                fragment: Some(FragmentState {
+                    module: self.module,
+                    entry_point: Some(fragment),
+                    compilation_options: PipelineCompilationOptions::default(),
+                    targets: &targets,
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
     }
 }
 

@@ -7,8 +7,10 @@ use wgpu::*;
 /// Pixels off the screen at most: on larger targets bodies are drawn smaller and stretched.
 const MOST_PIXELS: f32 = 2.6e6;
 /// By what the images for the narrow and for the wide blur are smaller.
-const NARROW: u32 = 4;
+pub const NARROW: u32 = 4;
 const WIDE: u32 = 16;
+/// How far a blur reaches, in standard deviations.
+pub const REACH: f32 = 2.6;
 /// Room between the uniforms of the blurs, as the smallest devices ask for.
 const STRIDE: u64 = 256;
 
@@ -28,6 +30,8 @@ pub struct Targets {
     pub wide: [Pair; 2],
     /// Skin → narrow, along, across, narrow → wide, along, across.
     pub steps: [BindGroup; 6],
+    /// What the step that finds the shape of the blurred bodies reads.
+    pub shape: BindGroup,
     /// All that the window's pass reads.
     pub body: BindGroup,
     uniforms: Buffer,
@@ -45,7 +49,9 @@ struct Blur {
 impl Targets {
     pub fn new(device: &Device, pipelines: &Pipelines, window: [u32; 2]) -> Self {
         let window = window.map(|side| side.max(1));
-        let shrunk = (MOST_PIXELS / (window[0] as f32 * window[1] as f32)).sqrt().min(1.0);
+        let shrunk = (MOST_PIXELS / (window[0] as f32 * window[1] as f32))
+            .sqrt()
+            .min(1.0);
         let size = window.map(|side| ((side as f32 * shrunk) as u32).max(1));
         let (inside, readable) = (
             TextureUsages::RENDER_ATTACHMENT,
@@ -87,7 +93,9 @@ impl Targets {
             min_filter: FilterMode::Linear,
             ..SamplerDescriptor::default()
         });
-        let sources = [&skin, &narrow[0], &narrow[1], &narrow[0], &wide[0], &wide[1]];
+        let sources = [
+            &skin, &narrow[0], &narrow[1], &narrow[0], &wide[0], &wide[1],
+        ];
         let steps = std::array::from_fn(|k| {
             let [colour, relief] = sources[k];
             let uniform = BufferBinding {
@@ -106,13 +114,31 @@ impl Targets {
                 ],
             )
         });
-        let read = [&skin, &narrow[0], &wide[0]].into_iter().flatten();
-        let resources: Vec<BindingResource<'_>> = read
-            .map(BindingResource::TextureView)
-            .chain([BindingResource::Sampler(&smooth)])
-            .collect();
+        let images = |layout, images: &[&TextureView]| {
+            let images = images
+                .iter()
+                .map(|image| BindingResource::TextureView(image));
+            let resources: Vec<BindingResource<'_>> =
+                images.chain([BindingResource::Sampler(&smooth)]).collect();
+            bind(device, layout, &resources)
+        };
+        let [blurred, shaped] = &narrow;
         Self {
-            body: bind(device, &pipelines.body_layout, &resources),
+            shape: images(
+                &pipelines.shape_layout,
+                &[&blurred[0], &blurred[1], &wide[0][0], &wide[0][1]],
+            ),
+            body: images(
+                &pipelines.body_layout,
+                &[
+                    &skin[0],
+                    &skin[1],
+                    &blurred[0],
+                    &wide[0][0],
+                    &shaped[0],
+                    &shaped[1],
+                ],
+            ),
             rough: pair("rough skin", 1, SAMPLES, SKIN_FORMAT, inside),
             stencil: image("stencil", 1, SAMPLES, STENCIL_FORMAT, inside),
             window,
@@ -125,10 +151,11 @@ impl Targets {
         }
     }
 
-    /// What each step of the blur draws into.
-    pub fn drawn_into(&self) -> [&Pair; 6] {
-        let [narrow, wide] = [&self.narrow, &self.wide];
-        [&narrow[0], &narrow[1], &narrow[0], &wide[0], &wide[1], &wide[0]]
+    /// What each step of the blur draws into, and by what that is smaller than the skin.
+    pub fn drawn_into(&self) -> [(&Pair, u32); 6] {
+        let narrow = [0, 1, 0].map(|k| (&self.narrow[k], NARROW));
+        let wide = [0, 1, 0].map(|k| (&self.wide[k], WIDE));
+        [narrow[0], narrow[1], narrow[2], wide[0], wide[1], wide[2]]
     }
 
     /// Tells the blurs how far to reach, in pixels of the skin.
@@ -145,7 +172,7 @@ impl Targets {
             Blur {
                 step,
                 sigma,
-                reach: (2.6 * sigma).ceil(),
+                reach: (REACH * sigma).ceil(),
             }
         };
         let steps = [
@@ -162,11 +189,18 @@ impl Targets {
     }
 }
 
-pub fn bind(device: &Device, layout: &BindGroupLayout, resources: &[BindingResource<'_>]) -> BindGroup {
-    let entries = resources.iter().enumerate().map(|(binding, resource)| BindGroupEntry {
-        binding: binding as u32,
-        resource: resource.clone(),
-    });
+pub fn bind(
+    device: &Device,
+    layout: &BindGroupLayout,
+    resources: &[BindingResource<'_>],
+) -> BindGroup {
+    let entries = resources
+        .iter()
+        .enumerate()
+        .map(|(binding, resource)| BindGroupEntry {
+            binding: binding as u32,
+            resource: resource.clone(),
+        });
     let entries: Vec<BindGroupEntry<'_>> = entries.collect();
     device.create_bind_group(&BindGroupDescriptor {
         label: None,

@@ -14,6 +14,8 @@ struct Globals {
     floor_rim: vec4f,
     frame: vec4f,
     fresh: vec4f,
+    // Low and high corner of all bodies.
+    bounds: vec4f,
     // Outward normal and offset of half-spaces.
     walls: array<vec4f, 16>,
 }

@@ -135,10 +135,13 @@ fn dashes(at: vec2f, in: ShapeCorner) -> f32 {
 fn glow(in: ShapeCorner) -> @location(0) vec4f {
     let distance = distance_to(in.at, in);
     let breath = 0.5 + 0.5 * sin(2.0 * globals.tune.x);
-    let strength = 0.24 + 0.05 * breath + 0.3 * in.form.z;
-    let edge = exp(-abs(distance) / 0.06);
-    let alpha = strength * select(edge * 0.8 * smoothstep(0.2, 0.1, distance), 0.5 + 0.5 * edge, distance < 0.0);
-    return shown(to_linear(in.colour), alpha);
+    let strength = 0.30 + 0.06 * breath + 0.3 * in.form.z;
+    let edge = exp(-abs(distance) / 0.05);
+    if distance > 0.0 {
+        return shown(to_linear(in.colour), 1.6 * strength * edge * smoothstep(0.2, 0.1, distance));
+    }
+    let milk = mix(vec3f(1.0, 0.96, 0.85), to_linear(in.colour), 0.25 + 0.75 * edge);
+    return shown(milk, strength * (1.2 + 0.4 * edge));
 }
 
 @fragment

@@ -1,0 +1,61 @@
+//! The way out for who is inside another piece: along with it, and towards the exit.
+
+use super::motion::Motion;
+use super::row::PUSH_OUT_SPEED;
+use super::{Grip, inner};
+use crate::body::Body;
+use crate::dim::Dim;
+use crate::solve::Row;
+use crate::touch::{Captive, Skins};
+use crate::vector::{minus, plus, scaled};
+
+/// A captive and its exit, in one substep.
+#[derive(Copy, Clone, Debug)]
+pub struct Exit {
+    grips: [Grip; 2],
+    /// One over the speed that a unit of impulse gives [kg].
+    inertia: f32,
+    /// How the captive is to move as seen from its exit [m/s].
+    velocity: Row,
+}
+
+impl Exit {
+    /// The way of a captive to the place in front of its exit; nothing when neither can move.
+    pub fn new<D: Dim>(
+        captive: &Captive,
+        bodies: &[Body<D>],
+        skins: &Skins,
+        motion: &mut Motion,
+        duration: f32,
+    ) -> Option<Self> {
+        let [a, b] = [captive.skin, captive.exit].map(|place| place as usize);
+        let both = [&skins.list[a], &skins.list[b]];
+        let length = |way: Row| inner::<D>(way, way).sqrt().max(1e-9);
+        let out = both[1].outward::<D>(&bodies[both[1].body as usize].position);
+        let ahead = (both[0].radius + both[1].radius) / length(out);
+        let goal = plus(skins.centres[b], scaled(out, ahead));
+        let way = minus(goal, skins.centres[a]);
+        let speed = PUSH_OUT_SPEED.min(length(way) / duration);
+        let lightness = skins.lightness[a] + skins.lightness[b];
+        (lightness > 0.0).then(|| Self {
+            grips: both.map(|skin| motion.grip::<D>(skin)),
+            inertia: 1.0 / lightness,
+            velocity: scaled(way, speed / length(way)),
+        })
+    }
+
+    /// Sends the captive on its way.
+    pub fn solve<D: Dim>(&self, motion: &mut Motion) {
+        self.push::<D>(self.velocity, motion);
+    }
+
+    /// After the move: takes back the speed it was given for it.
+    pub fn relax<D: Dim>(&self, motion: &mut Motion) {
+        self.push::<D>([0.0; 4], motion);
+    }
+
+    fn push<D: Dim>(&self, velocity: Row, motion: &mut Motion) {
+        let change = minus(velocity, motion.between::<D>(&self.grips));
+        motion.push_skins::<D>(&self.grips, scaled(change, self.inertia));
+    }
+}

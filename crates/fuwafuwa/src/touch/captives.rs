@@ -1,0 +1,202 @@
+//! Skins that were forced into another piece, and the way out.
+//!
+//! There is no skin inside a piece that would hold anything off: a crumb that was pressed through a
+//! stretched skin would stay. So once a tick the elements of the larger pieces are asked whose
+//! middle lies in them. Such a skin is a *captive*: it no longer touches the skins of the piece around
+//! it, but for the nearest, its *exit*, which lets it out.
+
+use super::bins::Bins;
+use super::skins::Skins;
+use crate::body::Body;
+use crate::dim::Dim;
+use crate::mesh::Element;
+use crate::shape::Vector;
+use crate::solve::Row;
+use crate::stencil::slot_at;
+use crate::vector::{cross, dot, minus, plus, scaled, three};
+
+/// An element that is flatter than this holds nobody: its volume over that at rest.
+const FLAT: f32 = 0.01;
+
+/// A skin whose middle is inside another piece.
+#[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Captive {
+    /// Its place among the skins.
+    pub skin: u32,
+    /// The nearest skin of the piece around it.
+    pub exit: u32,
+}
+
+impl Skins {
+    /// Finds out who is inside a piece that is larger than its own.
+    pub(super) fn find_captives<D: Dim>(&mut self, bodies: &[Body<D>]) {
+        self.captives.clear();
+        self.captors.clear();
+        self.captors.resize(self.list.len(), None);
+        let counts: Vec<Vec<u32>> = bodies.iter().map(element_counts).collect();
+        let largest = counts.iter().flatten().copied().max().unwrap_or(0);
+        let own = |skin: u32| {
+            let skin = &self.list[skin as usize];
+            counts[skin.body as usize][skin.piece as usize]
+        };
+        let small = self.awake.iter().copied();
+        let small: Vec<u32> = small.filter(|&skin| own(skin) < largest).collect();
+        if small.is_empty() {
+            return;
+        }
+        // Surface elements hold skins that are close to their own.
+        for pair in &self.pairs {
+            let [a, b] = pair.skins.map(|skin| &self.list[skin as usize]);
+            let [at, other] = pair.skins.map(|skin| self.centres[skin as usize]);
+            let (apart, reach) = (minus(at, other), a.radius + b.radius);
+            if dot(apart, apart) > reach * reach {
+                continue;
+            }
+            for (inner, outer, at) in [(0, b, at), (1, a, other)] {
+                let skin = pair.skins[inner];
+                let captor = (outer.body, outer.piece);
+                let is_smaller = own(skin) < own(pair.skins[1 - inner]);
+                let body = &bodies[outer.body as usize];
+                if is_smaller && body.holds(outer.element, three(at)) {
+                    self.captors[skin as usize] = Some(captor);
+                }
+            }
+        }
+        let centres = small.iter().map(|&skin| self.centres[skin as usize]);
+        let centres: Vec<Row> = centres.collect();
+        for same in inner_elements(bodies, &counts).chunk_by(|a, b| a.level == b.level) {
+            let widest = same.iter().map(|inner| inner.radius).fold(0.0, f32::max);
+            let bins = Bins::new::<D>(&centres, widest);
+            for inner in same {
+                bins.near::<D>(inner.centre, inner.radius, |place| {
+                    let (skin, at) = (small[place as usize], three(centres[place as usize]));
+                    let body = &bodies[inner.captor.0 as usize];
+                    if own(skin) < inner.count && body.holds(inner.element, at) {
+                        self.captors[skin as usize] = Some(inner.captor);
+                    }
+                });
+            }
+        }
+        for skin in small {
+            let Some(captor) = self.captors[skin as usize] else {
+                continue;
+            };
+            match self.exit(self.centres[skin as usize], captor) {
+                Some(exit) => self.captives.push(Captive { skin, exit }),
+                None => self.captors[skin as usize] = None,
+            }
+        }
+    }
+
+    /// The skin of a piece that is nearest to a place [m] and leads out.
+    fn exit(&self, at: Row, captor: (u32, u32)) -> Option<u32> {
+        let skins = self.list.iter().enumerate();
+        let exits = skins.filter(|(_, skin)| (skin.body, skin.piece) == captor && skin.leads_out());
+        let mut nearest = (f32::INFINITY, None);
+        for (place, _) in exits {
+            let apart = minus(self.centres[place], at);
+            let squared = dot(apart, apart);
+            if squared < nearest.0 {
+                nearest = (squared, Some(place as u32));
+            }
+        }
+        nearest.1
+    }
+
+    /// Whether one of two skins is inside the piece of the other.
+    #[inline(always)]
+    pub fn is_inside(&self, a: usize, b: usize) -> bool {
+        let inside = |a: usize, b: usize| {
+            let (captor, skin) = (self.captors[a], &self.list[b]);
+            captor.is_some_and(|captor| captor == (skin.body, skin.piece))
+        };
+        inside(a, b) || inside(b, a)
+    }
+}
+
+/// An element that has no bare face, and a ball around it.
+struct Inner {
+    level: u8,
+    element: u32,
+    /// Body and number of its piece, and how many elements that has.
+    captor: (u32, u32),
+    count: u32,
+    centre: Row,
+    radius: f32,
+}
+
+/// The elements without a bare face, by level.
+fn inner_elements<D: Dim>(bodies: &[Body<D>], counts: &[Vec<u32>]) -> Vec<Inner> {
+    let mut found = Vec::new();
+    for (place, body) in bodies.iter().enumerate() {
+        for (id, element) in body.mesh.elements() {
+            let level = element.cell.level;
+            if level == 0 && body.bare[id as usize] != 0 {
+                continue;
+            }
+            let piece = body.pieces.of_element(id);
+            let nodes = element.nodes.iter();
+            let places = nodes.map(|&node| body.position[node as usize]);
+            let sum = places.clone().fold([0.0; 4], plus);
+            let centre = scaled(sum, 1.0 / element.nodes.len() as f32);
+            let furthest = places.map(|at| minus(at, centre)).map(|way| dot(way, way));
+            found.push(Inner {
+                level,
+                element: id,
+                captor: (place as u32, piece),
+                count: counts[place][piece as usize],
+                centre,
+                radius: furthest.fold(0.0, f32::max).sqrt(),
+            });
+        }
+    }
+    found.sort_by_key(|inner| inner.level);
+    found
+}
+
+/// The number of elements of each piece.
+fn element_counts<D: Dim>(body: &Body<D>) -> Vec<u32> {
+    let mut counts = vec![0; body.pieces.list.len()];
+    for (id, _) in body.mesh.elements() {
+        counts[body.pieces.of_element(id) as usize] += 1;
+    }
+    counts
+}
+
+impl<D: Dim> Body<D> {
+    /// Whether a place [m] lies in an element, taken for evenly deformed.
+    fn holds(&self, id: u32, at: Vector) -> bool {
+        let Some(element) = self.mesh.element(id) else {
+            return false;
+        };
+        let child = self.child_at(element, at);
+        child.is_some_and(|child| element.children >> child & 1 == 1)
+    }
+
+    /// The child of an element's cell that a place [m] lies in.
+    fn child_at(&self, element: &Element, at: Vector) -> Option<usize> {
+        let (centre, [x, y, z]) = self.deformation(element);
+        let volume = dot(x, cross(y, z));
+        if !(volume.abs() > FLAT) {
+            return None;
+        }
+        // Cramer's rule: where the place was at rest, as seen from the centroid.
+        let by = scaled(minus(at, centre), 1.0 / volume);
+        let columns = [cross(y, z), cross(z, x), cross(x, y)];
+        let child_width = 0.5 * self.grid.voxel_size() * element.cell.width() as f32;
+        let stencil = self.mesh.stencil(element);
+        let corner = slot_at(stencil.slots[0] as usize);
+        let mut child = 0;
+        for axis in 0..D::N {
+            let from_centroid: f32 = (0..3).map(|k| columns[k][axis] * by[k]).sum();
+            let from_corner = from_centroid / child_width - stencil.offsets[0][axis] as f32;
+            let along = from_corner + corner[axis] as f32;
+            if !(0.0..=2.0).contains(&along) {
+                return None;
+            }
+            child |= usize::from(along > 1.0) << axis;
+        }
+        Some(child)
+    }
+}

@@ -1,0 +1,187 @@
+//! Crumbs that are pressed hard: none stays inside a larger piece.
+
+use fuwafuwa::vector::{cross, dot, length, minus, plus, scaled};
+use fuwafuwa::{
+    Body, Dim, Dim2, Dim3, Manipulator, Material, Settings, Shape, Vector, VoxelGrid, World,
+};
+
+/// A crumb is well inside a piece when its middle is in an element and this far from all faces, in
+/// voxels.
+const DEPTH: f32 = 0.6;
+/// A crumb is a piece of so many elements at most.
+const SMALL: u32 = 16;
+
+/// Twice or six times the volume of a simplex.
+fn volume<D: Dim>(points: &[Vector]) -> f32 {
+    let [a, b] = [1, 2].map(|k| minus(points[k], points[0]));
+    match D::N {
+        2 => a[0] * b[1] - a[1] * b[0],
+        _ => dot(cross(a, b), minus(points[3], points[0])),
+    }
+}
+
+/// Whether a place is in a simplex: whichever corner it replaces, the volume keeps its sign.
+fn is_in_simplex<D: Dim>(points: &[Vector], at: Vector) -> bool {
+    let whole = volume::<D>(points);
+    (0..=D::N).all(|corner| {
+        let mut others = points.to_vec();
+        others[corner] = at;
+        volume::<D>(&others) / whole >= 0.0
+    })
+}
+
+/// Whether a place is in a cell with these corners: in a simplex from the first corner to the last.
+fn is_in_cell<D: Dim>(corners: &[Vector], at: Vector) -> bool {
+    let simplices: &[[usize; 4]] = match D::N {
+        2 => &[[0, 3, 1, 0], [0, 3, 2, 0]],
+        _ => &[
+            [0, 7, 1, 3],
+            [0, 7, 1, 5],
+            [0, 7, 2, 3],
+            [0, 7, 2, 6],
+            [0, 7, 4, 5],
+            [0, 7, 4, 6],
+        ],
+    };
+    simplices.iter().any(|simplex| {
+        let points = simplex.map(|corner| corners[corner]);
+        is_in_simplex::<D>(&points[..=D::N], at)
+    })
+}
+
+/// The crumbs that are well inside a larger piece, by body and piece; and how many crumbs there are.
+fn crumbs_inside<D: Dim>(world: &World<D>) -> (Vec<(usize, u32)>, usize) {
+    let views: Vec<_> = world.bodies().iter().map(Body::piece_views).collect();
+    let crumbs = || {
+        let all = views.iter().enumerate();
+        let all = all.flat_map(|(body, views)| views.iter().map(move |view| (body, view)));
+        all.filter(|(_, view)| view.element_count <= SMALL)
+    };
+    let mut inside = Vec::new();
+    for (place, body) in world.bodies().iter().enumerate() {
+        let size = body.grid().voxel_size();
+        let faces: Vec<(u32, Vector)> = body
+            .facets()
+            .map(|facet| {
+                let corners = &facet.corners[..2 * (D::N - 1)];
+                let sum = corners.iter().copied().fold([0.0; 3], plus);
+                (facet.piece, scaled(sum, 1.0 / corners.len() as f32))
+            })
+            .collect();
+        for view in body.element_views() {
+            let count = views[place][view.piece as usize].element_count;
+            let cells = match view.level {
+                0 => 1,
+                _ => view.children,
+            };
+            for child in (0..D::CORNERS).filter(|child| cells >> child & 1 == 1) {
+                let corners = view.child_corners::<D>(child);
+                for (own, crumb) in crumbs().filter(|(_, crumb)| crumb.element_count < count) {
+                    let at = crumb.centre;
+                    let is_beside = (0..D::N).any(|axis| {
+                        corners.iter().all(|corner| corner[axis] < at[axis])
+                            || corners.iter().all(|corner| corner[axis] > at[axis])
+                    });
+                    if is_beside || !is_in_cell::<D>(&corners, at) {
+                        continue;
+                    }
+                    let mut faces = faces.iter().filter(|(piece, _)| *piece == view.piece);
+                    if faces.all(|(_, face)| length(minus(*face, at)) > DEPTH * size) {
+                        inside.push((own, crumb.number));
+                    }
+                }
+            }
+        }
+    }
+    inside.sort_unstable();
+    inside.dedup();
+    (inside, crumbs().count())
+}
+
+/// Runs a world; no crumb may stay inside for more than `patience` ticks, and in the end none may
+/// be inside. There must be `least` crumbs.
+fn check<D: Dim>(
+    mut world: World<D>,
+    ticks: u16,
+    patience: u32,
+    least: usize,
+    goal: impl Fn(f32) -> Vector,
+) {
+    let mut stays = std::collections::BTreeMap::new();
+    for tick in 0..ticks {
+        world.set_goal(0, goal(f32::from(tick) / 60.0));
+        world.step();
+        let (inside, _) = crumbs_inside(&world);
+        stays.retain(|crumb, _| inside.contains(crumb));
+        for crumb in inside {
+            let stay = stays.entry(crumb).or_insert(0);
+            *stay += 1;
+            assert!(
+                *stay <= patience,
+                "{}D, tick {tick}: {crumb:?} stays inside",
+                D::N
+            );
+        }
+    }
+    let (inside, count) = crumbs_inside(&world);
+    assert!(count >= least, "{count} crumbs");
+    assert!(inside.is_empty(), "{inside:?} of {count} are inside");
+}
+
+fn weightless<D: Dim>() -> World<D> {
+    let settings = Settings {
+        gravity: [0.0; 3],
+        drag: 1.0,
+        most_substeps: 64,
+    };
+    World::new(settings).unwrap()
+}
+
+/// A hand presses dust into a body that leans on a wall, grinds to and fro, and leaves.
+fn check_grinding<D: Dim>(n: usize, least: usize) {
+    let mut world = weightless::<D>();
+    let wall = Shape::half_space([-1.0, 0.0, 0.0], [1.05, 0.0, 0.0]);
+    world.add_obstacle(wall, 0.2).unwrap();
+    let tough = Material {
+        strength: f32::INFINITY,
+        ..Material::default()
+    };
+    let ball = |n, width| Body::new(VoxelGrid::<D>::ball(n, width).unwrap(), &[tough]).unwrap();
+    world.add_body(ball(n, 1.0));
+    let mut dust = ball(n / 3, 0.33);
+    dust.crumble().unwrap();
+    let depth = if D::N == 3 { 0.5 } else { 0.0 };
+    world.add_body(dust.moved([-0.36, 0.33, depth - 0.17]));
+    world
+        .add_manipulator(Manipulator::new([-0.55, 0.5, depth], 0.2))
+        .unwrap();
+    check(world, 240, 30, least, |seconds| {
+        let in_and_out = seconds.min(0.8) - (seconds - 2.2).max(0.0);
+        let turn = 2.0 * (seconds - 0.8).clamp(0.0, 1.4);
+        // To and fro, twice in a second.
+        let to_and_fro = 0.3 * ((turn - turn.floor() - 0.5).abs() - 0.5);
+        [-0.55 + 1.25 * in_and_out, 0.5 + to_and_fro, depth]
+    });
+}
+
+#[test]
+fn dust_ground_into_a_body_comes_out_again() {
+    check_grinding::<Dim2>(48, 150);
+    check_grinding::<Dim3>(18, 50);
+}
+
+/// A hand pushes a disc against a wall and through: what it grinds off is not left in the halves.
+#[test]
+fn crumbs_of_a_tear_stay_outside() {
+    let mut world = weightless::<Dim2>();
+    let wall = Shape::half_space([-1.0, 0.0, 0.0], [1.15, 0.0, 0.0]);
+    world.add_obstacle(wall, 0.2).unwrap();
+    let disc = VoxelGrid::ball(64, 1.0).unwrap();
+    world.add_body(Body::new(disc, &[Material::default()]).unwrap());
+    world
+        .add_manipulator(Manipulator::new([-0.3, 0.55, 0.0], 0.08))
+        .unwrap();
+    check(world, 150, 30, 20, |seconds| {
+        [-0.3 + 0.9 * seconds.min(1.5), 0.55, 0.0]
+    });
+}

@@ -1,0 +1,69 @@
+//! How long a picture takes before the GPU is asked, and on it: best milliseconds.
+
+use fuwafuwa::Dim2;
+use fuwafuwa_render::frame::ElementColour;
+use fuwafuwa_render::{Camera, Frame, Geometry, Look, Renderer, Theme};
+use fuwafuwa_scenes::Scene;
+use std::error::Error;
+use std::time::Instant;
+
+const SIZE: [u32; 2] = [1280, 720];
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let instance = wgpu::Instance::default();
+    let adapter = pollster::block_on(instance.request_adapter(&Default::default()))?;
+    let (device, queue) = pollster::block_on(adapter.request_device(&Default::default()))?;
+    let mut renderer = Renderer::new(&device, wgpu::TextureFormat::Rgba8Unorm);
+    println!("{}, {SIZE:?}", adapter.get_info().name);
+    for (name, ticks) in [("squeeze", 130), ("tear", 140), ("diced", 120)] {
+        let scene = Scene::open(name, &[])?;
+        let mut world = scene.build::<Dim2>()?;
+        for tick in 0..ticks {
+            for (hand, goal) in scene.goals(tick).into_iter().enumerate() {
+                world.set_goal(hand, goal);
+            }
+            world.step();
+        }
+        let theme = Theme::candy();
+        let elements = Look::Elements {
+            colour: ElementColour::Level,
+            ages: &[],
+            nodes: false,
+        };
+        for (look_name, look) in [("skin", Look::Skin), ("elements", elements)] {
+            let frame = Frame {
+                camera: Camera::fit(scene.view[0], scene.view[1], SIZE),
+                theme: &theme,
+                look,
+                basket: None,
+                particles: &[],
+                seconds: 0.0,
+            };
+            let mut geometry = Geometry::default();
+            let gather = best(200, || geometry.gather(&world, &frame));
+            let mut failure = None;
+            let whole = best(20, || {
+                let image = renderer.render_to_image(&device, &queue, &world, &frame, SIZE);
+                failure = image.err();
+            });
+            if let Some(error) = failure {
+                return Err(error.into());
+            }
+            let vertices = geometry.vertex_count();
+            println!(
+                "{name:8} {look_name:8} {vertices:6} vertices: {gather:6.2} before the GPU, {whole:6.1} an image"
+            );
+        }
+    }
+    Ok(())
+}
+
+/// The best of so many runs [ms].
+fn best(count: usize, mut run: impl FnMut()) -> f64 {
+    let times = (0..count).map(|_| {
+        let begin = Instant::now();
+        run();
+        1e3 * begin.elapsed().as_secs_f64()
+    });
+    times.fold(f64::INFINITY, f64::min)
+}

@@ -1,0 +1,353 @@
+//! The smooth closed lines around all pieces.
+//!
+//! A ring of bare voxel sides becomes a smooth curve in three steps. Its points move by the
+//! offsets of the shape at rest, carried along by the deformation of their voxels; torn sides have
+//! none. Corners are then planed off, torn ones a little. The result is the control polygon of a
+//! quadratic B-spline, of which the corners get more points than the rest. What is smoothed on
+//! one lip of a crack is smoothed in the same way on the other, so that a closed crack stays closed.
+
+use crate::plane::{Flat, cross, dot, flat, minus, mixed, plus, scaled, unit};
+use crate::rest::{Rest, SMALL};
+use fuwafuwa::{Body, Dim2};
+
+/// The closed curves around the pieces of a body, with the buffers that make them.
+#[derive(Clone, Debug, Default)]
+pub struct Rings {
+    sides: Vec<Side>,
+    /// By node: the place of the side that starts there, or none.
+    leaving: Vec<u32>,
+    ring: Vec<Control>,
+    planed: Vec<Flat>,
+    /// All curves, one after another.
+    pub points: Vec<RingPoint>,
+    /// Where each curve begins and ends among the points.
+    pub spans: Vec<Span>,
+}
+
+/// A closed curve, its piece to the left.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Span {
+    /// Where it begins among the points.
+    pub start: usize,
+    /// Where it ends.
+    pub end: usize,
+    /// What it encloses [m²], negative when it is a hole.
+    pub area: f32,
+}
+
+/// A point of a curve.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct RingPoint {
+    /// Where [m].
+    pub at: Flat,
+    /// Outwards, of length 1.
+    pub normal: Flat,
+    /// 1 where it was inside before the body tore, 0 on the original surface.
+    pub fresh: f32,
+    /// ‖F − R‖ of the voxels next to it.
+    pub strain: f32,
+    /// A number of its own that it keeps, 0 to 1.
+    pub grain: f32,
+}
+
+/// A bare side of a voxel.
+#[derive(Copy, Clone, Debug)]
+struct Side {
+    to: u32,
+    /// The place of the side that goes on, until it was drawn.
+    next: u32,
+    start: Flat,
+    /// How far its ends move [m].
+    moved: [Flat; 2],
+    is_fresh: bool,
+    strain: f32,
+    grain: f32,
+}
+
+/// A corner of the control polygon.
+#[derive(Copy, Clone, Debug)]
+struct Control {
+    at: Flat,
+    /// Of the sides before and after it.
+    fresh: [f32; 2],
+    strain: f32,
+    grain: f32,
+}
+
+const NONE: u32 = u32::MAX;
+/// How often the points of the original surface and those of torn ones are drawn together.
+const SURFACE_ROUNDS: usize = 4;
+const TORN_ROUNDS: usize = 1;
+
+impl Rings {
+    /// Finds the curves of a body.
+    pub fn trace(&mut self, body: &Body<Dim2>, rest: &Rest) {
+        self.points.clear();
+        self.spans.clear();
+        self.gather_sides(body, rest);
+        for first in 0..self.sides.len() {
+            self.gather_ring(first);
+            if !self.ring.is_empty() {
+                self.plane_corners();
+                self.draw_curve();
+            }
+        }
+    }
+
+    fn gather_sides(&mut self, body: &Body<Dim2>, rest: &Rest) {
+        let (mesh, grid) = (body.mesh(), body.grid());
+        self.sides.clear();
+        self.leaving.clear();
+        self.leaving.resize(mesh.node_capacity(), NONE);
+        for facet in body.facets() {
+            let Some(element) = mesh.element(facet.element) else {
+                continue;
+            };
+            let corner = |index: usize| flat(body.node_state(element.nodes[index]).0);
+            let (right, up) = sides([0, 1, 2, 3].map(corner));
+            let [from, to] = [0, 1].map(|end| mesh.node(facet.nodes[end]).at);
+            let offsets = match facet.is_fresh {
+                true => Default::default(),
+                false => rest.offsets(grid, element.cell.at, [to[0] - from[0], to[1] - from[1]]),
+            };
+            self.leaving[facet.nodes[0] as usize] = self.sides.len() as u32;
+            self.sides.push(Side {
+                to: facet.nodes[1],
+                next: NONE,
+                start: flat(facet.corners[0]),
+                moved: offsets.map(|[x, y]| plus(scaled(right, x), scaled(up, y))),
+                is_fresh: facet.is_fresh,
+                strain: strain(right, up, grid.voxel_size()),
+                grain: grain(from),
+            });
+        }
+        for side in &mut self.sides {
+            side.next = self.leaving[side.to as usize];
+        }
+    }
+
+    /// The control polygon of the ring that a side belongs to; empty when it was drawn before.
+    fn gather_ring(&mut self, first: usize) {
+        self.ring.clear();
+        let mut at = first;
+        loop {
+            let next = std::mem::replace(&mut self.sides[at].next, NONE);
+            if next == NONE {
+                return;
+            }
+            let next = next as usize;
+            let control = Control::between(&self.sides[at], &self.sides[next]);
+            self.ring.push(control);
+            at = next;
+        }
+    }
+
+    /// Draws points half-way to the middle of their neighbours: torn ones once, for they are to
+    /// look rough; others more often, for what presses on a surface presses on its stairs.
+    fn plane_corners(&mut self) {
+        let count = self.ring.len();
+        if count < SMALL {
+            return;
+        }
+        for round in 0..SURFACE_ROUNDS {
+            self.planed.clear();
+            let ring = &self.ring;
+            self.planed.extend((0..count).map(|k| {
+                let is_torn = ring[k].fresh != [0.0; 2];
+                let [before, after] =
+                    [(k + count - 1) % count, (k + 1) % count].map(|k| ring[k].at);
+                let share = if is_torn && round >= TORN_ROUNDS {
+                    0.0
+                } else {
+                    0.5
+                };
+                mixed(ring[k].at, mixed(before, after, 0.5), share)
+            }));
+            for (control, &at) in self.ring.iter_mut().zip(&self.planed) {
+                control.at = at;
+            }
+        }
+    }
+
+    /// Adds the B-spline of the control polygon to the curves.
+    fn draw_curve(&mut self) {
+        let start = self.points.len();
+        let count = self.ring.len();
+        for k in 0..count {
+            let control = self.ring[k];
+            let [before, after] = [(k + count - 1) % count, (k + 1) % count].map(|k| &self.ring[k]);
+            let [from, to] = [before, after].map(|other| mixed(control.at, other.at, 0.5));
+            let (into, out) = (unit(minus(control.at, from)), unit(minus(to, control.at)));
+            let places: &[f32] = match dot(into, out) {
+                straight if straight > 0.95 => &[0.5],
+                _ if count < 8 => &[0.125, 0.375, 0.625, 0.875],
+                _ => &[0.2, 0.5, 0.8],
+            };
+            for &share in places {
+                let at = mixed(
+                    mixed(from, control.at, share),
+                    mixed(control.at, to, share),
+                    share,
+                );
+                let along = unit(mixed(into, out, share));
+                self.points.push(RingPoint {
+                    at,
+                    normal: [along[1], -along[0]],
+                    fresh: control.fresh[0] + (control.fresh[1] - control.fresh[0]) * share,
+                    strain: control.strain,
+                    grain: control.grain,
+                });
+            }
+        }
+        let curve = &self.points[start..];
+        let next = curve.iter().cycle().skip(1);
+        let pivot = curve[0].at;
+        let doubled = |a: &RingPoint, b: &RingPoint| cross(minus(a.at, pivot), minus(b.at, pivot));
+        let area = curve
+            .iter()
+            .zip(next)
+            .fold(0.0, |sum, (a, b)| sum + 0.5 * doubled(a, b));
+        let end = self.points.len();
+        self.spans.push(Span { start, end, area });
+    }
+}
+
+impl Control {
+    fn between(before: &Side, after: &Side) -> Self {
+        let by = match (before.is_fresh, after.is_fresh) {
+            (false, false) => mixed(before.moved[1], after.moved[0], 0.5),
+            (false, true) => before.moved[1],
+            _ => after.moved[0],
+        };
+        Self {
+            at: plus(after.start, by),
+            fresh: [before, after].map(|side| f32::from(u8::from(side.is_fresh))),
+            strain: 0.5 * (before.strain + after.strain),
+            grain: after.grain,
+        }
+    }
+}
+
+/// The mean sides to the right and upwards [m] of a cell with corners in the order of
+/// [`fuwafuwa::dim::corner`].
+pub fn sides([a, b, c, d]: [Flat; 4]) -> (Flat, Flat) {
+    let right = scaled(plus(minus(b, a), minus(d, c)), 0.5);
+    (right, scaled(plus(minus(c, a), minus(d, b)), 0.5))
+}
+
+/// ‖F − R‖ of a cell with the given sides and the given size at rest [m].
+pub fn strain(right: Flat, up: Flat, size: f32) -> f32 {
+    let (cos, sin) = (right[0] + up[1], right[1] - up[0]);
+    let squared = dot(right, right) + dot(up, up);
+    let squared = squared / (size * size) + 2.0 - 2.0 * dot([cos, sin], [cos, sin]).sqrt() / size;
+    squared.max(0.0).sqrt()
+}
+
+/// A number that a lattice point keeps, 0 to 1.
+fn grain([x, y, _]: [i32; 3]) -> f32 {
+    let mixed = (x as u32).wrapping_mul(0x9e37_79b1) ^ (y as u32).wrapping_mul(0x85eb_ca77);
+    let mixed = (mixed ^ mixed >> 15).wrapping_mul(0xc2b2_ae3d);
+    (mixed >> 24) as f32 / 255.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fuwafuwa::{Blade, Material, Settings, VoxelGrid, World};
+
+    fn rings(world: &World<Dim2>) -> Rings {
+        let body = &world.bodies()[0];
+        let mut rings = Rings::default();
+        rings.trace(body, &Rest::new(body.grid()));
+        rings
+    }
+
+    fn disc(n: usize) -> World<Dim2> {
+        let mut world = World::new(Settings::default()).unwrap();
+        let grid = VoxelGrid::ball(n, 1.0).unwrap();
+        world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+        world
+    }
+
+    /// The radius of a disc of as many voxels [m].
+    fn round(world: &World<Dim2>) -> f32 {
+        let grid = world.bodies()[0].grid();
+        grid.voxel_size() * (grid.solid_count() as f32 / std::f32::consts::PI).sqrt()
+    }
+
+    fn total_area(rings: &Rings) -> f32 {
+        rings.spans.iter().fold(0.0, |sum, span| sum + span.area)
+    }
+
+    #[test]
+    fn the_skin_of_a_disc_is_a_circle() {
+        let world = disc(64);
+        let (rings, round) = (rings(&world), round(&world));
+        assert_eq!(rings.spans.len(), 1);
+        let voxel = 1.0 / 64.0;
+        for point in &rings.points {
+            let away = minus(point.at, [0.5, 0.5]);
+            let radius = dot(away, away).sqrt();
+            assert!((radius - round).abs() < 0.25 * voxel, "{radius}");
+            assert!(dot(point.normal, unit(away)) > 0.995);
+            assert_eq!((point.fresh, point.strain < 1e-3), (0.0, true));
+        }
+    }
+
+    #[test]
+    fn a_stretched_disc_is_an_ellipse() {
+        let mut world = disc(64);
+        let round = round(&world);
+        let body = world.body_mut(0);
+        let ids: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
+        for id in ids {
+            let [x, y, _] = body.node_state(id).0;
+            body.set_node_state(id, [2.0 * x, 0.5 * y, 0.0], [0.0; 3]);
+        }
+        for point in rings(&world).points {
+            let [x, y] = minus(point.at, [1.0, 0.25]);
+            let radius = ((x / 2.0).powi(2) + (y * 2.0).powi(2)).sqrt();
+            assert!((radius - round).abs() < 0.25 / 64.0, "{radius}");
+            assert!(point.strain > 0.5);
+        }
+    }
+
+    #[test]
+    fn both_lips_of_a_closed_cut_lie_on_each_other() {
+        let mut world = disc(32);
+        let whole = total_area(&rings(&world));
+        world.cut(0, &Blade::segment([0.5, -1.0], [0.5, 2.0]));
+        let halves = rings(&world);
+        assert_eq!(halves.spans.len(), 2);
+        let gap = (total_area(&halves) - whole).abs() / whole;
+        assert!(gap < 5e-3, "{gap}");
+        let torn: Vec<&RingPoint> = halves.points.iter().filter(|p| p.fresh == 1.0).collect();
+        assert!(torn.len() > 40);
+        for point in torn {
+            assert!((point.at[0] - 0.5).abs() < 0.5 / 32.0);
+        }
+    }
+
+    #[test]
+    fn a_hole_has_a_negative_area_and_a_crumb_is_round() {
+        let mut world = World::<Dim2>::new(Settings::default()).unwrap();
+        let grid = VoxelGrid::from_fn([20, 20, 1], 0.05, |[x, y, _]| {
+            u8::from(!(8..12).contains(&x) || !(8..12).contains(&y))
+        });
+        world.add_body(Body::new(grid.unwrap(), &[Material::default()]).unwrap());
+        let ring = rings(&world);
+        assert_eq!(ring.spans.len(), 2);
+        assert!(ring.spans.iter().any(|span| span.area < -0.02));
+
+        let mut world = World::<Dim2>::new(Settings::default()).unwrap();
+        let grid = VoxelGrid::from_fn([1, 1, 1], 1.0, |_| 1).unwrap();
+        world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+        let crumb = rings(&world);
+        assert!(crumb.points.len() >= 12);
+        for point in &crumb.points {
+            let away = minus(point.at, [0.5, 0.5]);
+            let radius = dot(away, away).sqrt();
+            assert!((0.35..0.55).contains(&radius), "{radius}");
+        }
+    }
+}

@@ -1,0 +1,313 @@
+//! Pictures, as any device draws them, Mesa's llvmpipe too. Without a device these tests say so and
+//! pass, unless the environment says CI=1.
+
+use fuwafuwa::{
+    Blade, Body, Dim, Dim2, Grading, Law, Manipulator, Material, Settings, Shape, VoxelGrid, World,
+};
+use fuwafuwa_render::frame::ElementColour;
+use fuwafuwa_render::{Basket, Camera, Colour, Frame, Look, Particle, Renderer, Theme};
+use std::sync::LazyLock;
+use wgpu::TextureFormat;
+
+const SIZE: [u32; 2] = [480, 480];
+static THEME: LazyLock<Theme> = LazyLock::new(Theme::candy);
+
+/// A picture, and what it was taken of.
+struct Picture {
+    camera: Camera,
+    pixels: Vec<u8>,
+}
+
+/// A device with what WebGL2 has and nothing more; none where there is no adapter.
+fn device() -> Option<(wgpu::Device, wgpu::Queue)> {
+    let instance = wgpu::Instance::default();
+    let adapter = pollster::block_on(instance.request_adapter(&Default::default()));
+    let Ok(adapter) = adapter else {
+        let is_ci = std::env::var("CI").is_ok_and(|value| value == "1" || value == "true");
+        assert!(
+            !is_ci,
+            "no graphics adapter; mesa-vulkan-drivers brings one"
+        );
+        eprintln!("skipped: no graphics adapter; mesa-vulkan-drivers brings one");
+        return None;
+    };
+    let descriptor = wgpu::DeviceDescriptor {
+        required_limits: wgpu::Limits::downlevel_webgl2_defaults(),
+        ..Default::default()
+    };
+    Some(pollster::block_on(adapter.request_device(&descriptor)).expect("a modest device"))
+}
+
+fn frame(camera: Camera, theme: &Theme) -> Frame<'_> {
+    Frame {
+        camera,
+        theme,
+        look: Look::Skin,
+        basket: None,
+        particles: &[],
+        seconds: 0.0,
+    }
+}
+
+fn take<'a>(
+    world: &World<Dim2>,
+    format: TextureFormat,
+    change: impl Fn(&mut Frame<'a>),
+) -> Option<Picture> {
+    let (device, queue) = device()?;
+    let camera = Camera::fit([-0.1, -0.1, 0.0], [1.1, 1.1, 0.0], SIZE);
+    let mut frame = frame(camera, &THEME);
+    change(&mut frame);
+    let mut renderer = Renderer::new(&device, format);
+    let pixels = renderer.render_to_image(&device, &queue, world, &frame, SIZE);
+    let pixels = pixels.expect("an image");
+    Some(Picture { camera, pixels })
+}
+
+impl Picture {
+    /// The colour at a pixel, between four.
+    fn at_pixel(&self, [x, y]: [f32; 2]) -> Colour {
+        let limit = |k: f32| k.clamp(0.5, SIZE[0] as f32 - 1.5);
+        let (x, y) = (limit(x - 0.5), limit(y - 0.5));
+        let pick = |x: f32, y: f32, k: usize| {
+            f32::from(self.pixels[4 * (y as usize * SIZE[0] as usize + x as usize) + k]) / 255.0
+        };
+        [0, 1, 2].map(|k| {
+            let (left, low) = (x.fract(), y.fract());
+            let row = |y: f32| pick(x, y, k) * (1.0 - left) + pick(x + 1.0, y, k) * left;
+            row(y) * (1.0 - low) + row(y + 1.0) * low
+        })
+    }
+
+    /// The mean colour around a place [m].
+    fn around(&self, at: [f32; 2]) -> Colour {
+        let [x, y] = self.camera.to_pixel([at[0], at[1], 0.0], SIZE);
+        let mut sum = [0.0; 3];
+        for k in 0..25 {
+            let by = [(k % 5) as f32 - 2.0, (k / 5) as f32 - 2.0];
+            let colour = self.at_pixel([x + by[0], y + by[1]]);
+            (0..3).for_each(|k| sum[k] += colour[k] / 25.0);
+        }
+        sum
+    }
+}
+
+fn floating() -> World<Dim2> {
+    let gravity = [0.0; 3];
+    let settings = Settings {
+        gravity,
+        ..Settings::default()
+    };
+    World::new(settings).unwrap()
+}
+
+fn disc() -> World<Dim2> {
+    let mut world = floating();
+    let grid = VoxelGrid::ball(64, 1.0).unwrap();
+    world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+    world
+}
+
+fn is_warm([red, green, blue]: Colour) -> bool {
+    red > green + 0.15 && red > blue + 0.15
+}
+
+fn difference(a: Colour, b: Colour) -> f32 {
+    (0..3).map(|k| (a[k] - b[k]).abs()).fold(0.0, f32::max)
+}
+
+#[test]
+fn a_disc_is_warm_on_a_cool_floor_and_its_edge_has_no_stairs() {
+    let world = disc();
+    let Some(picture) = take(&world, TextureFormat::Rgba8Unorm, |_| ()) else {
+        return;
+    };
+    assert!(is_warm(picture.around([0.5, 0.5])));
+    let floor = picture.around([0.0, 1.0]);
+    assert!(floor[2] > 0.8 && !is_warm(floor), "{floor:?}");
+
+    let grid = world.bodies()[0].grid();
+    let voxel = grid.voxel_size();
+    let round = voxel * (grid.solid_count() as f32 / std::f32::consts::PI).sqrt();
+    let warmth = |angle: f32, radius: f32| {
+        let at = [0.5 + radius * angle.cos(), 0.5 + radius * angle.sin(), 0.0];
+        let [red, _, blue] = picture.at_pixel(picture.camera.to_pixel(at, SIZE));
+        red - blue
+    };
+    for degree in 0..360 {
+        let angle = (degree as f32).to_radians();
+        let half = 0.5 * (warmth(angle, round + 2.0 * voxel) + warmth(angle, round - voxel));
+        // From outside to where it is half as warm as inside.
+        let steps = (0..400).map(|k| round + (2.0 - 0.01 * k as f32) * voxel);
+        let edge = steps
+            .into_iter()
+            .find(|&radius| warmth(angle, radius) > half);
+        let edge = edge.expect("there is an edge");
+        let off = (edge - round).abs() / voxel;
+        assert!(off < 0.25, "{off} voxels off at {degree}°");
+    }
+}
+
+#[test]
+fn a_torn_face_shows_a_lighter_inside() {
+    let mut world = disc();
+    world.cut(0, &Blade::segment([0.5, -1.0], [0.5, 2.0]));
+    let body = world.body_mut(0);
+    let ids: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
+    let pieces: Vec<u32> = ids.iter().map(|&id| body.pieces().of_node(id)).collect();
+    for (id, piece) in ids.into_iter().zip(pieces) {
+        let [x, y, _] = body.node_state(id).0;
+        let apart = if piece == 0 { 0.05 } else { -0.05 };
+        body.set_node_state(id, [x + apart, y, 0.0], [0.0; 3]);
+    }
+    let Some(picture) = take(&world, TextureFormat::Rgba8Unorm, |_| ()) else {
+        return;
+    };
+    let gap = picture.around([0.5, 0.4]);
+    assert!(!is_warm(gap), "{gap:?}");
+    let paleness = |[red, green, blue]: Colour| (green + blue) / red;
+    for side in [-1.0, 1.0] {
+        let lip = picture.around([0.5 + 0.057 * side, 0.4]);
+        let inside = picture.around([0.5 + 0.2 * side, 0.4]);
+        assert!(
+            paleness(lip) > paleness(inside) + 0.05,
+            "{lip:?} {inside:?}"
+        );
+    }
+}
+
+#[test]
+fn elements_have_the_colour_of_their_level() {
+    let world = disc();
+    let look = Look::Elements {
+        colour: ElementColour::Level,
+        ages: &[],
+        nodes: true,
+    };
+    let Some(picture) = take(&world, TextureFormat::Rgba8Unorm, |frame| frame.look = look) else {
+        return;
+    };
+    for view in world.bodies()[0]
+        .element_views()
+        .filter(|view| view.level > 1 && view.children == Dim2::ALL_CORNERS)
+    {
+        let [x, y, _] = view.child_corners::<Dim2>(0)[3];
+        let quarter =
+            world.bodies()[0].grid().voxel_size() * 0.5 * f32::from(1u8 << (view.level - 1));
+        let seen = picture.around([x - quarter, y - quarter]);
+        let wanted = THEME.level(view.level);
+        assert!(
+            difference(seen, wanted) < 0.12,
+            "level {}: {seen:?}, not {wanted:?}",
+            view.level
+        );
+    }
+}
+
+#[test]
+fn bars_hands_walls_basket_and_particles_are_there() {
+    let mut world = floating();
+    let (from, to, radius) = ([0.2, 0.9, 0.0], [0.8, 0.9, 0.0], 0.06);
+    world
+        .add_obstacle(Shape::Capsule { from, to, radius }, 0.2)
+        .unwrap();
+    world
+        .add_obstacle(Shape::half_space([0.0, 1.0, 0.0], [0.0, 0.05, 0.0]), 0.2)
+        .unwrap();
+    for x in [0.2, 0.5] {
+        world
+            .add_manipulator(Manipulator::new([x, 0.6, 0.0], 0.1))
+            .unwrap();
+    }
+    let region = Shape::Box {
+        centre: [0.85, 0.4, 0.0],
+        half: [0.12, 0.12, 0.0],
+    };
+    let particle = Particle {
+        at: [0.3, 0.25, 0.0],
+        radius: 0.05,
+        colour: [0.8, 0.1, 0.1, 1.0],
+    };
+    let picture = take(&world, TextureFormat::Rgba8Unorm, |frame| {
+        frame.basket = Some(Basket { region, fill: 1.0 });
+        frame.particles = std::slice::from_ref(&particle);
+    });
+    let Some(picture) = picture else {
+        return;
+    };
+    let floor = picture.around([0.55, 0.3]);
+    let [bar, wall, first, second, basket, dust] = [
+        [0.5, 0.9],
+        [0.5, 0.0],
+        [0.2, 0.6],
+        [0.5, 0.6],
+        [0.85, 0.4],
+        [0.3, 0.25],
+    ]
+    .map(|at| picture.around(at));
+    for (name, seen) in [
+        ("bar", bar),
+        ("wall", wall),
+        ("basket", basket),
+        ("dust", dust),
+    ] {
+        assert!(
+            difference(seen, floor) > 0.08,
+            "{name}: {seen:?} on {floor:?}"
+        );
+    }
+    assert!(bar[0] > bar[2] + 0.15 && dust[0] > dust[1] + 0.4);
+    assert!(difference(first, second) > 0.2, "{first:?} {second:?}");
+}
+
+#[test]
+fn every_format_shows_the_same() {
+    let world = disc();
+    let formats = [
+        TextureFormat::Rgba8Unorm,
+        TextureFormat::Bgra8Unorm,
+        TextureFormat::Rgba8UnormSrgb,
+    ];
+    let pictures: Vec<Picture> = formats
+        .into_iter()
+        .filter_map(|format| take(&world, format, |_| ()))
+        .collect();
+    for picture in &pictures {
+        for at in [[0.5, 0.5], [0.0, 0.0], [0.3, 0.7], [0.5, 0.1]] {
+            let (seen, wanted) = (picture.around(at), pictures[0].around(at));
+            assert!(difference(seen, wanted) < 0.06, "{seen:?}, not {wanted:?}");
+        }
+    }
+}
+
+#[test]
+fn nothing_is_a_picture_too_and_so_is_what_cannot_tear() {
+    let Some((device, queue)) = device() else {
+        return;
+    };
+    let theme = Theme::colour_safe();
+    let camera = Camera::fit([0.0; 3], [1.0; 3], [7, 5]);
+    let mut renderer = Renderer::new(&device, TextureFormat::Rgba8Unorm);
+    let mut coarse = floating();
+    let grid = VoxelGrid::ball(32, 1.0).unwrap();
+    let body = Body::with(
+        grid,
+        &[Material::default()],
+        Law::default(),
+        Grading::Coarse,
+    );
+    coarse.add_body(body.unwrap());
+    for world in [floating(), coarse] {
+        for size in [[7, 5], [1, 1], [300, 2]] {
+            let image =
+                renderer.render_to_image(&device, &queue, &world, &frame(camera, &theme), size);
+            assert_eq!(image.unwrap().len(), 4 * (size[0] * size[1]) as usize);
+        }
+    }
+}
+
+#[test]
+fn a_renderer_can_lie_among_what_egui_keeps_for_callbacks() {
+    fn is_kept<T: Send + Sync + 'static>() {}
+    is_kept::<Renderer>();
+}

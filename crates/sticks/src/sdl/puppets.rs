@@ -1,0 +1,93 @@
+//! The part of SDL that makes devices of nothing.
+
+use std::ffi::{CString, c_int};
+
+use sdl3_sys::joystick::{
+    SDL_AttachVirtualJoystick, SDL_DetachVirtualJoystick, SDL_IsJoystickVirtual,
+    SDL_JOYSTICK_TYPE_FLIGHT_STICK, SDL_JOYSTICK_TYPE_GAMEPAD, SDL_JoystickID,
+    SDL_SetJoystickVirtualAxis, SDL_SetJoystickVirtualButton, SDL_SetJoystickVirtualHat,
+    SDL_VirtualJoystickDesc,
+};
+
+use super::{HatBits, Open, Sdl};
+use crate::{DeviceId, Direction, PadButton};
+
+/// What a device made of nothing looks like.
+#[derive(Clone, Copy, Debug)]
+pub enum PuppetForm {
+    Pad,
+    Stick { axes: u16, buttons: u16, hats: u16 },
+}
+
+/// What is moved on a device made of nothing, and where to.
+#[derive(Clone, Copy, Debug)]
+pub enum PuppetAct {
+    Axis(usize, i16),
+    Button(usize, bool),
+    Hat(usize, HatBits),
+}
+
+impl Sdl {
+    /// Plugs in a device made of nothing, which lasts until it is unplugged or SDL ends.
+    pub fn plug_in(&self, name: &str, form: PuppetForm) -> Result<DeviceId, String> {
+        let name = CString::new(name).map_err(|error| error.to_string())?;
+        let mut wish = SDL_VirtualJoystickDesc::new();
+        wish.name = name.as_ptr();
+        let kind;
+        (kind, wish.naxes, wish.nbuttons, wish.nhats) = match form {
+            PuppetForm::Pad => (SDL_JOYSTICK_TYPE_GAMEPAD, 6, PadButton::ALL.len() as u16, 0),
+            PuppetForm::Stick {
+                axes,
+                buttons,
+                hats,
+            } => (SDL_JOYSTICK_TYPE_FLIGHT_STICK, axes, buttons, hats),
+        };
+        wish.r#type = kind.0 as u16;
+        // SAFETY: see the module; SDL copies the wish and its name, and there are no callbacks in it.
+        match unsafe { SDL_AttachVirtualJoystick(&wish) } {
+            SDL_JoystickID(0) => Err(self.error()),
+            SDL_JoystickID(id) => Ok(DeviceId(id)),
+        }
+    }
+
+    pub fn unplug(&self, id: DeviceId) {
+        // SAFETY: see the module; an id that SDL does not know is refused.
+        unsafe { SDL_DetachVirtualJoystick(SDL_JoystickID(id.0)) };
+    }
+
+    pub fn is_puppet(&self, id: DeviceId) -> bool {
+        // SAFETY: as above.
+        unsafe { SDL_IsJoystickVirtual(SDL_JoystickID(id.0)) }
+    }
+}
+
+impl Open<'_> {
+    /// Moves a part of a device made of nothing. Whether it has that part.
+    pub fn act(&self, act: PuppetAct) -> bool {
+        let joystick = self.joystick.as_ptr();
+        // SAFETY: see the module; SDL refuses other devices and indices that they do not have.
+        unsafe {
+            match act {
+                PuppetAct::Axis(axis, value) => {
+                    SDL_SetJoystickVirtualAxis(joystick, axis as c_int, value)
+                }
+                PuppetAct::Button(button, down) => {
+                    SDL_SetJoystickVirtualButton(joystick, button as c_int, down)
+                }
+                PuppetAct::Hat(hat, bits) => {
+                    SDL_SetJoystickVirtualHat(joystick, hat as c_int, bits.0)
+                }
+            }
+        }
+    }
+}
+
+impl HatBits {
+    pub fn of(directions: &[Direction]) -> HatBits {
+        HatBits(
+            directions
+                .iter()
+                .fold(0, |bits, direction| bits | HatBits::bit(*direction)),
+        )
+    }
+}

@@ -1,0 +1,288 @@
+//! The Debian packages behind the tasks: which of them this machine lacks, and how they get there.
+
+use crate::{Failure, answers, execute};
+use std::env;
+use std::io::{self, IsTerminal, Write};
+use std::process::{Command, Stdio};
+
+/// What to do on a machine that lacks something.
+#[derive(Debug, PartialEq, Clone, Copy)]
+pub enum IfMissing {
+    /// Say what.
+    Say,
+    /// Install it, with apt-get. A person at a terminal is asked first.
+    Install,
+}
+
+/// What a package is for.
+#[derive(Debug, PartialEq, Clone, Copy)]
+pub enum Purpose {
+    /// To compile the game.
+    Build,
+    /// To open its window.
+    Window,
+    /// To draw without a window, as tests do.
+    Drawing,
+}
+
+/// How to see that a package is there.
+#[derive(Debug, PartialEq, Clone, Copy)]
+enum Seen {
+    /// Its program answers, wherever it came from.
+    Program(&'static str),
+    /// dpkg has installed it.
+    Installed,
+}
+
+/// A package of Debian and Ubuntu.
+#[derive(Debug, PartialEq)]
+struct Package {
+    name: &'static str,
+    seen: Seen,
+    purposes: &'static [Purpose],
+    /// What needs it.
+    why: &'static str,
+}
+
+const fn package(
+    name: &'static str,
+    seen: Seen,
+    purposes: &'static [Purpose],
+    why: &'static str,
+) -> Package {
+    Package {
+        name,
+        seen,
+        purposes,
+        why,
+    }
+}
+
+/// Found by building and running in a bare Debian root. The C compiler is not here: without one,
+/// this program would not have been linked.
+#[rustfmt::skip]
+const PACKAGES: &[Package] = {
+    use Purpose::{Build, Drawing, Window};
+    use Seen::{Installed, Program};
+    &[
+        package("cmake", Program("cmake"), &[Build], "configures SDL, which reads sticks and pads"),
+        package("make", Program("make"), &[Build], "builds SDL"),
+        package("pkg-config", Program("pkg-config"), &[Build], "finds ALSA"),
+        package("libasound2-dev", Installed, &[Build], "ALSA, for sound"),
+        package("libx11-6", Installed, &[Window], "X11 windows"),
+        package("libx11-xcb1", Installed, &[Window], "X11 windows"),
+        package("libxcursor1", Installed, &[Window], "the mouse pointer in X11 windows"),
+        package("libxi6", Installed, &[Window], "mouse and touch in X11 windows"),
+        package("libxkbcommon-x11-0", Installed, &[Window], "keys in X11 windows"),
+        package("mesa-vulkan-drivers", Installed, &[Window, Drawing], "Vulkan, without a GPU too"),
+    ]
+};
+
+/// Sees to it that the packages for these purposes are there, as far as that goes. What is missing
+/// then is said, and the task goes on: this list may be wrong for a machine.
+pub fn provide(purposes: &[Purpose], if_missing: IfMissing) {
+    if !answers("dpkg-query") {
+        return say_elsewhere(purposes);
+    }
+    let lacks = missing_on_debian(purposes);
+    if lacks.is_empty() {
+        return;
+    }
+    eprintln!("xtask: not installed yet:\n{}", list(&lacks));
+    let install = install_arguments(lacks.iter().map(|package| package.name));
+    let line = format!(
+        "{}apt-get {}",
+        if is_root() { "" } else { "sudo " },
+        install.join(" ")
+    );
+    if if_missing == IfMissing::Say || !agreed(&line) {
+        eprintln!("xtask: going on without. To install: {line}");
+        return;
+    }
+    apt_get(&["update", "--quiet"]);
+    apt_get(&install);
+    let lacks = missing_on_debian(purposes);
+    if !lacks.is_empty() {
+        eprintln!(
+            "xtask: going on, but still not installed:\n{}",
+            list(&lacks)
+        );
+    }
+}
+
+/// What `apt-get` is told to install these packages. Nothing is removed for them without a word.
+pub fn install_arguments<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let options = ["install", "--quiet", "--yes", "--no-remove"];
+    let options = options.into_iter().chain(["--no-install-recommends"]);
+    options.chain(names).collect()
+}
+
+/// Runs apt-get, as root or through sudo, and says so; whether that went well.
+pub fn apt_get(arguments: &[&str]) -> bool {
+    let mut command = if is_root() {
+        Command::new("apt-get")
+    } else {
+        let mut sudo = Command::new("sudo");
+        if !io::stdin().is_terminal() {
+            // Nobody is there to type a password.
+            sudo.arg("--non-interactive");
+        }
+        sudo.arg("apt-get");
+        sudo
+    };
+    command.args(arguments);
+    command.env("DEBIAN_FRONTEND", "noninteractive");
+    let outcome = execute(
+        &mut command,
+        "it needs Debian or Ubuntu, root or sudo, and a network",
+    );
+    if let Err(Failure { message, .. }) = &outcome {
+        eprintln!("xtask: {message}");
+    }
+    outcome.is_ok()
+}
+
+/// The packages for these purposes that are not there.
+fn missing(purposes: &[Purpose], is_there: impl Fn(&Package) -> bool) -> Vec<&'static Package> {
+    let needed = |package: &&Package| package.purposes.iter().any(|it| purposes.contains(it));
+    let lacks = PACKAGES.iter().filter(needed);
+    lacks.filter(|package| !is_there(package)).collect()
+}
+
+fn missing_on_debian(purposes: &[Purpose]) -> Vec<&'static Package> {
+    let statuses = Command::new("dpkg-query")
+        .args(["--show", "--showformat=${Package} ${db:Status-Status}\\n"])
+        .args(PACKAGES.iter().map(|package| package.name))
+        // It complains of every package that it has never heard of.
+        .stderr(Stdio::null())
+        .output()
+        .map_or_else(|_| Vec::new(), |output| output.stdout);
+    let statuses = String::from_utf8_lossy(&statuses);
+    missing(purposes, |package| match package.seen {
+        Seen::Program(program) => answers(program),
+        Seen::Installed => is_installed(&statuses, package.name),
+    })
+}
+
+/// Whether dpkg-query's lines, of a name and a status each, say that this package is installed.
+fn is_installed(statuses: &str, name: &str) -> bool {
+    // A package of two architectures has two lines.
+    let mut lines = statuses.lines().filter_map(|line| line.split_once(' '));
+    lines.any(|line| line == (name, "installed"))
+}
+
+/// Says what is needed where there is no apt. Only programs can be looked for: libraries have other
+/// names there, and macOS and Windows have their own.
+fn say_elsewhere(purposes: &[Purpose]) {
+    let lacks = missing(purposes, |package| match package.seen {
+        Seen::Program(program) => answers(program),
+        Seen::Installed => false,
+    });
+    let of_this_system = |package: &&&Package| cfg!(target_os = "linux") || package.name == "cmake";
+    let names: Vec<&str> = lacks
+        .iter()
+        .filter(of_this_system)
+        .map(|package| package.name)
+        .collect();
+    if !names.is_empty() {
+        eprintln!("xtask: this needs, in Debian's words: {}", names.join(", "));
+    }
+}
+
+fn list(packages: &[&Package]) -> String {
+    let line = |package: &&Package| format!("- {}: {}", package.name, package.why);
+    let lines: Vec<String> = packages.iter().map(line).collect();
+    lines.join("\n")
+}
+
+/// Whether to run the line: asks where somebody can answer, and else takes the task as the answer.
+fn agreed(line: &str) -> bool {
+    if !io::stdin().is_terminal() || !io::stderr().is_terminal() {
+        return true;
+    }
+    eprint!("xtask: run `{line}`? [Y/n] ");
+    let mut answer = String::new();
+    let heard = io::stderr()
+        .flush()
+        .and_then(|()| io::stdin().read_line(&mut answer));
+    // No bytes, not even an end of line: the terminal was closed.
+    heard.is_ok_and(|bytes| bytes > 0) && is_yes(&answer)
+}
+
+fn is_yes(answer: &str) -> bool {
+    matches!(
+        answer.trim().to_ascii_lowercase().as_str(),
+        "" | "y" | "yes"
+    )
+}
+
+fn is_root() -> bool {
+    let id = Command::new("id").arg("-u").output();
+    id.is_ok_and(|output| output.stdout.trim_ascii() == b"0")
+}
+
+/// Whether a window could open here.
+pub fn has_display() -> bool {
+    let named = |name| env::var_os(name).is_some_and(|value| !value.is_empty());
+    named("DISPLAY") || named("WAYLAND_DISPLAY")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(purposes: &[Purpose], there: &[&str], expect: &[&str]) {
+        let lacks = missing(purposes, |package| there.contains(&package.name));
+        let names: Vec<&str> = lacks.iter().map(|package| package.name).collect();
+        assert_eq!(names, expect, "{purposes:?} with {there:?}");
+    }
+
+    #[test]
+    fn a_task_lacks_what_it_needs_and_has_not() {
+        let build = ["cmake", "make", "pkg-config", "libasound2-dev"];
+        check(&[Purpose::Build], &[], &build);
+        check(&[Purpose::Build], &build, &[]);
+        check(&[Purpose::Build], &["cmake", "make"], &build[2..]);
+        check(&[Purpose::Drawing], &[], &["mesa-vulkan-drivers"]);
+        check(&[], &[], &[]);
+        // Once, though it has both purposes.
+        let window = missing(&[Purpose::Window, Purpose::Drawing], |_| false);
+        let mesa = window
+            .iter()
+            .filter(|package| package.name.starts_with("mesa"));
+        assert_eq!(mesa.count(), 1);
+    }
+
+    #[test]
+    fn only_what_dpkg_calls_installed_is_there() {
+        let statuses = "make installed\nlibxi6 config-files\nlibx11-6 not-installed\n\
+                        libx11-6 installed\nlibx11-6-data installed\n";
+        for (name, expect) in [
+            ("make", true),
+            ("libxi6", false),
+            ("libx11-6", true),
+            ("libx11", false),
+            ("cmake", false),
+        ] {
+            assert_eq!(is_installed(statuses, name), expect, "{name}");
+        }
+        assert!(!is_installed("", "make"));
+    }
+
+    #[test]
+    fn only_yes_and_a_bare_return_agree() {
+        for answer in ["\n", "y\n", "Y\n", "yes\r\n"] {
+            assert!(is_yes(answer), "{answer:?}");
+        }
+        for answer in ["n\n", "no\n", "what?\n"] {
+            assert!(!is_yes(answer), "{answer:?}");
+        }
+    }
+
+    #[test]
+    fn nothing_is_removed_for_a_package() {
+        let arguments = install_arguments(["make"].into_iter());
+        assert!(arguments.contains(&"--no-remove"), "{arguments:?}");
+        assert_eq!(arguments.last(), Some(&"make"));
+    }
+}

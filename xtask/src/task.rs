@@ -1,0 +1,132 @@
+//! What can be asked for on the command line.
+
+use crate::packages::IfMissing;
+
+pub const USAGE: &str = "\
+usage: cargo xtask <task>
+
+tasks:
+  play [-- WORDS]  builds and opens the game, and hands it the words
+  test             all tests in debug, then the engine's in release and on one to eight threads
+  check            what a change must pass: formatting, lints, documentation, then all of `test`
+  wasm             the golden scenes on wasm32 under Node: the same bits as natively?
+  wasm --install   the same; what is missing comes from Debian's packages
+  rapier           whether crates/against_rapier, a workspace of its own, still compiles
+  help             this text
+
+On Debian and Ubuntu, `play`, `test` and `check` install the system packages that are missing, as
+root or through sudo, after asking if there is a terminal. With --no-install they only name them.
+
+exit status: 0 passed, 1 failed, 2 no such task, 3 this machine lacks what `wasm` needs; `play`
+hands on that of the game";
+
+#[derive(Debug, PartialEq)]
+pub enum Task {
+    /// With what to hand to the game.
+    Play(IfMissing, Vec<String>),
+    Test(IfMissing),
+    Check(IfMissing),
+    Wasm(IfMissing),
+    Rapier,
+    Help,
+}
+
+impl Task {
+    pub fn parse(arguments: &[String]) -> Result<Task, String> {
+        let own = arguments
+            .split(|word| word == "--")
+            .next()
+            .unwrap_or_default();
+        let words: Vec<&str> = own.iter().map(String::as_str).collect();
+        let has_separator = own.len() < arguments.len();
+        let for_game = arguments.iter().skip(own.len() + 1).cloned().collect();
+        let task = match words[..] {
+            [] => return Err("no task given".to_string()),
+            ["play"] => return Ok(Task::Play(IfMissing::Install, for_game)),
+            ["play", "--no-install"] => return Ok(Task::Play(IfMissing::Say, for_game)),
+            ["play", ..] => {
+                return Err(format!(
+                    "what is for the game goes after `--`: cargo xtask play -- {}",
+                    words[1..].join(" ")
+                ));
+            }
+            ["test"] => Task::Test(IfMissing::Install),
+            ["test", "--no-install"] => Task::Test(IfMissing::Say),
+            ["check"] => Task::Check(IfMissing::Install),
+            ["check", "--no-install"] => Task::Check(IfMissing::Say),
+            ["wasm"] => Task::Wasm(IfMissing::Say),
+            ["wasm", "--install"] => Task::Wasm(IfMissing::Install),
+            ["rapier"] => Task::Rapier,
+            ["help" | "--help" | "-h"] => Task::Help,
+            _ => return Err(format!("there is no task `{}`", arguments.join(" "))),
+        };
+        if has_separator {
+            return Err(format!(
+                "only `play` takes words after `--`, not `{}`",
+                words[0]
+            ));
+        }
+        Ok(task)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(line: &str, expect: Result<Task, &str>) {
+        let arguments: Vec<String> = line.split_whitespace().map(str::to_string).collect();
+        assert_eq!(
+            Task::parse(&arguments),
+            expect.map_err(str::to_string),
+            "{line}"
+        );
+    }
+
+    #[test]
+    fn one_known_task_and_nothing_else_is_a_command_line() {
+        check("check", Ok(Task::Check(IfMissing::Install)));
+        check("check --no-install", Ok(Task::Check(IfMissing::Say)));
+        check("test", Ok(Task::Test(IfMissing::Install)));
+        check("test --no-install", Ok(Task::Test(IfMissing::Say)));
+        check("wasm", Ok(Task::Wasm(IfMissing::Say)));
+        check("wasm --install", Ok(Task::Wasm(IfMissing::Install)));
+        check("--help", Ok(Task::Help));
+        check("", Err("no task given"));
+        check("chekc", Err("there is no task `chekc`"));
+        check("test fast", Err("there is no task `test fast`"));
+        check("test --install", Err("there is no task `test --install`"));
+        check(
+            "test -- fast",
+            Err("only `play` takes words after `--`, not `test`"),
+        );
+    }
+
+    #[test]
+    fn the_words_after_the_separator_are_for_the_game() {
+        let play = |if_missing, words: &[&str]| {
+            let words = words.iter().map(ToString::to_string).collect();
+            Ok(Task::Play(if_missing, words))
+        };
+        check("play", play(IfMissing::Install, &[]));
+        check("play --", play(IfMissing::Install, &[]));
+        check("play --no-install", play(IfMissing::Say, &[]));
+        check(
+            "play -- --level classic",
+            play(IfMissing::Install, &["--level", "classic"]),
+        );
+        check(
+            "play --no-install -- a.png",
+            play(IfMissing::Say, &["a.png"]),
+        );
+        // The game's own, both the flag and a further separator.
+        check(
+            "play -- --no-install -- x",
+            play(IfMissing::Install, &["--no-install", "--", "x"]),
+        );
+        check(
+            "play --level classic",
+            Err("what is for the game goes after `--`: cargo xtask play -- --level classic"),
+        );
+    }
+}
