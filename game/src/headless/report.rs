@@ -79,7 +79,8 @@ impl Report {
             seconds: round.frames().len() as f32 / super::RATE,
             ticks: round.frames().len() as u64,
             kept: progress.kept,
-            inside: progress.inside,
+            // The sum of nothing is -0.
+            inside: progress.inside + 0.0,
             needed: level.game().share,
             pieces: progress.pieces,
             wishes: level.game().wish.iter().map(fulfilled).collect(),
