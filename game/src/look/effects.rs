@@ -1,6 +1,6 @@
 //! What flies about and what it does to the camera and the face.
 
-use super::Camera;
+use super::{Camera, Mood};
 use fuwafuwa::Dim2;
 use fuwafuwa::{Event, Vector, With};
 use tamaire_play::Round;
@@ -61,9 +61,18 @@ impl Default for Effects {
 }
 
 impl Effects {
-    /// Whether it hurts.
-    pub fn hurts(&self) -> bool {
-        self.pressure > HURTS
+    /// How the body feels about all this.
+    pub fn mood(&self, round: &Round<Dim2>) -> Mood {
+        let progress = round.progress();
+        if progress.outcome.is_some() || progress.held > 0.3 {
+            Mood::Beam
+        } else if self.shock > 0.0 {
+            Mood::Shock
+        } else if self.pressure > HURTS {
+            Mood::Wince
+        } else {
+            Mood::Calm
+        }
     }
 
     /// Looks at what happened in a tick.

@@ -2,7 +2,7 @@
 
 use super::camera::View;
 use super::face::Place;
-use super::{Effects, Mood, Theme, draw_face};
+use super::{Effects, Theme, draw_face};
 use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait, RenderState};
 use egui::epaint::PathShape;
 use egui::{Color32, PaintCallbackInfo, Painter, Pos2, Stroke, Ui, vec2};
@@ -142,21 +142,7 @@ fn draw_faces(painter: &Painter, round: &Round<Dim2>, look: &Look) {
             up: size * vec2(anchor.up[0], -anchor.up[1]),
             look_at,
         };
-        draw_face(painter, &place, mood(round, look.effects), blink);
-    }
-}
-
-/// How the body feels about all this.
-fn mood(round: &Round<Dim2>, effects: &Effects) -> Mood {
-    let progress = round.progress();
-    if progress.outcome.is_some() || progress.held > 0.3 {
-        Mood::Beam
-    } else if effects.shock > 0.0 {
-        Mood::Shock
-    } else if effects.hurts() {
-        Mood::Wince
-    } else {
-        Mood::Calm
+        draw_face(painter, &place, look.effects.mood(round), blink);
     }
 }
 
