@@ -6,6 +6,9 @@ use crate::game::{Game, Screen};
 use egui::{RichText, Ui, vec2};
 use tamaire_sound::Menu;
 
+/// What a button does.
+type Act = fn(&mut Game);
+
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     veil(ui, 90);
     let Some((outcome, is_best)) = game.won else {
@@ -14,7 +17,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     };
     let (theme, said) = (game.theme(), game.words());
     let level = game.session.round().level().clone();
-    let mut wanted: Option<fn(&mut Game)> = None;
+    let mut wanted: Option<Act> = None;
     column(ui, 560.0, 560.0, |ui| {
         card(ui, &theme, |ui| {
             ui.label(
@@ -59,7 +62,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
             }
             ui.add_space(10.0);
             let small = vec2(154.0, 46.0);
-            let rows: [[(&str, fn(&mut Game)); 2]; 2] = [
+            let rows: [[(&str, Act); 2]; 2] = [
                 [
                     (said.next, |game| {
                         game.start((game.chosen + 1) % game.levels.len())
