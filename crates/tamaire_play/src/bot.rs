@@ -11,7 +11,7 @@ const GENTLE: f32 = 0.7;
 /// A bot that gets nowhere for so many ticks looks at another piece.
 const PATIENCE: u32 = 300;
 /// The shaving bot pushes when the largest piece has this share of the mass.
-const SMALL_ENOUGH: f32 = 0.9;
+const SMALL_ENOUGH: f32 = 0.95;
 
 /// What a bot is after.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -147,7 +147,12 @@ impl Bot {
         if !is_behind && length(sub(*hand, behind)) > 0.05 {
             return self.go(sight, around(sight, behind), BRISK);
         }
-        let depth = 0.30 + 0.05 * self.temper[1];
+        // What is in pieces is pushed gently, and harder only when nothing moves.
+        let firm = (2.0 * self.waited as f32 / PATIENCE as f32 - 1.0).max(0.0);
+        let depth = match self.gathers {
+            true => 0.15 + 0.12 * firm,
+            false => 0.25,
+        } + 0.02 * self.temper[1];
         let goal = add(*piece, scale(way, depth - reach));
         self.go(sight, goal, GENTLE * (1.0 + 0.1 * self.temper[2]))
     }
@@ -162,7 +167,7 @@ impl Bot {
             hand,
             ..
         } = sight;
-        self.gathers |= sight.share < SMALL_ENOUGH + 0.02 * self.temper[2];
+        self.gathers |= sight.share < SMALL_ENOUGH + 0.01 * self.temper[2];
         if self.gathers {
             return self.push(sight);
         }

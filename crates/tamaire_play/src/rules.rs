@@ -7,6 +7,8 @@ use serde::{Deserialize, Serialize};
 
 /// What moves faster than this does not rest in the basket [m/s].
 const RESTING: f32 = 0.4;
+/// What has less than this share of the mass is a crumb, which may get lost on the way.
+const CRUMB: f32 = 0.002;
 /// Share of the mass that must still hang together for a body to count as whole.
 const WHOLE: f32 = 0.99;
 /// What is strained by more than this on the mean while it rests is held squeezed by the bars.
@@ -49,7 +51,7 @@ pub struct Outcome {
     pub inside: f32,
     /// Number of pieces.
     pub pieces: usize,
-    /// How many of them are not in the basket.
+    /// How many of them are not in the basket, crumbs aside.
     pub lost: usize,
 }
 
@@ -113,6 +115,7 @@ impl Progress {
         if enough && self.held >= level.game().hold {
             let all = views.iter().flatten();
             let lost = all
+                .filter(|view| view.mass > CRUMB * self.mass)
                 .filter(|view| basket.distance(view.centre).0 > 0.0)
                 .count();
             self.outcome = Some(Outcome {

@@ -105,16 +105,19 @@ fn moment(round: &Round<Dim2>, effects: &Effects, is_last: bool) -> Result<Pixma
     let view = [low.map(|k| k - WALL), high.map(|k| k + WALL)];
     let (mut painter, frame) = Painter::for_view(view, WIDTH);
     let world = round.world();
-    let mood = match effects.mood(round) {
-        Mood::Calm => fuwafuwa_painter::Mood::Calm,
-        Mood::Wince => fuwafuwa_painter::Mood::Wince,
-        Mood::Shock => fuwafuwa_painter::Mood::Shock,
-        Mood::Beam => fuwafuwa_painter::Mood::Beam,
-    };
     let hand = world.manipulators().first();
     let look_at = hand.map_or([0.0; 3], |hand| hand.position());
-    let bodies = world.bodies().iter();
-    let faces = bodies.filter_map(|body| Face::on(body, mood, look_at));
+    let bodies = world.bodies().iter().enumerate();
+    let faces = bodies.filter_map(|(place, body)| {
+        let feeling = effects.feelings.get(place);
+        let mood = match feeling.map_or(Mood::Calm, |feeling| feeling.mood) {
+            Mood::Calm => fuwafuwa_painter::Mood::Calm,
+            Mood::Wince => fuwafuwa_painter::Mood::Wince,
+            Mood::Shock => fuwafuwa_painter::Mood::Shock,
+            Mood::Beam => fuwafuwa_painter::Mood::Beam,
+        };
+        Face::on(body, mood, look_at)
+    });
     let extras = Extras {
         basket: round.basket().copied(),
         faces: faces.collect(),

@@ -3,8 +3,10 @@
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
 use fuwafuwa::Vector;
 
+/// So much is seen around the arena [m]: room for the lean, so that nothing of the arena goes out of sight.
+const MARGIN: f32 = 0.08;
 /// The camera leans this share of the way from the middle of the arena towards the hand.
-const LEAN: f32 = 0.06;
+const LEAN: f32 = 0.04;
 /// How fast it leans [1/s].
 const PACE: f32 = 3.0;
 /// How fast a shake dies [1/s], and how fast it swings [rad/s].
@@ -53,6 +55,7 @@ impl Camera {
     /// What it sees on a part of the screen that is to hold the arena.
     pub fn view(&self, rect: Rect, arena: [Vector; 2]) -> View {
         let size = vec2(arena[1][0] - arena[0][0], arena[1][1] - arena[0][1]);
+        let size = size + Vec2::splat(2.0 * MARGIN);
         let scale = (rect.width() / size.x).min(rect.height() / size.y);
         let swing = self.shake * vec2(self.phase.sin(), (1.3 * self.phase).cos());
         let middle = 0.5 * vec2(arena[0][0] + arena[1][0], arena[0][1] + arena[1][1]);

@@ -1,18 +1,23 @@
-//! What flies about and what it does to the camera and the face.
+//! What flies about, and what was felt lately.
 
-use super::{Camera, Mood};
-use fuwafuwa::Dim2;
-use fuwafuwa::{Event, Vector, With};
+use super::Camera;
+use super::confetti::Confetti;
+use super::feelings::{Fate, Feeling};
+use fuwafuwa::{Body, Dim2, Event, Vector, With};
 use tamaire_play::Round;
 
 /// Most particles at once.
 const MOST: usize = 400;
 /// Particles for each released node.
 const DUST: usize = 3;
-/// How long the face is shocked after a tear [s].
-const SHOCK: f32 = 0.6;
+/// In a tick the material of so many releases is looked up; the others take that of the last one.
+const LOOKED_UP: usize = 8;
 /// A hand that presses harder than this hurts [N].
 const HURTS: f32 = 350.0;
+/// A hand that has gone so far needs no hint any more [m].
+const MOVED: f32 = 0.12;
+/// Air that slows dust down [1/s].
+const DRAG: f32 = 3.0;
 
 /// A speck of dust.
 #[derive(Copy, Clone, Debug)]
@@ -21,19 +26,20 @@ pub struct Speck {
     pub at: Vector,
     /// [m/s]
     velocity: Vector,
-    /// Of how many seconds it has how many left.
-    life: f32,
+    /// How long it has left [s].
     left: f32,
     /// [m]
     pub radius: f32,
     /// Of which material it is made.
     pub material: u8,
+    /// Whether it comes from inside, where the material is fresh.
+    pub is_fresh: bool,
 }
 
 impl Speck {
-    /// From 1 when it is new to 0 when it goes.
+    /// From 1 while it lies about to 0 when it goes.
     pub fn strength(&self) -> f32 {
-        (self.left / self.life).clamp(0.0, 1.0)
+        (self.left / 0.7).clamp(0.0, 1.0)
     }
 }
 
@@ -42,10 +48,23 @@ impl Speck {
 pub struct Effects {
     /// Dust.
     pub specks: Vec<Speck>,
-    /// For how long the body is still shocked [s].
-    pub shock: f32,
-    /// How hard hands press on it [N], smoothed.
+    /// Paper that falls after a win.
+    pub confetti: Confetti,
+    /// How each body feels.
+    pub feelings: Vec<Feeling>,
+    /// How hard hands press on bodies [N], smoothed.
     pub pressure: f32,
+    /// How clearly the hint is to be seen, 0 to 1.
+    pub hint: f32,
+    /// Where the first hand began [m].
+    start: Option<Vector>,
+    has_moved: bool,
+    has_won: bool,
+    /// The last tick that was seen.
+    tick: u64,
+    /// What pulls dust down, and how far [m/s², m].
+    gravity: Vector,
+    room: [Vector; 2],
     random: fastrand::Rng,
 }
 
@@ -53,38 +72,50 @@ impl Default for Effects {
     fn default() -> Self {
         Self {
             specks: Vec::new(),
-            shock: 0.0,
+            confetti: Confetti::default(),
+            feelings: Vec::new(),
             pressure: 0.0,
+            hint: 0.0,
+            start: None,
+            has_moved: false,
+            has_won: false,
+            tick: 0,
+            gravity: [0.0; 3],
+            room: [[-1.0e9; 3], [1.0e9; 3]],
             random: fastrand::Rng::with_seed(1),
         }
     }
 }
 
 impl Effects {
-    /// How the body feels about all this.
-    pub fn mood(&self, round: &Round<Dim2>) -> Mood {
-        let progress = round.progress();
-        if progress.outcome.is_some() || progress.held > 0.3 {
-            Mood::Beam
-        } else if self.shock > 0.0 {
-            Mood::Shock
-        } else if self.pressure > HURTS {
-            Mood::Wince
-        } else {
-            Mood::Calm
-        }
-    }
-
-    /// Looks at what happened in a tick.
+    /// Looks at what happened in a tick; `still` = with reduced motion.
     pub fn see(&mut self, round: &Round<Dim2>, camera: &mut Camera, still: bool) {
+        let world = round.world();
+        if world.ticks() <= self.tick || self.feelings.len() != world.bodies().len() {
+            // Another round.
+            *self = Self {
+                feelings: world.bodies().iter().map(Feeling::of).collect(),
+                gravity: round.level().scene().gravity,
+                room: round.level().arena(),
+                ..Self::default()
+            };
+        }
+        self.tick = world.ticks();
         let mut pressed = 0.0;
-        for event in round.world().events() {
+        let mut material = 1;
+        let mut looked_up = 0;
+        let mut torn = vec![false; world.bodies().len()];
+        for event in world.events() {
             match *event {
-                Event::Released { at, energy, .. } => {
-                    self.shock = SHOCK;
+                Event::Released { body, at, energy } => {
+                    torn[body as usize] = true;
                     camera.shake(0.002 + 0.002 * energy.clamp(0.0, 2.0));
+                    if looked_up < LOOKED_UP {
+                        looked_up += 1;
+                        material = material_at(&world.bodies()[body as usize], at);
+                    }
                     let count = if still { 1 } else { DUST };
-                    (0..count).for_each(|_| self.puff(at));
+                    (0..count).for_each(|_| self.puff(at, material));
                 }
                 Event::Touched {
                     with: With::Manipulator(_),
@@ -97,35 +128,157 @@ impl Effects {
             }
         }
         self.pressure += 0.2 * (pressed - self.pressure);
+        self.watch_hand(round);
+        self.celebrate(round, still);
+        let progress = round.progress();
+        let is_in = progress.outcome.is_some() || progress.held > 0.2;
+        for (place, feeling) in self.feelings.iter_mut().enumerate() {
+            let in_basket = |region: &fuwafuwa::Shape| region.distance(feeling.at).0 < 0.0;
+            let fate = Fate {
+                tick: world.ticks(),
+                torn: torn[place],
+                pressed: self.pressure > HURTS,
+                home: is_in && round.basket().is_some_and(in_basket),
+            };
+            feeling.see(&world.bodies()[place], fate);
+        }
     }
 
     /// Lets `seconds` pass.
     pub fn pass(&mut self, seconds: f32) {
-        self.shock = (self.shock - seconds).max(0.0);
+        let [low, high] = self.room;
         for speck in &mut self.specks {
             speck.left -= seconds;
-            let slower = (1.0 - 3.0 * seconds).max(0.0);
+            let slower = (1.0 - DRAG * seconds).max(0.0);
             for axis in 0..2 {
                 speck.velocity[axis] *= slower;
+                speck.velocity[axis] += self.gravity[axis] * seconds;
                 speck.at[axis] += speck.velocity[axis] * seconds;
+                // What comes to a wall stays there.
+                let (first, last) = (low[axis] + speck.radius, high[axis] - speck.radius);
+                if speck.at[axis] < first || speck.at[axis] > last {
+                    speck.at[axis] = speck.at[axis].clamp(first, last);
+                    speck.velocity = [0.0; 3];
+                }
             }
         }
         self.specks.retain(|speck| speck.left > 0.0);
+        self.confetti.pass(seconds);
+        let wish = if self.has_moved { 0.0 } else { 1.0 };
+        let pace = if self.has_moved { 3.0 } else { 1.2 };
+        let step = (pace * seconds).min(1.0);
+        self.hint += (wish - self.hint).clamp(-step, step);
     }
 
-    fn puff(&mut self, at: Vector) {
-        if self.specks.len() >= MOST {
+    fn watch_hand(&mut self, round: &Round<Dim2>) {
+        let hand = round.world().manipulators()[0].position();
+        let start = *self.start.get_or_insert(hand);
+        let away = [0, 1].map(|axis| hand[axis] - start[axis]);
+        self.has_moved |= away[0] * away[0] + away[1] * away[1] > MOVED * MOVED;
+    }
+
+    fn celebrate(&mut self, round: &Round<Dim2>, still: bool) {
+        if round.progress().outcome.is_none() || self.has_won {
             return;
         }
+        self.has_won = true;
+        if !still {
+            self.confetti.rain(self.room, &mut self.random);
+        }
+    }
+
+    fn puff(&mut self, at: Vector, material: u8) {
+        if self.specks.len() >= MOST {
+            self.specks.swap_remove(0);
+        }
         let mut any = |low: f32, high: f32| low + (high - low) * self.random.f32();
-        let life = any(0.3, 0.9);
-        self.specks.push(Speck {
+        let speck = Speck {
             at,
-            velocity: [any(-0.8, 0.8), any(-0.8, 0.8), 0.0],
-            life,
-            left: life,
+            velocity: [any(-0.9, 0.9), any(-0.9, 0.9), 0.0],
+            left: any(1.5, 5.0),
             radius: any(0.004, 0.012),
-            material: 1,
-        });
+            material,
+            is_fresh: any(0.0, 1.0) < 0.4,
+        };
+        self.specks.push(speck);
+    }
+}
+
+/// The material of a body at a place [m]: that of the nearest node.
+fn material_at(body: &Body<Dim2>, at: Vector) -> u8 {
+    let mesh = body.mesh();
+    let square = |id: u32| {
+        let place = body.node_state(id).0;
+        (place[0] - at[0]).powi(2) + (place[1] - at[1]).powi(2)
+    };
+    let nearest = mesh
+        .nodes()
+        .map(|(id, _)| (square(id), id))
+        .min_by(|a, b| a.0.total_cmp(&b.0));
+    let element = nearest.and_then(|(_, id)| mesh.carriers_of(id).next());
+    element.map_or(1, |(element, _)| {
+        body.grid().material(mesh.first_voxel(element))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Arc;
+    use tamaire_play::{InputFrame, Level};
+
+    fn round(level: &str) -> Round<Dim2> {
+        Round::new(Arc::new(Level::open(level).expect("it comes along")))
+    }
+
+    #[test]
+    fn the_hint_fades_when_the_hand_moves_and_comes_back_in_a_new_round() {
+        let (mut effects, mut camera) = (Effects::default(), Camera::default());
+        let mut play = |round: &mut Round<Dim2>, effects: &mut Effects, frame, ticks: usize| {
+            for _ in 0..ticks {
+                round.step(frame);
+                effects.see(round, &mut camera, false);
+                effects.pass(fuwafuwa::world::TICK);
+            }
+        };
+        let mut first = round("classic");
+        play(&mut first, &mut effects, InputFrame::default(), 60);
+        assert_eq!(effects.hint, 1.0);
+        let away = InputFrame::towards([-1.4, 0.6, 0.0]);
+        play(&mut first, &mut effects, away, 60);
+        assert_eq!(effects.hint, 0.0);
+        play(
+            &mut round("classic"),
+            &mut effects,
+            InputFrame::default(),
+            60,
+        );
+        assert_eq!(effects.hint, 1.0);
+    }
+
+    #[test]
+    fn dust_falls_to_the_floor_and_stays_there() {
+        let mut effects = Effects {
+            gravity: [0.0, -5.0, 0.0],
+            room: [[-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]],
+            ..Effects::default()
+        };
+        effects.puff([0.0; 3], 2);
+        effects.specks[0].left = 9.0;
+        (0..300).for_each(|_| effects.pass(0.02));
+        let speck = effects.specks[0];
+        assert!((speck.at[1] + 1.0 - speck.radius).abs() < 1e-3, "{speck:?}");
+        assert_eq!(speck.material, 2);
+        (0..300).for_each(|_| effects.pass(0.02));
+        assert!(effects.specks.is_empty());
+    }
+
+    #[test]
+    fn dust_is_made_of_what_was_torn() {
+        let round = round("twins");
+        let bodies = round.world().bodies();
+        let middle = |body: &Body<Dim2>| body.piece_views()[0].centre;
+        assert_eq!(material_at(&bodies[0], middle(&bodies[0])), 1);
+        assert_eq!(material_at(&bodies[1], middle(&bodies[1])), 2);
     }
 }

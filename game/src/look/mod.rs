@@ -1,13 +1,21 @@
-//! How a round looks: the camera, the face, what flies about, the colours.
+//! How a round looks: the camera, the faces, what flies about, the colours, little pictures of levels.
 
 mod camera;
+mod confetti;
 mod effects;
 mod face;
+mod feelings;
+mod glow;
+mod hint;
+mod maps;
 mod stage;
 mod theme;
 
 pub use camera::{Camera, View};
+pub use confetti::Confetti;
 pub use effects::Effects;
-pub use face::{Mood, draw_face};
-pub use stage::{Look, Stage};
+pub use face::{Mood, Place, draw_face};
+pub use feelings::Feeling;
+pub use maps::Maps;
+pub use stage::{Hint, Look, Stage};
 pub use theme::Theme;

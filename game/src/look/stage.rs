@@ -1,16 +1,17 @@
-//! A round on the screen: the world, what flies about, the face.
+//! A round on the screen: the world, what flies about, the faces.
 
 use super::camera::View;
 use super::face::Place;
-use super::{Effects, Theme, draw_face};
+use super::feelings::Feeling;
+use super::{Effects, Maps, Mood, Theme, draw_face, glow, hint};
 use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait, RenderState};
 use egui::epaint::PathShape;
 use egui::{Color32, PaintCallbackInfo, Painter, Pos2, Stroke, Ui, vec2};
 use fuwafuwa::Dim2;
 use fuwafuwa_render::frame::ElementColour;
-use fuwafuwa_render::{Ages, Basket, Camera, Frame, Particle, Renderer, anchor};
+use fuwafuwa_render::{Ages, Basket, Camera, Frame, Particle, Renderer};
 use std::sync::{Arc, Mutex, PoisonError};
-use tamaire_play::Round;
+use tamaire_play::{Level, Round};
 
 /// How to show a round.
 #[derive(Copy, Clone, Debug)]
@@ -27,6 +28,21 @@ pub struct Look<'a> {
     pub time: f32,
     /// The same level as somebody played it before.
     pub ghost: Option<&'a Round<Dim2>>,
+    /// Whether to show what the hand could do, until it moves.
+    pub hint: Hint,
+    /// With reduced motion.
+    pub still: bool,
+}
+
+/// What a player is shown before the hand moves.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Hint {
+    /// Nothing.
+    None,
+    /// Which hand is theirs.
+    Hand,
+    /// And what it could do.
+    Way,
 }
 
 /// Where rounds are drawn: a part of a window of egui's.
@@ -34,6 +50,7 @@ pub struct Stage {
     state: RenderState,
     renderer: Arc<Mutex<Renderer>>,
     ages: Ages,
+    maps: Maps,
     time: f32,
 }
 
@@ -61,8 +78,15 @@ impl Stage {
             state: state.clone(),
             renderer: Arc::new(Mutex::new(renderer)),
             ages: Ages::default(),
+            maps: Maps::default(),
             time: 0.0,
         }
+    }
+
+    /// Little pictures of levels: those that were made so far, and one more.
+    pub fn maps(&mut self, levels: &[Arc<Level>], theme: &Theme) -> &Maps {
+        self.maps.make_one(&self.state, levels, theme);
+        &self.maps
     }
 
     /// Draws a round.
@@ -74,27 +98,9 @@ impl Stage {
         self.ages
             .follow(round.world(), (look.time - self.time).max(0.0));
         self.time = look.time;
-        let specks = look.effects.specks.iter().map(|speck| Particle {
-            at: speck.at,
-            radius: speck.radius,
-            colour: {
-                let [red, green, blue] = look.theme.world.material(speck.material);
-                [red, green, blue, speck.strength()]
-            },
-        });
-        let specks: Vec<Particle> = specks.collect();
-        let rules = round.level().game();
-        let basket = round.basket().map(|&region| Basket {
-            region,
-            fill: (round.progress().inside / rules.share).clamp(0.0, 1.0),
-        });
+        let specks = particles(look);
         let frame = Frame {
-            camera: Camera {
-                centre: [view.centre[0], view.centre[1], 0.0],
-                height: view.height(),
-                tilt: 0.0,
-                shake: [0.0; 3],
-            },
+            camera: camera(view),
             theme: &look.theme.world,
             look: match look.elements {
                 None => fuwafuwa_render::Look::Skin,
@@ -104,9 +110,9 @@ impl Stage {
                     nodes: false,
                 },
             },
-            basket,
+            basket: basket(round),
             particles: &specks,
-            seconds: look.time,
+            seconds: if look.still { 0.0 } else { look.time },
         };
         let RenderState { device, queue, .. } = &self.state;
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -114,35 +120,99 @@ impl Stage {
         renderer.prepare(device, queue, &mut encoder, round.world(), &frame, size);
         queue.submit([encoder.finish()]);
         let paint = Paint(self.renderer.clone());
-        ui.painter()
-            .add(Callback::new_paint_callback(view.rect, paint));
+        let painter = ui.painter();
+        painter.add(Callback::new_paint_callback(view.rect, paint));
+        glow::draw(painter, round, look);
         if let Some(ghost) = look.ghost {
-            draw_ghost(ui.painter(), ghost, view);
+            draw_ghost(painter, ghost, view);
         }
         if look.elements.is_none() {
-            draw_faces(ui.painter(), round, look);
+            draw_faces(painter, round, look);
         }
+        hint::draw(painter, round, look);
+        look.effects.confetti.draw(painter, view);
     }
 }
 
+/// The view as the renderer takes it.
+pub(super) fn camera(view: &View) -> Camera {
+    Camera {
+        centre: [view.centre[0], view.centre[1], 0.0],
+        height: view.height(),
+        tilt: 0.0,
+        shake: [0.0; 3],
+    }
+}
+
+/// The basket of a round, as full as it is.
+pub(super) fn basket(round: &Round<Dim2>) -> Option<Basket> {
+    let fill = (round.progress().inside / round.level().game().share).clamp(0.0, 1.0);
+    round.basket().map(|&region| Basket { region, fill })
+}
+
+fn particles(look: &Look) -> Vec<Particle> {
+    let world = &look.theme.world;
+    let specks = look.effects.specks.iter().map(|speck| {
+        let own = world.material(speck.material);
+        // As much fresher as the renderer makes torn faces.
+        let share = if speck.is_fresh { 0.7 } else { 0.0 };
+        let [red, green, blue] = [0, 1, 2].map(|k| own[k] + share * (world.fresh[k] - own[k]));
+        Particle {
+            at: speck.at,
+            radius: speck.radius,
+            colour: [red, green, blue, speck.strength()],
+        }
+    });
+    specks.collect()
+}
+
 fn draw_faces(painter: &Painter, round: &Round<Dim2>, look: &Look) {
-    let world = round.world();
     let view = &look.view;
-    let hand = world.manipulators().first();
-    let look_at = hand.map_or(Pos2::ZERO, |hand| view.on_screen(hand.position()));
-    // Blinks every four seconds or so.
-    let phase = look.time.rem_euclid(3.7);
-    let blink = (1.0 - (phase - 0.1).abs() / 0.1).clamp(0.0, 1.0);
-    for body in world.bodies() {
-        let anchor = anchor(body);
-        let size = 0.55 * anchor.scale * view.scale;
+    let bodies = round.world().bodies();
+    // Before the first tick nobody has felt anything.
+    let fresh: Vec<Feeling>;
+    let feelings = match look.effects.feelings.len() == bodies.len() {
+        true => &look.effects.feelings,
+        false => {
+            fresh = bodies.iter().map(Feeling::of).collect();
+            &fresh
+        }
+    };
+    for (number, feeling) in feelings.iter().enumerate() {
+        // Blinks every four seconds or so, not all at once.
+        let phase = (look.time + 1.3 * number as f32).rem_euclid(3.7);
+        let blink = (1.0 - (phase - 0.1).abs() / 0.1).clamp(0.0, 1.0);
+        let at = view.on_screen(feeling.at);
+        let hands = round.world().manipulators().iter();
+        let hands = hands.map(|hand| view.on_screen(hand.position()));
+        let look_at = hands.min_by(|a, b| a.distance(at).total_cmp(&b.distance(at)));
         let place = Place {
-            at: view.on_screen([anchor.position[0], anchor.position[1], 0.0]),
-            right: size * vec2(anchor.right[0], -anchor.right[1]),
-            up: size * vec2(anchor.up[0], -anchor.up[1]),
-            look_at,
+            look_at: look_at.unwrap_or(Pos2::ZERO),
+            ..place(feeling, view, look.still)
         };
-        draw_face(painter, &place, look.effects.mood(round), blink);
+        draw_face(painter, &place, feeling.mood, blink);
+    }
+}
+
+/// Where the face is on the screen; it starts a little when the mood changes.
+pub(super) fn place(feeling: &Feeling, view: &View, still: bool) -> Place {
+    let start = if still {
+        0.0
+    } else {
+        0.16 * (-9.0 * feeling.age).exp()
+    };
+    let start = if feeling.mood == Mood::Calm {
+        0.0
+    } else {
+        start
+    };
+    let size = (1.0 + start) * feeling.size * view.scale;
+    let [x, y] = feeling.right;
+    Place {
+        at: view.on_screen(feeling.at),
+        right: size * vec2(x, -y),
+        up: size * vec2(-y, -x),
+        look_at: view.on_screen(feeling.at),
     }
 }
 

@@ -28,8 +28,22 @@ pub struct Theme {
 impl Theme {
     /// The colour of a material.
     pub fn material(&self, number: u8) -> Color32 {
-        let [red, green, blue] = self.world.material(number).map(|k| (255.0 * k) as u8);
-        Color32::from_rgb(red, green, blue)
+        colour(self.world.material(number))
+    }
+
+    /// The colour of a player's hand.
+    pub fn hand(&self, player: usize) -> Color32 {
+        colour(self.world.hand(player))
+    }
+
+    /// The colour of elements of a level.
+    pub fn level(&self, level: u8) -> Color32 {
+        colour(self.world.level(level))
+    }
+
+    /// The colour of a strain.
+    pub fn strain(&self, strain: f32) -> Color32 {
+        colour(self.world.strain(strain))
     }
 
     /// The usual colours, or those that nobody mixes up [Okabe 2008].
@@ -56,4 +70,9 @@ impl Theme {
             },
         }
     }
+}
+
+fn colour(of: fuwafuwa_render::Colour) -> Color32 {
+    let [red, green, blue] = of.map(|k| (255.0 * k + 0.5) as u8);
+    Color32::from_rgb(red, green, blue)
 }

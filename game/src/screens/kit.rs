@@ -2,9 +2,13 @@
 
 use crate::look::Theme;
 use egui::{
-    Align2, Color32, FontId, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo,
-    pos2, vec2,
+    Align2, Color32, FontId, Galley, Painter, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui,
+    Vec2, WidgetInfo, pos2, vec2,
 };
+use std::sync::Arc;
+
+/// How far the ring around what has the focus reaches beyond it.
+pub const RING: f32 = 7.0;
 
 /// What a button is for.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -43,19 +47,29 @@ pub fn button(ui: &mut Ui, theme: &Theme, text: &str, size: Vec2, weight: Weight
     );
     painter.rect_filled(rect, round, fill);
     focus_ring(ui, &response, rect, round, theme);
-    let font = FontId::proportional(0.42 * size.y);
-    ui.painter()
-        .text(rect.center(), Align2::CENTER_CENTER, text, font, ink);
+    let galley = fitted(ui.painter(), text, 0.42 * size.y, rect.width() - 28.0, ink);
+    let at = rect.center() - 0.5 * galley.size();
+    ui.painter().galley(at, galley, ink);
     response
+}
+
+/// Words on one line, smaller where there is not room enough.
+pub fn fitted(painter: &Painter, text: &str, size: f32, width: f32, ink: Color32) -> Arc<Galley> {
+    let lay = |size| painter.layout_no_wrap(text.to_string(), FontId::proportional(size), ink);
+    let galley = lay(size);
+    match galley.size().x > width {
+        true => lay((size * width / galley.size().x).max(8.0)),
+        false => galley,
+    }
 }
 
 /// A ring around what a pad or the keyboard is on.
 pub fn focus_ring(ui: &Ui, response: &Response, rect: Rect, round: f32, theme: &Theme) {
     if response.has_focus() {
         let stroke = Stroke::new(4.0, theme.ink);
-        let rect = rect.expand(5.0);
+        let rect = rect.expand(RING - 2.0);
         ui.painter()
-            .rect_stroke(rect, round + 5.0, stroke, StrokeKind::Middle);
+            .rect_stroke(rect, round + RING - 2.0, stroke, StrokeKind::Middle);
     }
 }
 
@@ -85,8 +99,9 @@ pub fn slider(
     step: f32,
 ) -> Response {
     row(ui, theme, name, |ui| {
+        let width = (ui.available_width() - 84.0).max(60.0);
         let (rect, mut response) =
-            ui.allocate_exact_size(vec2(260.0, 36.0), Sense::click_and_drag());
+            ui.allocate_exact_size(vec2(width, 36.0), Sense::click_and_drag());
         let before = *value;
         let track = Rect::from_center_size(rect.center(), vec2(rect.width() - 28.0, 12.0));
         if let Some(pointer) = response.interact_pointer_pos() {
@@ -145,20 +160,28 @@ pub fn choice<T: Copy + PartialEq>(
 ) -> bool {
     let mut changed = false;
     row(ui, theme, name, |ui| {
+        // All as wide as the widest, so that nothing moves when another is chosen.
+        let mark = |text: &str| format!("● {text}");
+        let measure = |text: &str| {
+            let font = FontId::proportional(17.0);
+            ui.painter()
+                .layout_no_wrap(mark(text), font, theme.ink)
+                .size()
+                .x
+        };
+        let width = options
+            .iter()
+            .map(|(_, text)| measure(text))
+            .fold(60.0, f32::max)
+            + 36.0;
         for &(option, text) in options {
-            let width = 36.0 + 18.0 * text.chars().count().max(3) as f32;
-            let weight = if *value == option {
-                Weight::Main
-            } else {
-                Weight::Other
-            };
+            let is_chosen = *value == option;
             // What is chosen is marked by more than its colour.
-            let marked = if *value == option {
-                format!("● {text}")
-            } else {
-                text.to_string()
+            let (weight, marked) = match is_chosen {
+                true => (Weight::Main, mark(text)),
+                false => (Weight::Other, text.to_string()),
             };
-            if button(ui, theme, &marked, vec2(width + 24.0, 40.0), weight).clicked() {
+            if button(ui, theme, &marked, vec2(width, 40.0), weight).clicked() {
                 changed = *value != option;
                 *value = option;
             }
@@ -167,17 +190,14 @@ pub fn choice<T: Copy + PartialEq>(
     changed
 }
 
+/// The name of something to the left, and what it is to the right.
 fn row<R>(ui: &mut Ui, theme: &Theme, name: &str, contents: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
-        let (place, _) = ui.allocate_exact_size(vec2(230.0, 44.0), Sense::hover());
-        let font = FontId::proportional(22.0);
-        ui.painter().text(
-            place.left_center(),
-            Align2::LEFT_CENTER,
-            name,
-            font,
-            theme.ink,
-        );
+        let width = 0.4 * ui.available_width();
+        let (place, _) = ui.allocate_exact_size(vec2(width, 44.0), Sense::hover());
+        let galley = fitted(ui.painter(), name, 21.0, width - 8.0, theme.ink);
+        let at = place.left_center() - vec2(0.0, 0.5 * galley.size().y);
+        ui.painter().galley(at, galley, theme.ink);
         contents(ui)
     })
     .inner
@@ -193,16 +213,70 @@ pub fn title(ui: &mut Ui, theme: &Theme, text: &str) {
     );
 }
 
-/// A column of so many points in the middle of the screen, and what is in it.
-pub fn column<R>(ui: &mut Ui, width: f32, height: f32, contents: impl FnOnce(&mut Ui) -> R) -> R {
-    let screen = ui.max_rect();
+/// The upper edge of a screen: a way back and a headline; gives back the button.
+pub fn header(ui: &mut Ui, theme: &Theme, back: &str, text: &str) -> Response {
+    let inner = ui.horizontal(|ui| {
+        let response = button(ui, theme, back, vec2(140.0, 48.0), Weight::Other);
+        ui.add_space(16.0);
+        title(ui, theme, text);
+        response
+    });
+    ui.add_space(6.0);
+    inner.inner
+}
+
+/// The rest of a screen: a column of so many points at most, which scrolls. There is room for the
+/// ring around what has the focus.
+pub fn page(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui)) {
+    let area = egui::ScrollArea::vertical().auto_shrink(false);
+    area.show(ui, |ui| {
+        let all = ui.available_width();
+        let inner = (all - 2.0 * (RING + 2.0)).min(width);
+        let side = 0.5 * (all - inner);
+        ui.add_space(RING + 3.0);
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 0.0;
+            ui.add_space(side);
+            ui.vertical(|ui| {
+                ui.spacing_mut().item_spacing.x = 10.0;
+                ui.set_width(inner);
+                contents(ui);
+            });
+        });
+        ui.add_space(RING + 9.0);
+    });
+}
+
+/// A column of so many points, upright in the middle of the screen, and what is in it; `across` from
+/// 0 = at the left to 1 = at the right. Where there is not room enough it scrolls.
+pub fn column<R>(ui: &mut Ui, width: f32, across: f32, contents: impl FnOnce(&mut Ui) -> R) -> R {
+    let screen = ui.max_rect().shrink(12.0);
+    let id = egui::Id::unique(("column", width as u32));
+    let known = ui.data(|data| data.get_temp::<f32>(id));
     let size = vec2(
-        width.min(screen.width() - 24.0),
-        height.min(screen.height() - 24.0),
+        width.min(screen.width()),
+        known.unwrap_or(screen.height()).min(screen.height()),
     );
-    let rect = Rect::from_center_size(screen.center(), size);
-    let builder = egui::UiBuilder::new()
-        .max_rect(rect)
-        .layout(egui::Layout::top_down(egui::Align::Center));
-    ui.scope_builder(builder, contents).inner
+    let left = screen.left() + across * (screen.width() - size.x);
+    let rect = Rect::from_min_size(pos2(left, screen.center().y - 0.5 * size.y), size);
+    let centred = egui::Layout::top_down(egui::Align::Center);
+    let builder = egui::UiBuilder::new().max_rect(rect).layout(centred);
+    let fill = |ui: &mut Ui| {
+        let result = contents(ui);
+        (result, ui.min_rect().height())
+    };
+    let (result, height) = ui
+        .scope_builder(builder, |ui| match known {
+            Some(height) if height > screen.height() => {
+                egui::ScrollArea::vertical().show(ui, fill).inner
+            }
+            _ => fill(ui),
+        })
+        .inner;
+    if known != Some(height) {
+        ui.data_mut(|data| data.insert_temp(id, height));
+        // It is seen only where it belongs.
+        ui.ctx().request_discard("the height of a column");
+    }
+    result
 }

@@ -1,42 +1,51 @@
 //! Which level?
 
-use super::kit::{Weight, button, focus_ring, title};
-use super::veil;
+use super::kit::{RING, fitted, focus_ring, header, page};
+use super::{marks, veil};
 use crate::game::{Game, Screen};
-use egui::{Align2, FontId, Rect, Response, Role, Sense, Ui, WidgetInfo, pos2, vec2};
-use tamaire_play::{Level, Route};
+use crate::look::{Maps, Stage};
+use egui::{Color32, Rect, Response, Role, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
+use tamaire_play::Route;
 use tamaire_sound::Menu;
 
-pub(super) fn show(game: &mut Game, ui: &mut Ui) {
+/// Between two tiles.
+const GAP: f32 = 20.0;
+/// About how wide a tile is.
+const WIDE: f32 = 236.0;
+
+pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     veil(ui, 235);
     let (theme, said) = (game.theme(), game.words());
+    let maps = stage.maps(&game.levels, &theme);
     let mut wanted = None;
-    let area = ui.max_rect().shrink2(vec2(32.0, 24.0));
+    let area = ui.max_rect().shrink2(vec2(28.0, 22.0));
     let mut back = ui.input(|input| input.key_pressed(egui::Key::Escape));
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
-        ui.horizontal(|ui| {
-            back |= button(ui, &theme, said.back, vec2(140.0, 48.0), Weight::Other).clicked();
-            ui.add_space(16.0);
-            title(ui, &theme, said.levels);
-        });
-        ui.add_space(12.0);
-        egui::ScrollArea::vertical().show(ui, |ui| {
-            ui.set_width(ui.available_width());
-            ui.horizontal_wrapped(|ui| {
-                ui.spacing_mut().item_spacing = vec2(20.0, 20.0);
-                for place in 0..game.levels.len() {
-                    let response = tile(ui, game, place);
-                    if place == game.chosen {
-                        super::play::focus_first(ui, &response);
+        back |= header(ui, &theme, said.back, said.levels).clicked();
+        page(ui, f32::INFINITY, |ui| {
+            ui.spacing_mut().item_spacing = vec2(GAP, GAP);
+            let width = ui.available_width();
+            let columns = ((width + GAP) / (WIDE + GAP)).round().max(2.0);
+            let wide = (width - (columns - 1.0) * GAP) / columns;
+            let size = vec2(wide, 0.62 * (wide - 20.0) + 92.0);
+            let places: Vec<usize> = (0..game.levels.len()).collect();
+            for row in places.chunks(columns as usize) {
+                ui.horizontal(|ui| {
+                    for &place in row {
+                        let response = tile(ui, game, maps, place, size);
+                        if place == game.chosen {
+                            super::play::focus_first(ui, &response);
+                        }
+                        if response.gained_focus() {
+                            let room = response.rect.expand(RING + 8.0);
+                            ui.scroll_to_rect(room, None);
+                        }
+                        if response.clicked() {
+                            wanted = Some(place);
+                        }
                     }
-                    if response.has_focus() {
-                        response.scroll_to_me(None);
-                    }
-                    if response.clicked() {
-                        wanted = Some(place);
-                    }
-                }
-            });
+                });
+            }
         });
     });
     if back {
@@ -49,85 +58,59 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
 }
 
 /// A level as a card: a little map, its name, what was reached.
-fn tile(ui: &mut Ui, game: &Game, place: usize) -> Response {
+fn tile(ui: &mut Ui, game: &Game, maps: &Maps, place: usize, size: Vec2) -> Response {
     let theme = game.theme();
     let level = &game.levels[place];
     let name = game.settings.language.of(&level.game().name);
-    let (rect, response) = ui.allocate_exact_size(vec2(230.0, 210.0), Sense::click());
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
     let lively = ui
         .ctx()
         .animate_bool(response.id, response.hovered() || response.has_focus());
     let rect = rect.translate(vec2(0.0, -4.0 * lively));
     let painter = ui.painter();
-    painter.rect_filled(
-        rect.translate(vec2(0.0, 5.0)),
-        22.0,
-        egui::Color32::from_black_alpha(30),
-    );
+    let shadow = Color32::from_black_alpha(30);
+    painter.rect_filled(rect.translate(vec2(0.0, 5.0)), 22.0, shadow);
     painter.rect_filled(rect, 22.0, theme.card);
-    let map = Rect::from_min_size(rect.min + vec2(12.0, 12.0), vec2(206.0, 128.0));
+    let map_size = vec2(rect.width() - 20.0, 0.62 * (rect.width() - 20.0));
+    let map = Rect::from_min_size(rect.min + vec2(10.0, 10.0), map_size);
     painter.rect_filled(map, 14.0, theme.paper);
-    draw_map(&painter.with_clip_rect(map), map, level, game);
-    let font = FontId::proportional(21.0);
-    painter.text(
-        pos2(rect.center().x, rect.top() + 160.0),
-        Align2::CENTER_CENTER,
-        name,
-        font,
-        theme.ink,
-    );
+    maps.draw(painter, map, level);
+    // Round corners on what has none.
+    let frame = Stroke::new(6.0, theme.card);
+    painter.rect_stroke(map.expand(3.0), 17.0, frame, egui::StrokeKind::Middle);
+    let galley = fitted(painter, name, 21.0, rect.width() - 24.0, theme.ink);
+    let at = pos2(rect.center().x, map.bottom() + 23.0) - 0.5 * galley.size();
+    painter.galley(at, galley, theme.ink);
+
     let record = game.records.of(&level.id);
-    let mut stars = String::new();
-    for wish in 0..level.game().wish.len() {
+    let base = rect.bottom() - 26.0;
+    let mut x = rect.center().x;
+    let wishes = level.game().wish.len();
+    let routes = [Route::Squeeze, Route::Shave];
+    let has_basket = level.game().basket.is_some();
+    let width = 24.0 * wishes as f32 + if has_basket { 16.0 + 64.0 } else { 0.0 };
+    x -= 0.5 * width;
+    for wish in 0..wishes {
         let reached = record.is_some_and(|record| record.wishes.contains(&wish));
-        stars.push(if reached { '★' } else { '☆' });
+        let star = if reached { "★" } else { "☆" };
+        let tone = if reached { theme.accent } else { theme.faint };
+        super::words(ui, pos2(x + 12.0, base), star, 20.0, tone);
+        x += 24.0;
     }
-    for (route, mark) in [
-        (Route::Squeeze, "●"),
-        (Route::Shave, "◆"),
-        (Route::Mix, "▲"),
-    ] {
-        if record.is_some_and(|record| record.best.contains_key(&route)) {
-            stars.push(' ');
-            stars.push_str(mark);
-        }
+    x += 16.0;
+    for route in routes.into_iter().filter(|_| has_basket) {
+        let is_done = record.is_some_and(|record| {
+            record.best.contains_key(&route) || record.best.contains_key(&Route::Mix)
+        });
+        marks::route(painter, &theme, pos2(x + 16.0, base), 10.0, route, is_done);
+        x += 32.0;
     }
-    let at = pos2(rect.center().x, rect.top() + 188.0);
-    painter.text(
-        at,
-        Align2::CENTER_CENTER,
-        stars,
-        FontId::proportional(18.0),
-        theme.accent,
-    );
+    if record.is_some() {
+        let at = map.right_top() + vec2(-14.0, 14.0);
+        painter.circle(at, 14.0, theme.good, Stroke::new(3.0, theme.card));
+        marks::tick(painter, at, 7.0, Stroke::new(3.0, theme.card));
+    }
     focus_ring(ui, &response, rect, 22.0, &theme);
     response
-}
-
-fn draw_map(painter: &egui::Painter, map: Rect, level: &Level, game: &Game) {
-    let theme = game.theme();
-    let view = crate::look::Camera::default().view(map.shrink(6.0), level.arena());
-    let scene = level.scene();
-    if let Some(basket) = &scene.game.as_ref().and_then(|game| game.basket.as_ref()) {
-        let size = 2.0 * view.scale * vec2(basket.half[0], basket.half[1]);
-        let rect = Rect::from_center_size(view.on_screen(basket.centre), size);
-        painter.rect_filled(rect, 3.0, theme.accent.gamma_multiply(0.25));
-    }
-    for (place, body) in scene.body.iter().enumerate() {
-        let width = body.width;
-        let centre = [body.at[0] + 0.5 * width, body.at[1] + 0.5 * width, 0.0];
-        let colour = theme.material(1 + place as u8);
-        painter.circle_filled(view.on_screen(centre), 0.5 * width * view.scale, colour);
-    }
-    for obstacle in &scene.obstacle {
-        if let Some(bar) = &obstacle.capsule {
-            let [red, green, blue] = theme.world.bar.map(|k| (255.0 * k) as u8);
-            let stroke = egui::Stroke::new(
-                2.0 * bar.radius * view.scale,
-                egui::Color32::from_rgb(red, green, blue),
-            );
-            painter.line_segment([view.on_screen(bar.from), view.on_screen(bar.to)], stroke);
-        }
-    }
 }

@@ -1,8 +1,10 @@
 //! What there is to see and to choose. Each screen is a function of the game and asks it for what
 //! should happen.
 
+mod hud;
 mod kit;
 mod levels;
+mod marks;
 mod paused;
 mod play;
 mod replays;
@@ -19,7 +21,7 @@ pub fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     play::world(game, stage, ui);
     match game.screen.clone() {
         Screen::Title => title::show(game, ui),
-        Screen::Levels => levels::show(game, ui),
+        Screen::Levels => levels::show(game, stage, ui),
         Screen::Play => play::show(game, ui),
         Screen::Paused => paused::show(game, ui),
         Screen::Result => result::show(game, ui),
@@ -33,16 +35,18 @@ fn notices(game: &Game, ui: &Ui) {
     let screen = ui.max_rect();
     let mut y = screen.top() + 18.0;
     let font = FontId::proportional(18.0);
+    let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("notices"));
+    let painter = ui.ctx().layer_painter(layer);
     for (text, left) in &game.notices {
         let strength = left.min(1.0);
         let ink = Color32::WHITE.gamma_multiply(strength);
         let width = screen.width() - 80.0;
-        let galley = ui.painter().layout(text.clone(), font.clone(), ink, width);
+        let galley = painter.layout(text.clone(), font.clone(), ink, width);
         let size = galley.size() + vec2(36.0, 18.0);
         let rect = Rect::from_min_size(pos2(screen.center().x - 0.5 * size.x, y), size);
         let shade = Color32::from_black_alpha((190.0 * strength) as u8);
-        ui.painter().rect_filled(rect, 16.0, shade);
-        ui.painter().galley(rect.min + vec2(18.0, 9.0), galley, ink);
+        painter.rect_filled(rect, 16.0, shade);
+        painter.galley(rect.min + vec2(18.0, 9.0), galley, ink);
         y += size.y + 8.0;
     }
 }

@@ -13,7 +13,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     veil(ui, 130);
     let (theme, said) = (game.theme(), game.words());
     let mut wanted: Option<Act> = None;
-    column(ui, 380.0, 440.0, |ui| {
+    column(ui, 380.0, 0.5, |ui| {
         card(ui, &theme, |ui| {
             title(ui, &theme, said.paused);
             ui.add_space(14.0);

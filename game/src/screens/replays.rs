@@ -1,6 +1,6 @@
 //! Rounds that were kept.
 
-use super::kit::{Weight, button, card, title};
+use super::kit::{Weight, button, card, fitted, header, page};
 use super::veil;
 use crate::game::{Game, Screen};
 use crate::platform::{Files, SavedReplay};
@@ -8,6 +8,9 @@ use egui::{RichText, Ui, vec2};
 use std::sync::Arc;
 use tamaire_play::{Replay, ReplayError};
 use tamaire_sound::Menu;
+
+/// Width of a button.
+const WIDE: f32 = 130.0;
 
 /// What to do with a replay.
 #[derive(Copy, Clone)]
@@ -23,33 +26,33 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     let replays = game.files.replays();
     let mut wanted: Option<(usize, Wish)> = None;
     let mut back = ui.input(|input| input.key_pressed(egui::Key::Escape));
-    let area = ui.max_rect().shrink2(vec2(32.0, 24.0));
+    let area = ui.max_rect().shrink2(vec2(28.0, 22.0));
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
-        ui.horizontal(|ui| {
-            let response = button(ui, &theme, said.back, vec2(140.0, 48.0), Weight::Other);
-            super::play::focus_first(ui, &response);
-            back |= response.clicked();
-            ui.add_space(16.0);
-            title(ui, &theme, said.replays);
-        });
-        ui.add_space(12.0);
-        if replays.is_empty() {
-            ui.label(RichText::new(said.no_replays).size(22.0).color(theme.faint));
-        }
-        egui::ScrollArea::vertical().show(ui, |ui| {
-            ui.set_width(ui.available_width());
+        let response = header(ui, &theme, said.back, said.replays);
+        super::play::focus_first(ui, &response);
+        back |= response.clicked();
+        page(ui, 960.0, |ui| {
+            if replays.is_empty() {
+                ui.vertical_centered(|ui| {
+                    ui.add_space(60.0);
+                    ui.label(RichText::new(said.no_replays).size(22.0).color(theme.faint));
+                });
+            }
             for (place, saved) in replays.iter().enumerate() {
                 card(ui, &theme, |ui| {
                     ui.horizontal(|ui| {
                         let name = saved.path.file_stem().unwrap_or_default().to_string_lossy();
-                        ui.label(RichText::new(name).size(22.0).color(theme.ink));
+                        let size = vec2(ui.available_width() - 3.0 * (WIDE + 10.0), 44.0);
+                        let (room, _) = ui.allocate_exact_size(size, egui::Sense::hover());
+                        let galley = fitted(ui.painter(), &name, 22.0, size.x, theme.ink);
+                        let at = room.left_center() - vec2(0.0, 0.5 * galley.size().y);
+                        ui.painter().galley(at, galley, theme.ink);
                         for (text, wish) in [
                             (said.watch, Wish::Watch),
                             (said.race, Wish::Race),
                             (said.delete, Wish::Delete),
                         ] {
-                            if button(ui, &theme, text, vec2(130.0, 44.0), Weight::Other).clicked()
-                            {
+                            if button(ui, &theme, text, vec2(WIDE, 44.0), Weight::Other).clicked() {
                                 wanted = Some((place, wish));
                             }
                         }

@@ -1,7 +1,7 @@
 //! How it went, and a dare to try the other way.
 
-use super::kit::{Weight, button, card, column};
-use super::veil;
+use super::kit::{Weight, button, card, column, fitted};
+use super::{marks, veil};
 use crate::game::{Game, Screen};
 use egui::{RichText, Ui, vec2};
 use tamaire_sound::Menu;
@@ -18,14 +18,33 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     let (theme, said) = (game.theme(), game.words());
     let level = game.session.round().level().clone();
     let mut wanted: Option<Act> = None;
-    column(ui, 560.0, 560.0, |ui| {
+    // Beside the body that beams, not over it.
+    let basket = level
+        .game()
+        .basket
+        .as_ref()
+        .map_or(0.0, |basket| basket.centre[0]);
+    let across = if basket > 0.0 { 0.1 } else { 0.9 };
+    column(ui, 540.0, across, |ui| {
         card(ui, &theme, |ui| {
-            ui.label(
-                RichText::new((said.route)(outcome.route))
-                    .size(44.0)
-                    .color(theme.accent)
-                    .strong(),
+            let (place, _) = ui.allocate_exact_size(vec2(120.0, 52.0), egui::Sense::hover());
+            marks::route(
+                ui.painter(),
+                &theme,
+                place.center(),
+                24.0,
+                outcome.route,
+                true,
             );
+            let width = ui.available_width();
+            let galley = fitted(
+                ui.painter(),
+                (said.route)(outcome.route),
+                42.0,
+                width,
+                theme.accent,
+            );
+            ui.label(galley);
             if is_best {
                 ui.label(
                     RichText::new(format!("★ {}", said.new_best))

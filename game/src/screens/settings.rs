@@ -1,6 +1,6 @@
 //! What players choose.
 
-use super::kit::{Weight, button, card, choice, slider, title};
+use super::kit::{Weight, button, card, choice, header, page, slider};
 use super::veil;
 use crate::game::{Game, Screen};
 use crate::input::Action;
@@ -16,20 +16,15 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, from: Screen) {
     let mut chosen = before.clone();
     let listens = game.rebinding.is_some();
     let mut back = !listens && ui.input(|input| input.key_pressed(egui::Key::Escape));
-    let area = ui.max_rect().shrink2(vec2(32.0, 24.0));
+    let area = ui.max_rect().shrink2(vec2(28.0, 22.0));
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
-        ui.horizontal(|ui| {
-            let response = button(ui, &theme, said.back, vec2(140.0, 48.0), Weight::Other);
-            super::play::focus_first(ui, &response);
-            back |= response.clicked();
-            ui.add_space(16.0);
-            title(ui, &theme, said.settings);
-        });
-        ui.add_space(12.0);
-        egui::ScrollArea::vertical().show(ui, |ui| {
-            ui.set_width(ui.available_width());
+        let response = header(ui, &theme, said.back, said.settings);
+        super::play::focus_first(ui, &response);
+        back |= response.clicked();
+        page(ui, 820.0, |ui| {
             let options = [(false, said.off), (true, said.on)];
             card(ui, &theme, |ui| {
+                ui.set_width(ui.available_width());
                 choice(
                     ui,
                     &theme,
@@ -139,6 +134,7 @@ fn section(ui: &mut Ui, game: &Game, name: &str, contents: impl FnOnce(&mut Ui))
     let theme = game.theme();
     ui.add_space(10.0);
     card(ui, &theme, |ui| {
+        ui.set_width(ui.available_width());
         ui.label(RichText::new(name).size(26.0).color(theme.accent).strong());
         contents(ui);
     });
@@ -164,7 +160,9 @@ fn controls(ui: &mut Ui, game: &mut Game, chosen: &mut Settings) {
                 ),
             };
             let weight = if listens { Weight::Main } else { Weight::Other };
-            if button(ui, &theme, &text, vec2(560.0, 44.0), weight).clicked() && !listens {
+            if button(ui, &theme, &text, vec2(ui.available_width(), 44.0), weight).clicked()
+                && !listens
+            {
                 game.rebinding = Some(action);
             }
             ui.add_space(4.0);
@@ -176,6 +174,7 @@ fn section_of_controls(ui: &mut Ui, game: &mut Game, contents: impl FnOnce(&mut 
     let (theme, said) = (game.theme(), game.words());
     ui.add_space(10.0);
     card(ui, &theme, |ui| {
+        ui.set_width(ui.available_width());
         ui.label(
             RichText::new(said.controls)
                 .size(26.0)

@@ -3,59 +3,54 @@
 use super::kit::{Weight, button, column};
 use super::{veil, words};
 use crate::game::{Game, Screen};
-use egui::{Ui, pos2, vec2};
+use egui::{Color32, Sense, Ui, vec2};
 use tamaire_sound::Menu;
 
+/// Where the menu is, from 0 = left to 1 = right: what plays behind is seen where it matters, at the basket.
+const ACROSS: f32 = 0.14;
+
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
-    veil(ui, 110);
+    veil(ui, 70);
     let (theme, said) = (game.theme(), game.words());
-    let screen = ui.max_rect();
     let bob = if game.settings.reduced_motion {
         0.0
     } else {
         6.0 * (1.6 * game.time).sin()
     };
-    let top = pos2(
-        screen.center().x,
-        screen.top() + 0.2 * screen.height() + bob,
-    );
-    words(
-        ui,
-        top + vec2(0.0, 5.0),
-        "玉入れ",
-        104.0,
-        egui::Color32::from_black_alpha(40),
-    );
-    words(ui, top, "玉入れ", 104.0, theme.accent);
-    words(ui, top + vec2(0.0, 78.0), "tamaire", 34.0, theme.ink);
     let mut wanted = None;
-    column(ui, 320.0, 320.0, |ui| {
-        ui.add_space(110.0);
+    column(ui, 340.0, ACROSS, |ui| {
+        let (place, _) = ui.allocate_exact_size(vec2(340.0, 190.0), Sense::hover());
+        let top = place.center_top() + vec2(0.0, 66.0 + bob);
+        for (by, colour) in [(5.0, Color32::from_black_alpha(40)), (0.0, theme.accent)] {
+            words(ui, top + vec2(0.0, by), "玉入れ", 104.0, colour);
+        }
+        words(ui, top + vec2(0.0, 78.0), "tamaire", 34.0, theme.ink);
         let options = [
             (said.play, Screen::Levels),
             (said.replays, Screen::Replays),
             (said.settings, Screen::Settings(Box::new(Screen::Title))),
         ];
         for (place, (text, screen)) in options.into_iter().enumerate() {
-            let weight = if place == 0 {
-                Weight::Main
-            } else {
-                Weight::Other
+            let (weight, size) = match place {
+                0 => (Weight::Main, vec2(280.0, 68.0)),
+                _ => (Weight::Other, vec2(280.0, 56.0)),
             };
-            let response = button(ui, &theme, text, vec2(280.0, 62.0), weight);
+            ui.add_space(8.0);
+            let response = button(ui, &theme, text, size, weight);
             if place == 0 {
                 super::play::focus_first(ui, &response);
             }
             if response.clicked() {
                 wanted = Some(screen);
             }
-            ui.add_space(12.0);
         }
+        ui.add_space(8.0);
         if !cfg!(target_arch = "wasm32")
-            && button(ui, &theme, said.quit, vec2(280.0, 52.0), Weight::Other).clicked()
+            && button(ui, &theme, said.quit, vec2(280.0, 48.0), Weight::Other).clicked()
         {
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
         }
+        ui.add_space(10.0);
     });
     if let Some(screen) = wanted {
         game.blip(Menu::Confirm);

@@ -1,0 +1,330 @@
+//! How a body feels, and where on it that is seen.
+
+use super::Mood;
+use fuwafuwa::world::TICK;
+use fuwafuwa::{Body, Dim2, Vector};
+use fuwafuwa_render::anchor;
+
+/// How long a body is shocked after a tear [s]; one that goes on tearing winces then.
+const SHOCK: f32 = 0.6;
+/// It is shocked again only after so long without a tear [s].
+const CALMED: f32 = 0.5;
+/// A body whose mean strain is above the first winces until it is below the second.
+const HURTS: [f32; 2] = [0.065, 0.045];
+/// The strain and the seat of the face are looked at this often [ticks].
+const LOOK: u64 = 5;
+/// A face keeps its seat unless another is better by so many voxels.
+const LAZY: f32 = 2.0;
+/// A smaller face is not to be read [m].
+const LEAST: f32 = 0.03;
+/// How fast a face goes to a new seat, takes another size, turns [1/s].
+const GLIDE: f32 = 7.0;
+const GROW: f32 = 6.0;
+const TURN: f32 = 25.0;
+
+/// How a body feels, and where on it that is seen.
+#[derive(Clone, Debug)]
+pub struct Feeling {
+    /// What it shows.
+    pub mood: Mood,
+    /// For how long [s].
+    pub age: f32,
+    /// Middle of its face [m].
+    pub at: Vector,
+    /// What is to the right in the face; of length 1.
+    pub right: [f32; 2],
+    /// Half of the face's width [m], nearly; 0 when the body is dust.
+    pub size: f32,
+    seat: Option<Seat>,
+    /// From the seat to where the face still is [m].
+    behind: [f32; 2],
+    strain: f32,
+    shock: f32,
+    /// Time since it last tore [s].
+    whole: f32,
+}
+
+/// A node deep inside the largest piece.
+#[derive(Copy, Clone, Debug, PartialEq)]
+struct Seat {
+    node: u32,
+    /// Where the node is in the body at rest, by which it is known when its number serves another.
+    rest: [i32; 3],
+    /// How far it is from the skin at rest [voxels].
+    depth: f32,
+}
+
+/// What a body goes through in a tick.
+#[derive(Copy, Clone, Debug, Default)]
+pub struct Fate {
+    /// Which tick.
+    pub tick: u64,
+    /// It tore.
+    pub torn: bool,
+    /// A hand presses hard.
+    pub pressed: bool,
+    /// It is where it should be.
+    pub home: bool,
+}
+
+impl Feeling {
+    /// How a body feels before anything happens to it.
+    pub fn of(body: &Body<Dim2>) -> Self {
+        let mut feeling = Self {
+            mood: Mood::Calm,
+            age: 9.0,
+            at: [0.0; 3],
+            right: [1.0, 0.0],
+            size: 0.0,
+            seat: None,
+            behind: [0.0; 2],
+            strain: 0.0,
+            shock: 0.0,
+            whole: CALMED,
+        };
+        feeling.sit(body, 1.0e9);
+        feeling
+    }
+
+    /// Lets a tick pass.
+    pub fn see(&mut self, body: &Body<Dim2>, fate: Fate) {
+        if fate.tick.is_multiple_of(LOOK) {
+            self.strain = strain(body);
+        }
+        let still_there = self.seat.is_some_and(|seat| is_there(body, seat));
+        if !still_there || fate.tick.is_multiple_of(LOOK) {
+            self.choose_seat(body);
+        }
+        self.sit(body, TICK);
+        self.feel(fate);
+    }
+
+    fn feel(&mut self, fate: Fate) {
+        self.age += TICK;
+        self.shock = (self.shock - TICK).max(0.0);
+        if fate.torn {
+            if self.whole >= CALMED {
+                self.shock = SHOCK;
+            }
+            self.whole = 0.0;
+        }
+        self.whole += TICK;
+        let limit = HURTS[usize::from(self.mood == Mood::Wince)];
+        let hurts = fate.pressed || self.strain > limit || self.whole < CALMED;
+        let mood = match () {
+            () if fate.home => Mood::Beam,
+            () if self.shock > 0.0 => Mood::Shock,
+            () if hurts => Mood::Wince,
+            () => Mood::Calm,
+        };
+        // What flickers cannot be read.
+        let is_urgent = matches!(mood, Mood::Beam | Mood::Shock);
+        if mood != self.mood && (is_urgent || self.age > 0.25) {
+            (self.mood, self.age) = (mood, 0.0);
+        }
+    }
+
+    /// Follows the seat.
+    fn sit(&mut self, body: &Body<Dim2>, seconds: f32) {
+        if self.seat.is_none() {
+            self.choose_seat(body);
+        }
+        let frame = anchor(body);
+        let towards =
+            |from: f32, to: f32, pace: f32| from + (to - from) * (pace * seconds).min(1.0);
+        let Some(seat) = self.seat else {
+            self.size = towards(self.size, 0.0, GROW);
+            return;
+        };
+        let at = body.node_state(seat.node).0;
+        self.behind = self.behind.map(|k| towards(k, 0.0, GLIDE));
+        self.at = [at[0] + self.behind[0], at[1] + self.behind[1], 0.0];
+        let turned = [0, 1].map(|axis| towards(self.right[axis], frame.right[axis], TURN));
+        let length = (turned[0] * turned[0] + turned[1] * turned[1]).sqrt();
+        self.right = match length > 0.1 {
+            true => turned.map(|k| k / length),
+            false => frame.right,
+        };
+        let room = 0.85 * seat.depth * body.grid().voxel_size();
+        let size = (0.55 * frame.scale).min(room);
+        let size = if size < LEAST { 0.0 } else { size };
+        self.size = towards(self.size, size, GROW);
+    }
+
+    /// Looks for a better seat; the face goes there from where it is.
+    fn choose_seat(&mut self, body: &Body<Dim2>) {
+        let before = self.seat.filter(|&seat| is_there(body, seat));
+        let after = best_seat(body, before.map(|seat| seat.node));
+        if let (Some(old), Some(new)) = (self.seat, after)
+            && old.node != new.node
+        {
+            let at = body.node_state(new.node).0;
+            self.behind = [self.at[0] - at[0], self.at[1] - at[1]];
+        }
+        self.seat = after;
+    }
+}
+
+fn is_there(body: &Body<Dim2>, seat: Seat) -> bool {
+    let mesh = body.mesh();
+    (seat.node as usize) < mesh.node_capacity()
+        && mesh.is_alive(seat.node)
+        && mesh.node(seat.node).at == seat.rest
+}
+
+/// The piece with the most nodes' mass.
+fn largest_piece(body: &Body<Dim2>) -> u32 {
+    let mut masses = vec![0.0f32; body.pieces().list.len()];
+    for (id, _) in body.mesh().nodes() {
+        masses[body.pieces().of_node(id) as usize] += body.node_state(id).2;
+    }
+    let largest =
+        (0..masses.len()).fold(0, |best, k| if masses[k] > masses[best] { k } else { best });
+    largest as u32
+}
+
+/// The node of the largest piece that is deepest inside and near the middle; the one that is taken
+/// now unless another is clearly better.
+fn best_seat(body: &Body<Dim2>, now: Option<u32>) -> Option<Seat> {
+    let (mesh, pieces) = (body.mesh(), body.pieces());
+    let piece = largest_piece(body);
+    let own = || mesh.nodes().filter(|&(id, _)| pieces.of_node(id) == piece);
+    let skin: Vec<[i32; 3]> = body
+        .facets()
+        .filter(|facet| facet.piece == piece)
+        .map(|facet| mesh.node(facet.nodes[0]).at)
+        .collect();
+    let (mut sum, mut count) = ([0.0f32; 2], 0.0f32);
+    for (id, node) in own() {
+        let mass = body.node_state(id).2;
+        sum = [0, 1].map(|axis| sum[axis] + mass * node.at[axis] as f32);
+        count += mass;
+    }
+    let middle = sum.map(|k| k / count.max(1e-9));
+    // A few candidates do: those of coarse elements, which are the deep ones.
+    let is_coarse = |at: [i32; 3]| (at[0] | at[1]) & 3 == 0;
+    let rate = |id: u32, rest: [i32; 3]| {
+        let square = |at: &[i32; 3]| (at[0] - rest[0]).pow(2) + (at[1] - rest[1]).pow(2);
+        let depth = (skin.iter().map(square).min().unwrap_or(0) as f32).sqrt();
+        let away = [0, 1].map(|axis| rest[axis] as f32 - middle[axis]);
+        let away = (away[0] * away[0] + away[1] * away[1]).sqrt();
+        let bonus = if now == Some(id) { LAZY } else { 0.0 };
+        // In doubt rather up: a ring wears its face there.
+        let score = depth - 0.3 * away + 0.01 * rest[1] as f32 + bonus;
+        (
+            score,
+            Seat {
+                node: id,
+                rest,
+                depth,
+            },
+        )
+    };
+    let candidates = own().filter(|&(id, node)| is_coarse(node.at) || now == Some(id));
+    let rated = candidates.map(|(id, node)| rate(id, node.at));
+    let best = rated.fold(None, |best: Option<(f32, Seat)>, next| match best {
+        Some(best) if best.0 >= next.0 => Some(best),
+        _ => Some(next),
+    });
+    best.map(|(_, seat)| seat)
+}
+
+/// The mean strain of the largest piece, by volume.
+fn strain(body: &Body<Dim2>) -> f32 {
+    let piece = largest_piece(body);
+    let (mut sum, mut volume) = (0.0, 0.0);
+    for element in body
+        .element_views()
+        .filter(|element| element.piece == piece)
+    {
+        let share = 4.0f32.powi(i32::from(element.level));
+        sum += share * element.strain;
+        volume += share;
+    }
+    if volume > 0.0 { sum / volume } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fuwafuwa::{Blade, Material, Settings, VoxelGrid, World};
+
+    fn alone(grid: VoxelGrid<Dim2>) -> World<Dim2> {
+        let mut world = World::new(Settings::default()).expect("usual");
+        world.add_body(Body::new(grid, &[Material::default()]).expect("usual"));
+        world
+    }
+
+    #[test]
+    fn the_face_of_a_ring_is_on_the_ring() {
+        let hole = |at: [f32; 2]| {
+            let radius = ((at[0] - 24.0).powi(2) + (at[1] - 24.0).powi(2)).sqrt();
+            (10.0..24.0).contains(&radius)
+        };
+        let grid = VoxelGrid::from_fn([48, 48, 1], 1.0 / 48.0, |voxel| {
+            u8::from(hole([voxel[0] as f32 + 0.5, voxel[1] as f32 + 0.5]))
+        });
+        let world = alone(grid.expect("a ring"));
+        let feeling = Feeling::of(&world.bodies()[0]);
+        let away = [feeling.at[0] - 0.5, feeling.at[1] - 0.5];
+        let radius = (away[0] * away[0] + away[1] * away[1]).sqrt();
+        assert!((0.25..0.45).contains(&radius), "{feeling:?}");
+        assert!(feeling.size > LEAST && feeling.size < 0.15, "{feeling:?}");
+    }
+
+    #[test]
+    fn the_face_glides_to_what_is_left_and_dust_has_none() {
+        let mut world = alone(VoxelGrid::ball(32, 1.0).expect("a ball"));
+        let mut feeling = Feeling::of(&world.bodies()[0]);
+        let (before, size) = (feeling.at, feeling.size);
+        world.cut(0, &Blade::segment([0.375, -1.0], [0.375, 2.0]));
+        let fate = Fate {
+            tick: LOOK,
+            ..Fate::default()
+        };
+        feeling.see(&world.bodies()[0], fate);
+        let step = feeling.at[0] - before[0];
+        assert!(step.abs() < 0.03, "no leap: {step}");
+        for _ in 0..200 {
+            feeling.see(&world.bodies()[0], Fate::default());
+        }
+        assert!(feeling.at[0] > before[0] + 0.05 && feeling.size < size);
+        let dust = alone(VoxelGrid::ball(4, 0.05).expect("a crumb"));
+        assert_eq!(Feeling::of(&dust.bodies()[0]).size, 0.0);
+    }
+
+    #[test]
+    fn a_tear_shocks_once_and_then_hurts() {
+        let world = alone(VoxelGrid::ball(16, 1.0).expect("a ball"));
+        let body = &world.bodies()[0];
+        let mut feeling = Feeling::of(body);
+        let torn = Fate {
+            tick: 1,
+            torn: true,
+            ..Fate::default()
+        };
+        feeling.see(body, torn);
+        assert_eq!(feeling.mood, Mood::Shock);
+        (0..60).for_each(|_| feeling.see(body, torn));
+        assert_eq!(feeling.mood, Mood::Wince);
+        (0..60).for_each(|_| {
+            feeling.see(
+                body,
+                Fate {
+                    tick: 1,
+                    ..Fate::default()
+                },
+            )
+        });
+        assert_eq!(feeling.mood, Mood::Calm);
+        feeling.see(
+            body,
+            Fate {
+                tick: 1,
+                home: true,
+                ..Fate::default()
+            },
+        );
+        assert_eq!(feeling.mood, Mood::Beam);
+    }
+}

@@ -1,0 +1,134 @@
+//! What shows that a body is in: a line that closes around the basket while it has to rest there,
+//! then bars that glow.
+
+use super::{Look, View};
+use egui::{Color32, Painter, Pos2, Rect, Shape as Drawn, Stroke, pos2, vec2};
+use fuwafuwa::{Dim2, Shape, Vector};
+use tamaire_play::Round;
+
+/// Light.
+const GOLD: Color32 = Color32::from_rgb(255, 205, 70);
+
+/// Draws it.
+pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &Look) {
+    let (progress, view) = (round.progress(), &look.view);
+    let held = match progress.outcome {
+        Some(_) => 1.0,
+        None => (progress.held / round.level().game().hold.max(0.1)).clamp(0.0, 1.0),
+    };
+    if held == 0.0 {
+        return;
+    }
+    if progress.outcome.is_some() {
+        let breath = if look.still {
+            0.5
+        } else {
+            0.5 + 0.5 * (5.0 * look.time).sin()
+        };
+        for obstacle in round.world().obstacles() {
+            shine(painter, view, obstacle.shape, 0.55 + 0.45 * breath);
+        }
+    }
+    if let Some(&Shape::Box { centre, half }) = round.basket() {
+        let width = 0.035 * view.scale;
+        let line = along_box(view, centre, half, held);
+        painter.add(Drawn::line(
+            line.clone(),
+            Stroke::new(width, Color32::WHITE),
+        ));
+        painter.add(Drawn::line(line, Stroke::new(0.6 * width, look.theme.good)));
+    }
+}
+
+/// The first `share` of the way around a box, from the middle of its top.
+fn along_box(view: &View, centre: Vector, half: Vector, share: f32) -> Vec<Pos2> {
+    let size = 2.0 * view.scale * vec2(half[0], half[1]);
+    let rect = Rect::from_center_size(view.on_screen(centre), size);
+    let corners = [
+        rect.center_top(),
+        rect.right_top(),
+        rect.right_bottom(),
+        rect.left_bottom(),
+        rect.left_top(),
+        rect.center_top(),
+    ];
+    let mut left = share * 2.0 * (rect.width() + rect.height());
+    let mut line = vec![corners[0]];
+    for pair in corners.windows(2) {
+        let length = pair[0].distance(pair[1]);
+        let part = (left / length.max(1e-3)).min(1.0);
+        line.push(pair[0] + part * (pair[1] - pair[0]));
+        left -= length;
+        if left <= 0.0 {
+            break;
+        }
+    }
+    line
+}
+
+/// Light around a bar, softer further out.
+fn shine(painter: &Painter, view: &View, shape: Shape, strength: f32) {
+    let layers = [(0.02, 60), (0.05, 36), (0.09, 22), (0.14, 12)];
+    for (reach, alpha) in layers {
+        let [red, green, blue, _] = GOLD.to_array();
+        let light =
+            Color32::from_rgba_unmultiplied(red, green, blue, alpha).gamma_multiply(strength);
+        match shape {
+            Shape::HalfSpace { .. } => {}
+            Shape::Capsule { from, to, radius } => {
+                let (from, to) = (view.on_screen(from), view.on_screen(to));
+                let radius = (radius + reach) * view.scale;
+                painter.add(Drawn::convex_polygon(
+                    bar(from, to, radius),
+                    light,
+                    Stroke::NONE,
+                ));
+            }
+            Shape::Box { centre, half } => {
+                let half = view.scale * (vec2(half[0], half[1]) + vec2(reach, reach));
+                let rect = Rect::from_center_size(view.on_screen(centre), 2.0 * half);
+                painter.rect_filled(rect, reach * view.scale, light);
+            }
+            Shape::Ball { centre, radius } => {
+                let radius = (radius + reach) * view.scale;
+                painter.circle_filled(view.on_screen(centre), radius, light);
+            }
+        }
+    }
+}
+
+/// The outline of a bar with round ends.
+fn bar(from: Pos2, to: Pos2, radius: f32) -> Vec<Pos2> {
+    let turn = (to - from).angle();
+    let end = |middle: Pos2, first: f32| {
+        (0..=12).map(move |step| {
+            let angle = first + std::f32::consts::PI * step as f32 / 12.0;
+            pos2(
+                middle.x + radius * angle.cos(),
+                middle.y + radius * angle.sin(),
+            )
+        })
+    };
+    let quarter = std::f32::consts::FRAC_PI_2;
+    end(to, turn - quarter)
+        .chain(end(from, turn + quarter))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_line_closes_when_all_is_held() {
+        let rect = Rect::from_min_size(Pos2::ZERO, vec2(200.0, 100.0));
+        let view = View {
+            rect,
+            centre: [0.0; 2],
+            scale: 50.0,
+        };
+        let line = |share| along_box(&view, [0.0; 3], [1.0, 0.5, 0.0], share);
+        assert_eq!(line(1.0).first(), line(1.0).last());
+        assert_eq!(line(0.5).last(), Some(&pos2(100.0, 75.0)));
+    }
+}

@@ -1,0 +1,151 @@
+//! What the hand could do, shown without a word until it moves: a ring around it says "you", and a
+//! pale hand pushes a pale body into the basket, over and over.
+
+use super::stage::Hint;
+use super::{Look, View};
+use egui::{Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
+use fuwafuwa::{Dim2, Vector};
+use tamaire_play::Round;
+
+/// How long it takes from the hand to the basket [s].
+const ROUND_TRIP: f32 = 3.2;
+
+/// Draws it.
+pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &Look) {
+    let strength = look.effects.hint;
+    let Some(hand) = round.world().manipulators().first() else {
+        return;
+    };
+    if look.hint == Hint::None || strength == 0.0 {
+        return;
+    }
+    let at = look.view.on_screen(hand.position());
+    let radius = hand.radius * look.view.scale;
+    let tone = look.theme.hand(0);
+    draw_ring(painter, at, radius, tone.gamma_multiply(strength), look);
+    if look.hint == Hint::Way {
+        draw_way(painter, round, hand.position(), hand.radius, look);
+    }
+}
+
+/// A ring that opens around the hand.
+fn draw_ring(painter: &Painter, at: Pos2, radius: f32, tone: Color32, look: &Look) {
+    let wave = if look.still {
+        0.4
+    } else {
+        (0.8 * look.time).rem_euclid(1.0)
+    };
+    for late in [0.0, 0.5] {
+        let wave = (wave + late).rem_euclid(1.0);
+        let stroke = Stroke::new(4.0, tone.gamma_multiply(1.0 - wave));
+        painter.circle_stroke(at, radius * (1.15 + 1.1 * wave), stroke);
+    }
+}
+
+/// The pale hand and what it pushes.
+fn draw_way(painter: &Painter, round: &Round<Dim2>, from: Vector, hand: f32, look: &Look) {
+    let (view, strength) = (&look.view, look.effects.hint);
+    let (Some(basket), Some(body)) = (basket_centre(round), round.world().bodies().first()) else {
+        return;
+    };
+    let Some(piece) = body.piece_views().into_iter().next() else {
+        return;
+    };
+    let width = 0.5 * (piece.high[0] - piece.low[0]);
+    let flat = |at: Vector| vec2(at[0], at[1]);
+    let (body_at, goal) = (flat(piece.centre), flat(basket));
+    let way = (goal - body_at).normalized();
+    let touch = body_at - (width + hand) * way;
+    let end = goal - (width + hand) * way;
+    let time = if look.still {
+        0.62
+    } else {
+        (look.time / ROUND_TRIP).rem_euclid(1.0)
+    };
+    let part = |low: f32, high: f32| smooth(((time - low) / (high - low)).clamp(0.0, 1.0));
+    let reach = part(0.06, 0.34);
+    let push = part(0.38, 0.84);
+    let pale = strength * part(0.0, 0.06) * (1.0 - part(0.90, 1.0));
+    let hand_at = flat(from) + reach * (touch - flat(from)) + push * (end - touch);
+    if push > 0.0 {
+        let by = push * (goal - body_at);
+        let edge = Color32::from_rgb(120, 60, 60).gamma_multiply(0.6 * pale);
+        let fill = look.theme.material(1).gamma_multiply(0.22 * pale);
+        draw_pale_body(painter, view, body, by, edge, fill);
+    }
+    draw_arrows(painter, view, touch, goal, strength, look);
+    let screen = view.on_screen([hand_at.x, hand_at.y, 0.0]);
+    let radius = hand * view.scale;
+    let tone = look.theme.hand(0).gamma_multiply(0.55 * pale);
+    painter.circle_filled(screen, radius, tone);
+    let rim = Stroke::new(3.0, Color32::WHITE.gamma_multiply(pale));
+    painter.circle_stroke(screen, radius, rim);
+    painter.circle_stroke(screen, 0.55 * radius, rim);
+}
+
+fn draw_pale_body(
+    painter: &Painter,
+    view: &View,
+    body: &fuwafuwa::Body<Dim2>,
+    by: Vec2,
+    edge: Color32,
+    fill: Color32,
+) {
+    for outline in body.outlines() {
+        let points = outline.points.iter();
+        let mut points: Vec<Pos2> = points
+            .map(|at| view.on_screen([at[0] + by.x, at[1] + by.y, 0.0]))
+            .collect();
+        points.extend(points.first().copied());
+        painter.extend(Shape::dashed_line(
+            &points,
+            Stroke::new(3.0, edge),
+            12.0,
+            9.0,
+        ));
+        let middle = points.iter().fold(Vec2::ZERO, |sum, at| sum + at.to_vec2());
+        let middle = (middle / points.len().max(1) as f32).to_pos2();
+        let reach = points.iter().map(|at| at.distance(middle));
+        painter.circle_filled(middle, reach.fold(f32::MAX, f32::min), fill);
+    }
+}
+
+/// Chevrons that march to the basket.
+fn draw_arrows(painter: &Painter, view: &View, from: Vec2, to: Vec2, strength: f32, look: &Look) {
+    let on_screen = |at: Vec2| view.on_screen([at.x, at.y, 0.0]);
+    let (from, to) = (on_screen(from), on_screen(to));
+    let way = (to - from).normalized();
+    let side = way.rot90();
+    let size = 0.045 * view.scale;
+    let march = if look.still {
+        0.0
+    } else {
+        (1.2 * look.time).rem_euclid(1.0)
+    };
+    let count = (from.distance(to) / (3.2 * size)).floor().max(1.0);
+    for step in 0..count as usize {
+        let share = (step as f32 + march) / count;
+        let tip = from + share * (to - from);
+        let fade = (4.0 * share.min(1.0 - share)).min(1.0);
+        let line = [
+            tip - size * way + size * side,
+            tip,
+            tip - size * way - size * side,
+        ];
+        let white = Color32::WHITE.gamma_multiply(0.9 * fade * strength);
+        let ink = look.theme.ink.gamma_multiply(0.35 * fade * strength);
+        painter.add(Shape::line(line.to_vec(), Stroke::new(0.62 * size, ink)));
+        painter.add(Shape::line(line.to_vec(), Stroke::new(0.40 * size, white)));
+    }
+}
+
+fn basket_centre(round: &Round<Dim2>) -> Option<Vector> {
+    match *round.basket()? {
+        fuwafuwa::Shape::Box { centre, .. } => Some(centre),
+        _ => None,
+    }
+}
+
+fn smooth(share: f32) -> f32 {
+    share * share * (3.0 - 2.0 * share)
+}

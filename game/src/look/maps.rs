@@ -1,0 +1,134 @@
+//! Little pictures of levels as they begin, drawn as rounds are.
+
+use super::feelings::Feeling;
+use super::stage::{basket, camera, place};
+use super::{Camera, Mood, Theme, View, draw_face};
+use eframe::egui_wgpu::RenderState;
+use egui::{Color32, Painter, Rect, TextureId, pos2};
+use fuwafuwa_render::{Frame, Look, Renderer};
+use std::sync::Arc;
+use tamaire_play::{Level, Round};
+use wgpu::{FilterMode, TextureFormat, TextureUsages};
+
+/// Pixels of a picture.
+const SIZE: [u32; 2] = [480, 320];
+
+/// Little pictures of levels.
+#[derive(Default)]
+pub struct Maps {
+    pictures: Vec<Picture>,
+    theme: Option<Theme>,
+    renderer: Option<Renderer>,
+}
+
+struct Picture {
+    level: Arc<Level>,
+    texture: TextureId,
+    feelings: Vec<Feeling>,
+}
+
+impl Maps {
+    /// Draws the picture of a level, if there is one by now.
+    pub fn draw(&self, painter: &Painter, rect: Rect, level: &Arc<Level>) {
+        let known = |picture: &&Picture| Arc::ptr_eq(&picture.level, level);
+        let Some(picture) = self.pictures.iter().find(known) else {
+            return;
+        };
+        let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+        painter.image(picture.texture, rect, whole, Color32::WHITE);
+        let view = view(rect, level);
+        for feeling in &picture.feelings {
+            draw_face(painter, &place(feeling, &view, true), Mood::Calm, 0.0);
+        }
+    }
+
+    /// Makes one of the pictures that are missing: more would stop the game for a moment.
+    pub fn make_one(&mut self, state: &RenderState, levels: &[Arc<Level>], theme: &Theme) {
+        if self.theme.as_ref() != Some(theme) {
+            self.theme = Some(theme.clone());
+            self.forget(state, |_| true);
+        }
+        let is_gone = |level: &Arc<Level>| !levels.iter().any(|known| Arc::ptr_eq(known, level));
+        self.forget(state, is_gone);
+        let is_known = |level: &Arc<Level>| {
+            let mut pictures = self.pictures.iter();
+            pictures.any(|picture| Arc::ptr_eq(&picture.level, level))
+        };
+        if let Some(level) = levels.iter().find(|level| !is_known(level)) {
+            let new = || Renderer::new(&state.device, TextureFormat::Rgba8Unorm);
+            let renderer = self.renderer.get_or_insert_with(new);
+            let picture = Picture::of(state, renderer, level, theme);
+            self.pictures.push(picture);
+        }
+    }
+
+    fn forget(&mut self, state: &RenderState, which: impl Fn(&Arc<Level>) -> bool) {
+        self.pictures.retain(|picture| {
+            let stays = !which(&picture.level);
+            if !stays {
+                state.renderer.write().free_texture(&picture.texture);
+            }
+            stays
+        });
+    }
+}
+
+impl Picture {
+    fn of(state: &RenderState, renderer: &mut Renderer, level: &Arc<Level>, theme: &Theme) -> Self {
+        let RenderState { device, queue, .. } = state;
+        let round = Round::new(level.clone());
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("map"),
+            size: wgpu::Extent3d {
+                width: SIZE[0],
+                height: SIZE[1],
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: TextureFormat::Rgba8Unorm,
+            usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        let target = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let rect = Rect::from_min_max(pos2(0.0, 0.0), pos2(SIZE[0] as f32, SIZE[1] as f32));
+        let frame = Frame {
+            camera: camera(&view(rect, level)),
+            theme: &theme.world,
+            look: Look::Skin,
+            basket: basket(&round),
+            particles: &[],
+            seconds: 0.0,
+        };
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        renderer.prepare(device, queue, &mut encoder, round.world(), &frame, SIZE);
+        let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("map"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &target,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            ..wgpu::RenderPassDescriptor::default()
+        });
+        let mut pass = pass.forget_lifetime();
+        renderer.paint(&mut pass);
+        drop(pass);
+        queue.submit([encoder.finish()]);
+        let mut textures = state.renderer.write();
+        Self {
+            level: level.clone(),
+            texture: textures.register_native_texture(device, &target, FilterMode::Linear),
+            feelings: round.world().bodies().iter().map(Feeling::of).collect(),
+        }
+    }
+}
+
+fn view(rect: Rect, level: &Level) -> View {
+    Camera::default().view(rect, level.arena())
+}

@@ -1,0 +1,67 @@
+//! Signs that say something without a word.
+
+use crate::look::Theme;
+use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, pos2, vec2};
+use tamaire_play::Route;
+
+/// Part of a circle, clockwise from its top.
+pub(super) fn arc(painter: &Painter, middle: Pos2, radius: f32, share: f32, stroke: Stroke) {
+    let count = (64.0 * share).ceil() as usize;
+    let point = |step: usize| {
+        let angle = std::f32::consts::TAU * share * step as f32 / count as f32;
+        pos2(
+            middle.x + radius * angle.sin(),
+            middle.y - radius * angle.cos(),
+        )
+    };
+    if count > 0 {
+        painter.add(Shape::line((0..=count).map(point).collect(), stroke));
+    }
+}
+
+/// Done.
+pub(super) fn tick(painter: &Painter, middle: Pos2, size: f32, stroke: Stroke) {
+    let points = [[-0.8, 0.05], [-0.25, 0.6], [0.8, -0.6]];
+    let points = points.map(|[x, y]| middle + size * vec2(x, y));
+    painter.add(Shape::line(points.to_vec(), stroke));
+    for end in [points[0], points[1], points[2]] {
+        painter.circle_filled(end, 0.5 * stroke.width, stroke.color);
+    }
+}
+
+/// A route: a body pressed into a square, or one that bits are off, or both; pale until it was gone.
+pub(super) fn route(
+    painter: &Painter,
+    theme: &Theme,
+    middle: Pos2,
+    size: f32,
+    route: Route,
+    is_done: bool,
+) {
+    let (fill, line) = match is_done {
+        true => (theme.material(1), theme.ink),
+        false => (Color32::TRANSPARENT, theme.faint.gamma_multiply(0.6)),
+    };
+    let stroke = Stroke::new((0.16 * size).max(1.5), line);
+    let square = Rect::from_center_size(middle, vec2(1.7, 1.7) * size);
+    if route != Route::Shave {
+        painter.rect(square, 0.55 * size, fill, stroke, StrokeKind::Middle);
+    } else {
+        painter.circle(middle, 0.8 * size, fill, stroke);
+    }
+    if route != Route::Squeeze {
+        let hole = if is_done {
+            theme.card
+        } else {
+            Color32::TRANSPARENT
+        };
+        for [x, y, radius] in [[-0.72, -0.55, 0.42], [-0.85, 0.35, 0.34]] {
+            let at = middle + size * vec2(x, y);
+            painter.circle_filled(at, radius * size, hole);
+        }
+        for [x, y] in [[-1.15, -0.75], [-1.3, 0.0], [-1.1, 0.75]] {
+            let dot = if is_done { fill } else { line };
+            painter.circle_filled(middle + size * vec2(x, y), 0.16 * size, dot);
+        }
+    }
+}
