@@ -7,7 +7,7 @@ use egui::{RichText, Ui, vec2};
 use tamaire_sound::Menu;
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
-    veil(ui, 90);
+    veil(ui, 40);
     let Some((outcome, is_best)) = game.won else {
         game.go(Screen::Play);
         return;
