@@ -47,7 +47,7 @@ impl Confetti {
                 let from = if side > 0.0 { low[0] } else { high[0] };
                 Paper {
                     at: [from, low[1] + 0.2 * height, 0.0],
-                    velocity: vec2(side * any(0.3, 4.2), any(1.6, 4.6)) * 0.5 * height,
+                    velocity: vec2(side * any(0.6, 6.4), any(1.6, 4.6)) * 0.5 * height,
                     angle: any(0.0, 6.0),
                     spin: any(-9.0, 9.0),
                     kind: place / 2 % PAPER.len(),

@@ -73,7 +73,14 @@ fn draw_way(painter: &Painter, round: &Round<Dim2>, from: Vector, hand: f32, loo
         let fill = look.theme.material(1).gamma_multiply(0.22 * pale);
         draw_pale_body(painter, view, body, by, edge, fill);
     }
-    draw_arrows(painter, view, touch, goal, strength, look);
+    draw_arrows(
+        painter,
+        view,
+        body_at + (width + hand) * way,
+        goal,
+        strength,
+        look,
+    );
     let screen = view.on_screen([hand_at.x, hand_at.y, 0.0]);
     let radius = hand * view.scale;
     let tone = look.theme.hand(0).gamma_multiply(0.55 * pale);
@@ -93,21 +100,38 @@ fn draw_pale_body(
 ) {
     for outline in body.outlines() {
         let points = outline.points.iter();
-        let mut points: Vec<Pos2> = points
+        let points: Vec<Pos2> = points
             .map(|at| view.on_screen([at[0] + by.x, at[1] + by.y, 0.0]))
             .collect();
+        let mut points = smoothed(points);
         points.extend(points.first().copied());
-        painter.extend(Shape::dashed_line(
-            &points,
-            Stroke::new(3.0, edge),
-            12.0,
-            9.0,
-        ));
         let middle = points.iter().fold(Vec2::ZERO, |sum, at| sum + at.to_vec2());
         let middle = (middle / points.len().max(1) as f32).to_pos2();
         let reach = points.iter().map(|at| at.distance(middle));
         painter.circle_filled(middle, reach.fold(f32::MAX, f32::min), fill);
+        painter.extend(Shape::dashed_line(
+            &points,
+            Stroke::new(3.0, edge),
+            14.0,
+            10.0,
+        ));
     }
+}
+
+/// A closed line without the steps of voxels.
+fn smoothed(mut points: Vec<Pos2>) -> Vec<Pos2> {
+    for _ in 0..6 {
+        let before = points.clone();
+        let count = before.len();
+        for (place, point) in points.iter_mut().enumerate() {
+            let (last, next) = (
+                before[(place + count - 1) % count],
+                before[(place + 1) % count],
+            );
+            *point = *point + 0.25 * ((last - *point) + (next - *point));
+        }
+    }
+    points
 }
 
 /// Chevrons that march to the basket.

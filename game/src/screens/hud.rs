@@ -84,7 +84,7 @@ fn draw_chips(painter: &Painter, game: &Game, mut at: Pos2) {
     if game.stepping {
         chip("▶1", (said.action)(Action::Step));
     } else if game.slow {
-        chip("▶½", (said.action)(Action::Slow));
+        chip("▶…", (said.action)(Action::Slow));
     }
     if game.players.second().is_some() {
         chip("●●", said.join_hint);
@@ -154,11 +154,14 @@ fn draw_jar(ui: &Ui, middle: Pos2, game: &Game) {
     // Part of the way up the glass, as an angle from its lowest point.
     let angle = |share: f32| (1.0 - 2.0 * share).clamp(-1.0, 1.0).acos();
     let point = |angle: f32| middle + glass * vec2(angle.sin(), angle.cos());
-    if shown > 0.005 {
-        let most = angle(shown);
-        let filled = (0..=32).map(|step| point(most * (step as f32 / 16.0 - 1.0)));
-        let fill = theme.material(1);
-        painter.add(Shape::convex_polygon(filled.collect(), fill, Stroke::NONE));
+    // What is wanted, pale, and what is there.
+    let fill = theme.material(1);
+    for (share, fill) in [(rules.share, fill.gamma_multiply(0.16)), (shown, fill)] {
+        if share > 0.005 {
+            let most = angle(share);
+            let filled = (0..=32).map(|step| point(most * (step as f32 / 16.0 - 1.0)));
+            painter.add(Shape::convex_polygon(filled.collect(), fill, Stroke::NONE));
+        }
     }
     let line = angle(rules.share);
     let ends = [point(-line), point(line)];

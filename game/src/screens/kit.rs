@@ -2,8 +2,8 @@
 
 use crate::look::Theme;
 use egui::{
-    Align2, Color32, FontId, Galley, Painter, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui,
-    Vec2, WidgetInfo, pos2, vec2,
+    Align2, Color32, FocusDirection, FontId, Galley, Id, Key, Painter, Rect, Response, Role, Sense,
+    Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 use std::sync::Arc;
 
@@ -63,8 +63,13 @@ pub fn fitted(painter: &Painter, text: &str, size: f32, width: f32, ink: Color32
     }
 }
 
-/// A ring around what a pad or the keyboard is on.
+/// A ring around what a pad or the keyboard is on, which comes into view.
 pub fn focus_ring(ui: &Ui, response: &Response, rect: Rect, round: f32, theme: &Theme) {
+    let seen = Id::unique("what had the focus");
+    if response.has_focus() && ui.data(|data| data.get_temp(seen)) != Some(response.id) {
+        ui.data_mut(|data| data.insert_temp(seen, response.id));
+        ui.scroll_to_rect(response.rect.expand(2.0 * RING), None);
+    }
     if response.has_focus() {
         let stroke = Stroke::new(4.0, theme.ink);
         let rect = rect.expand(RING - 2.0);
@@ -115,7 +120,7 @@ pub fn slider(
             };
             ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
             let pressed = |key| ui.input(|input| input.num_presses(key)) as f32;
-            *value += step * (pressed(egui::Key::ArrowRight) - pressed(egui::Key::ArrowLeft));
+            *value += step * (pressed(Key::ArrowRight) - pressed(Key::ArrowLeft));
         }
         use egui::accesskit::Action;
         let asked = |action| {
@@ -216,6 +221,11 @@ pub fn title(ui: &mut Ui, theme: &Theme, text: &str) {
 /// The upper edge of a screen: a way back and a headline; gives back the button.
 pub fn header(ui: &mut Ui, theme: &Theme, back: &str, text: &str) -> Response {
     let inner = ui.horizontal(|ui| {
+        // What comes next may be far to the right, where egui does not look for what is below.
+        let id = ui.next_auto_id();
+        if ui.memory(|memory| memory.has_focus(id)) {
+            step_through(ui);
+        }
         let response = button(ui, theme, back, vec2(140.0, 48.0), Weight::Other);
         ui.add_space(16.0);
         title(ui, theme, text);
@@ -223,6 +233,18 @@ pub fn header(ui: &mut Ui, theme: &Theme, back: &str, text: &str) -> Response {
     });
     ui.add_space(6.0);
     inner.inner
+}
+
+/// Makes up and down go to what comes before and after, wherever it is. To be called before either.
+pub fn step_through(ui: &Ui) {
+    for (key, direction) in [
+        (Key::ArrowDown, FocusDirection::Next),
+        (Key::ArrowUp, FocusDirection::Previous),
+    ] {
+        if ui.input(|input| input.key_pressed(key)) {
+            ui.memory_mut(|memory| memory.move_focus(direction));
+        }
+    }
 }
 
 /// The rest of a screen: a column of so many points at most, which scrolls. There is room for the
@@ -251,7 +273,7 @@ pub fn page(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui)) {
 /// 0 = at the left to 1 = at the right. Where there is not room enough it scrolls.
 pub fn column<R>(ui: &mut Ui, width: f32, across: f32, contents: impl FnOnce(&mut Ui) -> R) -> R {
     let screen = ui.max_rect().shrink(12.0);
-    let id = egui::Id::unique(("column", width as u32));
+    let id = Id::unique(("column", width as u32));
     let known = ui.data(|data| data.get_temp::<f32>(id));
     let size = vec2(
         width.min(screen.width()),

@@ -1,6 +1,6 @@
 //! Which level?
 
-use super::kit::{RING, fitted, focus_ring, header, page};
+use super::kit::{fitted, focus_ring, header, page};
 use super::{marks, veil};
 use crate::game::{Game, Screen};
 use crate::look::{Maps, Stage};
@@ -35,10 +35,6 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
                         let response = tile(ui, game, maps, place, size);
                         if place == game.chosen {
                             super::play::focus_first(ui, &response);
-                        }
-                        if response.gained_focus() {
-                            let room = response.rect.expand(RING + 8.0);
-                            ui.scroll_to_rect(room, None);
                         }
                         if response.clicked() {
                             wanted = Some(place);

@@ -10,7 +10,7 @@ use tamaire_sound::Menu;
 type Act = fn(&mut Game);
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
-    veil(ui, 90);
+    veil(ui, 40);
     let Some((outcome, is_best)) = game.won else {
         game.go(Screen::Play);
         return;

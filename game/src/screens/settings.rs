@@ -1,6 +1,6 @@
 //! What players choose.
 
-use super::kit::{Weight, button, card, choice, header, page, slider};
+use super::kit::{Weight, button, card, choice, header, page, slider, step_through};
 use super::veil;
 use crate::game::{Game, Screen};
 use crate::input::Action;
@@ -17,6 +17,9 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, from: Screen) {
     let listens = game.rebinding.is_some();
     let mut back = !listens && ui.input(|input| input.key_pressed(egui::Key::Escape));
     let area = ui.max_rect().shrink2(vec2(28.0, 22.0));
+    if !listens {
+        step_through(ui);
+    }
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
         let response = header(ui, &theme, said.back, said.settings);
         super::play::focus_first(ui, &response);
