@@ -1,13 +1,10 @@
 //! The round, standing still.
 
 use super::kit::{Weight, button, card, column, title};
-use super::veil;
+use super::{Act, veil};
 use crate::game::{Game, Screen};
 use egui::{Ui, vec2};
 use tamaire_sound::Menu;
-
-/// What a button does.
-type Act = fn(&mut Game);
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     veil(ui, 130);
@@ -45,6 +42,9 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
             }
         });
     });
+    if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+        wanted = Some(|game| game.go(Screen::Play));
+    }
     if let Some(act) = wanted {
         game.blip(Menu::Confirm);
         act(game);

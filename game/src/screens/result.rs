@@ -1,13 +1,10 @@
 //! How it went, and a dare to try the other way.
 
 use super::kit::{Weight, button, card, column, fitted};
-use super::{marks, veil};
+use super::{Act, marks, veil};
 use crate::game::{Game, Screen};
 use egui::{RichText, Ui, vec2};
 use tamaire_sound::Menu;
-
-/// What a button does.
-type Act = fn(&mut Game);
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     veil(ui, 40);
@@ -18,6 +15,10 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     let (theme, said) = (game.theme(), game.words());
     let level = game.session.round().level().clone();
     let mut wanted: Option<Act> = None;
+    let to_levels: Act = |game| {
+        game.go(Screen::Title);
+        game.go(Screen::Levels);
+    };
     // Beside the body that beams, not over it.
     let basket = level
         .game()
@@ -94,13 +95,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                         }
                     }),
                 ],
-                [
-                    (said.save, Game::keep_replay),
-                    (said.levels, |game| {
-                        game.go(Screen::Title);
-                        game.go(Screen::Levels);
-                    }),
-                ],
+                [(said.save, Game::keep_replay), (said.levels, to_levels)],
             ];
             for row in rows {
                 ui.horizontal(|ui| {
@@ -115,6 +110,9 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
             }
         });
     });
+    if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+        wanted = Some(to_levels);
+    }
     if let Some(act) = wanted {
         game.blip(Menu::Confirm);
         act(game);
