@@ -10,6 +10,9 @@ use egui::{
 };
 use fuwafuwa_render::frame::ElementColour;
 
+/// Draws what stands for an action.
+type Mark = fn(&Painter, Pos2, Color32);
+
 /// Height of what stands in the upper row.
 const HIGH: f32 = 44.0;
 /// Radius of the jar.
@@ -22,7 +25,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
     let said = game.words();
     let mut at = screen.left_top() + vec2(16.0, 14.0);
     let mut is_on_button = false;
-    let buttons: [(Action, &str, fn(&Painter, Pos2, Color32)); 2] = [
+    let buttons: [(Action, &str, Mark); 2] = [
         (Action::Pause, said.paused, draw_pause),
         (Action::Retry, said.again, draw_again),
     ];
