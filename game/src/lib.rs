@@ -4,7 +4,7 @@
 //! [`words`] what is said, in each language → [`settings`] what players chose → [`records`] what they reached
 //! → [`platform`] files, sound and sticks → [`input`] devices become wishes for the hands
 //! → [`session`] a round in time: played, watched or tried by a bot → [`look`] how it looks
-//! → [`game`] the state, and what can happen to it → [`screens`] what there is to see and to choose → [`app`] the loop.
+//! → [`headless`] a round without a window → [`game`] the state, and what can happen to it → [`screens`] what there is to see and to choose → [`app`] the loop.
 //!
 //! The rules, levels, bots and replays are the crate `tamaire_play`, which knows no window.
 #![forbid(unsafe_code)]
@@ -13,6 +13,8 @@
 
 pub mod app;
 pub mod game;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod headless;
 pub mod input;
 pub mod look;
 pub mod platform;

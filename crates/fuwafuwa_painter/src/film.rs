@@ -7,37 +7,70 @@ use tiny_skia::Pixmap;
 /// Gap between the moments of a strip [px].
 const GAP: u32 = 12;
 
+/// A GIF that runs for ever, made frame by frame, so that a long one needs no more memory than its file.
+#[derive(Default)]
+pub struct Gif {
+    /// Nothing before the first frame, from which it has its size.
+    encoder: Option<Encoder<Vec<u8>>>,
+    size: [u32; 2],
+    count: usize,
+}
+
+impl Gif {
+    /// Adds a frame that is shown for `hundredths` of a second.
+    ///
+    /// # Errors
+    /// When it differs in size from the first.
+    pub fn add(&mut self, pixels: &Pixmap, hundredths: u16) -> Result<(), PaintError> {
+        let found = [pixels.width(), pixels.height()];
+        let failed = PaintError::packing("GIF");
+        let [width, height] = found.map(u16::try_from);
+        let width = width.map_err(PaintError::packing("GIF"))?;
+        let height = height.map_err(PaintError::packing("GIF"))?;
+        self.count += 1;
+        let encoder = match &mut self.encoder {
+            Some(_) if found != self.size => {
+                let (frame, expected) = (self.count, self.size);
+                return Err(PaintError::FrameSize {
+                    frame,
+                    found,
+                    expected,
+                });
+            }
+            Some(encoder) => encoder,
+            none => {
+                self.size = found;
+                let mut new = Encoder::new(Vec::new(), width, height, &[]).map_err(&failed)?;
+                new.set_repeat(Repeat::Infinite).map_err(&failed)?;
+                none.insert(new)
+            }
+        };
+        // 1 to 30, slow to fast: 10 is hardly worse than 1.
+        let mut frame = Frame::from_rgba_speed(width, height, &mut pixels.data().to_vec(), 10);
+        frame.delay = hundredths;
+        encoder.write_frame(&frame).map_err(&failed)
+    }
+
+    /// The bytes of the file.
+    ///
+    /// # Errors
+    /// When there is no frame.
+    pub fn finish(self) -> Result<Vec<u8>, PaintError> {
+        let encoder = self.encoder.ok_or(PaintError::NoFrame)?;
+        encoder.into_inner().map_err(PaintError::packing("GIF"))
+    }
+}
+
 /// The frames as the bytes of a GIF that runs for ever, each shown for `hundredths` of a second.
 ///
 /// # Errors
 /// When there is no frame, or their sizes differ.
 pub fn gif(frames: &[Pixmap], hundredths: u16) -> Result<Vec<u8>, PaintError> {
-    let first = frames.first().ok_or(PaintError::NoFrame)?;
-    let expected = size(first);
-    let [width, height] = expected.map(u16::try_from);
-    let width = width.map_err(PaintError::packing("GIF"))?;
-    let height = height.map_err(PaintError::packing("GIF"))?;
-    let mut bytes = Vec::new();
-    let failed = PaintError::packing("GIF");
-    let mut encoder = Encoder::new(&mut bytes, width, height, &[]).map_err(&failed)?;
-    encoder.set_repeat(Repeat::Infinite).map_err(&failed)?;
-    for (k, pixels) in frames.iter().enumerate() {
-        let found = size(pixels);
-        if found != expected {
-            let frame = k + 1;
-            return Err(PaintError::FrameSize {
-                frame,
-                found,
-                expected,
-            });
-        }
-        // 1 to 30, slow to fast: 10 is hardly worse than 1.
-        let mut frame = Frame::from_rgba_speed(width, height, &mut pixels.data().to_vec(), 10);
-        frame.delay = hundredths;
-        encoder.write_frame(&frame).map_err(&failed)?;
+    let mut film = Gif::default();
+    for pixels in frames {
+        film.add(pixels, hundredths)?;
     }
-    drop(encoder);
-    Ok(bytes)
+    film.finish()
 }
 
 /// The moments side by side, `columns` in a row, on paper of their own.
@@ -56,10 +89,6 @@ pub fn strip(moments: &[Pixmap], columns: usize) -> Result<Painter, PaintError> 
         painter.image(at.map(|k| k as f32), pixels.clone());
     }
     Ok(painter)
-}
-
-fn size(pixels: &Pixmap) -> [u32; 2] {
-    [pixels.width(), pixels.height()]
 }
 
 #[cfg(test)]

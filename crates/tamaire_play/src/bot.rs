@@ -8,8 +8,10 @@ use fuwafuwa::{Dim, PieceView, Shape, Vector};
 /// How fast a bot's hand goes where nothing is in the way, and when it pushes [m/s].
 const BRISK: f32 = 3.0;
 const GENTLE: f32 = 0.7;
+/// A bot that gets nowhere for so many ticks looks at another piece.
+const PATIENCE: u32 = 300;
 /// The shaving bot pushes when the largest piece has this share of the mass.
-const SMALL_ENOUGH: f32 = 0.8;
+const SMALL_ENOUGH: f32 = 0.95;
 
 /// What a bot is after.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -45,6 +47,12 @@ pub struct Bot {
     whims: [(Vector, u32); crate::PLAYERS],
     stroke: Stroke,
     strokes: u32,
+    gathers: bool,
+    /// The most that was in the basket, for how many ticks nothing got better, and how many pieces
+    /// were given up for it.
+    best: f32,
+    waited: u32,
+    skips: usize,
 }
 
 /// What the shaving hand is at.
@@ -69,6 +77,10 @@ impl Bot {
             whims: Default::default(),
             stroke: Stroke::Rest,
             strokes: 0,
+            gathers: false,
+            best: 0.0,
+            waited: 0,
+            skips: 0,
         }
     }
 
@@ -77,15 +89,28 @@ impl Bot {
         match self.kind {
             BotKind::Idle => InputFrame::default(),
             BotKind::Random => self.wander(round),
-            BotKind::Squeeze => match Sight::of(round) {
+            BotKind::Squeeze => match self.look(round) {
                 Some(sight) => InputFrame::towards(self.push(&sight)),
                 None => InputFrame::default(),
             },
-            BotKind::Shave => match Sight::of(round) {
+            BotKind::Shave => match self.look(round) {
                 Some(sight) => InputFrame::towards(self.shave(&sight)),
                 None => InputFrame::default(),
             },
         }
+    }
+
+    /// Looks at the piece that matters; at the next smaller one when nothing got better for long.
+    fn look<D: Dim>(&mut self, round: &Round<D>) -> Option<Sight> {
+        let inside = round.progress().inside;
+        self.waited += 1;
+        if inside > self.best + 0.005 {
+            (self.best, self.waited) = (inside, 0);
+        } else if self.waited > PATIENCE {
+            (self.best, self.waited) = (inside, 0);
+            self.skips = (self.skips + 1) % 4;
+        }
+        Sight::of(round, self.skips)
     }
 
     fn wander<D: Dim>(&mut self, round: &Round<D>) -> InputFrame {
@@ -103,39 +128,47 @@ impl Bot {
         frame
     }
 
-    /// From behind, steering by where it pushes, until it is in.
+    /// From behind, towards the basket, or first to a place in front of it; away once enough is in.
     fn push(&mut self, sight: &Sight) -> Vector {
         let Sight {
-            axis,
-            body,
+            piece,
             hand,
             reach,
+            start,
             ..
         } = sight;
-        let behind = sub(*body, scale(*axis, 1.1 * reach));
-        let (along, aside) = split(sub(*hand, *body), *axis);
-        let is_behind = along < 0.0 && length(aside) < 0.5 * reach;
-        if !is_behind {
+        if sight.is_done {
+            return self.go(sight, around(sight, *start), GENTLE);
+        }
+        let way = unit(sub(sight.target(0.2 + 0.05 * self.temper[0]), *piece));
+        let behind = sight.in_arena(sub(*piece, scale(way, 1.1 * reach)));
+        let (along, aside) = split(sub(*hand, *piece), way);
+        let is_behind = along < -0.2 * reach && length(aside) < 0.5 * reach;
+        if !is_behind && length(sub(*hand, behind)) > 0.05 {
             return self.go(sight, around(sight, behind), BRISK);
         }
-        // Where the body is off the way, the hand pushes from further out on that side.
-        let steer = scale(sight.off, 1.5 + 0.3 * self.temper[0]);
-        let depth = 0.30 + 0.05 * self.temper[1];
-        let goal = add(*body, add(steer, scale(*axis, depth - reach)));
-        self.go(sight, goal, GENTLE)
+        // What is in pieces is pushed gently, and harder only when nothing moves.
+        let firm = (2.0 * self.waited as f32 / PATIENCE as f32 - 1.0).max(0.0);
+        let depth = match self.gathers {
+            true => 0.15 + 0.12 * firm,
+            false => 0.25,
+        } + 0.02 * self.temper[1];
+        let goal = add(*piece, scale(way, depth - reach));
+        self.go(sight, goal, GENTLE * (1.0 + 0.1 * self.temper[2]))
     }
 
     /// Strokes past the middle of the largest piece, now on one side of it, now on the other, until
-    /// it is small enough; then pushes it in.
+    /// it is small enough; then gathers what is needed.
     fn shave(&mut self, sight: &Sight) -> Vector {
         let Sight {
             axis,
-            body,
+            piece,
             reach,
             hand,
             ..
         } = sight;
-        if sight.share < SMALL_ENOUGH + 0.03 * self.temper[2] && self.stroke == Stroke::Rest {
+        self.gathers |= sight.share < SMALL_ENOUGH + 0.01 * self.temper[2];
+        if self.gathers {
             return self.push(sight);
         }
         match self.stroke {
@@ -152,7 +185,7 @@ impl Bot {
                 *hand
             }
             Stroke::Reach(from, patience) => {
-                let place = add(*body, from);
+                let place = sight.in_arena(add(*piece, from));
                 let there = length(sub(*hand, place)) < 0.1;
                 self.stroke = match there || patience == 0 {
                     true => Stroke::Cut(add(place, scale(*axis, 2.6 * reach)), 40),
@@ -179,12 +212,12 @@ impl Bot {
     }
 }
 
-/// Where to go now to come to a place without touching the body on the way.
+/// Where to go now to come to a place without touching the piece on the way.
 fn around(sight: &Sight, place: Vector) -> Vector {
     let Sight {
-        body, hand, reach, ..
+        piece, hand, reach, ..
     } = sight;
-    let (from, to) = (unit(sub(*hand, *body)), unit(sub(place, *body)));
+    let (from, to) = (unit(sub(*hand, *piece)), unit(sub(place, *piece)));
     if dot(from, to) > 0.8 {
         return place;
     }
@@ -195,52 +228,98 @@ fn around(sight: &Sight, place: Vector) -> Vector {
     };
     // An eighth of a turn onwards, at arm's length.
     let onwards = scale(add(from, turn), 0.707);
-    add(*body, scale(onwards, 1.25 * reach))
+    add(*piece, scale(onwards, 1.25 * reach))
 }
 
 /// What a bot looks at.
 struct Sight {
-    /// From the start towards the basket, of length 1.
+    /// Into the basket, of length 1.
     axis: Vector,
-    /// Middle of the piece that matters: the largest not yet in the basket [m].
-    body: Vector,
-    /// How far that is from the way into the basket [m].
-    off: Vector,
+    /// Middle of the basket, and of its mouth [m].
+    basket: Vector,
+    mouth: Vector,
+    /// Middle of the piece that matters: the largest of those that are not in the basket [m].
+    piece: Vector,
     /// From its middle to that of a hand that touches it [m].
     reach: f32,
+    /// Share of all mass in the largest piece of all.
+    share: f32,
+    /// Whether enough is in the basket.
+    is_done: bool,
     hand: Vector,
     goal: Vector,
-    /// Its share of all mass.
-    share: f32,
+    start: Vector,
+    arena: [Vector; 2],
+    margin: f32,
 }
 
 impl Sight {
-    fn of<D: Dim>(round: &Round<D>) -> Option<Self> {
-        let basket = match round.basket()? {
-            Shape::Box { centre, .. } => *centre,
-            _ => return None,
+    fn of<D: Dim>(round: &Round<D>, skips: usize) -> Option<Self> {
+        let basket = *round.basket()?;
+        let Shape::Box { centre, half } = basket else {
+            return None;
         };
-        let views = round
-            .world()
-            .bodies()
-            .iter()
-            .flat_map(|body| body.piece_views());
-        let largest = |a: &PieceView, b: &PieceView| a.mass.total_cmp(&b.mass);
-        let piece = views.max_by(largest)?;
+        let axis = towards_basket(centre);
+        let bodies = round.world().bodies().iter();
+        let pieces: Vec<PieceView> = bodies.flat_map(|body| body.piece_views()).collect();
+        let by_mass = |a: &&PieceView, b: &&PieceView| a.mass.total_cmp(&b.mass);
+        let largest = pieces.iter().max_by(by_mass)?;
+        let depth = dot(half, axis).abs();
+        let mouth = sub(centre, scale(axis, depth));
+        // What went past the bars cannot be had.
+        let is_beyond = |piece: &&PieceView| dot(sub(piece.centre, mouth), axis) > 0.0;
+        let mut outside: Vec<&PieceView> =
+            pieces.iter().filter(|piece| !is_beyond(piece)).collect();
+        outside.sort_by(|a, b| by_mass(b, a));
+        let skips = skips.min(outside.len().saturating_sub(1));
+        let piece = outside.get(skips).copied().unwrap_or(largest);
+        let is_in = |piece: &PieceView| basket.distance(piece.centre).0 < 0.0;
+        let needed = round.level().game().share;
+        let is_done = round.progress().inside > needed + 0.05;
+        // One that is enough on its own is pushed until it is all in.
+        let is_enough = largest.mass > needed * round.progress().mass;
+        let piece = if is_in(largest) && is_enough {
+            largest
+        } else {
+            piece
+        };
         let hand = round.world().manipulators().first()?;
-        let axis = towards_basket(basket);
-        let off = split(sub(piece.centre, basket), axis).1;
         let width = sub(piece.high, piece.low);
         let radius = 0.5 * (0..D::N).map(|k| width[k]).sum::<f32>() / D::N as f32;
         Some(Self {
             axis,
-            body: piece.centre,
-            off,
+            basket: centre,
+            mouth,
+            piece: piece.centre,
             reach: radius + hand.radius,
+            share: largest.mass / round.progress().mass,
+            is_done,
             hand: hand.position(),
             goal: hand.goal(),
-            share: piece.mass / round.progress().mass,
+            start: round.start(0),
+            arena: round.level().arena(),
+            margin: hand.radius,
         })
+    }
+
+    /// Where the piece is to go: into the basket, and before that, if it is off the way by more than
+    /// `off` [m], to a place in front of the mouth.
+    fn target(&self, off: f32) -> Vector {
+        let (_, aside) = split(sub(self.piece, self.mouth), self.axis);
+        match length(aside) > off {
+            true => sub(self.mouth, scale(self.axis, self.reach)),
+            false => self.basket,
+        }
+    }
+
+    /// The place nearest to one where a hand can be.
+    fn in_arena(&self, mut place: Vector) -> Vector {
+        let [low, high] = self.arena;
+        for axis in 0..3 {
+            let margin = self.margin.min(0.5 * (high[axis] - low[axis]));
+            place[axis] = place[axis].clamp(low[axis] + margin, high[axis] - margin);
+        }
+        place
     }
 }
 

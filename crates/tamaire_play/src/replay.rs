@@ -53,6 +53,14 @@ pub enum ReplayError {
     /// Its level is not the one that was played.
     #[error("the level in this replay was changed")]
     LevelChanged,
+    /// Its level has another dimension than what is to play it.
+    #[error("this replay is of a level with dim = {found}, expected {expected}")]
+    Dimension {
+        /// Its dimension.
+        found: u8,
+        /// The dimension that can be played here.
+        expected: usize,
+    },
     /// It does not lead to what it says.
     #[error("this replay was changed: it goes another way at second {second}")]
     Differs {
@@ -161,18 +169,29 @@ impl<D: Dim> Playback<D> {
     /// A replay from its start.
     ///
     /// # Errors
-    /// [`ReplayError`] when its level is broken or another one.
-    ///
-    /// # Panics
-    /// When the level is of another dimension.
+    /// [`ReplayError`] when its level is broken or another one, or of another dimension.
     pub fn new(replay: Arc<Replay>) -> Result<Self, ReplayError> {
-        let round = Round::new(Arc::new(replay.level()?));
+        let level = replay.level()?;
+        let (found, expected) = (level.scene().dim, D::N);
+        if usize::from(found) != expected {
+            return Err(ReplayError::Dimension { found, expected });
+        }
+        let round = Round::new(Arc::new(level));
         let tick = 0;
         Ok(Self {
             replay,
             round,
             tick,
         })
+    }
+
+    /// The same from its start.
+    pub fn again(&self) -> Self {
+        Self {
+            replay: self.replay.clone(),
+            round: Round::new(self.round.level().clone()),
+            tick: 0,
+        }
     }
 
     /// The round as it is now.

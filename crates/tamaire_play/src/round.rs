@@ -82,6 +82,14 @@ impl<D: Dim> Round<D> {
         self.basket.as_ref()
     }
 
+    /// Where a player's hand comes in [m].
+    ///
+    /// # Panics
+    /// When the level has no such hand.
+    pub fn start(&self, player: usize) -> Vector {
+        self.starts[player].position()
+    }
+
     /// How far it has come.
     pub fn progress(&self) -> &Progress {
         &self.progress

@@ -7,10 +7,11 @@ use serde::{Deserialize, Serialize};
 
 /// What moves faster than this does not rest in the basket [m/s].
 const RESTING: f32 = 0.4;
+/// What has less than this share of the mass is a crumb, which may get lost on the way.
+const CRUMB: f32 = 0.002;
 /// Share of the mass that must still hang together for a body to count as whole.
 const WHOLE: f32 = 0.99;
-/// A body that is strained by more than this on the mean is being squeezed; a free one that bounces
-/// off a wall is not.
+/// What is strained by more than this on the mean while it rests is held squeezed by the bars.
 const SQUEEZED: f32 = 0.08;
 /// The strain is looked at this often [ticks]: squeezing in takes longer.
 const LOOK: u64 = 4;
@@ -28,7 +29,8 @@ pub struct Progress {
     pub pieces: usize,
     /// For how long enough has rested in the basket [s].
     pub held: f32,
-    /// The greatest mean strain of what was in the basket so far.
+    /// The least mean strain of what is in the basket since enough rests there: how much the bars
+    /// hold it squeezed when nobody pushes.
     pub squeezed: f32,
     /// How it ended, if it has.
     pub outcome: Option<Outcome>,
@@ -49,7 +51,7 @@ pub struct Outcome {
     pub inside: f32,
     /// Number of pieces.
     pub pieces: usize,
-    /// How many of them are not in the basket.
+    /// How many of them are not in the basket, crumbs aside.
     pub lost: usize,
 }
 
@@ -80,7 +82,7 @@ impl Progress {
                 .map(|body| body.pieces().list.len())
                 .sum(),
             held: 0.0,
-            squeezed: 0.0,
+            squeezed: f32::INFINITY,
             outcome: None,
             bodies: world.bodies().len(),
         }
@@ -103,14 +105,17 @@ impl Progress {
             return;
         };
         self.inside = resting_inside(world, basket) / self.mass;
-        if world.ticks().is_multiple_of(LOOK) {
-            self.squeezed = self.squeezed.max(strain_inside(world, basket));
-        }
         let enough = self.inside >= level.game().share;
         self.held = if enough { self.held + TICK } else { 0.0 };
+        if !enough {
+            self.squeezed = f32::INFINITY;
+        } else if world.ticks().is_multiple_of(LOOK) {
+            self.squeezed = self.squeezed.min(strain_inside(world, basket));
+        }
         if enough && self.held >= level.game().hold {
             let all = views.iter().flatten();
             let lost = all
+                .filter(|view| view.mass > CRUMB * self.mass)
                 .filter(|view| basket.distance(view.centre).0 > 0.0)
                 .count();
             self.outcome = Some(Outcome {

@@ -8,71 +8,82 @@ use crate::solve::Row;
 use crate::touch::{Skin, mean};
 use crate::vector::{as_row, minus, plus, scaled};
 
+/// Nodes whose velocities are copied together: more copies more in vain, less asks more often.
+const STRETCH: usize = 16;
+
 /// The velocities of the nodes that contacts push on [m/s], one over their mass as the fourth
 /// component [1/kg]: what a push needs is in one place.
 #[derive(Clone, Debug, Default)]
 pub struct Motion {
-    /// By place of the node among those of all bodies; of those that nothing touches, anything.
+    /// By place of the node among those of all bodies; where nothing is touched, anything.
     rows: Vec<Row>,
-    /// Place of the first node of each body.
+    /// Place of the first node of each body, where a stretch begins.
     first: Vec<u32>,
-    /// The nodes that something touches, each once: body and place. Of a large body they are few.
-    touched: Vec<(u32, u32)>,
+    /// For each stretch whether any of its nodes is touched: of a large body few are.
     is_touched: Vec<bool>,
 }
 
 impl Motion {
     /// Nothing is touched yet.
     pub fn clear<D: Dim>(&mut self, bodies: &[Body<D>]) {
-        for (_, place) in self.touched.drain(..) {
-            self.is_touched[place as usize] = false;
-        }
         self.first.clear();
         let mut count = 0;
         for body in bodies {
             self.first.push(count as u32);
-            count += body.velocity.len();
+            count += body.velocity.len().next_multiple_of(STRETCH);
         }
         self.rows.resize(count, [0.0; 4]);
-        self.is_touched.resize(count, false);
+        self.is_touched.clear();
+        self.is_touched.resize(count / STRETCH, false);
     }
 
     /// The place of a node of a body, which something touches, among those of all.
     #[inline(always)]
     pub fn place(&mut self, body: u32, node: u32) -> u32 {
         let place = self.first[body as usize] + node;
-        let is_touched = &mut self.is_touched[place as usize];
-        if !*is_touched {
-            *is_touched = true;
-            self.touched.push((body, place));
-        }
+        self.is_touched[place as usize / STRETCH] = true;
         place
     }
 
     /// The places of the corner nodes of a skin that something touches.
+    #[inline(always)]
     pub fn grip<D: Dim>(&mut self, skin: &Skin) -> Grip {
-        let mut grip = [0; 8];
-        for (place, &node) in grip.iter_mut().zip(&skin.nodes[..D::CORNERS]) {
-            *place = self.place(skin.body, node);
+        let first = self.first[skin.body as usize];
+        let grip = skin.nodes.map(|node| first + node);
+        for &place in &grip[..D::CORNERS] {
+            self.is_touched[place as usize / STRETCH] = true;
         }
         grip
     }
 
     /// Takes the velocities from the bodies.
     pub fn load<D: Dim>(&mut self, bodies: &[Body<D>]) {
-        for &(body, place) in &self.touched {
-            let node = (place - self.first[body as usize]) as usize;
-            let body = &bodies[body as usize];
-            self.rows[place as usize] = with_fourth(body.velocity[node], body.lightness[node]);
+        for (body, &first) in bodies.iter().zip(&self.first) {
+            let nodes = body.velocity.chunks(STRETCH);
+            let nodes = nodes.zip(body.lightness.chunks(STRETCH));
+            let own = self.rows[first as usize..].chunks_mut(STRETCH).zip(nodes);
+            let touched = &self.is_touched[first as usize / STRETCH..];
+            for ((rows, (velocities, lightness)), _) in own.zip(touched).filter(|(_, is)| **is) {
+                for (row, (velocity, &lightness)) in
+                    rows.iter_mut().zip(velocities.iter().zip(lightness))
+                {
+                    *row = with_fourth(*velocity, lightness);
+                }
+            }
         }
     }
 
     /// Gives them back.
     pub fn store<D: Dim>(&self, bodies: &mut [Body<D>]) {
-        for &(body, place) in &self.touched {
-            let node = (place - self.first[body as usize]) as usize;
-            let row = self.rows[place as usize];
-            bodies[body as usize].velocity[node] = with_fourth(row, 0.0);
+        for (body, &first) in bodies.iter_mut().zip(&self.first) {
+            let rows = self.rows[first as usize..].chunks(STRETCH);
+            let own = rows.zip(body.velocity.chunks_mut(STRETCH));
+            let touched = &self.is_touched[first as usize / STRETCH..];
+            for ((rows, velocities), _) in own.zip(touched).filter(|(_, is)| **is) {
+                for (row, velocity) in rows.iter().zip(velocities) {
+                    *velocity = with_fourth(*row, 0.0);
+                }
+            }
         }
     }
 

@@ -1,0 +1,131 @@
+//! Every level that comes along, and levels and replays that are broken.
+
+use fuwafuwa::Dim2;
+use std::sync::Arc;
+use tamaire_play::level::NAMED;
+use tamaire_play::{Bot, BotKind, InputFrame, Level, Playback, Replay, ReplayError, Round};
+
+#[test]
+fn nothing_tears_by_itself_and_everything_stays_in_the_room() {
+    for (id, _) in NAMED {
+        let level = Arc::new(Level::open(id).unwrap());
+        let mut still = Round::<Dim2>::new(level.clone());
+        let mut wild = Round::<Dim2>::new(level.clone());
+        let mut bot = Bot::new(BotKind::Random, 7);
+        for _ in 0..180 {
+            let report = still.step(InputFrame::default());
+            assert_eq!(report.released, 0, "{id}");
+            let frame = bot.frame(&wild);
+            assert_eq!(wild.step(frame).quarantined, 0, "{id}");
+        }
+        assert!(still.progress().outcome.is_none(), "{id}");
+        let [low, high] = level.arena();
+        for body in wild.world().bodies() {
+            for piece in body.piece_views() {
+                let inside =
+                    |axis: usize| piece.centre[axis] > low[axis] && piece.centre[axis] < high[axis];
+                assert!(inside(0) && inside(1), "{id}: {piece:?}");
+            }
+        }
+    }
+}
+
+/// A round of two seconds with both hands.
+fn played() -> Replay {
+    let mut round = Round::<Dim2>::new(Arc::new(Level::open("classic").unwrap()));
+    let mut bot = Bot::new(BotKind::Random, 3);
+    for _ in 0..130 {
+        let frame = bot.frame(&round);
+        round.step(frame);
+    }
+    assert_eq!(round.world().manipulators().len(), 2);
+    Replay::of(&round)
+}
+
+fn play(replay: Replay) -> Result<(), ReplayError> {
+    let mut playback = Playback::<Dim2>::new(Arc::new(replay))?;
+    while !playback.is_over() {
+        playback.step()?;
+    }
+    Ok(())
+}
+
+#[test]
+fn a_replay_goes_as_it_went_and_a_changed_one_is_found_out() {
+    let replay = played();
+    let text = replay.text();
+    let read = Replay::read(&text).unwrap();
+    assert_eq!(read, replay);
+    play(read).unwrap();
+
+    let changed = |from: &str, to: &str| {
+        assert!(text.contains(from), "{from}");
+        Replay::read(&text.replacen(from, to, 1))
+            .and_then(play)
+            .unwrap_err()
+    };
+    let hash = format!("\"{}\"", replay.hashes[1]);
+    let differs = changed(&hash, "\"0123456789abcdef\"");
+    assert!(
+        matches!(differs, ReplayError::Differs { second: 2 }),
+        "{differs}"
+    );
+    let other = changed("version = 1", "version = 99");
+    assert!(
+        matches!(other, ReplayError::Version { found: 99 }),
+        "{other}"
+    );
+    let level = changed("drag = 1.0", "drag = 0.5");
+    assert!(matches!(level, ReplayError::LevelChanged), "{level}");
+    assert!(matches!(Replay::read("hello"), Err(ReplayError::Text(_))));
+}
+
+#[test]
+fn a_minute_of_two_hands_is_a_small_file() {
+    let mut round = Round::<Dim2>::new(Arc::new(Level::open("classic").unwrap()));
+    let mut bot = Bot::new(BotKind::Random, 3);
+    for _ in 0..60 {
+        let frame = bot.frame(&round);
+        round.step(frame);
+    }
+    let length = Replay::of(&round).text().len();
+    assert!(length < 5_000 + 60 * 50, "{length} bytes for a second");
+}
+
+#[test]
+fn what_is_wrong_with_a_level_is_said_with_its_line() {
+    let folder = std::env::temp_dir().join(format!("tamaire-levels-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = folder.join("mine.toml");
+    let (_, classic) = NAMED[0];
+    let refused = |text: &str| {
+        std::fs::write(&path, text).unwrap();
+        Level::open(&path.to_string_lossy())
+            .unwrap_err()
+            .to_string()
+    };
+    let share = refused(&classic.replace("share = 0.6", "share = 1.6"));
+    assert!(
+        share.contains("line 11") && share.contains("expected above 0, up to 1"),
+        "{share}"
+    );
+    let word = refused(&classic.replace("share = 0.6", "shares = 0.6"));
+    assert!(
+        word.contains("line 11") && word.contains("shares"),
+        "{word}"
+    );
+    let none = refused(&classic.replace("[game]", "[gaem]"));
+    assert!(none.contains("gaem"), "{none}");
+    let no_game = refused(
+        "dim = 2\n[[body]]\nshape = \"ball\"\nn = 8\n[[hand]]\nradius = 0.1\npath = [[0.0, 0.0, 0.0, 0.0]]\n",
+    );
+    assert!(no_game.contains("[game]"), "{no_game}");
+    let unknown = Level::open("clasic").unwrap_err().to_string();
+    assert!(unknown.contains("classic"), "{unknown}");
+    std::fs::write(folder.join("mine.png"), b"not a picture").unwrap();
+    let picture = Level::open(&folder.join("mine.png").to_string_lossy())
+        .unwrap_err()
+        .to_string();
+    assert!(picture.contains("mine.png"), "{picture}");
+    std::fs::remove_dir_all(folder).unwrap();
+}

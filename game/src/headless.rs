@@ -1,0 +1,279 @@
+//! Playing without a window: a bot or a replay, as fast as it goes. Tells how it went, and films it.
+
+mod film;
+mod report;
+
+use crate::platform::Files;
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+use film::Film;
+use fuwafuwa::Dim2;
+use fuwafuwa_painter::PaintError;
+use report::{Refusal, Report};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use tamaire_play::level::{LevelError, NAMED};
+use tamaire_play::{Bot, BotKind, Level, Playback, Replay, ReplayError, Round};
+
+/// Exit status when a replay is refused.
+const REFUSED: u8 = 1;
+/// Exit status when what was asked for cannot be done; clap's for bad arguments.
+const BAD_USAGE: u8 = 2;
+/// How the name of a replay's file ends.
+const REPLAY: &str = "tamaire";
+/// Ticks in a second.
+const RATE: f32 = 60.0;
+
+/// What is played without a window, and what is told of it. The command line has a flag `headless`,
+/// without which none of this counts.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Without a window")]
+pub struct Options {
+    /// The level, by name (see --list) or in a file (.toml or .png)
+    #[arg(long, requires = "headless", default_value = NAMED[0].0, value_name = "NAME or FILE")]
+    pub level: String,
+    /// Which bot plays
+    #[arg(long, requires = "headless", default_value = "squeeze", value_parser = PossibleValuesParser::new(BotKind::NAMED.map(|(name, _)| name)))]
+    pub bot: String,
+    /// Bots with different seeds play differently, with the same seed the same
+    #[arg(long, requires = "headless", default_value_t = 1)]
+    pub seed: u64,
+    /// The bot gives up after so many seconds of the game
+    #[arg(long, requires = "headless", default_value_t = 60.0, value_parser = seconds)]
+    pub seconds: f32,
+    /// Play a replay (.tamaire) instead, and say whether it is genuine
+    #[arg(long, requires = "headless", value_name = "FILE", conflicts_with_all = ["level", "bot", "seed", "seconds"])]
+    pub replay: Option<PathBuf>,
+    /// Film it: a strip of moments (.png) or an animation (.gif)
+    #[arg(long, requires = "headless", value_name = "FILE", value_parser = film_path)]
+    pub film: Option<PathBuf>,
+    /// Write a replay of the round (.tamaire)
+    #[arg(long, requires = "headless", value_name = "FILE", conflicts_with = "replay", value_parser = replay_path)]
+    pub save: Option<PathBuf>,
+    /// Tell how it went as JSON
+    #[arg(long, requires = "headless")]
+    pub json: bool,
+}
+
+impl Options {
+    /// The same with the level or the replay in a file.
+    pub fn with_file(mut self, file: &Path) -> Self {
+        match file.extension() {
+            Some(ending) if ending == REPLAY => self.replay = Some(file.into()),
+            _ => self.level = file.to_string_lossy().into(),
+        }
+        self
+    }
+}
+
+/// Why there is nothing to tell.
+#[derive(Debug, thiserror::Error)]
+enum Trouble {
+    #[error(transparent)]
+    Level(#[from] LevelError),
+    #[error("{0}: this level is in space (dim = 3); tamaire plays in the plane (dim = 2)")]
+    Space(String),
+    #[error("{}: {reason}", path.display())]
+    Replay { path: PathBuf, reason: ReplayError },
+    #[error("{}: {reason}", path.display())]
+    File { path: PathBuf, reason: io::Error },
+    #[error("the film: {0}")]
+    Film(#[from] PaintError),
+}
+
+/// A round that was played, and how long each tick took.
+struct Played {
+    round: Round<Dim2>,
+    times: Vec<Duration>,
+}
+
+/// Plays, and tells how it went.
+pub fn play(options: &Options) -> ExitCode {
+    let told = match &options.replay {
+        Some(path) => check(path, options),
+        None => try_bot(options),
+    };
+    match told {
+        Ok(text) => {
+            say(&text);
+            ExitCode::SUCCESS
+        }
+        Err(Trouble::Replay { path, reason }) => {
+            let refusal = Refusal {
+                replay: path.display().to_string(),
+                genuine: false,
+                reason: reason.to_string(),
+            };
+            if options.json {
+                say(&report::json(&refusal));
+            } else {
+                eprintln!("tamaire: {}: {}", refusal.replay, refusal.reason);
+            }
+            ExitCode::from(REFUSED)
+        }
+        Err(trouble) => {
+            eprintln!("tamaire: {trouble}");
+            ExitCode::from(BAD_USAGE)
+        }
+    }
+}
+
+/// Prints the names of the levels.
+pub fn list() {
+    let mut text = String::new();
+    for (id, _) in NAMED {
+        let level = Level::open(id).expect("the tests open it");
+        let name = &level.game().name;
+        let other = name.ja.as_deref().unwrap_or_default();
+        text += &format!("{id:12}  {:20}  {other}\n", name.en);
+    }
+    say(&text);
+}
+
+/// Lets a bot play.
+fn try_bot(options: &Options) -> Result<String, Trouble> {
+    let level = plane(Level::open(&options.level)?)?;
+    for path in options.film.iter().chain(&options.save) {
+        can_be_written(path)?;
+    }
+    let named = BotKind::NAMED.iter().find(|(name, _)| *name == options.bot);
+    let (_, kind) = named.expect("the parser lets no other through");
+    let most = (options.seconds * RATE) as u64;
+    let played = of_bot(level, Bot::new(*kind, options.seed), most);
+    if let Some(path) = &options.save {
+        write(path, Replay::of(&played.round).text().as_bytes())?;
+    }
+    let by = report::Player::Bot {
+        bot: options.bot.clone(),
+        seed: options.seed,
+    };
+    tell(&played, by, options)
+}
+
+/// Runs a replay.
+fn check(path: &Path, options: &Options) -> Result<String, Trouble> {
+    let unreadable = |reason| Trouble::File {
+        path: path.into(),
+        reason,
+    };
+    std::fs::File::open(path).map_err(unreadable)?;
+    if let Some(film) = &options.film {
+        can_be_written(film)?;
+    }
+    let refused = |reason| Trouble::Replay {
+        path: path.into(),
+        reason,
+    };
+    let replay = Files::replay(path).map_err(refused)?;
+    plane(replay.level().map_err(refused)?)?;
+    let played = of_replay(Arc::new(replay)).map_err(refused)?;
+    let by = report::Player::Replay {
+        replay: path.display().to_string(),
+        genuine: true,
+    };
+    tell(&played, by, options)
+}
+
+fn tell(played: &Played, by: report::Player, options: &Options) -> Result<String, Trouble> {
+    if let Some(path) = &options.film {
+        write(path, &Film::of(path).shoot(&played.round)?)?;
+    }
+    let report = Report::of(played, by);
+    Ok(if options.json {
+        report::json(&report)
+    } else {
+        report.to_string()
+    })
+}
+
+fn plane(level: Level) -> Result<Arc<Level>, Trouble> {
+    match level.scene().dim {
+        2 => Ok(Arc::new(level)),
+        _ => Err(Trouble::Space(level.id)),
+    }
+}
+
+fn of_bot(level: Arc<Level>, mut bot: Bot, most_ticks: u64) -> Played {
+    let mut round = Round::new(level);
+    let mut times = Vec::new();
+    while round.progress().outcome.is_none() && round.world().ticks() < most_ticks {
+        let frame = bot.frame(&round);
+        let start = Instant::now();
+        round.step(frame);
+        times.push(start.elapsed());
+    }
+    Played { round, times }
+}
+
+fn of_replay(replay: Arc<Replay>) -> Result<Played, ReplayError> {
+    let mut playback = Playback::new(replay)?;
+    let mut times = Vec::new();
+    while !playback.is_over() {
+        let start = Instant::now();
+        playback.step()?;
+        times.push(start.elapsed());
+    }
+    let round = playback.round().clone();
+    Ok(Played { round, times })
+}
+
+/// Better to hear of a missing folder before a long round than after it.
+fn can_be_written(path: &Path) -> Result<(), Trouble> {
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    if folder.is_none_or(Path::is_dir) {
+        return Ok(());
+    }
+    let reason = io::Error::new(io::ErrorKind::NotFound, "there is no such folder");
+    let path = path.into();
+    Err(Trouble::File { path, reason })
+}
+
+fn write(path: &Path, bytes: &[u8]) -> Result<(), Trouble> {
+    let failed = |reason| Trouble::File {
+        path: path.into(),
+        reason,
+    };
+    std::fs::write(path, bytes).map_err(failed)?;
+    eprintln!("wrote {}", path.display());
+    Ok(())
+}
+
+/// To whoever reads on; nobody has to.
+fn say(text: &str) {
+    let _ = io::stdout().write_all(text.as_bytes());
+}
+
+/// A time to play for.
+fn seconds(text: &str) -> Result<f32, String> {
+    let seconds: f32 = text.parse().map_err(|_| "expected a number".to_string())?;
+    let good = (1.0..=3600.0).contains(&seconds);
+    good.then_some(seconds)
+        .ok_or("expected 1 to 3600 seconds".into())
+}
+
+/// Where a film goes.
+fn film_path(text: &str) -> Result<PathBuf, String> {
+    ends_in(text, &["png", "gif"])
+}
+
+/// Where a replay goes.
+fn replay_path(text: &str) -> Result<PathBuf, String> {
+    ends_in(text, &[REPLAY])
+}
+
+fn ends_in(text: &str, endings: &[&str]) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    if ending.is_some_and(|ending| endings.contains(&ending)) {
+        return Ok(path);
+    }
+    Err(format!(
+        "expected a name that ends in .{}",
+        endings.join(" or .")
+    ))
+}

@@ -1,0 +1,143 @@
+//! A round as a strip of moments or as an animation.
+//!
+//! The round is played a second time: the same input gives the same world, and painting disturbs
+//! no timing.
+
+use super::report::by_route;
+use crate::look::{Camera, Effects, Mood};
+use fuwafuwa::Dim2;
+use fuwafuwa::world::TICK;
+use fuwafuwa_painter::soft::{self, Extras};
+use fuwafuwa_painter::{Face, PaintError, Painter, Pixmap, Role, film};
+use std::path::Path;
+use tamaire_play::Round;
+
+/// Moments in a strip, and how many stand side by side.
+const MOMENTS: usize = 12;
+const COLUMNS: usize = 4;
+/// Ticks between two frames of an animation, and how long each is shown [1/100 s].
+const PACE: usize = 3;
+const HUNDREDTHS: u16 = 5;
+/// The last frame is shown for longer [1/100 s].
+const LAST: u16 = 200;
+/// Ticks that are shown after a win, so that the body can beam.
+const CHEER: usize = 60;
+/// Width of a moment [px].
+const WIDTH: u32 = 400;
+/// As much of the walls is seen around the arena [m].
+const WALL: f32 = 0.05;
+
+/// What kind of film is made.
+pub enum Film {
+    Strip,
+    Animation,
+}
+
+impl Film {
+    /// The kind that the ending of a path asks for.
+    pub fn of(path: &Path) -> Self {
+        match path.extension() {
+            Some(ending) if ending == "gif" => Self::Animation,
+            _ => Self::Strip,
+        }
+    }
+
+    /// The film of a round, as the bytes of its file.
+    pub fn shoot(&self, played: &Round<Dim2>) -> Result<Vec<u8>, PaintError> {
+        let ticks = played.frames().len();
+        match self {
+            Self::Strip => {
+                let mut moments = Vec::new();
+                // The first is the start, the last the end.
+                let gaps = MOMENTS.min(ticks + 1) - 1;
+                let is_shown = |tick| moments_at(ticks, gaps).any(|moment| moment == tick);
+                pass(played, ticks, is_shown, |pixels, _| {
+                    moments.push(pixels);
+                    Ok(())
+                })?;
+                film::strip(&moments, COLUMNS)?.png()
+            }
+            Self::Animation => {
+                let is_won = played.progress().outcome.is_some();
+                let ticks = ticks + if is_won { CHEER } else { 0 };
+                let mut gif = film::Gif::default();
+                let is_shown = |tick| tick == ticks || tick % PACE == 0;
+                pass(played, ticks, is_shown, |pixels, tick| {
+                    gif.add(&pixels, if tick == ticks { LAST } else { HUNDREDTHS })
+                })?;
+                gif.finish()
+            }
+        }
+    }
+}
+
+/// The ticks from the first to the last that are as far from each other as can be.
+fn moments_at(ticks: usize, gaps: usize) -> impl Iterator<Item = usize> {
+    (0..=gaps).map(move |gap| gap * ticks / gaps.max(1))
+}
+
+/// Plays a round again for some ticks; those that are to be shown are.
+fn pass(
+    played: &Round<Dim2>,
+    ticks: usize,
+    is_shown: impl Fn(usize) -> bool,
+    mut show: impl FnMut(Pixmap, usize) -> Result<(), PaintError>,
+) -> Result<(), PaintError> {
+    let mut round = Round::new(played.level().clone());
+    let mut effects = Effects::default();
+    for tick in 0..=ticks {
+        if tick > 0 {
+            let frame = played.frames().get(tick - 1).copied();
+            round.step(frame.unwrap_or_default());
+            effects.see(&round, &mut Camera::default(), false);
+            effects.pass(TICK);
+        }
+        if is_shown(tick) {
+            show(moment(&round, &effects, tick == ticks)?, tick)?;
+        }
+    }
+    Ok(())
+}
+
+/// A picture of a round as it is now, and whether that is how it stays.
+fn moment(round: &Round<Dim2>, effects: &Effects, is_last: bool) -> Result<Pixmap, PaintError> {
+    let [low, high] = round.level().arena();
+    let view = [low.map(|k| k - WALL), high.map(|k| k + WALL)];
+    let (mut painter, frame) = Painter::for_view(view, WIDTH);
+    let world = round.world();
+    let hand = world.manipulators().first();
+    let look_at = hand.map_or([0.0; 3], |hand| hand.position());
+    let bodies = world.bodies().iter().enumerate();
+    let faces = bodies.filter_map(|(place, body)| {
+        let feeling = effects.feelings.get(place);
+        let mood = match feeling.map_or(Mood::Calm, |feeling| feeling.mood) {
+            Mood::Calm => fuwafuwa_painter::Mood::Calm,
+            Mood::Wince => fuwafuwa_painter::Mood::Wince,
+            Mood::Shock => fuwafuwa_painter::Mood::Shock,
+            Mood::Beam => fuwafuwa_painter::Mood::Beam,
+        };
+        Face::on(body, mood, look_at)
+    });
+    let extras = Extras {
+        basket: round.basket().copied(),
+        faces: faces.collect(),
+    };
+    soft::world(&mut painter, frame, world, &extras);
+    for speck in &effects.specks {
+        let radius = speck.radius * speck.strength() * frame.unit;
+        painter.dot(frame.spot(speck.at), radius, Role::Crumb);
+    }
+    painter.caption(&caption(round, is_last));
+    painter.pixels()
+}
+
+fn caption(round: &Round<Dim2>, is_last: bool) -> String {
+    let progress = round.progress();
+    let seconds = round.frames().len() as f32 * TICK;
+    match (progress.outcome, progress.pieces) {
+        (Some(outcome), _) => format!("{} in {seconds:.1} s!", by_route(outcome.route)),
+        (None, _) if is_last => format!("not won in {seconds:.1} s"),
+        (None, 1) => format!("{seconds:.1} s"),
+        (None, pieces) => format!("{seconds:.1} s, {pieces} pieces"),
+    }
+}

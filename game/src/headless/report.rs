@@ -1,0 +1,146 @@
+//! How a round went, for people and for programs.
+
+use super::Played;
+use serde::Serialize;
+use std::fmt;
+use std::time::Duration;
+use tamaire_play::{Outcome, Route};
+
+/// How a round went. Its fields are those of the JSON.
+#[derive(Debug, Serialize)]
+pub struct Report {
+    /// Version of the game.
+    game: &'static str,
+    /// By which the level is called up.
+    level: String,
+    /// Its name in English.
+    name: String,
+    #[serde(flatten)]
+    by: Player,
+    won: bool,
+    route: Option<Route>,
+    /// Of the game, until it was won or given up [s].
+    seconds: f32,
+    ticks: u64,
+    /// Share of the mass in the largest piece of each body.
+    kept: f32,
+    /// Share of the mass in the basket.
+    inside: f32,
+    /// Share that is enough.
+    needed: f32,
+    pieces: usize,
+    /// For each wish of the level whether it came true.
+    wishes: Vec<bool>,
+    /// The world's at the end, in hexadecimal.
+    hash: String,
+    /// How long the simulation of a tick took [ms].
+    median_tick_ms: f64,
+    worst_tick_ms: f64,
+}
+
+/// Who played.
+#[derive(Clone, Debug, Serialize)]
+#[serde(untagged)]
+pub enum Player {
+    /// A bot, by its name.
+    Bot { bot: String, seed: u64 },
+    /// Whoever made the replay in a file.
+    Replay { replay: String, genuine: bool },
+}
+
+/// Why a replay does not count.
+#[derive(Debug, Serialize)]
+pub struct Refusal {
+    pub replay: String,
+    pub genuine: bool,
+    pub reason: String,
+}
+
+impl Report {
+    /// How a round went that someone played.
+    pub fn of(played: &Played, by: Player) -> Self {
+        let (round, level) = (&played.round, played.round.level());
+        let progress = round.progress();
+        let outcome = progress.outcome;
+        let fulfilled = |wish| outcome.is_some_and(|outcome: Outcome| outcome.fulfils(wish));
+        let mut times = played.times.clone();
+        times.sort_unstable();
+        let milliseconds = |time: Option<&Duration>| {
+            let seconds = time.map_or(0.0, Duration::as_secs_f64);
+            (1e6 * seconds).round() / 1e3
+        };
+        Self {
+            game: env!("CARGO_PKG_VERSION"),
+            level: level.id.clone(),
+            name: level.game().name.en.clone(),
+            by,
+            won: outcome.is_some(),
+            route: outcome.map(|outcome| outcome.route),
+            seconds: round.frames().len() as f32 / super::RATE,
+            ticks: round.frames().len() as u64,
+            kept: progress.kept,
+            // The sum of nothing is -0.
+            inside: progress.inside + 0.0,
+            needed: level.game().share,
+            pieces: progress.pieces,
+            wishes: level.game().wish.iter().map(fulfilled).collect(),
+            hash: format!("{:016x}", round.world().hash()),
+            median_tick_ms: milliseconds(times.get(times.len() / 2)),
+            worst_tick_ms: milliseconds(times.last()),
+        }
+    }
+}
+
+/// In words, how a round was won.
+pub fn by_route(route: Route) -> &'static str {
+    match route {
+        Route::Squeeze => "squeezed in whole",
+        Route::Shave => "shaved to fit",
+        Route::Mix => "shaved and squeezed in",
+    }
+}
+
+/// As JSON, with a line end.
+pub fn json(value: &impl Serialize) -> String {
+    let text = serde_json::to_string_pretty(value);
+    text.expect("it has no maps but those with names") + "\n"
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, to: &mut fmt::Formatter) -> fmt::Result {
+        match &self.by {
+            Player::Bot { bot, seed } => {
+                writeln!(to, "{}, played by the bot {bot}, seed {seed}", self.name)?;
+            }
+            Player::Replay { replay, .. } => {
+                writeln!(to, "{}, as recorded in {replay}: genuine", self.name)?;
+            }
+        }
+        let mut row = |name: &str, value: String| writeln!(to, "  {name:<12}{value}");
+        let percent = |share: f32| format!("{:.0} %", 100.0 * share);
+        row(
+            "result",
+            match self.route {
+                Some(route) => format!("{} in {:.1} s", by_route(route), self.seconds),
+                None => format!("not won in {:.1} s", self.seconds),
+            },
+        )?;
+        let needed = percent(self.needed);
+        row("mass kept", percent(self.kept))?;
+        row(
+            "in basket",
+            format!("{} ({needed} is enough)", percent(self.inside)),
+        )?;
+        row("pieces", self.pieces.to_string())?;
+        if !self.wishes.is_empty() {
+            let fulfilled = self.wishes.iter().filter(|&&wish| wish).count();
+            row("stars", format!("{fulfilled} of {}", self.wishes.len()))?;
+        }
+        row("state", format!("{} after {} ticks", self.hash, self.ticks))?;
+        let (median, worst) = (self.median_tick_ms, self.worst_tick_ms);
+        row(
+            "simulation",
+            format!("{median:.2} ms a tick (median), {worst:.2} ms at worst"),
+        )
+    }
+}

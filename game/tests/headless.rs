@@ -1,0 +1,223 @@
+//! The game without a window, as someone at a terminal meets it.
+
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+use tempfile::TempDir;
+
+/// A level with so small a body that it is played in no time.
+fn small_level(basket_at: f32) -> String {
+    format!(
+        "dim = 2\n\
+         gravity = [0.0, 0.0, 0.0]\n\
+         view = [[-1.6, -1.0, 0.0], [1.6, 1.0, 0.0]]\n\
+         [game]\n\
+         name = {{ en = \"Small\" }}\n\
+         basket = {{ centre = [{basket_at:.1}, 0.0, 0.0], half = [0.5, 0.5, 0.0] }}\n\
+         wish = [{{ route = \"squeeze\" }}, {{ seconds = 0.5 }}]\n\
+         [[body]]\n\
+         shape = \"ball\"\n\
+         n = 8\n\
+         width = 0.6\n\
+         at = [-0.3, -0.3, 0.0]\n\
+         [[hand]]\n\
+         radius = 0.09\n\
+         path = [[0.0, -1.4, 0.0, 0.0]]\n"
+    )
+}
+
+/// A folder with two levels: `won.toml`, won by waiting, and `far.toml`, where the basket is far away.
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("won.toml"), small_level(0.0)).unwrap();
+    fs::write(folder.path().join("far.toml"), small_level(1.1)).unwrap();
+    folder
+}
+
+/// Runs the game in a folder, without a display.
+fn tamaire(folder: &Path, arguments: &str) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_tamaire"));
+    for name in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
+        command.env_remove(name);
+    }
+    let arguments = arguments.split_whitespace();
+    command
+        .current_dir(folder)
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+fn json(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {output:?}"))
+}
+
+/// The arguments must be refused with a status, for a reason that says all of `words`.
+fn check_refused(arguments: &str, status: i32, words: &[&str]) {
+    let folder = folder();
+    fs::write(folder.path().join("broken.toml"), "dim = 2\nbody = 5\n").unwrap();
+    let output = tamaire(folder.path(), arguments);
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(status), "{arguments}: {said}");
+    for word in words {
+        assert!(said.contains(word), "{arguments}: {said}");
+    }
+    assert!(!said.contains("panicked"), "{arguments}: {said}");
+}
+
+#[test]
+fn a_round_is_told_as_json() {
+    let folder = folder();
+    let line = "--headless --level won.toml --bot idle --json";
+    let output = tamaire(folder.path(), line);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let told = json(&output);
+    assert_eq!(told["level"], "won.toml");
+    assert_eq!(told["bot"], "idle");
+    assert_eq!(told["won"], true);
+    assert_eq!(told["route"], "squeeze");
+    assert_eq!(told["wishes"], serde_json::json!([true, false]));
+    assert_eq!(told["pieces"], 1);
+    assert_eq!(told["kept"], 1.0);
+    let ticks = told["ticks"].as_u64().unwrap();
+    assert!((60..66).contains(&ticks), "a second of rest: {ticks}");
+    assert!((told["seconds"].as_f64().unwrap() - ticks as f64 / 60.0).abs() < 1e-3);
+    assert_eq!(told["hash"].as_str().unwrap().len(), 16);
+    let [median, worst] =
+        ["median_tick_ms", "worst_tick_ms"].map(|field| told[field].as_f64().unwrap());
+    assert!(0.0 < median && median <= worst, "{median} {worst}");
+}
+
+#[test]
+fn the_seed_alone_decides_how_a_bot_plays() {
+    let folder = folder();
+    let hash = |seed: u32| {
+        let line =
+            format!("--headless --level far.toml --bot random --seconds 2 --json --seed {seed}");
+        let told = json(&tamaire(folder.path(), &line));
+        assert_eq!(told["ticks"], 120);
+        told["hash"].as_str().unwrap().to_string()
+    };
+    assert_eq!(hash(1), hash(1));
+    assert_ne!(hash(1), hash(2));
+}
+
+#[test]
+fn who_does_not_win_hears_so_and_it_is_no_error() {
+    let folder = folder();
+    let line = "--headless --level far.toml --bot idle --seconds 1";
+    let output = tamaire(folder.path(), line);
+    let told = text(&output.stdout);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    assert!(
+        told.contains("Small") && told.contains("not won in 1.0 s"),
+        "{told}"
+    );
+}
+
+#[test]
+fn a_replay_is_genuine_until_someone_changes_it() {
+    let folder = folder();
+    let line = "--headless --level far.toml --bot random --seconds 2 --save it.tamaire --json";
+    let played = json(&tamaire(folder.path(), line));
+    let line = "--headless --replay it.tamaire --json";
+    let output = tamaire(folder.path(), line);
+    let replayed = json(&output);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    assert_eq!(replayed["genuine"], true);
+    for field in ["hash", "ticks", "kept", "inside", "won"] {
+        assert_eq!(replayed[field], played[field], "{field}");
+    }
+
+    let path = folder.path().join("it.tamaire");
+    let replay = fs::read_to_string(&path).unwrap();
+    let check = |changed: String, reason: &str| {
+        assert_ne!(changed, replay, "{reason}: nothing was changed");
+        fs::write(&path, changed).unwrap();
+        let output = tamaire(folder.path(), line);
+        assert_eq!(output.status.code(), Some(1), "{output:?}");
+        let told = json(&output);
+        assert_eq!(told["genuine"], false);
+        assert!(told["reason"].as_str().unwrap().contains(reason), "{told}");
+    };
+    let hash = played["hash"].as_str().unwrap();
+    check(replay.replace(hash, "0123456789abcdef"), "was changed");
+    check(
+        replay.replace("drag = 0.0", "drag = 9.0"),
+        "level in this replay was changed",
+    );
+    check(
+        replay.replacen("version = 1", "version = 77", 1),
+        "version 77",
+    );
+    check("hello".into(), "no replay");
+}
+
+#[test]
+fn films_are_written() {
+    let folder = folder();
+    for (film, start) in [("round.png", &b"\x89PNG"[..]), ("round.gif", b"GIF89a")] {
+        let line = format!("--headless --level far.toml --bot idle --seconds 1 --film {film}");
+        let output = tamaire(folder.path(), &line);
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        let bytes = fs::read(folder.path().join(film)).unwrap();
+        assert!(bytes.starts_with(start) && bytes.len() > 1000, "{film}");
+    }
+}
+
+#[test]
+fn what_makes_no_sense_is_refused_with_a_reason() {
+    check_refused("--headless --level nowhere", 2, &["nowhere", "classic"]);
+    check_refused(
+        "--headless --level broken.toml",
+        2,
+        &["broken.toml", "line 2"],
+    );
+    check_refused("--headless --bot cheat", 2, &["cheat", "squeeze", "idle"]);
+    check_refused("--headless --seconds 0", 2, &["1 to 3600 seconds"]);
+    check_refused("--headless --film film.mp4", 2, &[".png or .gif"]);
+    check_refused("--headless --film no/folder.png", 2, &["no such folder"]);
+    check_refused("--headless --save it.txt", 2, &[".tamaire"]);
+    check_refused("--headless --replay none.tamaire", 2, &["none.tamaire"]);
+    check_refused("--headless --replay it.tamaire --bot idle", 2, &["--bot"]);
+    check_refused("--bot idle", 2, &["--headless"]);
+    check_refused("--headles", 2, &["--headless"]);
+    check_refused(
+        "--headless --replay won.toml",
+        1,
+        &["won.toml", "no replay"],
+    );
+}
+
+#[test]
+fn without_a_display_a_round_is_played_all_the_same() {
+    let folder = folder();
+    let output = tamaire(folder.path(), "won.toml");
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let (said, told) = (text(&output.stderr), text(&output.stdout));
+    if cfg!(target_os = "linux") {
+        assert!(
+            said.contains("no display") && said.contains("--headless"),
+            "{said}"
+        );
+        assert!(
+            told.contains("Small, played by the bot squeeze") && told.contains("result"),
+            "{told}"
+        );
+    }
+}
+
+#[test]
+fn levels_are_listed_by_name() {
+    let told = text(&tamaire(Path::new("."), "--list").stdout);
+    let classic = told.lines().find(|line| line.starts_with("classic "));
+    assert!(
+        classic.is_some_and(|line| line.contains("Classic")),
+        "{told}"
+    );
+}
