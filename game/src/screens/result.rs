@@ -57,8 +57,13 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
             ui.columns(4, |columns| {
                 for (column, (name, value)) in columns.iter_mut().zip((said.summary)(&outcome)) {
                     column.vertical_centered(|ui| {
-                        ui.label(RichText::new(value).size(26.0).color(theme.ink).strong());
-                        ui.label(RichText::new(name).size(15.0).color(theme.faint));
+                        let width = ui.available_width();
+                        for (text, size, ink) in
+                            [(value.as_str(), 26.0, theme.ink), (name, 15.0, theme.faint)]
+                        {
+                            let galley = fitted(ui.painter(), text, size, width, ink);
+                            ui.label(galley);
+                        }
                     });
                 }
             });
