@@ -1,15 +1,30 @@
 //! The loop: devices → actions and wishes → time → picture and sound.
 
 use crate::game::{Game, Screen};
-use crate::input::{Action, Seat};
+use crate::input::Seat;
 use crate::look::Stage;
 use crate::screens;
 use egui::{Event, Key, Modifiers, PointerButton, RawInput};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use sticks::{Change, Control, Navigator, PadButton};
 
 /// The font that the game writes with.
 const FONT: &[u8] = include_bytes!("../fonts/MPLUSRounded1c-Bold.ttf");
+
+/// Each screen has room enough in a window of this many points.
+const ROOM: egui::Vec2 = egui::vec2(900.0, 640.0);
+
+/// Keys that menus understand.
+const OF_MENUS: [Key; 8] = [
+    Key::Escape,
+    Key::Tab,
+    Key::Enter,
+    Key::Space,
+    Key::ArrowUp,
+    Key::ArrowDown,
+    Key::ArrowLeft,
+    Key::ArrowRight,
+];
 
 /// The game in a window.
 pub struct App {
@@ -18,7 +33,6 @@ pub struct App {
     stage: Stage,
     navigators: Vec<(sticks::DeviceId, Navigator)>,
     presses: Presses,
-    text_size: f32,
     screen_before: Screen,
 }
 
@@ -36,7 +50,7 @@ impl App {
         dress(&context.egui_ctx);
         let stage = Stage::new(context.wgpu_render_state.as_ref().ok_or(NoGpu)?);
         let screen_before = game.screen.clone();
-        let (navigators, text_size) = (Vec::new(), 0.0);
+        let navigators = Vec::new();
         let presses = Presses::default();
         context.egui_ctx.add_plugin(presses.clone());
         Ok(Self {
@@ -44,7 +58,6 @@ impl App {
             stage,
             navigators,
             presses,
-            text_size,
             screen_before,
         })
     }
@@ -52,7 +65,8 @@ impl App {
     /// Takes in sticks and pads: in a round they ask for actions, in a menu they move the focus.
     fn hear_sticks(&mut self, seconds: f32) {
         let changes = self.game.hear_sticks();
-        let in_menu = !matches!(self.game.screen, Screen::Play);
+        // What is to get a meaning has none now.
+        let in_menu = self.game.screen != Screen::Play && self.game.rebinding.is_none();
         for change in changes {
             let Change::Pressed { device, control } = change else {
                 continue;
@@ -62,11 +76,11 @@ impl App {
                 self.game.keep_settings();
                 continue;
             }
-            match (in_menu, control) {
-                (true, Control::Pad(PadButton::South) | Control::Button(0)) => {
+            match control {
+                Control::Pad(PadButton::South) | Control::Button(0) if in_menu => {
                     self.press(Key::Enter)
                 }
-                (true, Control::Pad(PadButton::East) | Control::Button(1)) => {
+                Control::Pad(PadButton::East) | Control::Button(1) if in_menu => {
                     self.press(Key::Escape)
                 }
                 _ => {
@@ -100,26 +114,25 @@ impl App {
 
     /// As if a key were pressed and let go in the next frame.
     fn press(&self, key: Key) {
-        self.presses
-            .0
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .push(key);
+        self.presses.waiting().keys.push(key);
     }
 
     /// Takes in keys and the pointer.
     fn hear_window(&mut self, ctx: &egui::Context) {
         let game = &mut self.game;
-        let (events, keys, pointer, down, focused) = ctx.input(|input| {
+        let (events, keys, pointer, is_down, focused) = ctx.input(|input| {
             let pointer = &input.pointer;
             (
                 input.events.clone(),
                 input.keys_down.clone(),
                 pointer.latest_pos(),
-                pointer.button_down(PointerButton::Primary) || pointer.delta() != egui::Vec2::ZERO,
+                pointer.button_down(PointerButton::Primary),
                 input.focused,
             )
         });
+        let has_moved = |event: &Event| matches!(event, Event::PointerMoved(_));
+        let points = is_down || events.iter().any(has_moved);
+        let mut taken = Vec::new();
         for event in &events {
             let Event::Key {
                 key,
@@ -135,23 +148,31 @@ impl App {
                     game.settings.bindings.bind_key(action, key);
                     game.keep_settings();
                 }
+                taken.push(key);
+                continue;
+            }
+            // In a menu these move about in it, whatever they mean in a round.
+            if game.screen != Screen::Play && OF_MENUS.contains(&key) {
                 continue;
             }
             if let Some(action) = game.settings.bindings.of_key(key) {
-                // In a menu Escape goes back, which the menus see to.
-                let is_back = key == Key::Escape && game.screen != Screen::Play;
-                if !is_back || game.screen == Screen::Paused {
-                    game.act(action, Seat::Keys);
-                }
+                game.act(action, Seat::Keys);
+                taken.push(key);
             }
         }
+        // A menu that has just come up must not take it for a click or for the way back.
+        let is_taken = |event: &Event| match event {
+            Event::Key { key, pressed, .. } => *pressed && taken.contains(key),
+            _ => false,
+        };
+        ctx.input_mut(|input| input.events.retain(|event| !is_taken(event)));
         game.devices.keys = keys.into_iter().collect();
         game.devices.pointer = match (game.view, pointer) {
-            (Some(view), Some(at)) if down => Some(view.in_world(at)),
+            (Some(view), Some(at)) if points => Some(view.in_world(at)),
             _ => None,
         };
-        if !focused && game.screen == Screen::Play && game.session.is_played() {
-            game.act(Action::Pause, Seat::Keys);
+        if !focused {
+            game.rest();
         }
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
         for file in dropped {
@@ -163,10 +184,7 @@ impl App {
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
-        if self.text_size != self.game.settings.text_size {
-            self.text_size = self.game.settings.text_size;
-            ctx.set_zoom_factor(self.text_size);
-        }
+        fit(&ctx, self.game.settings.text_size);
         let seconds = ctx.input(|input| input.stable_dt).min(0.1);
         self.hear_sticks(seconds);
         self.hear_window(&ctx);
@@ -181,13 +199,40 @@ impl eframe::App for App {
             });
         }
         screens::show(&mut self.game, &mut self.stage, ui);
+        // What stands in these is of many widths.
+        let is_list = matches!(self.game.screen, Screen::Settings(_) | Screen::Replays);
+        self.presses.waiting().in_order = is_list && self.game.rebinding.is_none();
         ctx.request_repaint();
     }
 }
 
-/// Keys that sticks and pads press in menus, on their way into egui.
+/// Shows letters and all else at a size that was chosen, or smaller where the window lacks room.
+fn fit(ctx: &egui::Context, text_size: f32) {
+    let room = ctx.content_rect().size() * ctx.zoom_factor() / ROOM;
+    let zoom = text_size.min(room.min_elem()).max(0.1);
+    // Nothing changes its size under the mouse that drags it.
+    if !ctx.input(|input| input.pointer.any_down()) {
+        ctx.set_zoom_factor(zoom);
+    }
+}
+
+/// Keys on their way into egui.
 #[derive(Clone, Default)]
-struct Presses(Arc<Mutex<Vec<Key>>>);
+struct Presses(Arc<Mutex<Waiting>>);
+
+#[derive(Default)]
+struct Waiting {
+    /// What sticks and pads press in menus.
+    keys: Vec<Key>,
+    /// Whether up and down lead through everything in its order, and not to what lies above or below.
+    in_order: bool,
+}
+
+impl Presses {
+    fn waiting(&self) -> MutexGuard<'_, Waiting> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
 
 impl egui::Plugin for Presses {
     fn debug_name(&self) -> &'static str {
@@ -195,18 +240,40 @@ impl egui::Plugin for Presses {
     }
 
     fn input_hook(&mut self, _: &egui::Context, input: &mut RawInput) {
-        let mut keys = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        for key in keys.drain(..) {
-            let event = |pressed| Event::Key {
-                key,
-                physical_key: None,
-                pressed,
-                repeat: false,
-                modifiers: Modifiers::NONE,
-            };
-            input.events.extend([event(true), event(false)]);
+        let mut waiting = self.waiting();
+        for key in std::mem::take(&mut waiting.keys) {
+            input.events.extend(stroke(key, Modifiers::NONE));
+        }
+        if waiting.in_order {
+            input.events = std::mem::take(&mut input.events)
+                .into_iter()
+                .flat_map(|event| match event {
+                    Event::Key {
+                        key: Key::ArrowDown,
+                        pressed: true,
+                        ..
+                    } => stroke(Key::Tab, Modifiers::NONE).to_vec(),
+                    Event::Key {
+                        key: Key::ArrowUp,
+                        pressed: true,
+                        ..
+                    } => stroke(Key::Tab, Modifiers::SHIFT).to_vec(),
+                    event => vec![event],
+                })
+                .collect();
         }
     }
+}
+
+/// A key is pressed and let go.
+fn stroke(key: Key, modifiers: Modifiers) -> [Event; 2] {
+    [true, false].map(|pressed| Event::Key {
+        key,
+        physical_key: None,
+        pressed,
+        repeat: false,
+        modifiers,
+    })
 }
 
 /// Gives egui the game's font and takes its toolbox look away.
@@ -221,6 +288,8 @@ fn dress(context: &egui::Context) {
     }
     context.set_fonts(fonts);
     context.set_theme(egui::Theme::Light);
+    // The text size is a setting.
+    context.options_mut(|options| options.zoom_with_keyboard = false);
     context.all_styles_mut(|style| {
         style.interaction.selectable_labels = false;
         style.spacing.item_spacing = egui::vec2(10.0, 6.0);

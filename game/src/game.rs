@@ -13,7 +13,7 @@ use fuwafuwa_render::frame::ElementColour;
 use std::path::Path;
 use std::sync::Arc;
 use tamaire_play::level::NAMED;
-use tamaire_play::{Bot, BotKind, Level, Outcome, Playback, Replay, ReplayError};
+use tamaire_play::{Bot, BotKind, InputFrame, Level, Outcome, Playback, Replay, ReplayError};
 use tamaire_sound::{Cue, Hush, Menu, Press, Soundscape};
 
 /// What there is to see.
@@ -84,8 +84,9 @@ pub struct Game {
     pub time: f32,
     /// An action whose key or button the next one pressed becomes.
     pub rebinding: Option<Action>,
+    /// The sticks and pads that are listened to.
+    pub pads: Pads,
     sound: Sound,
-    pads: Pads,
     cheered: f32,
 }
 
@@ -149,8 +150,9 @@ impl Game {
         Theme::of(self.settings.colour_safe)
     }
 
-    /// Tells the player something.
+    /// Tells the player something; what is still to be read is not said twice.
     pub fn notify(&mut self, text: String) {
+        self.notices.retain(|(known, _)| *known != text);
         self.notices.push((text, NOTICE));
     }
 
@@ -170,8 +172,8 @@ impl Game {
 
     /// Begins a level.
     pub fn start(&mut self, level: usize) {
-        self.chosen = level.min(self.levels.len() - 1);
-        self.session = Session::of_people(self.levels[self.chosen].clone());
+        let level = level.min(self.levels.len() - 1);
+        self.session = Session::of_people(self.levels[level].clone());
         self.begin();
     }
 
@@ -193,12 +195,14 @@ impl Game {
 
     /// The same again from its start.
     pub fn retry(&mut self) {
-        let level = self.session.round().level().clone();
-        self.session = Session::of_people(level);
+        self.session = self.session.again();
         self.begin();
     }
 
     fn begin(&mut self) {
+        let id = &self.session.round().level().id;
+        let known = self.levels.iter().position(|level| level.id == *id);
+        self.chosen = known.unwrap_or(self.chosen);
         self.players.start();
         self.effects = Effects::default();
         self.won = None;
@@ -227,7 +231,8 @@ impl Game {
 
     fn offer(&mut self, level: Level) {
         if level.scene().dim != 2 {
-            self.notify(format!("{}: dim = 3", level.id));
+            let id = level.id;
+            self.notify(format!("{id}: expected dim = 2, found 3"));
             return;
         }
         self.levels.retain(|known| known.id != level.id);
@@ -273,6 +278,8 @@ impl Game {
                     Some(ElementColour::Strain) => None,
                 }
             }
+            // Whoever takes single steps goes on with this.
+            (Screen::Play, Action::Slow) if self.stepping => self.stepping = false,
             (Screen::Play, Action::Slow) => self.slow = !self.slow,
             (Screen::Play, Action::Step) => {
                 self.stepping = true;
@@ -296,11 +303,14 @@ impl Game {
             self.pass_ticks(seconds * pace);
             self.effects.pass(seconds * pace);
         }
-        if let Some(complaint) = self.session.complaint() {
-            let reason = complaint.to_string();
-            self.notify(reason);
-            self.go(Screen::Replays);
-            self.session = attract(&self.levels, 0);
+        if let Some(complaint) = self.session.take_complaint() {
+            self.notify(complaint.to_string());
+            if !self.session.is_played() {
+                self.session = attract(&self.levels, 0);
+                if self.screen == Screen::Play {
+                    self.go(Screen::Replays);
+                }
+            }
         }
         self.celebrate(seconds);
         if self.screen == Screen::Title && self.session.is_over() {
@@ -318,12 +328,24 @@ impl Game {
             .update(&self.soundscape(), &self.settings.volumes());
     }
 
-    /// Takes in what sticks and pads say; gives back what was pressed since.
+    /// Takes in what sticks and pads say; gives back what was pressed since. When one is unplugged
+    /// the round waits.
     pub fn hear_sticks(&mut self) -> Vec<sticks::Change> {
         let now = self.pads.snapshot();
         let changes = now.since(&self.devices.sticks);
         self.devices.sticks = now;
+        let has_left = |change: &sticks::Change| matches!(change, sticks::Change::Disconnected(_));
+        if changes.iter().any(has_left) {
+            self.rest();
+        }
         changes
+    }
+
+    /// Lets a round that people play stand still.
+    pub fn rest(&mut self) {
+        if self.screen == Screen::Play && self.session.is_played() {
+            self.go(Screen::Paused);
+        }
     }
 
     fn pass_ticks(&mut self, seconds: f32) {
@@ -333,6 +355,8 @@ impl Game {
             arena: self.session.round().level().arena(),
         };
         let still = self.settings.reduced_motion;
+        // In menus the same keys and sticks move the focus.
+        let in_round = self.screen == Screen::Play;
         let Self {
             session,
             players,
@@ -346,8 +370,14 @@ impl Game {
         session.advance(
             seconds,
             |round| {
-                let hands = round.world().manipulators().iter().map(|hand| hand.goal());
-                let hands: Vec<_> = hands.collect();
+                if !in_round {
+                    return InputFrame::default();
+                }
+                // Who comes in only now begins where the level says.
+                let mut hands = round.level().scene().goals(0);
+                for (goal, hand) in hands.iter_mut().zip(round.world().manipulators()) {
+                    *goal = hand.goal();
+                }
                 let tick = fuwafuwa::world::TICK;
                 players.frame(devices, &settings.bindings, &manner, &hands, tick)
             },

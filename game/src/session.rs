@@ -15,7 +15,7 @@ pub struct Session {
     ghost: Option<Playback<Dim2>>,
     /// Time that has passed and was not played yet [s].
     owed: f32,
-    /// Why a replay was stopped.
+    /// Why a replay or a ghost was stopped.
     complaint: Option<ReplayError>,
 }
 
@@ -62,6 +62,16 @@ impl Session {
         self
     }
 
+    /// The same from its start: a replay is watched again, and people race the same ghost again.
+    pub fn again(&self) -> Self {
+        let again = match &self.player {
+            Player::People(round) | Player::Bot(round, _) => Self::of_people(round.level().clone()),
+            Player::Replay(playback) => Self::of(Player::Replay(playback.again())),
+        };
+        let ghost = self.ghost.as_ref().map(Playback::again);
+        Self { ghost, ..again }
+    }
+
     /// The round as it is now.
     pub fn round(&self) -> &Round<Dim2> {
         match &self.player {
@@ -83,14 +93,14 @@ impl Session {
     /// Whether there is nothing more to watch.
     pub fn is_over(&self) -> bool {
         match &self.player {
-            Player::Replay(playback) => playback.is_over() || self.complaint.is_some(),
+            Player::Replay(playback) => playback.is_over(),
             _ => self.round().progress().outcome.is_some(),
         }
     }
 
-    /// Why a replay was stopped.
-    pub fn complaint(&self) -> Option<&ReplayError> {
-        self.complaint.as_ref()
+    /// Why a replay or a ghost was stopped, once.
+    pub fn take_complaint(&mut self) -> Option<ReplayError> {
+        self.complaint.take()
     }
 
     /// Lets `seconds` pass, a whole number of ticks of them. `wish` says what people want, in the
@@ -131,10 +141,11 @@ impl Session {
             Player::Replay(_) => {}
         }
         if let Some(ghost) = &mut self.ghost
-            && ghost.step().is_err()
+            && let Err(error) = ghost.step()
         {
             // A ghost that goes astray is no ghost.
             self.ghost = None;
+            self.complaint = Some(error);
         }
     }
 }

@@ -175,6 +175,15 @@ impl<D: Dim> Playback<D> {
         })
     }
 
+    /// The same from its start.
+    pub fn again(&self) -> Self {
+        Self {
+            replay: self.replay.clone(),
+            round: Round::new(self.round.level().clone()),
+            tick: 0,
+        }
+    }
+
     /// The round as it is now.
     pub fn round(&self) -> &Round<D> {
         &self.round

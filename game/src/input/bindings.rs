@@ -101,8 +101,7 @@ fn find<K: PartialEq>(map: &BTreeMap<Action, Vec<K>>, key: &K) -> Option<Action>
 
 fn bind<K: PartialEq + Clone>(map: &mut BTreeMap<Action, Vec<K>>, action: Action, key: K) {
     let before = map.insert(action, vec![key.clone()]).unwrap_or_default();
-    for (other, keys) in map.iter_mut().filter(|(other, _)| **other != action) {
-        let _ = other;
+    for (_, keys) in map.iter_mut().filter(|(other, _)| **other != action) {
         if keys.contains(&key) {
             keys.retain(|k| *k != key);
             if keys.is_empty() {

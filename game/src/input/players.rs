@@ -3,8 +3,8 @@
 use super::{Action, Bindings};
 use egui::{Key, Vec2};
 use fuwafuwa::Vector;
-use std::collections::BTreeSet;
-use sticks::{Device, DeviceId, Snapshot};
+use std::collections::{BTreeMap, BTreeSet};
+use sticks::{DeviceId, Snapshot};
 use tamaire_play::{InputFrame, PLAYERS};
 
 /// A stick that leans less than this does nothing, and one that leans more than `RIM` leans fully.
@@ -42,6 +42,9 @@ pub struct Players {
     second: Option<Seat>,
     /// Where each wants to be [m].
     goals: [Option<Vector>; PLAYERS],
+    /// How sticks leaned in the last tick. One that points at a place does so when it moves; while
+    /// it is still, be it at rest, mouse and keys have their say.
+    leans: BTreeMap<DeviceId, [f32; 2]>,
 }
 
 /// How the devices of a player are taken.
@@ -74,10 +77,15 @@ impl Players {
 
     /// A new round: everybody wants to be where the hand is.
     pub fn start(&mut self) {
-        self.goals = [None; PLAYERS];
+        let second = self.second;
+        *self = Self {
+            second,
+            ..Self::default()
+        };
     }
 
-    /// What they want in the next tick, `seconds` long; `hands` are where the hands' goals are now [m].
+    /// What they want in the next tick, `seconds` long; `hands` are where the hands' goals are now,
+    /// or where they will come in [m].
     pub fn frame(
         &mut self,
         devices: &Devices,
@@ -91,19 +99,21 @@ impl Players {
         {
             self.second = None;
         }
+        let is_here = |id: &DeviceId| devices.sticks.device(*id).is_some();
+        self.leans.retain(|id, _| is_here(id));
         let mut frame = InputFrame::default();
         for player in 0..PLAYERS {
             if player == 1 && self.second.is_none() {
                 self.goals[1] = None;
                 continue;
             }
-            let here = hands.get(player).copied();
+            // A level may have one hand only.
+            let Some(&here) = hands.get(player) else {
+                continue;
+            };
             self.move_goal(player, devices, bindings, manner, here, seconds);
-            if let Some(goal) = self.goals[player] {
+            if let Some(goal) = self.goals[player].or((player == 1).then_some(here)) {
                 frame = frame.with(player, goal);
-            } else if player == 1 {
-                // A new player comes in where the level says; the round knows where.
-                frame = frame.with(player, here.unwrap_or(manner.arena[0]));
             }
         }
         frame
@@ -115,7 +125,7 @@ impl Players {
         devices: &Devices,
         bindings: &Bindings,
         manner: &Manner,
-        here: Option<Vector>,
+        here: Vector,
         seconds: f32,
     ) {
         let holds = |seat: Seat| match player {
@@ -125,22 +135,24 @@ impl Players {
         let mut lean = Vec2::ZERO;
         let mut place = None;
         if holds(Seat::Keys) {
-            lean += lean_of_keys(&devices.keys, bindings);
+            let means = |action| move |&key| bindings.of_key(key) == Some(action);
+            lean += direction(|action| devices.keys.iter().any(means(action)));
         }
-        for device in devices
-            .sticks
-            .devices
-            .iter()
-            .filter(|device| holds(Seat::Stick(device.id)))
-        {
+        let all = devices.sticks.devices.iter();
+        for device in all.filter(|device| holds(Seat::Stick(device.id))) {
             let stick = sticks::radial_dead_zone(device.aim(), DEAD, RIM);
-            if manner.stick_places {
-                let is_used = stick != [0.0; 2] || device.id == last_used(devices, device);
-                place = is_used.then(|| place_of(stick, manner)).or(place);
-            } else {
+            let before = self.leans.insert(device.id, stick).unwrap_or_default();
+            if !manner.stick_places {
                 lean += Vec2::from(stick);
+            } else if stick != before {
+                place = Some(place_of(stick, manner));
             }
-            lean += lean_of_hat(device);
+            let held: Vec<Action> = device
+                .controls()
+                .filter(|(_, button)| button.down)
+                .filter_map(|(control, _)| bindings.of_button(control))
+                .collect();
+            lean += direction(|action| held.contains(&action));
         }
         if holds(Seat::Pointer) {
             place = devices.pointer.or(place);
@@ -150,35 +162,17 @@ impl Players {
         }
         if lean != Vec2::ZERO {
             // From where the goal is now: what pushes in vain winds nothing up.
-            let from = here.or(self.goals[player]).unwrap_or_default();
             let step = lean * (1.0 / lean.length().max(1.0)) * PACE * manner.sensitivity * seconds;
             let [low, high] = manner.arena;
-            let mut goal = from;
-            goal[0] = (from[0] + step.x).clamp(low[0], high[0]);
-            goal[1] = (from[1] + step.y).clamp(low[1], high[1]);
+            let mut goal = here;
+            goal[0] = (here[0] + step.x).clamp(low[0], high[0]);
+            goal[1] = (here[1] + step.y).clamp(low[1], high[1]);
             self.goals[player] = Some(goal);
         }
     }
 }
 
-fn lean_of_keys(keys: &BTreeSet<Key>, bindings: &Bindings) -> Vec2 {
-    let held = |action| keys.iter().any(|&key| bindings.of_key(key) == Some(action));
-    direction(held)
-}
-
-fn lean_of_hat(device: &Device) -> Vec2 {
-    use sticks::Direction;
-    direction(|action| {
-        let way = match action {
-            Action::Up => Direction::Up,
-            Action::Down => Direction::Down,
-            Action::Left => Direction::Left,
-            _ => Direction::Right,
-        };
-        device.hat(way).down
-    })
-}
-
+/// The way in which the four ways that are held lead together.
 fn direction(held: impl Fn(Action) -> bool) -> Vec2 {
     let axis = |more, less| f32::from(i8::from(held(more)) - i8::from(held(less)));
     Vec2::new(
@@ -198,10 +192,156 @@ fn place_of(stick: [f32; 2], manner: &Manner) -> Vector {
     place
 }
 
-/// The device itself when it is the only one: a stick let go points at the middle.
-fn last_used(devices: &Devices, device: &Device) -> DeviceId {
-    match devices.sticks.devices.as_slice() {
-        [only] => only.id,
-        _ => DeviceId(device.id.0.wrapping_add(1)),
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fuwafuwa::world::TICK;
+    use sticks::{About, Device, Direction};
+
+    const HANDS: [Vector; 2] = [[-1.0, 0.0, 0.0], [-1.0, 0.5, 0.0]];
+    const MANNER: Manner = Manner {
+        sensitivity: 1.0,
+        stick_places: false,
+        arena: [[-1.6, -1.0, 0.0], [1.6, 1.0, 0.0]],
+    };
+    const PLACES: Manner = Manner {
+        stick_places: true,
+        ..MANNER
+    };
+
+    /// What the first player wants next.
+    fn goal(players: &mut Players, devices: &Devices, manner: &Manner) -> Option<Vector> {
+        goals(players, devices, manner)[0]
+    }
+
+    fn goals(players: &mut Players, devices: &Devices, manner: &Manner) -> [Option<Vector>; 2] {
+        let frame = players.frame(devices, &Bindings::default(), manner, &HANDS, TICK);
+        [frame.goal(0), frame.goal(1)]
+    }
+
+    /// A stick that leans so far to the right and upwards.
+    fn stick(id: u32, lean: [f32; 2]) -> Device {
+        let about = About {
+            name: String::new(),
+            guid: String::new(),
+        };
+        let mut stick = Device::at_rest(DeviceId(id), about, 2, 4, 1);
+        stick.axes = vec![lean[0], -lean[1]];
+        stick
+    }
+
+    fn with_sticks(devices: Vec<Device>) -> Devices {
+        let sticks = Snapshot { devices };
+        Devices {
+            sticks,
+            ..Devices::default()
+        }
+    }
+
+    fn assert_near(found: Option<Vector>, expected: [f32; 2]) {
+        let found = found.expect("a goal");
+        let is_near = (0..2).all(|axis| (found[axis] - expected[axis]).abs() < 1e-3);
+        assert!(is_near, "{found:?}, expected {expected:?}");
+    }
+
+    #[test]
+    fn the_mouse_says_where_and_its_word_holds() {
+        let mut players = Players::default();
+        let mut devices = Devices::default();
+        assert_eq!(goal(&mut players, &devices, &MANNER), None);
+        devices.pointer = Some([0.7, -0.3, 0.0]);
+        assert_near(goal(&mut players, &devices, &MANNER), [0.7, -0.3]);
+        devices.pointer = None;
+        assert_near(goal(&mut players, &devices, &MANNER), [0.7, -0.3]);
+        players.start();
+        assert_eq!(goal(&mut players, &devices, &MANNER), None);
+    }
+
+    #[test]
+    fn keys_say_how_fast_and_diagonals_are_no_faster() {
+        let step = PACE * TICK;
+        let held = |keys: &[Key]| Devices {
+            keys: keys.iter().copied().collect(),
+            ..Devices::default()
+        };
+        let of = |keys: &[Key], manner: &Manner| goal(&mut Players::default(), &held(keys), manner);
+        assert_near(of(&[Key::D], &MANNER), [-1.0 + step, 0.0]);
+        assert_near(of(&[Key::D, Key::ArrowRight], &MANNER), [-1.0 + step, 0.0]);
+        assert_eq!(of(&[Key::A, Key::D], &MANNER), None);
+        let side = step * 0.5_f32.sqrt();
+        assert_near(of(&[Key::W, Key::A], &MANNER), [-1.0 - side, side]);
+        let slowly = Manner {
+            sensitivity: 0.5,
+            ..MANNER
+        };
+        assert_near(of(&[Key::S], &slowly), [-1.0, -0.5 * step]);
+        // A goal stays in the arena, whatever pushes it out.
+        let narrow = Manner {
+            arena: [[-1.0, -1.0, 0.0], [1.0, 0.0, 0.0]],
+            ..MANNER
+        };
+        assert_near(of(&[Key::W, Key::A], &narrow), [-1.0, 0.0]);
+    }
+
+    #[test]
+    fn a_stick_that_hardly_leans_does_nothing_and_one_that_leans_far_goes_fast() {
+        let of = |lean| {
+            goal(
+                &mut Players::default(),
+                &with_sticks(vec![stick(1, lean)]),
+                &MANNER,
+            )
+        };
+        assert_eq!(of([0.1, -0.1]), None);
+        assert_eq!(of([f32::NAN, 1.0]), None);
+        assert_near(of([1.0, 0.0]), [-1.0 + PACE * TICK, 0.0]);
+        let half = DEAD + 0.5 * (RIM - DEAD);
+        assert_near(of([0.0, half]), [-1.0, 0.5 * PACE * TICK]);
+        let mut hat = stick(1, [0.0; 2]);
+        hat.hats[0].button_mut(Direction::Down).press();
+        let found = goal(&mut Players::default(), &with_sticks(vec![hat]), &MANNER);
+        assert_near(found, [-1.0, -PACE * TICK]);
+    }
+
+    #[test]
+    fn a_stick_that_points_at_places_leaves_the_rest_to_others_while_it_is_still() {
+        let mut players = Players::default();
+        let mut devices = with_sticks(vec![stick(1, [0.0; 2]), stick(2, [0.0; 2])]);
+        assert_eq!(goal(&mut players, &devices, &PLACES), None, "at rest");
+        devices.sticks.devices[1] = stick(2, [1.0, 0.0]);
+        assert_near(goal(&mut players, &devices, &PLACES), [1.6, 0.0]);
+        devices.pointer = Some([0.5, 0.5, 0.0]);
+        assert_near(goal(&mut players, &devices, &PLACES), [0.5, 0.5]);
+        devices.pointer = None;
+        assert_near(goal(&mut players, &devices, &PLACES), [0.5, 0.5]);
+        devices.sticks.devices[1] = stick(2, [0.0, -1.0]);
+        assert_near(goal(&mut players, &devices, &PLACES), [0.0, -1.0]);
+        devices.sticks.devices[1] = stick(2, [0.0; 2]);
+        assert_near(goal(&mut players, &devices, &PLACES), [0.0, 0.0]);
+    }
+
+    #[test]
+    fn each_device_belongs_to_one_player() {
+        let mut players = Players::default();
+        let mut devices = with_sticks(vec![stick(1, [1.0, 0.0]), stick(2, [0.0; 2])]);
+        assert_eq!(goals(&mut players, &devices, &MANNER)[1], None);
+        players.join(Seat::Stick(DeviceId(1)));
+        let [first, second] = goals(&mut players, &devices, &MANNER);
+        assert_near(first, [-1.0 + PACE * TICK, 0.0]);
+        assert_near(second, [-1.0 + PACE * TICK, 0.5]);
+        // Who comes in and holds still is where the level says.
+        players.join(Seat::Keys);
+        assert_near(goals(&mut players, &devices, &MANNER)[1], [-1.0, 0.5]);
+        players.join(Seat::Keys);
+        assert_eq!(players.second(), None);
+        players.join(Seat::Stick(DeviceId(1)));
+        devices.sticks.devices.remove(0);
+        assert_eq!(goals(&mut players, &devices, &MANNER)[1], None);
+        assert_eq!(players.second(), None, "it was unplugged");
+        // A level may have one hand only.
+        players.join(Seat::Keys);
+        let bindings = Bindings::default();
+        let frame = players.frame(&devices, &bindings, &MANNER, &HANDS[..1], TICK);
+        assert_eq!(frame.goal(1), None);
     }
 }

@@ -49,8 +49,11 @@ pub fn button(ui: &mut Ui, theme: &Theme, text: &str, size: Vec2, weight: Weight
     response
 }
 
-/// A ring around what a pad or the keyboard is on.
+/// A ring around what a pad or the keyboard is on, which comes into view.
 pub fn focus_ring(ui: &Ui, response: &Response, rect: Rect, round: f32, theme: &Theme) {
+    if response.gained_focus() && !ui.clip_rect().contains_rect(response.rect) {
+        response.scroll_to_me(Some(egui::Align::Center));
+    }
     if response.has_focus() {
         let stroke = Stroke::new(4.0, theme.ink);
         let rect = rect.expand(5.0);

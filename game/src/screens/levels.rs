@@ -29,9 +29,6 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                     if place == game.chosen {
                         super::play::focus_first(ui, &response);
                     }
-                    if response.has_focus() {
-                        response.scroll_to_me(None);
-                    }
                     if response.clicked() {
                         wanted = Some(place);
                     }

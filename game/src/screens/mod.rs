@@ -14,6 +14,9 @@ use crate::game::{Game, Screen};
 use crate::look::Stage;
 use egui::{Align2, Color32, FontId, Rect, Ui, pos2, vec2};
 
+/// What a button does.
+type Act = fn(&mut Game);
+
 /// Shows the screen that is on.
 pub fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     play::world(game, stage, ui);

@@ -1,7 +1,7 @@
 //! The round, standing still.
 
 use super::kit::{Weight, button, card, column, title};
-use super::veil;
+use super::{Act, veil};
 use crate::game::{Game, Screen};
 use egui::{Ui, vec2};
 use tamaire_sound::Menu;
@@ -9,12 +9,12 @@ use tamaire_sound::Menu;
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     veil(ui, 130);
     let (theme, said) = (game.theme(), game.words());
-    let mut wanted: Option<fn(&mut Game)> = None;
+    let mut wanted: Option<Act> = None;
     column(ui, 380.0, 440.0, |ui| {
         card(ui, &theme, |ui| {
             title(ui, &theme, said.paused);
             ui.add_space(14.0);
-            let options: [(&str, fn(&mut Game)); 4] = [
+            let options: [(&str, Act); 4] = [
                 (said.go_on, |game| game.go(Screen::Play)),
                 (said.again, Game::retry),
                 (said.settings, |game| {
@@ -42,6 +42,9 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
             }
         });
     });
+    if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+        wanted = Some(|game| game.go(Screen::Play));
+    }
     if let Some(act) = wanted {
         game.blip(Menu::Confirm);
         act(game);

@@ -69,9 +69,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     if game.session.is_played() {
         ui.ctx().set_cursor_icon(egui::CursorIcon::None);
     }
-    if !game.session.is_played()
-        && (game.session.is_over() || ui.input(|input| input.key_pressed(egui::Key::Escape)))
-    {
+    if !game.session.is_played() && game.session.is_over() {
         game.go(Screen::Replays);
     }
 }

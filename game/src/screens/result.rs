@@ -1,7 +1,7 @@
 //! How it went, and a dare to try the other way.
 
 use super::kit::{Weight, button, card, column};
-use super::veil;
+use super::{Act, veil};
 use crate::game::{Game, Screen};
 use egui::{RichText, Ui, vec2};
 use tamaire_sound::Menu;
@@ -14,7 +14,11 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     };
     let (theme, said) = (game.theme(), game.words());
     let level = game.session.round().level().clone();
-    let mut wanted: Option<fn(&mut Game)> = None;
+    let mut wanted: Option<Act> = None;
+    let to_levels: Act = |game| {
+        game.go(Screen::Title);
+        game.go(Screen::Levels);
+    };
     column(ui, 560.0, 560.0, |ui| {
         card(ui, &theme, |ui| {
             ui.label(
@@ -59,7 +63,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
             }
             ui.add_space(10.0);
             let small = vec2(154.0, 46.0);
-            let rows: [[(&str, fn(&mut Game)); 2]; 2] = [
+            let rows: [[(&str, Act); 2]; 2] = [
                 [
                     (said.next, |game| {
                         game.start((game.chosen + 1) % game.levels.len())
@@ -72,13 +76,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                         }
                     }),
                 ],
-                [
-                    (said.save, Game::keep_replay),
-                    (said.levels, |game| {
-                        game.go(Screen::Title);
-                        game.go(Screen::Levels);
-                    }),
-                ],
+                [(said.save, Game::keep_replay), (said.levels, to_levels)],
             ];
             for row in rows {
                 ui.horizontal(|ui| {
@@ -93,6 +91,9 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
             }
         });
     });
+    if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+        wanted = Some(to_levels);
+    }
     if let Some(act) = wanted {
         game.blip(Menu::Confirm);
         act(game);

@@ -150,7 +150,7 @@ fn controls(ui: &mut Ui, game: &mut Game, chosen: &mut Settings) {
     section_of_controls(ui, game, |ui, game| {
         for action in Action::ALL {
             let keys = chosen.bindings.keys.get(&action).into_iter().flatten();
-            let keys: Vec<&str> = keys.map(|key| key.symbol_or_name()).collect();
+            let keys: Vec<&str> = keys.map(|&key| name_of(key)).collect();
             let buttons = chosen.bindings.buttons.get(&action).into_iter().flatten();
             let buttons: Vec<&str> = buttons.map(|button| button.0.as_str()).collect();
             let listens = game.rebinding == Some(action);
@@ -164,12 +164,35 @@ fn controls(ui: &mut Ui, game: &mut Game, chosen: &mut Settings) {
                 ),
             };
             let weight = if listens { Weight::Main } else { Weight::Other };
-            if button(ui, &theme, &text, vec2(560.0, 44.0), weight).clicked() && !listens {
+            let response = button(ui, &theme, &text, vec2(560.0, 44.0), weight);
+            if listens {
+                // Arrows, Tab and Escape are keys like any other now.
+                response.request_focus();
+                let all = egui::EventFilter {
+                    tab: true,
+                    horizontal_arrows: true,
+                    vertical_arrows: true,
+                    escape: true,
+                };
+                ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, all));
+            } else if response.clicked() {
                 game.rebinding = Some(action);
             }
             ui.add_space(4.0);
         }
     });
+}
+
+/// A key as it is written: egui's arrows are in no font of ours.
+fn name_of(key: egui::Key) -> &'static str {
+    use egui::Key;
+    match key {
+        Key::ArrowUp => "↑",
+        Key::ArrowDown => "↓",
+        Key::ArrowLeft => "←",
+        Key::ArrowRight => "→",
+        key => key.symbol_or_name(),
+    }
 }
 
 fn section_of_controls(ui: &mut Ui, game: &mut Game, contents: impl FnOnce(&mut Ui, &mut Game)) {

@@ -1,0 +1,247 @@
+//! With a mouse and keys.
+
+use crate::window::*;
+use egui::Key;
+use egui_kittest::kittest::{NodeT, Queryable};
+use std::fs;
+use tamaire::game::{Game, Screen};
+use tamaire::input::{Action, Seat};
+use tamaire::platform::{Files, Pads, Sound};
+use tamaire::settings::Settings;
+use tamaire::words::Language;
+use tamaire_play::Route;
+
+#[test]
+fn from_the_title_to_a_round_and_back() {
+    let mut window = window(Files::nowhere());
+    click(&mut window, "Play");
+    assert_eq!(screen(&window), Screen::Levels);
+    click(&mut window, "Classic");
+    assert_eq!(screen(&window), Screen::Play);
+    frames(&mut window, 10);
+    assert!(ticks(&window) >= 10);
+    press(&mut window, Key::Escape);
+    assert_eq!(screen(&window), Screen::Paused);
+    let before = ticks(&window);
+    frames(&mut window, 10);
+    assert_eq!(ticks(&window), before, "time stands still");
+    press(&mut window, Key::Escape);
+    assert_eq!(screen(&window), Screen::Play);
+    press(&mut window, Key::P);
+    click(&mut window, "Again");
+    assert_eq!(screen(&window), Screen::Play);
+    assert!(ticks(&window) < before);
+    press(&mut window, Key::Escape);
+    click(&mut window, "Levels");
+    assert_eq!(screen(&window), Screen::Levels);
+    click(&mut window, "Back");
+    assert_eq!(screen(&window), Screen::Title);
+}
+
+#[test]
+fn one_key_begins_the_round_again_at_once() {
+    let mut window = window(Files::nowhere());
+    game(&mut window).start(0);
+    frames(&mut window, 30);
+    assert!(ticks(&window) >= 29);
+    window.key_press(Key::R);
+    window.step();
+    // The key goes down in the first frame and up in the second.
+    assert!(ticks(&window) <= 2, "{} ticks", ticks(&window));
+    frames(&mut window, 5);
+    assert!(ticks(&window) >= 5, "and it goes on");
+}
+
+#[test]
+fn a_round_is_won_kept_watched_raced_and_deleted() {
+    let folder = folder("win");
+    let files = Files::in_folder(&folder);
+    let mut window = window(files.clone());
+    game(&mut window).start(0);
+    win(&mut window);
+    let (outcome, is_best) = game(&mut window).won.unwrap();
+    assert!(is_best && outcome.route == Route::Squeeze, "{outcome:?}");
+    window.get_by_label("Squeezed in!");
+    click(&mut window, "Save replay");
+    assert!(notices(&window).contains("classic-1.tamaire"));
+    let saved = fs::read_to_string(&files.replays()[0].path).unwrap();
+
+    click(&mut window, "Race it");
+    assert_eq!(screen(&window), Screen::Play);
+    frames(&mut window, 5);
+    let ghost = |window: &Window| {
+        let ghost = window.state().game.session.ghost();
+        ghost.map(|round| round.frames().len())
+    };
+    assert!(ghost(&window).unwrap() >= 5);
+    press(&mut window, Key::R);
+    assert!(ghost(&window).unwrap() <= 4, "the ghost begins again too");
+    win(&mut window);
+    assert!(!game(&mut window).won.unwrap().1, "as fast is no faster");
+    click(&mut window, "Again");
+    assert_eq!(screen(&window), Screen::Play);
+    win(&mut window);
+    press(&mut window, Key::Escape);
+    assert_eq!(screen(&window), Screen::Levels);
+    press(&mut window, Key::Escape);
+
+    click(&mut window, "Replays");
+    click(&mut window, "Watch");
+    assert_eq!(screen(&window), Screen::Play);
+    assert!(!game(&mut window).session.is_played());
+    while screen(&window) == Screen::Play {
+        let game = game(&mut window);
+        let goes_on = |game: &Game| !game.session.is_over();
+        drive(game, tamaire_play::BotKind::Idle, goes_on);
+        assert_eq!(game.session.round().progress().outcome, Some(outcome));
+        frames(&mut window, 2);
+    }
+    assert_eq!(
+        (screen(&window), notices(&window).as_str()),
+        (Screen::Replays, "")
+    );
+    click(&mut window, "Race it");
+    assert!(game(&mut window).session.is_played() && ghost(&window).is_some());
+    game(&mut window).go(Screen::Title);
+    game(&mut window).go(Screen::Replays);
+
+    // Somebody else's, or none at all.
+    let path = files.replays()[0].path.clone();
+    fs::write(&path, saved.replacen("version = 1", "version = 999", 1)).unwrap();
+    frames(&mut window, 2);
+    click(&mut window, "Watch");
+    assert!(
+        notices(&window).contains("version 999"),
+        "{}",
+        notices(&window)
+    );
+    assert_eq!(screen(&window), Screen::Replays);
+    // The first hash is a lie, which comes out after a second.
+    let start = saved.find("hashes = [").unwrap();
+    let digit = start + saved[start..].find('"').unwrap() + 1;
+    let mut lie = saved.clone();
+    let other = if &saved[digit..=digit] == "0" {
+        "1"
+    } else {
+        "0"
+    };
+    lie.replace_range(digit..=digit, other);
+    fs::write(&path, lie).unwrap();
+    for way in ["Watch", "Race it"] {
+        game(&mut window).notices.clear();
+        click(&mut window, way);
+        assert_eq!(screen(&window), Screen::Play);
+        frames(&mut window, 65);
+        assert!(
+            notices(&window).contains("was changed"),
+            "{way}: {}",
+            notices(&window)
+        );
+        game(&mut window).go(Screen::Replays);
+        frames(&mut window, 2);
+    }
+    click(&mut window, "Delete");
+    assert!(files.replays().is_empty());
+    window.get_by_label_contains("No replays yet");
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn settings_are_kept_and_the_language_changes_at_once() {
+    let folder = folder("settings");
+    let files = Files::in_folder(&folder);
+    let mut window = window(files.clone());
+    click(&mut window, "Settings");
+    let slider = egui::accesskit::Role::Slider;
+    let before = game(&mut window).settings.volume;
+    window
+        .get_by_role_and_label(slider, "Volume")
+        .decrement_accesskit();
+    frames(&mut window, 2);
+    let after = game(&mut window).settings.volume;
+    assert!((before - after - 0.05).abs() < 1e-3, "{before} {after}");
+    click(&mut window, "日本語");
+    let said = Language::Japanese.words();
+    window.get_by_label(said.volume);
+    click(&mut window, said.back);
+    window.get_by_label(said.play);
+    let again = Game::new(files, Sound::none(), Pads::none());
+    assert_eq!(again.settings.language, Language::Japanese);
+    assert_eq!(again.settings.volume, after);
+    fs::write(folder.join("settings.toml"), "volume = [").unwrap();
+    let again = Game::new(Files::in_folder(&folder), Sound::none(), Pads::none());
+    assert_eq!(again.settings, Settings::default());
+    assert!(again.notices[0].0.contains("settings.broken.toml"));
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn any_key_can_mean_anything() {
+    let mut window = window(Files::nowhere());
+    click(&mut window, "Settings");
+    let row = |window: &Window| {
+        let row = window.get_by_label_contains("Try again:");
+        let label = row.accesskit_node().label();
+        label.expect("it was found by it")
+    };
+    for key in [Key::Q, Key::Enter, Key::ArrowDown, Key::Tab] {
+        let row = row(&window);
+        click(&mut window, &row);
+        assert_eq!(game(&mut window).rebinding, Some(Action::Retry));
+        window.get_by_label("Press a key or button…");
+        press(&mut window, key);
+        let game = game(&mut window);
+        assert_eq!(
+            game.settings.bindings.of_key(key),
+            Some(Action::Retry),
+            "{key:?}"
+        );
+        assert_eq!(game.rebinding, None, "{key:?}");
+    }
+    // Escape leaves it as it is, and the screen too.
+    let row = row(&window);
+    click(&mut window, &row);
+    press(&mut window, Key::Escape);
+    assert!(matches!(screen(&window), Screen::Settings(_)));
+    let game = game(&mut window);
+    assert_eq!(game.settings.bindings.of_key(Key::Tab), Some(Action::Retry));
+    assert_eq!(game.rebinding, None);
+    game.settings = Settings::default();
+    game.go(Screen::Title);
+}
+
+#[test]
+fn mouse_and_keys_are_two_players() {
+    let mut window = window(Files::nowhere());
+    game(&mut window).start(0);
+    frames(&mut window, 2);
+    press(&mut window, Key::J);
+    assert_eq!(game(&mut window).players.second(), Some(Seat::Keys));
+    frames(&mut window, 2);
+    let hands = |window: &Window| {
+        let hands = window.state().game.session.round().world().manipulators();
+        hands.iter().map(|hand| hand.goal()).collect::<Vec<_>>()
+    };
+    let before = hands(&window);
+    let start = window.state().game.session.round().level().scene().goals(0);
+    for (at, start) in before.iter().zip(&start) {
+        let is_near = (0..2).all(|axis| (at[axis] - start[axis]).abs() < 1e-3);
+        assert!(
+            is_near,
+            "who comes in is where the level says: {at:?} {start:?}"
+        );
+    }
+    window.key_down(Key::D);
+    window.hover_at(egui::pos2(480.0, 100.0));
+    frames(&mut window, 20);
+    let after = hands(&window);
+    assert!(after[0][1] > before[0][1] + 0.3, "{before:?} {after:?}");
+    assert!(after[1][0] > before[1][0] + 0.3, "{before:?} {after:?}");
+    assert!(
+        (after[1][1] - before[1][1]).abs() < 1e-3,
+        "{before:?} {after:?}"
+    );
+    window.key_up(Key::D);
+    press(&mut window, Key::J);
+    assert_eq!(game(&mut window).players.second(), None);
+}

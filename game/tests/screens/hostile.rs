@@ -1,0 +1,209 @@
+//! What the game puts up with.
+
+use crate::window::*;
+use egui::{DroppedFile, Event, Key, PointerButton, pos2};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use sticks::{About, Device, DeviceId, Pad, PadButton, Snapshot};
+use tamaire::game::{Game, Screen};
+use tamaire::platform::{Files, Pads};
+use tamaire_play::BotKind;
+
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+fn drop_file(window: &mut Window, path: PathBuf) {
+    game(window).notices.clear();
+    window
+        .input_mut()
+        .dropped_files
+        .push(Arc::new(Dropped(path)));
+    frames(window, 2);
+}
+
+#[test]
+fn a_picture_is_played_and_what_is_broken_is_named() {
+    let folder = folder("drop");
+    let mut window = window(Files::in_folder(&folder));
+    let cat = "../crates/tamaire_play/levels/cat.png";
+    drop_file(&mut window, Path::new(env!("CARGO_MANIFEST_DIR")).join(cat));
+    assert_eq!(
+        (screen(&window), notices(&window).as_str()),
+        (Screen::Play, "")
+    );
+    let name = |window: &Window| {
+        window
+            .state()
+            .game
+            .session
+            .round()
+            .level()
+            .game()
+            .name
+            .en
+            .clone()
+    };
+    assert_eq!(name(&window), "cat");
+
+    let broken = folder.join("broken.toml");
+    fs::write(&broken, "dim = 2\ngravity = \"down\"\n").unwrap();
+    drop_file(&mut window, broken);
+    let said = notices(&window);
+    assert!(
+        said.contains("broken.toml") && said.contains("line 2"),
+        "{said}"
+    );
+    for (file, bytes) in [
+        ("no.png", &b"no picture"[..]),
+        ("no.tamaire", b"no replay"),
+        ("no.zip", b"\xff\xfe"),
+        ("no", b""),
+    ] {
+        let path = folder.join(file);
+        fs::write(&path, bytes).unwrap();
+        drop_file(&mut window, path);
+        assert!(
+            notices(&window).contains(file),
+            "{file}: {}",
+            notices(&window)
+        );
+    }
+    for path in [folder.join("nowhere.toml"), folder.clone(), PathBuf::new()] {
+        drop_file(&mut window, path.clone());
+        assert_ne!(notices(&window), "", "{path:?}");
+    }
+    let before = ticks(&window);
+    frames(&mut window, 5);
+    assert_eq!(name(&window), "cat");
+    assert!(ticks(&window) >= before + 5, "the game goes on");
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn a_round_waits_while_the_window_is_not_looked_at() {
+    let mut window = window(Files::nowhere());
+    window.input_mut().focused = false;
+    frames(&mut window, 2);
+    assert_eq!(screen(&window), Screen::Title);
+    window.input_mut().focused = true;
+    game(&mut window).start(0);
+    frames(&mut window, 5);
+    assert_eq!(screen(&window), Screen::Play);
+    window.input_mut().focused = false;
+    frames(&mut window, 2);
+    assert_eq!(screen(&window), Screen::Paused);
+}
+
+#[test]
+fn every_button_fits_into_the_smallest_window_with_the_largest_letters() {
+    let mut window = open(Files::nowhere(), egui::vec2(640.0, 400.0), 0.5);
+    game(&mut window).settings.text_size = 1.6;
+    game(&mut window).start(0);
+    win(&mut window);
+    let screens = [Screen::Result, Screen::Paused, Screen::Title];
+    for (screen, last) in screens.into_iter().zip(["Levels", "Levels", "Quit"]) {
+        game(&mut window).screen = screen.clone();
+        frames(&mut window, 3);
+        let (rect, room) = (button(&window, last).rect(), window.ctx.content_rect());
+        assert!(room.contains_rect(rect), "{screen:?}: {rect:?} in {room:?}");
+    }
+}
+
+#[test]
+fn two_thousand_frames_of_anything_are_survived() {
+    let folder = folder("anything");
+    let mut random = fastrand::Rng::with_seed(7);
+    let mut window = window(Files::in_folder(&folder));
+    let mut pad = Device::at_rest(DeviceId(1), about(), 6, 0, 0);
+    pad.pad = Some(Pad::default());
+    let mut devices = vec![pad, Device::at_rest(DeviceId(2), about(), 2, 8, 1)];
+    let mut seen = std::collections::BTreeSet::new();
+    // Each event has a frame of its own: a click is three.
+    for frame in 0..1000 {
+        let at = pos2(960.0 * random.f32(), 600.0 * random.f32());
+        match random.u32(0..12) {
+            0..4 => {
+                window.event(Event::PointerMoved(at));
+                for pressed in [true, false] {
+                    window.event(Event::PointerButton {
+                        pos: at,
+                        button: PointerButton::Primary,
+                        pressed,
+                        modifiers: egui::Modifiers::NONE,
+                    });
+                }
+            }
+            4..7 => window.key_press(Key::ALL[random.usize(..Key::ALL.len())]),
+            7 => window.key_press(Key::Enter),
+            8 => devices[0].pad.as_mut().unwrap().left = [random.f32() * 2.0 - 1.0, f32::NAN],
+            9 | 10 => {
+                let button = PadButton::ALL[random.usize(..PadButton::ALL.len())];
+                let pad = devices[0].pad.as_mut().unwrap();
+                for other in PadButton::ALL {
+                    pad.button_mut(other).down = false;
+                }
+                pad.button_mut(button).press();
+                let button = random.usize(..8);
+                devices[1].buttons[button].press();
+            }
+            _ => {}
+        }
+        let told = match frame % 100 {
+            90.. => Vec::new(),
+            _ => devices.clone(),
+        };
+        let game = game(&mut window);
+        game.pads = Pads::of(Snapshot { devices: told });
+        game.notices.truncate(4);
+        match (frame % 100, random.u32(..5)) {
+            (99, 0) => game.go(Screen::Title),
+            (99, 1) => game.go(Screen::Replays),
+            (99, 2) => game.go(Screen::Settings(Box::new(Screen::Levels))),
+            (99, _) => game.start(random.usize(..game.levels.len())),
+            _ => {}
+        }
+        if frame == 500 {
+            game.start(0);
+            drive(game, BotKind::Squeeze, |game| game.won.is_none());
+            game.pass(2.0);
+        }
+        seen.insert(format!("{:?}", screen(&window)));
+        window.step();
+        check(&window.state().game, frame);
+    }
+    assert!(seen.len() >= 6, "{seen:?}");
+    fs::remove_dir_all(folder).unwrap();
+}
+
+fn about() -> About {
+    About {
+        name: String::new(),
+        guid: String::new(),
+    }
+}
+
+fn check(game: &Game, frame: usize) {
+    let round = game.session.round();
+    let [low, high] = round.level().arena();
+    for hand in round.world().manipulators() {
+        let at = hand.position();
+        let is_in = |axis: usize| low[axis] <= at[axis] && at[axis] <= high[axis];
+        assert!(is_in(0) && is_in(1), "frame {frame}: a hand at {at:?}");
+    }
+    assert_eq!(
+        game.settings,
+        game.settings.clone().in_range(),
+        "frame {frame}"
+    );
+}

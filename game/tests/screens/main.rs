@@ -1,0 +1,8 @@
+//! The game in a window that nobody sees, drawn by software (Mesa's llvmpipe): what can be clicked,
+//! pressed and read, how it looks, and what it puts up with.
+
+mod clicks;
+mod hostile;
+mod pads;
+mod pictures;
+mod window;

@@ -1,0 +1,215 @@
+//! With a pad or a stick alone.
+
+use crate::window::*;
+use egui::accesskit::Role;
+use egui_kittest::kittest::Queryable;
+use sticks::{About, Device, DeviceId, Pad, PadButton, Snapshot};
+use tamaire::game::Screen;
+use tamaire::input::{Action, Seat};
+use tamaire::platform::{Files, Pads};
+
+/// A window with made up devices.
+struct Table {
+    window: Window,
+    devices: Vec<Device>,
+}
+
+impl Table {
+    fn with(devices: Vec<Device>) -> Self {
+        let window = window(Files::nowhere());
+        let mut table = Self { window, devices };
+        table.frames(2);
+        table
+    }
+
+    fn frames(&mut self, count: usize) {
+        let devices = self.devices.clone();
+        game(&mut self.window).pads = Pads::of(Snapshot { devices });
+        frames(&mut self.window, count);
+    }
+
+    /// Presses a button of the last pad, lets it go, and sees what comes of it.
+    fn tap(&mut self, button: PadButton) {
+        self.button(button).press();
+        self.frames(2);
+        self.button(button).down = false;
+        self.frames(2);
+    }
+
+    fn button(&mut self, button: PadButton) -> &mut sticks::Button {
+        let pad = self
+            .devices
+            .last_mut()
+            .and_then(|device| device.pad.as_mut());
+        pad.expect("a pad").button_mut(button)
+    }
+
+    fn screen(&self) -> Screen {
+        screen(&self.window)
+    }
+
+    fn has_focus(&self, name: &str) -> bool {
+        button(&self.window, name).is_focused()
+    }
+}
+
+fn about(name: &str) -> About {
+    About {
+        name: name.into(),
+        guid: String::new(),
+    }
+}
+
+fn pad(id: u32) -> Device {
+    let mut device = Device::at_rest(DeviceId(id), about("Pad"), 6, 0, 0);
+    device.pad = Some(Pad::default());
+    device
+}
+
+#[test]
+fn a_pad_alone_goes_everywhere() {
+    use PadButton::*;
+    let mut table = Table::with(vec![pad(1)]);
+    assert!(table.has_focus("Play"));
+    table.tap(South);
+    assert_eq!(table.screen(), Screen::Levels);
+    assert!(table.has_focus("Classic"));
+    table.tap(Right);
+    assert!(!table.has_focus("Classic"));
+    table.tap(Left);
+    table.tap(South);
+    assert_eq!(table.screen(), Screen::Play);
+
+    let hand = |table: &mut Table| {
+        let round = game(&mut table.window).session.round();
+        round.world().manipulators()[0].goal()
+    };
+    let before = hand(&mut table);
+    table.devices[0].pad.as_mut().unwrap().left = [0.0, 1.0];
+    table.frames(15);
+    table.devices[0].pad.as_mut().unwrap().left = [0.0; 2];
+    table.button(Right).press();
+    table.frames(15);
+    table.button(Right).down = false;
+    let after = hand(&mut table);
+    assert!(
+        after[0] > before[0] + 0.2 && after[1] > before[1] + 0.2,
+        "{before:?} {after:?}"
+    );
+
+    table.tap(Start);
+    assert_eq!(table.screen(), Screen::Paused);
+    assert!(table.has_focus("Go on"));
+    table.tap(Down);
+    assert!(table.has_focus("Again"));
+    table.tap(Down);
+    table.tap(South);
+    assert!(matches!(table.screen(), Screen::Settings(_)));
+    assert!(table.has_focus("Back"));
+    let slider = |table: &Table, name| {
+        let slider = table.window.get_by_role_and_label(Role::Slider, name);
+        slider.is_focused()
+    };
+    for _ in 0..4 {
+        if !slider(&table, "Volume") {
+            table.tap(Down);
+        }
+    }
+    assert!(slider(&table, "Volume"));
+    let before = game(&mut table.window).settings.volume;
+    table.tap(Left);
+    table.tap(Left);
+    let after = game(&mut table.window).settings.volume;
+    assert!((before - after - 0.1).abs() < 1e-3, "{before} {after}");
+
+    // Down to the end, where what has the focus is in sight.
+    for _ in 0..40 {
+        if !table.has_focus("Reset") {
+            table.tap(Down);
+        }
+    }
+    assert!(table.has_focus("Reset"));
+    let (seen, room) = (
+        button(&table.window, "Reset").rect(),
+        table.window.ctx.content_rect(),
+    );
+    assert!(room.contains_rect(seen), "{seen:?} in {room:?}");
+    table.tap(Up);
+    table.tap(South);
+    assert_eq!(game(&mut table.window).rebinding, Some(Action::Join));
+    table.tap(Down);
+    let bindings = &game(&mut table.window).settings.bindings;
+    let down = sticks::Control::Pad(Down);
+    assert_eq!(bindings.of_button(down), Some(Action::Join));
+    table.tap(East);
+    assert_eq!(table.screen(), Screen::Paused);
+    table.tap(East);
+    assert_eq!(table.screen(), Screen::Play);
+    table.tap(North);
+    assert!(ticks(&table.window) < 6, "again");
+}
+
+#[test]
+fn a_plain_stick_alone_begins_a_round() {
+    let stick = Device::at_rest(DeviceId(7), about("Stick"), 2, 8, 1);
+    let mut table = Table::with(vec![stick]);
+    let tap = |table: &mut Table, button: usize| {
+        table.devices[0].buttons[button].press();
+        table.frames(2);
+        table.devices[0].buttons[button].down = false;
+        table.frames(2);
+    };
+    // y grows towards the player.
+    table.devices[0].axes[1] = 1.0;
+    table.frames(2);
+    table.devices[0].axes[1] = 0.0;
+    table.frames(2);
+    assert!(table.has_focus("Replays"));
+    tap(&mut table, 0);
+    assert_eq!(table.screen(), Screen::Replays);
+    tap(&mut table, 1);
+    assert_eq!(table.screen(), Screen::Title);
+    tap(&mut table, 0);
+    tap(&mut table, 0);
+    assert_eq!(table.screen(), Screen::Play);
+    tap(&mut table, 2);
+    assert_eq!(table.screen(), Screen::Paused);
+}
+
+#[test]
+fn a_second_player_joins_leaves_and_is_unplugged() {
+    let mut table = Table::with(vec![pad(1), pad(2)]);
+    game(&mut table.window).start(0);
+    table.frames(2);
+    table.tap(PadButton::Back);
+    let second = |table: &mut Table| game(&mut table.window).players.second();
+    assert_eq!(second(&mut table), Some(Seat::Stick(DeviceId(2))));
+    let hands = |table: &mut Table| {
+        let round = game(&mut table.window).session.round();
+        let hands = round.world().manipulators();
+        hands.iter().map(|hand| hand.goal()).collect::<Vec<_>>()
+    };
+    let before = hands(&mut table);
+    assert_eq!(before.len(), 2);
+    table.devices[1].pad.as_mut().unwrap().left = [1.0, 0.0];
+    table.frames(10);
+    let after = hands(&mut table);
+    assert!(after[1][0] > before[1][0] + 0.2, "{before:?} {after:?}");
+    assert_eq!(after[0], before[0]);
+    table.devices[1].pad.as_mut().unwrap().left = [0.0; 2];
+    table.tap(PadButton::Back);
+    assert_eq!(second(&mut table), None);
+    table.tap(PadButton::Back);
+
+    table.devices.pop();
+    table.frames(2);
+    assert_eq!(
+        table.screen(),
+        Screen::Paused,
+        "the round waits for who was unplugged"
+    );
+    table.tap(PadButton::South);
+    assert_eq!(table.screen(), Screen::Play);
+    assert_eq!(second(&mut table), None);
+    table.frames(5);
+}

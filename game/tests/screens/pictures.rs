@@ -1,0 +1,72 @@
+//! How it looks: pictures, compared with those in `tests/snapshots`.
+
+use crate::window::*;
+use egui::vec2;
+use egui_kittest::SnapshotOptions;
+use tamaire::game::Screen;
+use tamaire::input::{Action, Seat};
+use tamaire::platform::Files;
+use tamaire::words::Language;
+use tamaire_play::BotKind;
+
+/// A pixel may differ by about ten of 256 steps of grey, and so many pixels by more: drivers round
+/// corners and mix colours in ways of their own. Whatever moves, is missing or speaks another
+/// language differs by more than that.
+const STEP: f32 = 50.0;
+const PIXELS: usize = 800;
+
+fn picture(window: &mut Window, name: &str) {
+    let options = SnapshotOptions::new()
+        .threshold(STEP)
+        .max_failed_pixels(PIXELS);
+    window.snapshot_options(name, &options);
+}
+
+/// The same in each language.
+fn pictures(window: &mut Window, name: &str) {
+    for (language, tag) in [(Language::English, "en"), (Language::Japanese, "ja")] {
+        game(window).settings.language = language;
+        // It takes a frame to come on and one to be measured.
+        frames(window, 3);
+        picture(window, &format!("{name}_{tag}"));
+    }
+    game(window).settings.language = Language::English;
+}
+
+#[test]
+fn every_screen() {
+    let mut window = open(Files::nowhere(), vec2(800.0, 500.0), 1.0);
+    drive(game(&mut window), BotKind::Idle, |game| game.time < 2.0);
+    pictures(&mut window, "title");
+    game(&mut window).go(Screen::Levels);
+    pictures(&mut window, "levels");
+    game(&mut window).go(Screen::Settings(Box::new(Screen::Title)));
+    pictures(&mut window, "settings");
+
+    game(&mut window).start(0);
+    game(&mut window).act(Action::Pause, Seat::Keys);
+    pictures(&mut window, "paused");
+    game(&mut window).go(Screen::Play);
+    win(&mut window);
+    pictures(&mut window, "result");
+}
+
+#[test]
+fn a_round_and_a_tear() {
+    // What has much detail is smaller, for the files' sake.
+    let mut window = open(Files::nowhere(), vec2(560.0, 350.0), 1.0);
+    game(&mut window).start(0);
+    drive(game(&mut window), BotKind::Squeeze, |game| {
+        game.session.round().frames().len() < 150
+    });
+    frames(&mut window, 1);
+    picture(&mut window, "play");
+    game(&mut window).start(0);
+    drive(game(&mut window), BotKind::Shave, |game| {
+        game.session.round().progress().pieces < 8
+    });
+    frames(&mut window, 1);
+    picture(&mut window, "tear");
+    game(&mut window).act(Action::Elements, Seat::Keys);
+    pictures(&mut window, "elements");
+}
