@@ -106,7 +106,6 @@ fn a_round_waits_while_the_window_is_not_looked_at() {
 }
 
 #[test]
-#[ignore = "the result is too high for the largest letters"]
 fn every_button_fits_into_the_smallest_window_with_the_largest_letters() {
     let mut window = open(Files::nowhere(), egui::vec2(640.0, 400.0), 0.5);
     game(&mut window).settings.text_size = 1.6;
@@ -122,7 +121,6 @@ fn every_button_fits_into_the_smallest_window_with_the_largest_letters() {
 }
 
 #[test]
-#[ignore = "takes long, and was not yet seen to pass"]
 fn two_thousand_frames_of_anything_are_survived() {
     let folder = folder("anything");
     let mut random = fastrand::Rng::with_seed(7);
@@ -131,7 +129,8 @@ fn two_thousand_frames_of_anything_are_survived() {
     pad.pad = Some(Pad::default());
     let mut devices = vec![pad, Device::at_rest(DeviceId(2), about(), 2, 8, 1)];
     let mut seen = std::collections::BTreeSet::new();
-    for frame in 0..2000 {
+    // Each event has a frame of its own: a click is three.
+    for frame in 0..1000 {
         let at = pos2(960.0 * random.f32(), 600.0 * random.f32());
         match random.u32(0..12) {
             0..4 => {
@@ -172,16 +171,14 @@ fn two_thousand_frames_of_anything_are_survived() {
             (99, 1) => game.go(Screen::Replays),
             (99, 2) => game.go(Screen::Settings(Box::new(Screen::Levels))),
             (99, _) => game.start(random.usize(..game.levels.len())),
-            (49, 0) => drive(game, BotKind::Squeeze, |game| {
-                let is_young = game.session.round().frames().len() < 600;
-                is_young
-                    && game.screen == Screen::Play
-                    && game.session.is_played()
-                    && game.won.is_none()
-            }),
             _ => {}
         }
-        seen.insert(format!("{:?}", game.screen));
+        if frame == 500 {
+            game.start(0);
+            drive(game, BotKind::Squeeze, |game| game.won.is_none());
+            game.pass(2.0);
+        }
+        seen.insert(format!("{:?}", screen(&window)));
         window.step();
         check(&window.state().game, frame);
     }
