@@ -43,6 +43,7 @@ fn main() -> ExitCode {
             run_all(CHECK).and_then(|()| run_all(TEST))
         }
         Task::Wasm(if_missing) => wasm::run(if_missing),
+        Task::Soak => run_all(SOAK),
         Task::Rapier => run_all(RAPIER),
     };
     match outcome {
@@ -142,6 +143,22 @@ const TEST: &[Step] = &[
                and for sums whose order depends on the threads",
     },
 ];
+
+const SOAK: &[Step] = &[Step {
+    arguments: &[
+        "test",
+        "--release",
+        "--package",
+        "tamaire_play",
+        "--test",
+        "soak",
+        "--",
+        "--ignored",
+        "--nocapture",
+    ],
+    environment: &[],
+    hint: "a round that nobody meant broke something, see above; its level and tick are named",
+}];
 
 const RAPIER: &[Step] = &[Step {
     arguments: &[

@@ -9,8 +9,10 @@ tasks:
   play [-- WORDS]  builds and opens the game, and hands it the words
   test             all tests in debug, then the engine's in release and on one to eight threads
   check            what a change must pass: formatting, lints, documentation, then all of `test`
-  wasm             the golden scenes on wasm32 under Node: the same bits as natively?
+  wasm             the golden scenes on wasm32 under Node: the same bits as natively? And does the
+                   game compile for a browser?
   wasm --install   the same; what is missing comes from Debian's packages
+  soak             ten minutes of two hands that do anything, on every level
   rapier           whether crates/against_rapier, a workspace of its own, still compiles
   help             this text
 
@@ -27,6 +29,7 @@ pub enum Task {
     Test(IfMissing),
     Check(IfMissing),
     Wasm(IfMissing),
+    Soak,
     Rapier,
     Help,
 }
@@ -56,6 +59,7 @@ impl Task {
             ["check", "--no-install"] => Task::Check(IfMissing::Say),
             ["wasm"] => Task::Wasm(IfMissing::Say),
             ["wasm", "--install"] => Task::Wasm(IfMissing::Install),
+            ["soak"] => Task::Soak,
             ["rapier"] => Task::Rapier,
             ["help" | "--help" | "-h"] => Task::Help,
             _ => return Err(format!("there is no task `{}`", arguments.join(" "))),

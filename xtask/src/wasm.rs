@@ -1,4 +1,5 @@
-//! The golden scenes on wasm32, run under Node: do they end in the same bits as natively?
+//! The golden scenes on wasm32, run under Node: do they end in the same bits as natively? And does
+//! the game compile for a browser?
 //!
 //! rustup's toolchain can build for wasm32 after `rustup target add wasm32-unknown-unknown`. Where
 //! it has not been told to, or cannot reach its server, Debian's packages do: a compiler, the
@@ -36,6 +37,10 @@ pub fn run(if_missing: IfMissing) -> Result<(), Failure> {
         Command::new("node").arg("xtask/golden.mjs").arg(module),
         "a scene ends in other bits on wasm32: look for arithmetic beyond + - * / and sqrt, for \
          usize, which has 32 bits there, and for lanes that sum in another order",
+    )?;
+    execute(
+        &mut cargo_for_wasm(&compiler, &["check", "--package", "tamaire"]),
+        "what differs in a browser belongs into game/src/platform and behind features of its crates",
     )
 }
 
@@ -141,16 +146,29 @@ fn install(lacks: &[Lack]) -> bool {
     apt_get(&install_arguments(names))
 }
 
-/// Builds the scenes, in a folder of their own beside the native build. Returns where the module is.
+/// Builds the scenes. Returns where the module is.
 fn build(compiler: &Compiler) -> Result<PathBuf, Failure> {
-    let folder = env::var_os("CARGO_TARGET_DIR")
+    let words = ["rustc", "--release", "--package", "fuwafuwa_golden"];
+    let mut command = cargo_for_wasm(compiler, &words);
+    command.args(["--crate-type", "cdylib"]);
+    execute(&mut command, "the scenes could not be built for wasm32")?;
+    Ok(folder().join(TARGET).join("release/fuwafuwa_golden.wasm"))
+}
+
+/// Where wasm32 is built: beside the native build.
+fn folder() -> PathBuf {
+    env::var_os("CARGO_TARGET_DIR")
         .map_or_else(|| PathBuf::from("target"), PathBuf::from)
-        .join("wasm");
+        .join("wasm")
+}
+
+/// A call of cargo that builds for wasm32 with this compiler.
+fn cargo_for_wasm(compiler: &Compiler, words: &[&str]) -> Command {
     let mut command = cargo();
     command
-        .args(["rustc", "--release", "--package", "fuwafuwa_golden"])
-        .args(["--crate-type", "cdylib", "--target", TARGET])
-        .env("CARGO_TARGET_DIR", root().join(&folder))
+        .args(words)
+        .args(["--target", TARGET])
+        .env("CARGO_TARGET_DIR", root().join(folder()))
         // Flags for the native build, such as a target-cpu, make no sense here.
         .env_remove("RUSTFLAGS")
         .env_remove("CARGO_ENCODED_RUSTFLAGS");
@@ -164,8 +182,7 @@ fn build(compiler: &Compiler) -> Result<PathBuf, Failure> {
             .env("RUSTC_BOOTSTRAP", "1")
             .env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker);
     }
-    execute(&mut command, "the scenes could not be built for wasm32")?;
-    Ok(folder.join(TARGET).join("release/fuwafuwa_golden.wasm"))
+    command
 }
 
 /// What a program writes, if it runs and succeeds.

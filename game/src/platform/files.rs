@@ -29,6 +29,7 @@ pub struct SavedReplay {
 
 impl Files {
     /// The folder that the system means for this.
+    #[cfg(not(target_family = "wasm"))]
     pub fn usual() -> Self {
         let folders = directories::ProjectDirs::from("", "", "tamaire");
         let folder = folders.map(|folders| folders.data_dir().to_path_buf());

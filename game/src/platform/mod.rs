@@ -2,6 +2,10 @@
 //! sticks can be read. Nothing else in the game knows on which it runs.
 
 mod files;
+#[cfg(not(target_family = "wasm"))]
+mod sound;
+#[cfg(target_family = "wasm")]
+#[path = "silence.rs"]
 mod sound;
 mod sticks;
 

@@ -45,7 +45,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
             }
         }
         ui.add_space(8.0);
-        if !cfg!(target_arch = "wasm32")
+        if !cfg!(target_family = "wasm")
             && button(ui, &theme, said.quit, vec2(280.0, 48.0), Weight::Other).clicked()
         {
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);

@@ -1,0 +1,140 @@
+//! The way in on a desktop: the command line, a window, and what is done where none opens.
+
+use crate::app::App;
+use crate::game::Game;
+use crate::headless;
+use crate::platform::{Files, Pads, Sound};
+use clap::Parser;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Push a soft body into a basket that is too small for it.
+#[derive(Parser)]
+#[command(version, after_help = AFTER_HELP)]
+struct Arguments {
+    /// A level (.toml), a picture to make a body of (.png) or a replay (.tamaire)
+    #[arg(conflicts_with_all = ["level", "replay"])]
+    file: Option<PathBuf>,
+    /// No sound
+    #[arg(long)]
+    mute: bool,
+    /// List the levels
+    #[arg(long)]
+    list: bool,
+    /// Play without a window, as fast as it goes, and tell how it went
+    #[arg(long)]
+    headless: bool,
+    #[command(flatten)]
+    options: headless::Options,
+}
+
+const AFTER_HELP: &str = "\
+Examples:
+  tamaire drawing.png
+  tamaire --headless --bot shave --seed 7 --film shave.gif --save shave.tamaire
+  tamaire --headless --replay shave.tamaire --json
+
+Exit status: 0 played to the end, won or not; 1 the replay is refused, or the window broke down;
+2 the arguments make no sense, or a file cannot be read or written";
+
+/// The program `tamaire`; its exit status.
+pub fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    if arguments.list {
+        headless::list();
+        return ExitCode::SUCCESS;
+    }
+    let options = match &arguments.file {
+        Some(file) => arguments.options.with_file(file),
+        None => arguments.options,
+    };
+    if arguments.headless {
+        return headless::play(&options);
+    }
+    if !has_display() {
+        return play_instead("there is no display here", &options);
+    }
+    let mut is_open = false;
+    // A library of the window system that is not installed makes it panic.
+    let opened = catch_unwind(AssertUnwindSafe(|| {
+        show(arguments.file, arguments.mute, &mut is_open)
+    }));
+    match opened {
+        Ok(Ok(())) => ExitCode::SUCCESS,
+        Ok(Err(error)) if is_open => {
+            eprintln!("tamaire: {error}");
+            ExitCode::FAILURE
+        }
+        Ok(Err(error)) => play_instead(&trouble(&error), &options),
+        Err(panic) if is_open => resume_unwind(panic),
+        Err(_) => play_instead("no window opens", &options),
+    }
+}
+
+/// Why no window opens.
+fn trouble(error: &eframe::Error) -> String {
+    let text = error.to_string();
+    match error {
+        eframe::Error::Wgpu(_) => format!(
+            "there is nothing to draw with, neither Vulkan nor OpenGL, not even in software ({text})"
+        ),
+        // Before its reason it names a line of its source.
+        eframe::Error::WinitEventLoop(_) | eframe::Error::Winit(_) => {
+            let reason = text.rsplit(": ").next().unwrap_or(&text);
+            format!("no window opens ({reason})")
+        }
+        _ => format!("no window opens ({text})"),
+    }
+}
+
+/// Opens the window and returns when it is closed.
+fn show(file: Option<PathBuf>, mute: bool, is_open: &mut bool) -> eframe::Result {
+    let options = eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_title("玉入れ tamaire")
+            .with_inner_size([1280.0, 800.0])
+            .with_min_inner_size([640.0, 400.0]),
+        ..Default::default()
+    };
+    eframe::run_native(
+        "tamaire",
+        options,
+        Box::new(move |context| {
+            let sound = if mute { Sound::none() } else { Sound::open() };
+            let mut game = Game::new(Files::usual(), sound, Pads::open());
+            if let Some(file) = &file {
+                game.open(file);
+            }
+            let app = App::new(context, game)?;
+            *is_open = true;
+            Ok(Box::new(app))
+        }),
+    )
+}
+
+/// Plays a round without a window, and says why.
+fn play_instead(reason: &str, options: &headless::Options) -> ExitCode {
+    eprintln!(
+        "tamaire: {reason}, so it plays a round by itself; --headless with --level, --bot, --seed, \
+         --replay or --film lets you choose one, and --help tells more."
+    );
+    headless::play(options)
+}
+
+/// Whether there is a screen to open a window on: only some systems tell beforehand.
+fn has_display() -> bool {
+    let says_so = cfg!(all(
+        unix,
+        not(any(
+            target_os = "macos",
+            target_os = "ios",
+            target_os = "android"
+        ))
+    ));
+    let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    !says_so
+        || ["WAYLAND_DISPLAY", "WAYLAND_SOCKET", "DISPLAY"]
+            .into_iter()
+            .any(is_set)
+}
