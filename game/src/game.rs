@@ -1,6 +1,7 @@
 //! The state of the game between two frames, and what can happen to it. Everything that a screen
 //! shows is worked out from here.
 
+use crate::attract::attract;
 use crate::input::{Action, Devices, Manner, Players, Seat};
 use crate::look::{Camera, Effects, Theme, View};
 use crate::platform::{Files, Pads, Sound};
@@ -13,7 +14,7 @@ use fuwafuwa_render::frame::ElementColour;
 use std::path::Path;
 use std::sync::Arc;
 use tamaire_play::level::NAMED;
-use tamaire_play::{Bot, BotKind, InputFrame, Level, Outcome, Playback, Replay, ReplayError};
+use tamaire_play::{InputFrame, Level, Outcome, Playback, Replay, ReplayError};
 use tamaire_sound::{Cue, Hush, Menu, Press, Soundscape};
 
 /// What there is to see.
@@ -106,7 +107,7 @@ impl Game {
             settings: settings.in_range(),
             records,
             files,
-            session: attract(&levels, 0),
+            session: attract(0),
             levels,
             chosen: 0,
             players: Players::default(),
@@ -164,7 +165,7 @@ impl Game {
     /// Shows another screen.
     pub fn go(&mut self, screen: Screen) {
         if screen == Screen::Title && self.session.is_played() {
-            self.session = attract(&self.levels, self.time as u64);
+            self.session = attract(self.time as usize);
         }
         self.stepping = false;
         self.screen = screen;
@@ -306,7 +307,7 @@ impl Game {
         if let Some(complaint) = self.session.take_complaint() {
             self.notify(complaint.to_string());
             if !self.session.is_played() {
-                self.session = attract(&self.levels, 0);
+                self.session = attract(0);
                 if self.screen == Screen::Play {
                     self.go(Screen::Replays);
                 }
@@ -317,7 +318,7 @@ impl Game {
             self.cheered += seconds;
             if self.cheered > 4.0 {
                 self.cheered = 0.0;
-                self.session = attract(&self.levels, self.time as u64);
+                self.session = attract(self.time as usize);
             }
         }
         let arena = self.session.round().level().arena();
@@ -494,14 +495,4 @@ fn across(arena: [fuwafuwa::Vector; 2], x: f32) -> f32 {
 
 fn length(v: fuwafuwa::Vector) -> f32 {
     v.iter().map(|k| k * k).sum::<f32>().sqrt()
-}
-
-/// A round that plays by itself, behind the title.
-fn attract(levels: &[Arc<Level>], seed: u64) -> Session {
-    let kind = if seed.is_multiple_of(2) {
-        BotKind::Squeeze
-    } else {
-        BotKind::Shave
-    };
-    Session::of_bot(levels[0].clone(), Bot::new(kind, 1 + seed))
 }

@@ -3,7 +3,7 @@
 use fuwafuwa::Dim2;
 use fuwafuwa::world::TICK;
 use std::sync::Arc;
-use tamaire_play::{Bot, InputFrame, Level, Playback, Replay, ReplayError, Round};
+use tamaire_play::{InputFrame, Level, Playback, Replay, ReplayError, Round};
 
 /// After a long frame no more ticks than this are caught up on; the rest of the time is dropped.
 const MOST_TICKS: u32 = 4;
@@ -23,7 +23,6 @@ pub struct Session {
 enum Player {
     /// Whoever holds the devices.
     People(Round<Dim2>),
-    Bot(Round<Dim2>, Bot),
     Replay(Playback<Dim2>),
 }
 
@@ -31,11 +30,6 @@ impl Session {
     /// A new round for people.
     pub fn of_people(level: Arc<Level>) -> Self {
         Self::of(Player::People(Round::new(level)))
-    }
-
-    /// A round that a bot plays.
-    pub fn of_bot(level: Arc<Level>, bot: Bot) -> Self {
-        Self::of(Player::Bot(Round::new(level), bot))
     }
 
     /// A round as it was played.
@@ -65,7 +59,7 @@ impl Session {
     /// The same from its start: a replay is watched again, and people race the same ghost again.
     pub fn again(&self) -> Self {
         let again = match &self.player {
-            Player::People(round) | Player::Bot(round, _) => Self::of_people(round.level().clone()),
+            Player::People(round) => Self::of_people(round.level().clone()),
             Player::Replay(playback) => Self::of(Player::Replay(playback.again())),
         };
         let ghost = self.ghost.as_ref().map(Playback::again);
@@ -75,7 +69,7 @@ impl Session {
     /// The round as it is now.
     pub fn round(&self) -> &Round<Dim2> {
         match &self.player {
-            Player::People(round) | Player::Bot(round, _) => round,
+            Player::People(round) => round,
             Player::Replay(playback) => playback.round(),
         }
     }
@@ -129,10 +123,6 @@ impl Session {
         match &mut self.player {
             Player::People(round) => {
                 let frame = wish(round);
-                round.step(frame);
-            }
-            Player::Bot(round, bot) => {
-                let frame = bot.frame(round);
                 round.step(frame);
             }
             Player::Replay(playback) if self.complaint.is_none() => {
