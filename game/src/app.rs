@@ -130,6 +130,15 @@ impl App {
                 input.focused,
             )
         });
+        for event in &events {
+            match event {
+                Event::Key { .. } => screens::note_use_of_keys(ctx, true),
+                Event::PointerMoved(_) | Event::PointerButton { .. } => {
+                    screens::note_use_of_keys(ctx, false);
+                }
+                _ => {}
+            }
+        }
         let has_moved = |event: &Event| matches!(event, Event::PointerMoved(_));
         let points = is_down || events.iter().any(has_moved);
         let mut taken = Vec::new();

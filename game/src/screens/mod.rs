@@ -12,6 +12,8 @@ mod result;
 mod settings;
 mod title;
 
+pub use kit::note_use_of_keys;
+
 use crate::game::{Game, Screen};
 use crate::look::Stage;
 use egui::{Align2, Color32, FontId, Rect, Ui, pos2, vec2};
@@ -56,11 +58,8 @@ fn notices(game: &Game, ui: &Ui) {
 
 /// Dims the world behind a menu.
 fn veil(ui: &Ui, strength: u8) {
-    ui.painter().rect_filled(
-        ui.max_rect(),
-        0.0,
-        Color32::from_rgba_unmultiplied(255, 248, 238, strength),
-    );
+    ui.painter()
+        .rect_filled(ui.max_rect(), 0.0, kit::PAPER.gamma_multiply_u8(strength));
 }
 
 /// Words in the middle of a place.

@@ -1,6 +1,6 @@
 //! What players choose.
 
-use super::kit::{Weight, button, card, choice, header, page, slider, step_through};
+use super::kit::{Weight, button, card, choice, header, page, place_of_page, slider, step_through};
 use super::veil;
 use crate::game::{Game, Screen};
 use crate::input::Action;
@@ -16,7 +16,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, from: Screen) {
     let mut chosen = before.clone();
     let listens = game.rebinding.is_some();
     let mut back = !listens && ui.input(|input| input.key_pressed(egui::Key::Escape));
-    let area = ui.max_rect().shrink2(vec2(28.0, 22.0));
+    let area = place_of_page(ui);
     if !listens {
         step_through(ui);
     }

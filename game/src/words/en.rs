@@ -102,4 +102,7 @@ pub(super) const WORDS: Words = Words {
     watching: "Replay",
     settings_kept: "The settings could not be read. They were kept aside as",
     not_written: "This could not be written:",
+    level_error: |error| error.to_string(),
+    replay_error: |error| error.to_string(),
+    only_flat: "levels in space (dim = 3) cannot be played yet",
 };

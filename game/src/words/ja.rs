@@ -2,7 +2,8 @@
 
 use super::Words;
 use crate::input::Action;
-use tamaire_play::Route;
+use tamaire_play::level::LevelError;
+use tamaire_play::{ReplayError, Route};
 
 pub(super) const WORDS: Words = Words {
     play: "あそぶ",
@@ -102,4 +103,40 @@ pub(super) const WORDS: Words = Words {
     watching: "リプレイ",
     settings_kept: "設定が読めませんでした。もとのファイル：",
     not_written: "書きこめませんでした：",
+    level_error,
+    replay_error,
+    only_flat: "立体のステージ（dim = 3）は まだあそべません。",
 };
+
+/// What went wrong; details, which name fields and lines of files, stay as they are.
+fn level_error(error: &LevelError) -> String {
+    match error {
+        LevelError::Scene(scene) => format!("このステージは読めませんでした。{scene}"),
+        LevelError::NoGame { id, field, reason } => {
+            format!("「{id}」は、このままでは あそべません。{field}: {reason}")
+        }
+        LevelError::Unknown { id, .. } => {
+            format!("「{id}」というステージもファイルもありません。")
+        }
+    }
+}
+
+fn replay_error(error: &ReplayError) -> String {
+    match error {
+        ReplayError::Text(reason) => format!("リプレイではないようです。{reason}"),
+        ReplayError::Version { found } => {
+            format!("ほかのバージョン（{found}）のリプレイなので、見られません。")
+        }
+        ReplayError::Level(level) => level_error(level),
+        ReplayError::LevelChanged => "このリプレイのステージは、書きかえられています。".into(),
+        ReplayError::Dimension { found, .. } => {
+            format!("立体のリプレイ（dim = {found}）は、まだ見られません。")
+        }
+        ReplayError::Differs { second } => {
+            format!("このリプレイは書きかえられています。{second}びょうから ちがいます。")
+        }
+        ReplayError::OutcomeDiffers => {
+            "このリプレイは書きかえられています。けっかが ちがいます。".into()
+        }
+    }
+}

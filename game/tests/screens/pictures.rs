@@ -39,6 +39,9 @@ fn every_screen() {
     drive(game(&mut window), BotKind::Idle, |game| game.time < 2.0);
     pictures(&mut window, "title");
     game(&mut window).go(Screen::Levels);
+    // The map of each level takes a frame.
+    let levels = game(&mut window).levels.len();
+    frames(&mut window, levels);
     pictures(&mut window, "levels");
     game(&mut window).go(Screen::Settings(Box::new(Screen::Title)));
     pictures(&mut window, "settings");
@@ -54,7 +57,7 @@ fn every_screen() {
 #[test]
 fn a_round_and_a_tear() {
     // What has much detail is smaller, for the files' sake.
-    let mut window = open(Files::nowhere(), vec2(560.0, 350.0), 1.0);
+    let mut window = open(Files::nowhere(), vec2(640.0, 400.0), 1.0);
     game(&mut window).start(0);
     drive(game(&mut window), BotKind::Squeeze, |game| {
         game.session.round().frames().len() < 150
