@@ -25,7 +25,7 @@ const MOST: f32 = 1.5;
 
 /// Shows it; gives back whether the mouse is on a button.
 pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
-    let scale = (game.settings.text_size / ui.ctx().zoom_factor()).clamp(1.0, MOST);
+    let scale = scale(game, ui);
     let (theme, said) = (game.theme(), game.words());
     let high = scale * HIGH;
     let screen = ui.max_rect().shrink(scale * EDGE);
@@ -72,6 +72,11 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
     draw_clock(&mut row, &theme, game);
     draw_chips(&mut row, &theme, game);
     is_on_button
+}
+
+/// So many times as large is what takes little room.
+pub(super) fn scale(game: &Game, ui: &Ui) -> f32 {
+    (game.settings.text_size / ui.ctx().zoom_factor()).clamp(1.0, MOST)
 }
 
 /// Where things stand in a row, and in the next one when there is no more room.

@@ -308,7 +308,8 @@ pub fn page(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui)) {
         });
         ui.add_space(RING + EDGE.y);
     });
-    let seen = output.inner_rect;
+    let seen = output.inner_rect.with_max_x(ui.clip_rect().right());
+    let seen = seen.with_min_x(ui.clip_rect().left());
     let above = output.state.clamped_offset().y;
     let below = output.content_size.y - seen.height() - above;
     // The edge, and which way is inwards; what is far away fades as far as it can.

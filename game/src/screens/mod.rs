@@ -39,7 +39,8 @@ pub fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
 fn notices(game: &Game, ui: &Ui) {
     let screen = ui.max_rect();
     let mut y = screen.top() + 18.0;
-    let font = FontId::proportional(18.0);
+    let scale = hud::scale(game, ui);
+    let font = FontId::proportional(18.0 * scale);
     let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("notices"));
     let painter = ui.ctx().layer_painter(layer);
     for (text, left) in &game.notices {
@@ -47,11 +48,11 @@ fn notices(game: &Game, ui: &Ui) {
         let ink = Color32::WHITE.gamma_multiply(strength);
         let width = screen.width() - 80.0;
         let galley = painter.layout(text.clone(), font.clone(), ink, width);
-        let size = galley.size() + vec2(36.0, 18.0);
+        let size = galley.size() + scale * vec2(36.0, 18.0);
         let rect = Rect::from_min_size(pos2(screen.center().x - 0.5 * size.x, y), size);
         let shade = Color32::from_black_alpha((190.0 * strength) as u8);
-        painter.rect_filled(rect, 16.0, shade);
-        painter.galley(rect.min + vec2(18.0, 9.0), galley, ink);
+        painter.rect_filled(rect, 16.0 * scale, shade);
+        painter.galley(rect.min + scale * vec2(18.0, 9.0), galley, ink);
         y += size.y + 8.0;
     }
 }

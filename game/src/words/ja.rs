@@ -34,7 +34,7 @@ pub(super) const WORDS: Words = Words {
                 Route::Mix => "りょうほう".to_string(),
             });
         }
-        parts.extend(wish.seconds.map(|most| format!("{most}びょういない")));
+        parts.extend(wish.seconds.map(|most| format!("{most}秒いない")));
         parts.extend(
             wish.kept
                 .map(|least| format!("{:.0}％のこす", 100.0 * least)),
@@ -44,7 +44,7 @@ pub(super) const WORDS: Words = Words {
     },
     summary: |outcome| {
         [
-            ("タイム", format!("{:.1}びょう", outcome.seconds())),
+            ("タイム", format!("{:.1}秒", outcome.seconds())),
             ("のこった大きさ", format!("{:.0}％", 100.0 * outcome.kept)),
             ("かごの中", format!("{:.0}％", 100.0 * outcome.inside)),
             ("かけら", format!("{}こ", outcome.pieces)),
@@ -133,7 +133,7 @@ fn replay_error(error: &ReplayError) -> String {
             format!("立体のリプレイ（dim = {found}）は、まだ見られません。")
         }
         ReplayError::Differs { second } => {
-            format!("このリプレイは書きかえられています。{second}びょうから ちがいます。")
+            format!("このリプレイは書きかえられています。{second}秒から ちがいます。")
         }
         ReplayError::OutcomeDiffers => {
             "このリプレイは書きかえられています。けっかが ちがいます。".into()

@@ -254,3 +254,18 @@ fn mouse_and_keys_are_two_players() {
     press(&mut window, Key::J);
     assert_eq!(game(&mut window).players.second(), None);
 }
+
+#[test]
+fn the_font_has_every_letter_of_the_game() {
+    let window = window(Files::nowhere());
+    let mut texts = vec![
+        include_str!("../../src/words/en.rs"),
+        include_str!("../../src/words/ja.rs"),
+    ];
+    texts.extend(tamaire_play::level::NAMED.map(|(_, text)| text));
+    let font = egui::FontId::proportional(20.0);
+    for letter in texts.join("").chars().filter(|k| !k.is_control()) {
+        let is_there = window.ctx.fonts_mut(|fonts| fonts.has_glyph(&font, letter));
+        assert!(is_there, "{letter}: run game/fonts/make.py");
+    }
+}

@@ -1,7 +1,7 @@
 //! How it looks: pictures, compared with those in `tests/snapshots`.
 
 use crate::window::*;
-use egui::vec2;
+use egui::{Key, pos2, vec2};
 use egui_kittest::SnapshotOptions;
 use tamaire::game::Screen;
 use tamaire::input::{Action, Seat};
@@ -35,7 +35,7 @@ fn pictures(window: &mut Window, name: &str) {
 
 #[test]
 fn every_screen() {
-    let mut window = open(Files::nowhere(), vec2(800.0, 500.0), 1.0);
+    let mut window = open(Files::nowhere(), vec2(704.0, 440.0), 1.0);
     drive(game(&mut window), BotKind::Idle, |game| game.time < 2.0);
     pictures(&mut window, "title");
     game(&mut window).go(Screen::Levels);
@@ -47,9 +47,11 @@ fn every_screen() {
     pictures(&mut window, "settings");
 
     game(&mut window).start(0);
-    game(&mut window).act(Action::Pause, Seat::Keys);
+    // Keys need to see where they are.
+    press(&mut window, Key::P);
     pictures(&mut window, "paused");
     game(&mut window).go(Screen::Play);
+    window.hover_at(pos2(10.0, 10.0));
     win(&mut window);
     pictures(&mut window, "result");
 }
@@ -57,7 +59,7 @@ fn every_screen() {
 #[test]
 fn a_round_and_a_tear() {
     // What has much detail is smaller, for the files' sake.
-    let mut window = open(Files::nowhere(), vec2(640.0, 400.0), 1.0);
+    let mut window = open(Files::nowhere(), vec2(600.0, 375.0), 1.0);
     game(&mut window).start(0);
     drive(game(&mut window), BotKind::Squeeze, |game| {
         game.session.round().frames().len() < 150
@@ -70,6 +72,8 @@ fn a_round_and_a_tear() {
     });
     frames(&mut window, 1);
     picture(&mut window, "tear");
-    game(&mut window).act(Action::Elements, Seat::Keys);
+    for action in [Action::Elements, Action::Slow] {
+        game(&mut window).act(action, Seat::Keys);
+    }
     pictures(&mut window, "elements");
 }
