@@ -194,3 +194,25 @@ fn strain_inside<D: Dim>(world: &World<D>, region: &Shape) -> f32 {
     }
     if volume > 0.0 { sum / volume } else { 0.0 }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::{Bot, BotKind, Level, Round};
+    use fuwafuwa::Dim2;
+    use std::sync::Arc;
+
+    #[test]
+    fn what_moves_in_the_basket_is_within_and_what_rests_is_inside() {
+        let mut round = Round::<Dim2>::new(Arc::new(Level::open("classic").unwrap()));
+        let mut bot = Bot::new(BotKind::Squeeze, 1);
+        let mut moved = 0.0_f32;
+        for _ in 0..150 {
+            let frame = bot.frame(&round);
+            round.step(frame);
+            let progress = round.progress();
+            assert!(progress.inside <= progress.within && progress.within <= 1.001);
+            moved = moved.max(progress.within - progress.inside);
+        }
+        assert!(moved > 0.1, "{moved}");
+    }
+}

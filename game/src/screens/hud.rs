@@ -21,7 +21,7 @@ const EDGE: f32 = 15.0;
 const JAR: f32 = 36.0;
 /// This takes far less room than menus do: where the game is shown smaller for their sake, this is
 /// shown larger again, up to so many times.
-const MOST: f32 = 1.5;
+const MOST: f32 = 1.4;
 
 /// Shows it; gives back whether the mouse is on a button.
 pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
@@ -72,6 +72,11 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
     draw_clock(&mut row, &theme, game);
     draw_chips(&mut row, &theme, game);
     is_on_button
+}
+
+/// Height of the upper row with what is around it [points].
+pub(super) fn height(game: &Game, ui: &Ui) -> f32 {
+    scale(game, ui) * (EDGE + HIGH + GAP)
 }
 
 /// So many times as large is what takes little room.
@@ -162,7 +167,8 @@ fn draw_legend(row: &mut Row, theme: &Theme, colour: ElementColour) {
             }
         }
         ElementColour::Strain => {
-            let bar = rect.shrink2(scale * vec2(40.0, 15.0));
+            let bar = rect.shrink2(scale * vec2(41.0, 15.0));
+            let bar = bar.translate(vec2(-3.0 * scale, 0.0));
             for step in 0..24 {
                 let share = step as f32 / 24.0;
                 let left = bar.left() + share * bar.width();

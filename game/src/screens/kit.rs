@@ -2,8 +2,8 @@
 
 use crate::look::Theme;
 use egui::{
-    Align2, Color32, Context, FocusDirection, FontId, Galley, Id, Key, Painter, Rect, Response,
-    Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2,
+    Align, Align2, Color32, Context, FocusDirection, FontId, Galley, Id, Key, Layout, Painter,
+    Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 use std::sync::Arc;
 
@@ -16,6 +16,9 @@ pub const EDGE: Vec2 = vec2(28.0, 22.0);
 pub const PAPER: Color32 = Color32::from_rgb(255, 248, 238);
 /// What goes on above or below fades over so many points.
 const FADE: f32 = 56.0;
+
+/// Height of the letters on a button, as a share of its own.
+const LETTERS: f32 = 0.42;
 
 /// What a button is for.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -58,7 +61,13 @@ fn plain_button(ui: &mut Ui, theme: &Theme, text: &str, size: Vec2, weight: Weig
     );
     painter.rect_filled(rect, round, fill);
     focus_ring(ui, &response, rect, round, theme);
-    let galley = fitted(ui.painter(), text, 0.42 * size.y, rect.width() - 28.0, ink);
+    let galley = fitted(
+        ui.painter(),
+        text,
+        LETTERS * size.y,
+        rect.width() - 28.0,
+        ink,
+    );
     let at = rect.center() - 0.5 * galley.size();
     ui.painter().galley(at, galley, ink);
     response
@@ -98,7 +107,7 @@ pub fn focus_ring(ui: &Ui, response: &Response, rect: Rect, round: f32, theme: &
     let seen = Id::unique("what had the focus");
     if is_on && ui.data(|data| data.get_temp(seen)) != Some(response.id) {
         ui.data_mut(|data| data.insert_temp(seen, response.id));
-        ui.scroll_to_rect(response.rect.expand(2.0 * RING), None);
+        ui.scroll_to_rect(response.rect.expand(RING + FADE), None);
     }
     if is_on {
         let stroke = Stroke::new(4.0, theme.ink);
@@ -193,12 +202,13 @@ pub fn choice<T: Copy + PartialEq>(
     value: &mut T,
     options: &[(T, &str)],
 ) -> bool {
+    const HIGH: f32 = 44.0;
     let mut changed = false;
     row(ui, theme, name, |ui| {
         // All as wide as the widest, so that nothing moves when another is chosen.
         let mark = |text: &str| format!("● {text}");
         let measure = |text: &str| {
-            let font = FontId::proportional(17.0);
+            let font = FontId::proportional(LETTERS * HIGH);
             ui.painter()
                 .layout_no_wrap(mark(text), font, theme.ink)
                 .size()
@@ -209,6 +219,7 @@ pub fn choice<T: Copy + PartialEq>(
             .map(|(_, text)| measure(text))
             .fold(60.0, f32::max)
             + 36.0;
+        ui.spacing_mut().item_spacing.x = 2.0 * RING;
         for &(option, text) in options {
             let is_chosen = *value == option;
             // What is chosen is marked by more than its colour.
@@ -216,7 +227,7 @@ pub fn choice<T: Copy + PartialEq>(
                 true => (Weight::Main, mark(text)),
                 false => (Weight::Other, text.to_string()),
             };
-            let response = plain_button(ui, theme, &marked, vec2(width, 40.0), weight);
+            let response = plain_button(ui, theme, &marked, vec2(width, HIGH), weight);
             let role = Role::RadioButton;
             let told = format!("{name}: {text}");
             response.widget_info(|| WidgetInfo::selected(role, true, is_chosen, &told));
@@ -254,7 +265,9 @@ pub fn title(ui: &mut Ui, theme: &Theme, text: &str) {
 
 /// The upper edge of a screen: a way back and a headline; gives back the button.
 pub fn header(ui: &mut Ui, theme: &Theme, back: &str, text: &str) -> Response {
-    let inner = ui.horizontal(|ui| {
+    let room = vec2(ui.available_width(), 56.0);
+    let layout = Layout::left_to_right(Align::Center);
+    let inner = ui.allocate_ui_with_layout(room, layout, |ui| {
         // What comes next may be far to the right, where egui does not look for what is below.
         let id = ui.next_auto_id();
         if ui.memory(|memory| memory.has_focus(id)) {

@@ -14,7 +14,7 @@ const GAP: f32 = 20.0;
 const WIDE: f32 = 236.0;
 
 pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
-    veil(ui, 235);
+    veil(ui, 255);
     let (theme, said) = (game.theme(), game.words());
     let maps = stage.maps(&game.levels, &theme);
     let mut wanted = None;

@@ -38,7 +38,11 @@ pub fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
 
 fn notices(game: &Game, ui: &Ui) {
     let screen = ui.max_rect();
-    let mut y = screen.top() + 18.0;
+    let above = match game.screen {
+        Screen::Play => hud::height(game, ui),
+        _ => 18.0,
+    };
+    let mut y = screen.top() + above;
     let scale = hud::scale(game, ui);
     let font = FontId::proportional(18.0 * scale);
     let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("notices"));

@@ -19,7 +19,7 @@ enum Wish {
 }
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
-    veil(ui, 235);
+    veil(ui, 255);
     let (theme, said) = (game.theme(), game.words());
     let mut wanted: Option<(usize, Wish)> = None;
     let mut back = ui.input(|input| input.key_pressed(egui::Key::Escape));
@@ -38,7 +38,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
             for (place, saved) in game.replays.iter().enumerate() {
                 card(ui, &theme, |ui| {
                     ui.horizontal(|ui| {
-                        let name = saved.path.file_stem().unwrap_or_default().to_string_lossy();
+                        let name = name_of(game, saved);
                         let size = vec2(ui.available_width() - 3.0 * (WIDE + 10.0), 44.0);
                         let (room, _) = ui.allocate_exact_size(size, egui::Sense::hover());
                         let galley = fitted(ui.painter(), &name, 22.0, size.x, theme.ink);
@@ -67,6 +67,17 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
         let saved = game.replays[place].clone();
         fulfil(game, &saved, wish);
     }
+}
+
+/// By its level, where that is known, and its number.
+fn name_of(game: &Game, saved: &SavedReplay) -> String {
+    let stem = saved.path.file_stem().unwrap_or_default().to_string_lossy();
+    let known = stem.rsplit_once('-').and_then(|(id, number)| {
+        let level = game.levels.iter().find(|level| level.id == id)?;
+        let name = game.settings.language.of(&level.game().name);
+        Some(format!("{name} {number}"))
+    });
+    known.unwrap_or_else(|| stem.into())
 }
 
 fn fulfil(game: &mut Game, saved: &SavedReplay, wish: Wish) {

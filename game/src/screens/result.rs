@@ -10,7 +10,7 @@ use tamaire_play::{Outcome, Route, Wish};
 use tamaire_sound::Menu;
 
 /// Width of the card [points].
-const WIDE: f32 = 520.0;
+const WIDE: f32 = 490.0;
 /// Height of the smaller buttons, and how far all of them are apart [points].
 const SMALL: f32 = 46.0;
 const GAP: f32 = 10.0;
@@ -26,7 +26,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     // Beside the body that beams, not over it.
     let basket = level.game().basket.as_ref();
     let is_right = basket.is_some_and(|basket| basket.centre[0] > 0.0);
-    let across = if is_right { 0.1 } else { 0.9 };
+    let across = if is_right { 0.05 } else { 0.95 };
     let mut wanted = column(ui, WIDE, across, |ui| {
         card(ui, &theme, |ui| {
             ui.spacing_mut().item_spacing = Vec2::ZERO;

@@ -10,7 +10,7 @@ use egui::{RichText, Ui, vec2};
 use tamaire_sound::Menu;
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui, from: Screen) {
-    veil(ui, 235);
+    veil(ui, 255);
     let (theme, said) = (game.theme(), game.words());
     let before = game.settings.clone();
     let mut chosen = before.clone();

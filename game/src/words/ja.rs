@@ -140,3 +140,22 @@ fn replay_error(error: &ReplayError) -> String {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tamaire_play::Level;
+
+    #[test]
+    fn what_is_wrong_is_said_in_japanese_and_where_it_stands_is_kept() {
+        let unknown = level_error(&Level::open("nowhere").unwrap_err());
+        assert!(unknown.contains("nowhere") && unknown.contains("ありません"));
+        let path = std::env::temp_dir().join(format!("tamaire-ja-{}.toml", std::process::id()));
+        std::fs::write(&path, "dim = 2\ngravity = \"down\"\n").unwrap();
+        let broken = level_error(&Level::open(&path.to_string_lossy()).unwrap_err());
+        std::fs::remove_file(path).unwrap();
+        assert!(broken.contains("読めません") && broken.contains("line 2"));
+        let old = replay_error(&ReplayError::Version { found: 7 });
+        assert!(old.contains("バージョン（7）"), "{old}");
+    }
+}
