@@ -78,12 +78,13 @@ fn line(ui: &mut Ui, text: &str, size: f32, ink: egui::Color32) {
 /// What is counted, side by side.
 fn numbers(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcome) {
     let summary = (said.summary)(outcome);
+    ui.spacing_mut().item_spacing.x = GAP;
     ui.columns(summary.len(), |columns| {
         for (column, (name, value)) in columns.iter_mut().zip(summary) {
             column.spacing_mut().item_spacing = Vec2::ZERO;
             column.vertical_centered(|ui| {
                 line(ui, &value, 27.0, theme.ink);
-                line(ui, name, 16.0, theme.faint);
+                line(ui, name, 15.0, theme.faint);
             });
         }
     });

@@ -1,7 +1,7 @@
 //! How it looks: pictures, compared with those in `tests/snapshots`.
 
 use crate::window::*;
-use egui::{Key, pos2, vec2};
+use egui::{Key, Vec2, pos2, vec2};
 use egui_kittest::SnapshotOptions;
 use tamaire::game::Screen;
 use tamaire::input::{Action, Seat};
@@ -14,6 +14,9 @@ use tamaire_play::BotKind;
 /// language differs by more than that.
 const STEP: f32 = 50.0;
 const PIXELS: usize = 800;
+
+/// What has much detail is shown smaller, for the files' sake.
+const SMALLER: Vec2 = vec2(600.0, 375.0);
 
 fn picture(window: &mut Window, name: &str) {
     let options = SnapshotOptions::new()
@@ -57,15 +60,19 @@ fn every_screen() {
 }
 
 #[test]
-fn a_round_and_a_tear() {
-    // What has much detail is smaller, for the files' sake.
-    let mut window = open(Files::nowhere(), vec2(600.0, 375.0), 1.0);
+fn a_round() {
+    let mut window = open(Files::nowhere(), SMALLER, 1.0);
     game(&mut window).start(0);
     drive(game(&mut window), BotKind::Squeeze, |game| {
         game.session.round().frames().len() < 150
     });
     frames(&mut window, 1);
     picture(&mut window, "play");
+}
+
+#[test]
+fn a_tear() {
+    let mut window = open(Files::nowhere(), SMALLER, 1.0);
     game(&mut window).start(0);
     drive(game(&mut window), BotKind::Shave, |game| {
         game.session.round().progress().pieces < 8
