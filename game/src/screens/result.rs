@@ -83,8 +83,8 @@ fn numbers(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcome) {
         for (column, (name, value)) in columns.iter_mut().zip(summary) {
             column.spacing_mut().item_spacing = Vec2::ZERO;
             column.vertical_centered(|ui| {
-                line(ui, &value, 27.0, theme.ink);
-                line(ui, name, 15.0, theme.faint);
+                line(ui, &value, 29.0, theme.ink);
+                line(ui, name, 18.0, theme.faint);
             });
         }
     });
@@ -99,13 +99,13 @@ fn wishes(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcome, wishes: &
             false => ("☆", theme.faint),
         };
         let text = format!("{star} {}", (said.wish)(wish));
-        (fitted(ui.painter(), &text, 19.0, most, ink), ink)
+        (fitted(ui.painter(), &text, 20.0, most, ink), ink)
     });
     let lines: Vec<_> = lines.collect();
     let width = lines.iter().map(|(galley, _)| galley.size().x);
     let width = width.fold(0.0, f32::max);
     for (galley, ink) in lines {
-        let (place, response) = ui.allocate_exact_size(vec2(width, 26.0), Sense::hover());
+        let (place, response) = ui.allocate_exact_size(vec2(width, 28.0), Sense::hover());
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, galley.text()));
         let at = place.left_center() - vec2(0.0, 0.5 * galley.size().y);
         ui.painter().galley(at, galley, ink);

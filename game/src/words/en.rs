@@ -44,8 +44,8 @@ pub(super) const WORDS: Words = Words {
     summary: |outcome| {
         [
             ("Time", format!("{:.1} s", outcome.seconds())),
-            ("In one piece", format!("{:.0} %", 100.0 * outcome.kept)),
-            ("In the basket", format!("{:.0} %", 100.0 * outcome.inside)),
+            ("Kept", format!("{:.0} %", 100.0 * outcome.kept)),
+            ("Inside", format!("{:.0} %", 100.0 * outcome.inside)),
             ("Pieces", outcome.pieces.to_string()),
         ]
     },

@@ -45,7 +45,7 @@ pub(super) const WORDS: Words = Words {
     summary: |outcome| {
         [
             ("タイム", format!("{:.1}秒", outcome.seconds())),
-            ("のこった大きさ", format!("{:.0}％", 100.0 * outcome.kept)),
+            ("のこした", format!("{:.0}％", 100.0 * outcome.kept)),
             ("かごの中", format!("{:.0}％", 100.0 * outcome.inside)),
             ("かけら", format!("{}こ", outcome.pieces)),
         ]

@@ -16,7 +16,7 @@ const STEP: f32 = 50.0;
 const PIXELS: usize = 800;
 
 /// What has much detail is shown smaller, for the files' sake.
-const SMALLER: Vec2 = vec2(600.0, 375.0);
+const SMALLER: Vec2 = vec2(592.0, 370.0);
 
 fn picture(window: &mut Window, name: &str) {
     let options = SnapshotOptions::new()
