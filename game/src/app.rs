@@ -63,7 +63,7 @@ impl App {
     }
 
     /// Takes in sticks and pads: in a round they ask for actions, in a menu they move the focus.
-    fn hear_sticks(&mut self, seconds: f32) {
+    fn hear_sticks(&mut self, ctx: &egui::Context, seconds: f32) {
         let changes = self.game.hear_sticks();
         // What is to get a meaning has none now.
         let in_menu = self.game.screen != Screen::Play && self.game.rebinding.is_none();
@@ -71,6 +71,7 @@ impl App {
             let Change::Pressed { device, control } = change else {
                 continue;
             };
+            screens::note_use_of_keys(ctx, true);
             if let Some(action) = self.game.rebinding.take() {
                 self.game.settings.bindings.bind_button(action, control);
                 self.game.keep_settings();
@@ -100,6 +101,7 @@ impl App {
                 self.navigators.len() - 1
             });
             for direction in self.navigators[place].1.step(device, seconds) {
+                screens::note_use_of_keys(ctx, true);
                 if in_menu {
                     self.press(match direction {
                         sticks::Direction::Up => Key::ArrowUp,
@@ -130,6 +132,15 @@ impl App {
                 input.focused,
             )
         });
+        for event in &events {
+            match event {
+                Event::Key { .. } => screens::note_use_of_keys(ctx, true),
+                Event::PointerMoved(_) | Event::PointerButton { .. } => {
+                    screens::note_use_of_keys(ctx, false);
+                }
+                _ => {}
+            }
+        }
         let has_moved = |event: &Event| matches!(event, Event::PointerMoved(_));
         let points = is_down || events.iter().any(has_moved);
         let mut taken = Vec::new();
@@ -186,7 +197,7 @@ impl eframe::App for App {
         let ctx = ui.ctx().clone();
         fit(&ctx, self.game.settings.text_size);
         let seconds = ctx.input(|input| input.stable_dt).min(0.1);
-        self.hear_sticks(seconds);
+        self.hear_sticks(&ctx, seconds);
         self.hear_window(&ctx);
         self.game.pass(seconds);
         if self.screen_before != self.game.screen {

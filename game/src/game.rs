@@ -1,21 +1,23 @@
 //! The state of the game between two frames, and what can happen to it. Everything that a screen
 //! shows is worked out from here.
 
+mod heard;
+mod time;
+
 use crate::attract::attract;
-use crate::input::{Action, Devices, Manner, Players, Seat};
+use crate::input::{Action, Devices, Players, Seat};
 use crate::look::{Camera, Effects, Theme, View};
-use crate::platform::{Files, Pads, Sound};
+use crate::platform::{Files, Pads, SavedReplay, Sound};
 use crate::records::Records;
 use crate::session::Session;
 use crate::settings::Settings;
 use crate::words::Words;
-use fuwafuwa::{Event, With};
 use fuwafuwa_render::frame::ElementColour;
 use std::path::Path;
 use std::sync::Arc;
 use tamaire_play::level::NAMED;
-use tamaire_play::{InputFrame, Level, Outcome, Playback, Replay, ReplayError};
-use tamaire_sound::{Cue, Hush, Menu, Press, Soundscape};
+use tamaire_play::{Level, Outcome, Playback, Replay, ReplayError};
+use tamaire_sound::{Cue, Menu};
 
 /// What there is to see.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -36,10 +38,6 @@ pub enum Screen {
     Replays,
 }
 
-/// After a win the round goes on for so long before the result is shown [s].
-const CHEER: f32 = 1.4;
-/// Slow motion is this share of the usual speed.
-const SLOW: f32 = 0.2;
 /// How long a notice stays [s].
 const NOTICE: f32 = 6.0;
 
@@ -79,6 +77,8 @@ pub struct Game {
     pub won: Option<(Outcome, bool)>,
     /// The round that was just won, to be kept or raced.
     pub last: Option<Arc<Replay>>,
+    /// The rounds that were kept, as they were when their screen came up.
+    pub replays: Vec<SavedReplay>,
     /// What the player should know, and for how long [s].
     pub notices: Vec<(String, f32)>,
     /// Seconds since the game began.
@@ -120,6 +120,7 @@ impl Game {
             stepping: false,
             won: None,
             last: None,
+            replays: Vec::new(),
             notices: Vec::new(),
             time: 0.0,
             rebinding: None,
@@ -166,6 +167,9 @@ impl Game {
     pub fn go(&mut self, screen: Screen) {
         if screen == Screen::Title && self.session.is_played() {
             self.session = attract(self.time as usize);
+        }
+        if screen == Screen::Replays {
+            self.replays = self.files.replays();
         }
         self.stepping = false;
         self.screen = screen;
@@ -217,23 +221,31 @@ impl Game {
             .extension()
             .and_then(|ending| ending.to_str())
             .unwrap_or("");
-        let outcome = match ending {
-            "tamaire" => Files::replay(path)
-                .and_then(|replay| self.watch(Arc::new(replay)))
-                .map_err(|error| format!("{}: {error}", path.display())),
-            _ => Level::open(&path.to_string_lossy())
-                .map(|level| self.offer(level))
-                .map_err(|error| error.to_string()),
-        };
-        if let Err(reason) = outcome {
-            self.notify(reason);
+        if ending == "tamaire" {
+            return self.open_replay(path, Self::watch);
+        }
+        match Level::open(&path.to_string_lossy()) {
+            Ok(level) => self.offer(level),
+            Err(error) => self.notify((self.words().level_error)(&error)),
+        }
+    }
+
+    /// Does something with the replay in a file.
+    pub fn open_replay(
+        &mut self,
+        path: &Path,
+        act: fn(&mut Self, Arc<Replay>) -> Result<(), ReplayError>,
+    ) {
+        let outcome = Files::replay(path).and_then(|replay| act(self, Arc::new(replay)));
+        if let Err(error) = outcome {
+            let reason = (self.words().replay_error)(&error);
+            self.notify(format!("{}: {reason}", path.display()));
         }
     }
 
     fn offer(&mut self, level: Level) {
         if level.scene().dim != 2 {
-            let id = level.id;
-            self.notify(format!("{id}: expected dim = 2, found 3"));
+            self.notify(format!("{}: {}", level.id, self.words().only_flat));
             return;
         }
         self.levels.retain(|known| known.id != level.id);
@@ -255,6 +267,13 @@ impl Game {
                 Err(error) => self.report(Err(error)),
             }
         }
+    }
+
+    /// Deletes a round that was kept.
+    pub fn delete(&mut self, saved: &SavedReplay) {
+        let deleted = self.files.delete(saved);
+        self.report(deleted);
+        self.replays = self.files.replays();
     }
 
     fn report(&mut self, written: std::io::Result<()>) {
@@ -291,44 +310,6 @@ impl Game {
         }
     }
 
-    /// Lets `seconds` pass.
-    pub fn pass(&mut self, seconds: f32) {
-        self.time += seconds;
-        for notice in &mut self.notices {
-            notice.1 -= seconds;
-        }
-        self.notices.retain(|notice| notice.1 > 0.0);
-        let runs = !matches!(self.screen, Screen::Paused | Screen::Settings(_)) && !self.stepping;
-        let pace = if self.slow { SLOW } else { 1.0 } * self.settings.speed;
-        if runs {
-            self.pass_ticks(seconds * pace);
-            self.effects.pass(seconds * pace);
-        }
-        if let Some(complaint) = self.session.take_complaint() {
-            self.notify(complaint.to_string());
-            if !self.session.is_played() {
-                self.session = attract(0);
-                if self.screen == Screen::Play {
-                    self.go(Screen::Replays);
-                }
-            }
-        }
-        self.celebrate(seconds);
-        if self.screen == Screen::Title && self.session.is_over() {
-            self.cheered += seconds;
-            if self.cheered > 4.0 {
-                self.cheered = 0.0;
-                self.session = attract(self.time as usize);
-            }
-        }
-        let arena = self.session.round().level().arena();
-        let hand = self.session.round().world().manipulators()[0].position();
-        self.camera
-            .follow(hand, arena, seconds, self.settings.reduced_motion);
-        self.sound
-            .update(&self.soundscape(), &self.settings.volumes());
-    }
-
     /// Takes in what sticks and pads say; gives back what was pressed since. When one is unplugged
     /// the round waits.
     pub fn hear_sticks(&mut self) -> Vec<sticks::Change> {
@@ -348,151 +329,4 @@ impl Game {
             self.go(Screen::Paused);
         }
     }
-
-    fn pass_ticks(&mut self, seconds: f32) {
-        let manner = Manner {
-            sensitivity: self.settings.sensitivity,
-            stick_places: self.settings.stick_places,
-            arena: self.session.round().level().arena(),
-        };
-        let still = self.settings.reduced_motion;
-        // In menus the same keys and sticks move the focus.
-        let in_round = self.screen == Screen::Play;
-        let Self {
-            session,
-            players,
-            devices,
-            settings,
-            effects,
-            camera,
-            sound,
-            ..
-        } = self;
-        session.advance(
-            seconds,
-            |round| {
-                if !in_round {
-                    return InputFrame::default();
-                }
-                // Who comes in only now begins where the level says.
-                let mut hands = round.level().scene().goals(0);
-                for (goal, hand) in hands.iter_mut().zip(round.world().manipulators()) {
-                    *goal = hand.goal();
-                }
-                let tick = fuwafuwa::world::TICK;
-                players.frame(devices, &settings.bindings, &manner, &hands, tick)
-            },
-            |round| {
-                effects.see(round, camera, still);
-                for cue in cues(round) {
-                    sound.play(cue);
-                }
-            },
-        );
-    }
-
-    /// Notes a win once, lets the body beam for a moment, then shows the result.
-    fn celebrate(&mut self, seconds: f32) {
-        let Some(outcome) = self.session.round().progress().outcome else {
-            return;
-        };
-        if self.screen != Screen::Play {
-            return;
-        }
-        if self.session.is_played() && self.won.is_none() {
-            let level = self.session.round().level().clone();
-            let is_best = self.records.note(&level, &outcome);
-            self.won = Some((outcome, is_best));
-            self.last = Some(Arc::new(Replay::of(self.session.round())));
-            self.sound.play(Cue::Won(match outcome.route {
-                tamaire_play::Route::Squeeze => tamaire_sound::Route::Squeeze,
-                tamaire_play::Route::Shave => tamaire_sound::Route::Shave,
-                tamaire_play::Route::Mix => tamaire_sound::Route::Mix,
-            }));
-            let written = self.files.write("records.toml", &self.records);
-            self.report(written);
-        }
-        self.cheered += seconds;
-        if self.cheered >= CHEER && self.won.is_some() {
-            self.go(Screen::Result);
-        }
-    }
-
-    fn soundscape(&self) -> Soundscape {
-        let round = self.session.round();
-        let hold = round.level().game().hold.max(0.1);
-        let mut presses = [Press::default(); 2];
-        for (press, hand) in presses.iter_mut().zip(round.world().manipulators()) {
-            let force = hand
-                .reactions()
-                .iter()
-                .map(|reaction| length(reaction.contact));
-            let count = hand.reactions().len().max(1) as f32;
-            *press = Press {
-                force: force.sum::<f32>() / count,
-                slip: length(hand.velocity()),
-                x: self.across(hand.position()[0]),
-            };
-        }
-        Soundscape {
-            presses,
-            squash: (self.effects.pressure / 1000.0).min(1.0),
-            hold: (round.progress().held / hold).min(1.0),
-            music: true,
-            hush: match self.screen {
-                Screen::Paused | Screen::Settings(_) | Screen::Title => Hush::World,
-                _ => Hush::Nothing,
-            },
-        }
-    }
-
-    fn across(&self, x: f32) -> f32 {
-        across(self.session.round().level().arena(), x)
-    }
-}
-
-/// What there is to hear of a tick.
-fn cues(round: &tamaire_play::Round<fuwafuwa::Dim2>) -> Vec<Cue> {
-    let arena = round.level().arena();
-    let mut cues = Vec::new();
-    let (mut torn, mut at) = (0.0, 0.0);
-    for event in round.world().events() {
-        match *event {
-            Event::Released {
-                at: place, energy, ..
-            } => {
-                torn += energy.max(0.01);
-                at = across(arena, place[0]);
-            }
-            Event::Touched {
-                with: With::Obstacle(_),
-                impulse,
-                at: place,
-                ..
-            } => {
-                cues.push(Cue::Thud {
-                    impulse,
-                    x: across(arena, place[0]),
-                });
-            }
-            _ => {}
-        }
-    }
-    if torn > 0.0 {
-        cues.push(Cue::Tear {
-            energy: torn,
-            x: at,
-        });
-    }
-    cues
-}
-
-/// Where in the arena, from -1 at its left to 1 at its right.
-fn across(arena: [fuwafuwa::Vector; 2], x: f32) -> f32 {
-    let (low, high) = (arena[0][0], arena[1][0]);
-    (2.0 * (x - low) / (high - low) - 1.0).clamp(-1.0, 1.0)
-}
-
-fn length(v: fuwafuwa::Vector) -> f32 {
-    v.iter().map(|k| k * k).sum::<f32>().sqrt()
 }

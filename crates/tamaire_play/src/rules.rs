@@ -23,6 +23,8 @@ pub struct Progress {
     pub mass: f32,
     /// Share of it that rests in the basket.
     pub inside: f32,
+    /// Share of it in the basket, whether it rests or moves.
+    pub within: f32,
     /// Share of it in the largest piece of each body.
     pub kept: f32,
     /// Number of pieces.
@@ -75,6 +77,7 @@ impl Progress {
         Self {
             mass: total_mass(world),
             inside: 0.0,
+            within: 0.0,
             kept: 1.0,
             pieces: world
                 .bodies()
@@ -104,7 +107,9 @@ impl Progress {
         let Some(basket) = basket else {
             return;
         };
-        self.inside = resting_inside(world, basket) / self.mass;
+        let (resting, all) = masses_inside(world, basket);
+        self.inside = resting / self.mass;
+        self.within = all / self.mass;
         let enough = self.inside >= level.game().share;
         self.held = if enough { self.held + TICK } else { 0.0 };
         if !enough {
@@ -148,18 +153,24 @@ fn total_mass<D: Dim>(world: &World<D>) -> f32 {
         .sum()
 }
 
-/// The mass of all slow nodes in a region [kg].
-fn resting_inside<D: Dim>(world: &World<D>, region: &Shape) -> f32 {
-    let inside = |body: &Body<D>| -> f32 {
-        let states = body.mesh().nodes().map(|(id, _)| body.node_state(id));
-        let rests = |at, velocity: [f32; 3]| {
-            let square: f32 = velocity.iter().map(|k| k * k).sum();
-            region.distance(at).0 < 0.0 && square < RESTING * RESTING
-        };
-        let resting = states.filter(|&(at, velocity, _)| rests(at, velocity));
-        resting.map(|(_, _, mass)| mass).sum()
+/// The mass in a region [kg]: of the nodes that rest, and of all.
+fn masses_inside<D: Dim>(world: &World<D>, region: &Shape) -> (f32, f32) {
+    let inside = |body: &Body<D>| {
+        let (mut resting, mut all) = (0.0, 0.0);
+        for (id, _) in body.mesh().nodes() {
+            let (at, velocity, mass) = body.node_state(id);
+            if region.distance(at).0 < 0.0 {
+                all += mass;
+                let square: f32 = velocity.iter().map(|k| k * k).sum();
+                if square < RESTING * RESTING {
+                    resting += mass;
+                }
+            }
+        }
+        (resting, all)
     };
-    world.bodies().iter().map(inside).sum()
+    let bodies = world.bodies().iter().map(inside);
+    bodies.fold((0.0, 0.0), |sum, of| (sum.0 + of.0, sum.1 + of.1))
 }
 
 /// The mean strain, by volume, of the pieces whose middle is in a region and that are more than crumbs.
@@ -182,4 +193,26 @@ fn strain_inside<D: Dim>(world: &World<D>, region: &Shape) -> f32 {
         }
     }
     if volume > 0.0 { sum / volume } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Bot, BotKind, Level, Round};
+    use fuwafuwa::Dim2;
+    use std::sync::Arc;
+
+    #[test]
+    fn what_moves_in_the_basket_is_within_and_what_rests_is_inside() {
+        let mut round = Round::<Dim2>::new(Arc::new(Level::open("classic").unwrap()));
+        let mut bot = Bot::new(BotKind::Squeeze, 1);
+        let mut moved = 0.0_f32;
+        for _ in 0..150 {
+            let frame = bot.frame(&round);
+            round.step(frame);
+            let progress = round.progress();
+            assert!(progress.inside <= progress.within && progress.within <= 1.001);
+            moved = moved.max(progress.within - progress.inside);
+        }
+        assert!(moved > 0.1, "{moved}");
+    }
 }

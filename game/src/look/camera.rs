@@ -4,9 +4,9 @@ use egui::{Pos2, Rect, Vec2, pos2, vec2};
 use fuwafuwa::Vector;
 
 /// So much is seen around the arena [m]: room for the lean, so that nothing of the arena goes out of sight.
-const MARGIN: f32 = 0.08;
+const MARGIN: f32 = 0.1;
 /// The camera leans this share of the way from the middle of the arena towards the hand.
-const LEAN: f32 = 0.04;
+const LEAN: f32 = 0.03;
 /// How fast it leans [1/s].
 const PACE: f32 = 3.0;
 /// How fast a shake dies [1/s], and how fast it swings [rad/s].

@@ -10,27 +10,33 @@ use egui::{
 };
 use fuwafuwa_render::frame::ElementColour;
 
-/// Draws what stands for an action.
-type Mark = fn(&Painter, Pos2, Color32);
+/// Draws what stands for an action, so many times as large as usual.
+type Mark = fn(&Painter, Pos2, f32, Color32);
 
-/// Height of what stands in the upper row.
+/// Height of what stands in the upper row, between two of these, and from the edge of the window.
 const HIGH: f32 = 44.0;
+const GAP: f32 = 8.0;
+const EDGE: f32 = 15.0;
 /// Radius of the jar.
 const JAR: f32 = 36.0;
+/// This takes far less room than menus do: where the game is shown smaller for their sake, this is
+/// shown larger again, up to so many times.
+const MOST: f32 = 1.4;
 
 /// Shows it; gives back whether the mouse is on a button.
 pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
-    let theme = game.theme();
-    let screen = ui.max_rect();
-    let said = game.words();
-    let mut at = screen.left_top() + vec2(16.0, 14.0);
+    let scale = scale(game, ui);
+    let (theme, said) = (game.theme(), game.words());
+    let high = scale * HIGH;
+    let screen = ui.max_rect().shrink(scale * EDGE);
+    let mut at = screen.left_top();
     let mut is_on_button = false;
     let buttons: [(Action, &str, Mark); 2] = [
         (Action::Pause, said.paused, draw_pause),
         (Action::Retry, said.again, draw_again),
     ];
     for (action, name, draw) in buttons {
-        let rect = Rect::from_min_size(at, vec2(HIGH, HIGH));
+        let rect = Rect::from_min_size(at, vec2(high, high));
         // Not for the keyboard, which has its own keys for it.
         let response = ui.interact(rect, egui::Id::unique(name), Sense::CLICK);
         response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
@@ -40,13 +46,70 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
         } else {
             pale(&theme)
         };
-        ui.painter().circle_filled(rect.center(), 0.5 * HIGH, fill);
-        draw(ui.painter(), rect.center(), theme.ink);
+        ui.painter().circle_filled(rect.center(), 0.5 * high, fill);
+        draw(ui.painter(), rect.center(), scale, theme.ink);
         if response.clicked() {
             game.act(action, Seat::Pointer);
         }
-        at.x += HIGH + 8.0;
+        at.x += high + scale * GAP;
     }
+    let round = game.session.round();
+    let mut right = screen.right();
+    if round.basket().is_some() {
+        let radius = scale * (JAR + 4.0);
+        let middle = screen.right_top() + vec2(-radius, radius);
+        draw_jar(ui, middle, scale, game);
+        right = middle.x - radius;
+    }
+    let mut row = Row {
+        painter: ui.painter(),
+        fill: pale(&theme),
+        scale,
+        start: at.x,
+        at,
+        right,
+    };
+    draw_clock(&mut row, &theme, game);
+    draw_chips(&mut row, &theme, game);
+    is_on_button
+}
+
+/// Height of the upper row with what is around it [points].
+pub(super) fn height(game: &Game, ui: &Ui) -> f32 {
+    scale(game, ui) * (EDGE + HIGH + GAP)
+}
+
+/// So many times as large is what takes little room.
+pub(super) fn scale(game: &Game, ui: &Ui) -> f32 {
+    (game.settings.text_size / ui.ctx().zoom_factor()).clamp(1.0, MOST)
+}
+
+/// Where things stand in a row, and in the next one when there is no more room.
+struct Row<'a> {
+    painter: &'a Painter,
+    fill: Color32,
+    scale: f32,
+    start: f32,
+    at: Pos2,
+    right: f32,
+}
+
+impl Row<'_> {
+    /// The place for something so wide before it is scaled, with a background.
+    fn place(&mut self, width: f32) -> Rect {
+        let size = self.scale * vec2(width, HIGH);
+        if self.at.x + size.x > self.right && self.at.x > self.start {
+            self.at = pos2(self.start, self.at.y + self.scale * (HIGH + GAP));
+        }
+        let rect = Rect::from_min_size(self.at, size);
+        self.at.x = rect.right() + self.scale * GAP;
+        self.painter.rect_filled(rect, 0.5 * size.y, self.fill);
+        rect
+    }
+}
+
+/// How long it has lasted.
+fn draw_clock(row: &mut Row, theme: &Theme, game: &Game) {
     let round = game.session.round();
     let seconds = match round.progress().outcome {
         Some(outcome) => outcome.seconds(),
@@ -54,32 +117,22 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
     };
     let clock = format!("{seconds:.1}");
     // As wide as it will ever be: what jumps cannot be read.
-    let width = 34.0 + 15.0 * clock.len().max(4) as f32;
-    let rect = Rect::from_min_size(at, vec2(width, HIGH));
-    let painter = ui.painter();
-    painter.rect_filled(rect, 0.5 * HIGH, pale(&theme));
-    let font = FontId::proportional(26.0);
-    painter.text(rect.center(), Align2::CENTER_CENTER, clock, font, theme.ink);
-    at.x += width + 8.0;
-    draw_chips(painter, game, at);
-    if round.basket().is_some() {
-        let middle = screen.right_top() + vec2(-18.0 - JAR, 16.0 + JAR);
-        draw_jar(ui, middle, game);
-    }
-    is_on_button
+    let at = row.place(34.0 + 15.0 * clock.len().max(4) as f32).center();
+    let font = FontId::proportional(26.0 * row.scale);
+    let painter = row.painter;
+    painter.text(at, Align2::CENTER_CENTER, clock, font, theme.ink);
 }
 
 /// What is different from usual, each on a chip with a sign.
-fn draw_chips(painter: &Painter, game: &Game, mut at: Pos2) {
-    let (theme, said) = (game.theme(), game.words());
+fn draw_chips(row: &mut Row, theme: &Theme, game: &Game) {
+    let said = game.words();
     let mut chip = |sign: &str, text: &str| {
-        let font = FontId::proportional(17.0);
+        let font = FontId::proportional(19.0 * row.scale);
         let text = format!("{sign} {text}");
-        let galley = painter.layout_no_wrap(text, font, theme.ink);
-        let rect = Rect::from_min_size(at, vec2(galley.size().x + 28.0, HIGH));
-        painter.rect_filled(rect, 0.5 * HIGH, pale(&theme));
-        painter.galley(rect.center() - 0.5 * galley.size(), galley, theme.ink);
-        at.x += rect.width() + 8.0;
+        let galley = row.painter.layout_no_wrap(text, font, theme.ink);
+        let place = row.place(galley.size().x / row.scale + 28.0);
+        let at = place.center() - 0.5 * galley.size();
+        row.painter.galley(at, galley, theme.ink);
     };
     if !game.session.is_played() {
         chip("●", said.watching);
@@ -93,29 +146,29 @@ fn draw_chips(painter: &Painter, game: &Game, mut at: Pos2) {
         chip("●●", said.join_hint);
     }
     if let Some(colour) = game.elements {
-        draw_legend(painter, &theme, at, colour);
+        draw_legend(row, theme, colour);
     }
 }
 
 /// What the colours of elements tell: small to large, or at ease to strained.
-fn draw_legend(painter: &Painter, theme: &Theme, at: Pos2, colour: ElementColour) {
-    let rect = Rect::from_min_size(at, vec2(176.0, HIGH));
-    painter.rect_filled(rect, 0.5 * HIGH, pale(theme));
+fn draw_legend(row: &mut Row, theme: &Theme, colour: ElementColour) {
+    let (rect, scale, painter) = (row.place(176.0), row.scale, row.painter);
     let middle = rect.center().y;
     let line = Stroke::new(1.0, theme.ink);
     match colour {
         ElementColour::Level => {
-            let mut x = rect.left() + 20.0;
+            let mut x = rect.left() + 20.0 * scale;
             for level in 0..5u8 {
-                let side = [5.0, 9.0, 14.0, 20.0, 28.0][usize::from(level)];
+                let side = scale * [5.0, 9.0, 14.0, 20.0, 28.0][usize::from(level)];
                 let square = Rect::from_center_size(pos2(x + 0.5 * side, middle), vec2(side, side));
                 painter.rect_filled(square, 0.0, theme.level(level));
                 painter.rect_stroke(square, 0.0, line, egui::StrokeKind::Inside);
-                x += side + 14.0;
+                x += side + 14.0 * scale;
             }
         }
         ElementColour::Strain => {
-            let bar = rect.shrink2(vec2(40.0, 15.0));
+            let bar = rect.shrink2(scale * vec2(41.0, 15.0));
+            let bar = bar.translate(vec2(-3.0 * scale, 0.0));
             for step in 0..24 {
                 let share = step as f32 / 24.0;
                 let left = bar.left() + share * bar.width();
@@ -127,69 +180,71 @@ fn draw_legend(painter: &Painter, theme: &Theme, at: Pos2, colour: ElementColour
             let round = |x: f32, size: egui::Vec2| {
                 painter.add(Shape::ellipse_stroke(
                     pos2(x, middle),
-                    size,
-                    Stroke::new(2.5, theme.ink),
+                    scale * size,
+                    Stroke::new(2.5 * scale, theme.ink),
                 ));
             };
-            round(rect.left() + 22.0, vec2(9.0, 9.0));
-            round(rect.right() - 22.0, vec2(13.0, 5.0));
+            round(rect.left() + 22.0 * scale, vec2(9.0, 9.0));
+            round(rect.right() - 22.0 * scale, vec2(13.0, 5.0));
         }
     }
 }
 
-/// How much rests in the basket: a jar to be filled up to its line, then a ring that closes.
-fn draw_jar(ui: &Ui, middle: Pos2, game: &Game) {
+/// How much is in the basket: a jar to be filled up to its line, pale with what moves and strong with
+/// what rests, then a ring that closes.
+fn draw_jar(ui: &Ui, middle: Pos2, scale: f32, game: &Game) {
     let theme = game.theme();
     let round = game.session.round();
     let (progress, rules) = (round.progress(), round.level().game());
     let painter = ui.painter();
-    let inside = progress.inside.clamp(0.0, 1.0);
-    let id = egui::Id::unique("jar");
-    let shown = ui.ctx().animate_value_with_time(id, inside, 0.2);
-    painter.circle_filled(
-        middle + vec2(0.0, 3.0),
-        JAR + 4.0,
-        Color32::from_black_alpha(28),
-    );
-    painter.circle_filled(middle, JAR + 4.0, theme.card);
-    let glass = JAR - 5.0;
+    let smooth = |name: &str, share: f32| {
+        let id = egui::Id::unique(("jar", name));
+        ui.ctx()
+            .animate_value_with_time(id, share.clamp(0.0, 1.0), 0.2)
+    };
+    let rim = scale * (JAR + 4.0);
+    let below = middle + vec2(0.0, 3.0 * scale);
+    painter.circle_filled(below, rim, Color32::from_black_alpha(28));
+    painter.circle_filled(middle, rim, theme.card);
+    let glass = scale * (JAR - 5.0);
     painter.circle_filled(middle, glass, theme.paper);
     // Part of the way up the glass, as an angle from its lowest point.
     let angle = |share: f32| (1.0 - 2.0 * share).clamp(-1.0, 1.0).acos();
     let point = |angle: f32| middle + glass * vec2(angle.sin(), angle.cos());
-    // What is wanted, pale, and what is there.
     let fill = theme.material(1);
-    for (share, fill) in [(rules.share, fill.gamma_multiply(0.16)), (shown, fill)] {
+    let levels = [
+        // What is wanted, what is there, and what of it rests.
+        (rules.share, 0.16),
+        (smooth("within", progress.within), 0.45),
+        (smooth("inside", progress.inside), 1.0),
+    ];
+    for (share, strength) in levels {
         if share > 0.005 {
             let most = angle(share);
             let filled = (0..=32).map(|step| point(most * (step as f32 / 16.0 - 1.0)));
+            let fill = fill.gamma_multiply(strength);
             painter.add(Shape::convex_polygon(filled.collect(), fill, Stroke::NONE));
         }
     }
     let line = angle(rules.share);
     let ends = [point(-line), point(line)];
-    painter.extend(Shape::dashed_line(
-        &ends,
-        Stroke::new(2.5, theme.ink),
-        6.0,
-        4.0,
-    ));
-    painter.circle_stroke(
-        middle,
-        glass,
-        Stroke::new(2.0, theme.ink.gamma_multiply(0.35)),
-    );
+    let dashes = Stroke::new(2.5 * scale, theme.ink);
+    painter.extend(Shape::dashed_line(&ends, dashes, 6.0 * scale, 4.0 * scale));
+    let edge = Stroke::new(2.0 * scale, theme.ink.gamma_multiply(0.35));
+    painter.circle_stroke(middle, glass, edge);
     let held = match progress.outcome {
         Some(_) => 1.0,
         None => (progress.held / rules.hold.max(0.1)).clamp(0.0, 1.0),
     };
     if held > 0.0 {
-        let ring = Stroke::new(7.0, theme.good);
-        marks::arc(painter, middle, JAR, held, ring);
+        let ring = Stroke::new(7.0 * scale, theme.good);
+        marks::arc(painter, middle, scale * JAR, held, ring);
     }
     if progress.outcome.is_some() {
-        marks::tick(painter, middle, 0.55 * JAR, Stroke::new(7.0, theme.card));
-        marks::tick(painter, middle, 0.55 * JAR, Stroke::new(5.0, theme.good));
+        for (width, ink) in [(7.0, theme.card), (5.0, theme.good)] {
+            let stroke = Stroke::new(width * scale, ink);
+            marks::tick(painter, middle, 0.55 * scale * JAR, stroke);
+        }
     }
 }
 
@@ -197,22 +252,18 @@ fn pale(theme: &Theme) -> Color32 {
     theme.card.gamma_multiply(0.72)
 }
 
-fn draw_pause(painter: &Painter, at: Pos2, ink: Color32) {
+fn draw_pause(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
     for x in [-5.0, 5.0] {
-        let bar = Rect::from_center_size(at + vec2(x, 0.0), vec2(5.0, 17.0));
-        painter.rect_filled(bar, 2.0, ink);
+        let bar = Rect::from_center_size(at + scale * vec2(x, 0.0), scale * vec2(5.0, 17.0));
+        painter.rect_filled(bar, 2.0 * scale, ink);
     }
 }
 
 /// An arrow that comes back to where it began.
-fn draw_again(painter: &Painter, at: Pos2, ink: Color32) {
-    let stroke = Stroke::new(3.5, ink);
-    marks::arc(painter, at, 9.0, 0.8, stroke);
-    let head = at + vec2(0.0, -9.0);
-    let corners = vec![
-        head + vec2(-7.0, 0.0),
-        head + vec2(2.0, -6.0),
-        head + vec2(2.0, 6.0),
-    ];
-    painter.add(Shape::convex_polygon(corners, ink, Stroke::NONE));
+fn draw_again(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
+    let stroke = Stroke::new(3.5 * scale, ink);
+    marks::arc(painter, at, 9.0 * scale, 0.8, stroke);
+    let corners = [[-7.0, 0.0], [2.0, -6.0], [2.0, 6.0]];
+    let corners = corners.map(|[x, y]| at + scale * vec2(x, y - 9.0));
+    painter.add(Shape::convex_polygon(corners.to_vec(), ink, Stroke::NONE));
 }

@@ -2,13 +2,23 @@
 
 use crate::look::Theme;
 use egui::{
-    Align2, Color32, FocusDirection, FontId, Galley, Id, Key, Painter, Rect, Response, Role, Sense,
-    Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2,
+    Align, Align2, Color32, Context, FocusDirection, FontId, Galley, Id, Key, Layout, Painter,
+    Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 use std::sync::Arc;
 
 /// How far the ring around what has the focus reaches beyond it.
 pub const RING: f32 = 7.0;
+
+/// Between the edge of a window and what is on a page [points].
+pub const EDGE: Vec2 = vec2(28.0, 22.0);
+/// Behind a page.
+pub const PAPER: Color32 = Color32::from_rgb(255, 248, 238);
+/// What goes on above or below fades over so many points.
+const FADE: f32 = 56.0;
+
+/// Height of the letters on a button, as a share of its own.
+const LETTERS: f32 = 0.42;
 
 /// What a button is for.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -21,12 +31,16 @@ pub enum Weight {
 
 /// A large round button.
 pub fn button(ui: &mut Ui, theme: &Theme, text: &str, size: Vec2, weight: Weight) -> Response {
-    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    let response = plain_button(ui, theme, text, size, weight);
     let enabled = ui.is_enabled();
     response.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, text));
-    let lively = ui
-        .ctx()
-        .animate_bool(response.id, response.hovered() || response.has_focus());
+    response
+}
+
+/// One that does not tell its name.
+fn plain_button(ui: &mut Ui, theme: &Theme, text: &str, size: Vec2, weight: Weight) -> Response {
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    let lively = liveliness(ui, &response);
     let (fill, ink) = match weight {
         Weight::Main => (theme.accent, theme.on_accent),
         Weight::Other => (theme.button, theme.ink),
@@ -47,7 +61,13 @@ pub fn button(ui: &mut Ui, theme: &Theme, text: &str, size: Vec2, weight: Weight
     );
     painter.rect_filled(rect, round, fill);
     focus_ring(ui, &response, rect, round, theme);
-    let galley = fitted(ui.painter(), text, 0.42 * size.y, rect.width() - 28.0, ink);
+    let galley = fitted(
+        ui.painter(),
+        text,
+        LETTERS * size.y,
+        rect.width() - 28.0,
+        ink,
+    );
     let at = rect.center() - 0.5 * galley.size();
     ui.painter().galley(at, galley, ink);
     response
@@ -63,14 +83,33 @@ pub fn fitted(painter: &Painter, text: &str, size: f32, width: f32, ink: Color32
     }
 }
 
-/// A ring around what a pad or the keyboard is on, which comes into view.
+/// Notes whether menus are used with keys or pads, which need to see where the focus is, or with a
+/// mouse or fingers, which do not.
+pub fn note_use_of_keys(ctx: &Context, by_keys: bool) {
+    ctx.data_mut(|data| data.insert_temp(Id::unique("by keys"), by_keys));
+}
+
+/// Whether keys or a pad are on this.
+fn is_on(ui: &Ui, response: &Response) -> bool {
+    let by_keys = ui.data(|data| data.get_temp(Id::unique("by keys")));
+    response.has_focus() && by_keys == Some(true)
+}
+
+/// From 0 to 1 while the mouse, keys or a pad are on something.
+pub fn liveliness(ui: &Ui, response: &Response) -> f32 {
+    let is_lively = response.hovered() || is_on(ui, response);
+    ui.ctx().animate_bool(response.id, is_lively)
+}
+
+/// A ring around what keys or a pad are on, which comes into view.
 pub fn focus_ring(ui: &Ui, response: &Response, rect: Rect, round: f32, theme: &Theme) {
+    let is_on = is_on(ui, response);
     let seen = Id::unique("what had the focus");
-    if response.has_focus() && ui.data(|data| data.get_temp(seen)) != Some(response.id) {
+    if is_on && ui.data(|data| data.get_temp(seen)) != Some(response.id) {
         ui.data_mut(|data| data.insert_temp(seen, response.id));
-        ui.scroll_to_rect(response.rect.expand(2.0 * RING), None);
+        ui.scroll_to_rect(response.rect.expand(RING + FADE), None);
     }
-    if response.has_focus() {
+    if is_on {
         let stroke = Stroke::new(4.0, theme.ink);
         let rect = rect.expand(RING - 2.0);
         ui.painter()
@@ -163,12 +202,13 @@ pub fn choice<T: Copy + PartialEq>(
     value: &mut T,
     options: &[(T, &str)],
 ) -> bool {
+    const HIGH: f32 = 44.0;
     let mut changed = false;
     row(ui, theme, name, |ui| {
         // All as wide as the widest, so that nothing moves when another is chosen.
         let mark = |text: &str| format!("● {text}");
         let measure = |text: &str| {
-            let font = FontId::proportional(17.0);
+            let font = FontId::proportional(LETTERS * HIGH);
             ui.painter()
                 .layout_no_wrap(mark(text), font, theme.ink)
                 .size()
@@ -179,6 +219,7 @@ pub fn choice<T: Copy + PartialEq>(
             .map(|(_, text)| measure(text))
             .fold(60.0, f32::max)
             + 36.0;
+        ui.spacing_mut().item_spacing.x = 2.0 * RING;
         for &(option, text) in options {
             let is_chosen = *value == option;
             // What is chosen is marked by more than its colour.
@@ -186,7 +227,11 @@ pub fn choice<T: Copy + PartialEq>(
                 true => (Weight::Main, mark(text)),
                 false => (Weight::Other, text.to_string()),
             };
-            if button(ui, theme, &marked, vec2(width, 40.0), weight).clicked() {
+            let response = plain_button(ui, theme, &marked, vec2(width, HIGH), weight);
+            let role = Role::RadioButton;
+            let told = format!("{name}: {text}");
+            response.widget_info(|| WidgetInfo::selected(role, true, is_chosen, &told));
+            if response.clicked() {
                 changed = *value != option;
                 *value = option;
             }
@@ -220,7 +265,9 @@ pub fn title(ui: &mut Ui, theme: &Theme, text: &str) {
 
 /// The upper edge of a screen: a way back and a headline; gives back the button.
 pub fn header(ui: &mut Ui, theme: &Theme, back: &str, text: &str) -> Response {
-    let inner = ui.horizontal(|ui| {
+    let room = vec2(ui.available_width(), 56.0);
+    let layout = Layout::left_to_right(Align::Center);
+    let inner = ui.allocate_ui_with_layout(room, layout, |ui| {
         // What comes next may be far to the right, where egui does not look for what is below.
         let id = ui.next_auto_id();
         if ui.memory(|memory| memory.has_focus(id)) {
@@ -247,11 +294,18 @@ pub fn step_through(ui: &Ui) {
     }
 }
 
-/// The rest of a screen: a column of so many points at most, which scrolls. There is room for the
-/// ring around what has the focus.
+/// Where a page is: down to the lower edge of the window, where it goes on out of sight.
+pub fn place_of_page(ui: &Ui) -> Rect {
+    let mut place = ui.max_rect().shrink2(EDGE);
+    place.max.y = ui.max_rect().bottom();
+    place
+}
+
+/// The rest of a screen: a column of so many points at most, which scrolls and fades where it goes
+/// on. There is room for the ring around what has the focus.
 pub fn page(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui)) {
     let area = egui::ScrollArea::vertical().auto_shrink(false);
-    area.show(ui, |ui| {
+    let output = area.show(ui, |ui| {
         let all = ui.available_width();
         let inner = (all - 2.0 * (RING + 2.0)).min(width);
         let side = 0.5 * (all - inner);
@@ -265,8 +319,25 @@ pub fn page(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui)) {
                 contents(ui);
             });
         });
-        ui.add_space(RING + 9.0);
+        ui.add_space(RING + EDGE.y);
     });
+    let seen = output.inner_rect.with_max_x(ui.clip_rect().right());
+    let seen = seen.with_min_x(ui.clip_rect().left());
+    let above = output.state.clamped_offset().y;
+    let below = output.content_size.y - seen.height() - above;
+    // The edge, and which way is inwards; what is far away fades as far as it can.
+    for (edge, inwards, more) in [(seen.top(), 1.0, above), (seen.bottom(), -1.0, below)] {
+        let far = edge + inwards * FADE.min(more.max(0.0));
+        let mut mesh = egui::Mesh::default();
+        for (y, colour) in [(edge, PAPER), (far, PAPER.gamma_multiply(0.0))] {
+            for x in [seen.left(), seen.right()] {
+                mesh.colored_vertex(pos2(x, y), colour);
+            }
+        }
+        mesh.add_triangle(0, 1, 2);
+        mesh.add_triangle(1, 2, 3);
+        ui.painter().add(mesh);
+    }
 }
 
 /// A column of so many points, upright in the middle of the screen, and what is in it; `across` from

@@ -1,6 +1,6 @@
 //! Which level?
 
-use super::kit::{fitted, focus_ring, header, page};
+use super::kit::{fitted, focus_ring, header, liveliness, page, place_of_page};
 use super::{marks, veil};
 use crate::game::{Game, Screen};
 use crate::look::{Maps, Stage};
@@ -14,11 +14,11 @@ const GAP: f32 = 20.0;
 const WIDE: f32 = 236.0;
 
 pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
-    veil(ui, 235);
+    veil(ui, 255);
     let (theme, said) = (game.theme(), game.words());
     let maps = stage.maps(&game.levels, &theme);
     let mut wanted = None;
-    let area = ui.max_rect().shrink2(vec2(28.0, 22.0));
+    let area = place_of_page(ui);
     let mut back = ui.input(|input| input.key_pressed(egui::Key::Escape));
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
         back |= header(ui, &theme, said.back, said.levels).clicked();
@@ -60,9 +60,7 @@ fn tile(ui: &mut Ui, game: &Game, maps: &Maps, place: usize, size: Vec2) -> Resp
     let name = game.settings.language.of(&level.game().name);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
-    let lively = ui
-        .ctx()
-        .animate_bool(response.id, response.hovered() || response.has_focus());
+    let lively = liveliness(ui, &response);
     let rect = rect.translate(vec2(0.0, -4.0 * lively));
     let painter = ui.painter();
     let shadow = Color32::from_black_alpha(30);

@@ -12,6 +12,8 @@ mod result;
 mod settings;
 mod title;
 
+pub use kit::note_use_of_keys;
+
 use crate::game::{Game, Screen};
 use crate::look::Stage;
 use egui::{Align2, Color32, FontId, Rect, Ui, pos2, vec2};
@@ -36,8 +38,13 @@ pub fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
 
 fn notices(game: &Game, ui: &Ui) {
     let screen = ui.max_rect();
-    let mut y = screen.top() + 18.0;
-    let font = FontId::proportional(18.0);
+    let above = match game.screen {
+        Screen::Play => hud::height(game, ui),
+        _ => 18.0,
+    };
+    let mut y = screen.top() + above;
+    let scale = hud::scale(game, ui);
+    let font = FontId::proportional(18.0 * scale);
     let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("notices"));
     let painter = ui.ctx().layer_painter(layer);
     for (text, left) in &game.notices {
@@ -45,22 +52,19 @@ fn notices(game: &Game, ui: &Ui) {
         let ink = Color32::WHITE.gamma_multiply(strength);
         let width = screen.width() - 80.0;
         let galley = painter.layout(text.clone(), font.clone(), ink, width);
-        let size = galley.size() + vec2(36.0, 18.0);
+        let size = galley.size() + scale * vec2(36.0, 18.0);
         let rect = Rect::from_min_size(pos2(screen.center().x - 0.5 * size.x, y), size);
         let shade = Color32::from_black_alpha((190.0 * strength) as u8);
-        painter.rect_filled(rect, 16.0, shade);
-        painter.galley(rect.min + vec2(18.0, 9.0), galley, ink);
+        painter.rect_filled(rect, 16.0 * scale, shade);
+        painter.galley(rect.min + scale * vec2(18.0, 9.0), galley, ink);
         y += size.y + 8.0;
     }
 }
 
 /// Dims the world behind a menu.
 fn veil(ui: &Ui, strength: u8) {
-    ui.painter().rect_filled(
-        ui.max_rect(),
-        0.0,
-        Color32::from_rgba_unmultiplied(255, 248, 238, strength),
-    );
+    ui.painter()
+        .rect_filled(ui.max_rect(), 0.0, kit::PAPER.gamma_multiply_u8(strength));
 }
 
 /// Words in the middle of a place.

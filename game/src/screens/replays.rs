@@ -1,12 +1,10 @@
 //! Rounds that were kept.
 
-use super::kit::{Weight, button, card, fitted, header, page};
+use super::kit::{Weight, button, card, fitted, header, page, place_of_page};
 use super::veil;
 use crate::game::{Game, Screen};
-use crate::platform::{Files, SavedReplay};
+use crate::platform::SavedReplay;
 use egui::{RichText, Ui, vec2};
-use std::sync::Arc;
-use tamaire_play::{Replay, ReplayError};
 use tamaire_sound::Menu;
 
 /// Width of a button.
@@ -21,27 +19,26 @@ enum Wish {
 }
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
-    veil(ui, 235);
+    veil(ui, 255);
     let (theme, said) = (game.theme(), game.words());
-    let replays = game.files.replays();
     let mut wanted: Option<(usize, Wish)> = None;
     let mut back = ui.input(|input| input.key_pressed(egui::Key::Escape));
-    let area = ui.max_rect().shrink2(vec2(28.0, 22.0));
+    let area = place_of_page(ui);
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
         let response = header(ui, &theme, said.back, said.replays);
         super::play::focus_first(ui, &response);
         back |= response.clicked();
         page(ui, 960.0, |ui| {
-            if replays.is_empty() {
+            if game.replays.is_empty() {
                 ui.vertical_centered(|ui| {
                     ui.add_space(60.0);
                     ui.label(RichText::new(said.no_replays).size(22.0).color(theme.faint));
                 });
             }
-            for (place, saved) in replays.iter().enumerate() {
+            for (place, saved) in game.replays.iter().enumerate() {
                 card(ui, &theme, |ui| {
                     ui.horizontal(|ui| {
-                        let name = saved.path.file_stem().unwrap_or_default().to_string_lossy();
+                        let name = name_of(game, saved);
                         let size = vec2(ui.available_width() - 3.0 * (WIDE + 10.0), 44.0);
                         let (room, _) = ui.allocate_exact_size(size, egui::Sense::hover());
                         let galley = fitted(ui.painter(), &name, 22.0, size.x, theme.ink);
@@ -67,21 +64,26 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
         game.go(Screen::Title);
     } else if let Some((place, wish)) = wanted {
         game.blip(Menu::Confirm);
-        fulfil(game, &replays[place], wish);
+        let saved = game.replays[place].clone();
+        fulfil(game, &saved, wish);
     }
 }
 
+/// By its level, where that is known, and its number.
+fn name_of(game: &Game, saved: &SavedReplay) -> String {
+    let stem = saved.path.file_stem().unwrap_or_default().to_string_lossy();
+    let known = stem.rsplit_once('-').and_then(|(id, number)| {
+        let level = game.levels.iter().find(|level| level.id == id)?;
+        let name = game.settings.language.of(&level.game().name);
+        Some(format!("{name} {number}"))
+    });
+    known.unwrap_or_else(|| stem.into())
+}
+
 fn fulfil(game: &mut Game, saved: &SavedReplay, wish: Wish) {
-    let open = |act: fn(&mut Game, Arc<Replay>) -> Result<(), ReplayError>, game: &mut Game| {
-        let played = Files::replay(&saved.path).and_then(|replay| act(game, Arc::new(replay)));
-        played.map_err(|error| format!("{}: {error}", saved.path.display()))
-    };
-    let outcome = match wish {
-        Wish::Watch => open(Game::watch, game),
-        Wish::Race => open(Game::race, game),
-        Wish::Delete => game.files.delete(saved).map_err(|error| error.to_string()),
-    };
-    if let Err(reason) = outcome {
-        game.notify(reason);
+    match wish {
+        Wish::Watch => game.open_replay(&saved.path, Game::watch),
+        Wish::Race => game.open_replay(&saved.path, Game::race),
+        Wish::Delete => game.delete(saved),
     }
 }

@@ -3,8 +3,17 @@
 use super::kit::{Weight, button, card, column, fitted};
 use super::{Act, marks, veil};
 use crate::game::{Game, Screen};
-use egui::{RichText, Ui, vec2};
+use crate::look::Theme;
+use crate::words::Words;
+use egui::{Align, Layout, Role, Sense, Ui, Vec2, WidgetInfo, pos2, vec2};
+use tamaire_play::{Outcome, Route, Wish};
 use tamaire_sound::Menu;
+
+/// Width of the card [points].
+const WIDE: f32 = 490.0;
+/// Height of the smaller buttons, and how far all of them are apart [points].
+const SMALL: f32 = 46.0;
+const GAP: f32 = 10.0;
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     veil(ui, 40);
@@ -14,106 +23,27 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     };
     let (theme, said) = (game.theme(), game.words());
     let level = game.session.round().level().clone();
-    let mut wanted: Option<Act> = None;
-    let to_levels: Act = |game| {
-        game.go(Screen::Title);
-        game.go(Screen::Levels);
-    };
     // Beside the body that beams, not over it.
-    let basket = level
-        .game()
-        .basket
-        .as_ref()
-        .map_or(0.0, |basket| basket.centre[0]);
-    let across = if basket > 0.0 { 0.1 } else { 0.9 };
-    column(ui, 540.0, across, |ui| {
+    let basket = level.game().basket.as_ref();
+    let is_right = basket.is_some_and(|basket| basket.centre[0] > 0.0);
+    let across = if is_right { 0.05 } else { 0.95 };
+    let mut wanted = column(ui, WIDE, across, |ui| {
         card(ui, &theme, |ui| {
-            let (place, _) = ui.allocate_exact_size(vec2(120.0, 52.0), egui::Sense::hover());
-            marks::route(
-                ui.painter(),
-                &theme,
-                place.center(),
-                24.0,
-                outcome.route,
-                true,
-            );
-            let width = ui.available_width();
-            let galley = fitted(
-                ui.painter(),
-                (said.route)(outcome.route),
-                42.0,
-                width,
-                theme.accent,
-            );
-            ui.label(galley);
+            ui.spacing_mut().item_spacing = Vec2::ZERO;
+            headline(ui, &theme, said, outcome.route);
             if is_best {
-                ui.label(
-                    RichText::new(format!("★ {}", said.new_best))
-                        .size(22.0)
-                        .color(theme.ink),
-                );
+                let best = format!("★ {}", said.new_best);
+                line(ui, &best, 21.0, theme.good);
             }
-            ui.add_space(10.0);
-            ui.columns(4, |columns| {
-                for (column, (name, value)) in columns.iter_mut().zip((said.summary)(&outcome)) {
-                    column.vertical_centered(|ui| {
-                        let width = ui.available_width();
-                        for (text, size, ink) in
-                            [(value.as_str(), 26.0, theme.ink), (name, 15.0, theme.faint)]
-                        {
-                            let galley = fitted(ui.painter(), text, size, width, ink);
-                            ui.label(galley);
-                        }
-                    });
-                }
-            });
-            ui.add_space(10.0);
-            for wish in &level.game().wish {
-                let mark = if outcome.fulfils(wish) { "★" } else { "☆" };
-                let text = format!("{mark} {}", (said.wish)(wish));
-                ui.label(RichText::new(text).size(19.0).color(theme.ink));
-            }
+            ui.add_space(14.0);
+            numbers(ui, &theme, said, &outcome);
             ui.add_space(12.0);
-            ui.label(
-                RichText::new((said.other_way)(outcome.route))
-                    .size(24.0)
-                    .color(theme.accent),
-            );
-            ui.add_space(8.0);
-            let again = button(ui, &theme, said.again, vec2(320.0, 60.0), Weight::Main);
-            super::play::focus_first(ui, &again);
-            if again.clicked() {
-                wanted = Some(Game::retry);
-            }
-            ui.add_space(10.0);
-            let small = vec2(154.0, 46.0);
-            let rows: [[(&str, Act); 2]; 2] = [
-                [
-                    (said.next, |game| {
-                        game.start((game.chosen + 1) % game.levels.len())
-                    }),
-                    (said.race, |game| {
-                        if let Some(last) = game.last.clone()
-                            && let Err(error) = game.race(last)
-                        {
-                            game.notify(error.to_string());
-                        }
-                    }),
-                ],
-                [(said.save, Game::keep_replay), (said.levels, to_levels)],
-            ];
-            for row in rows {
-                ui.horizontal(|ui| {
-                    ui.add_space(0.5 * (ui.available_width() - 2.0 * 200.0 - 10.0).max(0.0));
-                    for (text, act) in row {
-                        if button(ui, &theme, text, vec2(200.0, small.y), Weight::Other).clicked() {
-                            wanted = Some(act);
-                        }
-                    }
-                });
-                ui.add_space(6.0);
-            }
-        });
+            wishes(ui, &theme, said, &outcome, &level.game().wish);
+            ui.add_space(14.0);
+            line(ui, (said.other_way)(outcome.route), 23.0, theme.accent);
+            ui.add_space(GAP);
+            buttons(ui, &theme, said)
+        })
     });
     if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
         wanted = Some(to_levels);
@@ -122,4 +52,107 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
         game.blip(Menu::Confirm);
         act(game);
     }
+}
+
+/// The route, as a sign and in words.
+fn headline(ui: &mut Ui, theme: &Theme, said: &Words, route: Route) {
+    const SIGN: f32 = 64.0;
+    let room = vec2(ui.available_width(), 58.0);
+    let (place, response) = ui.allocate_exact_size(room, Sense::hover());
+    let name = (said.route)(route);
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, name));
+    let galley = fitted(ui.painter(), name, 44.0, room.x - SIGN, theme.accent);
+    let left = place.center().x - 0.5 * (SIGN + galley.size().x);
+    let middle = pos2(left + 0.4 * SIGN, place.center().y);
+    marks::route(ui.painter(), theme, middle, 22.0, route, true);
+    let at = pos2(left + SIGN, middle.y - 0.5 * galley.size().y);
+    ui.painter().galley(at, galley, theme.accent);
+}
+
+/// Words on a line of their own.
+fn line(ui: &mut Ui, text: &str, size: f32, ink: egui::Color32) {
+    let galley = fitted(ui.painter(), text, size, ui.available_width(), ink);
+    ui.label(galley);
+}
+
+/// What is counted, side by side.
+fn numbers(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcome) {
+    let summary = (said.summary)(outcome);
+    ui.spacing_mut().item_spacing.x = GAP;
+    ui.columns(summary.len(), |columns| {
+        for (column, (name, value)) in columns.iter_mut().zip(summary) {
+            column.spacing_mut().item_spacing = Vec2::ZERO;
+            column.vertical_centered(|ui| {
+                line(ui, &value, 29.0, theme.ink);
+                line(ui, name, 18.0, theme.faint);
+            });
+        }
+    });
+}
+
+/// What the level wishes, one below the other, and whether it came true.
+fn wishes(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcome, wishes: &[Wish]) {
+    let most = ui.available_width();
+    let lines = wishes.iter().map(|wish| {
+        let (star, ink) = match outcome.fulfils(wish) {
+            true => ("★", theme.ink),
+            false => ("☆", theme.faint),
+        };
+        let text = format!("{star} {}", (said.wish)(wish));
+        (fitted(ui.painter(), &text, 20.0, most, ink), ink)
+    });
+    let lines: Vec<_> = lines.collect();
+    let width = lines.iter().map(|(galley, _)| galley.size().x);
+    let width = width.fold(0.0, f32::max);
+    for (galley, ink) in lines {
+        let (place, response) = ui.allocate_exact_size(vec2(width, 28.0), Sense::hover());
+        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, galley.text()));
+        let at = place.left_center() - vec2(0.0, 0.5 * galley.size().y);
+        ui.painter().galley(at, galley, ink);
+    }
+}
+
+/// What can be done now; gives back what is asked for.
+fn buttons(ui: &mut Ui, theme: &Theme, said: &Words) -> Option<Act> {
+    let mut wanted: Option<Act> = None;
+    let width = 2.0 * 200.0 + GAP;
+    let again = button(ui, theme, said.again, vec2(width, 60.0), Weight::Main);
+    super::play::focus_first(ui, &again);
+    if again.clicked() {
+        wanted = Some(Game::retry);
+    }
+    let rows: [[(&str, Act); 2]; 2] = [
+        [(said.next, next), (said.race, race)],
+        [(said.save, Game::keep_replay), (said.levels, to_levels)],
+    ];
+    for row in rows {
+        ui.add_space(GAP + 2.0);
+        let place = vec2(width, SMALL);
+        ui.allocate_ui_with_layout(place, Layout::left_to_right(Align::Min), |ui| {
+            ui.spacing_mut().item_spacing.x = GAP;
+            for (text, act) in row {
+                if button(ui, theme, text, vec2(200.0, SMALL), Weight::Other).clicked() {
+                    wanted = Some(act);
+                }
+            }
+        });
+    }
+    wanted
+}
+
+fn next(game: &mut Game) {
+    game.start((game.chosen + 1) % game.levels.len());
+}
+
+fn race(game: &mut Game) {
+    if let Some(last) = game.last.clone()
+        && let Err(error) = game.race(last)
+    {
+        game.notify((game.words().replay_error)(&error));
+    }
+}
+
+fn to_levels(game: &mut Game) {
+    game.go(Screen::Title);
+    game.go(Screen::Levels);
 }

@@ -1,6 +1,6 @@
 //! What players choose.
 
-use super::kit::{Weight, button, card, choice, header, page, slider, step_through};
+use super::kit::{Weight, button, card, choice, header, page, place_of_page, slider, step_through};
 use super::veil;
 use crate::game::{Game, Screen};
 use crate::input::Action;
@@ -10,13 +10,13 @@ use egui::{RichText, Ui, vec2};
 use tamaire_sound::Menu;
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui, from: Screen) {
-    veil(ui, 235);
+    veil(ui, 255);
     let (theme, said) = (game.theme(), game.words());
     let before = game.settings.clone();
     let mut chosen = before.clone();
     let listens = game.rebinding.is_some();
     let mut back = !listens && ui.input(|input| input.key_pressed(egui::Key::Escape));
-    let area = ui.max_rect().shrink2(vec2(28.0, 22.0));
+    let area = place_of_page(ui);
     if !listens {
         step_through(ui);
     }

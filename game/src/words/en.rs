@@ -44,8 +44,8 @@ pub(super) const WORDS: Words = Words {
     summary: |outcome| {
         [
             ("Time", format!("{:.1} s", outcome.seconds())),
-            ("In one piece", format!("{:.0} %", 100.0 * outcome.kept)),
-            ("In the basket", format!("{:.0} %", 100.0 * outcome.inside)),
+            ("Kept", format!("{:.0} %", 100.0 * outcome.kept)),
+            ("Inside", format!("{:.0} %", 100.0 * outcome.inside)),
             ("Pieces", outcome.pieces.to_string()),
         ]
     },
@@ -102,4 +102,7 @@ pub(super) const WORDS: Words = Words {
     watching: "Replay",
     settings_kept: "The settings could not be read. They were kept aside as",
     not_written: "This could not be written:",
+    level_error: |error| error.to_string(),
+    replay_error: |error| error.to_string(),
+    only_flat: "levels in space (dim = 3) cannot be played yet",
 };

@@ -2,7 +2,8 @@
 
 use super::Words;
 use crate::input::Action;
-use tamaire_play::Route;
+use tamaire_play::level::LevelError;
+use tamaire_play::{ReplayError, Route};
 
 pub(super) const WORDS: Words = Words {
     play: "あそぶ",
@@ -33,7 +34,7 @@ pub(super) const WORDS: Words = Words {
                 Route::Mix => "りょうほう".to_string(),
             });
         }
-        parts.extend(wish.seconds.map(|most| format!("{most}びょういない")));
+        parts.extend(wish.seconds.map(|most| format!("{most}秒いない")));
         parts.extend(
             wish.kept
                 .map(|least| format!("{:.0}％のこす", 100.0 * least)),
@@ -43,8 +44,8 @@ pub(super) const WORDS: Words = Words {
     },
     summary: |outcome| {
         [
-            ("タイム", format!("{:.1}びょう", outcome.seconds())),
-            ("のこった大きさ", format!("{:.0}％", 100.0 * outcome.kept)),
+            ("タイム", format!("{:.1}秒", outcome.seconds())),
+            ("のこした", format!("{:.0}％", 100.0 * outcome.kept)),
             ("かごの中", format!("{:.0}％", 100.0 * outcome.inside)),
             ("かけら", format!("{}こ", outcome.pieces)),
         ]
@@ -102,4 +103,59 @@ pub(super) const WORDS: Words = Words {
     watching: "リプレイ",
     settings_kept: "設定が読めませんでした。もとのファイル：",
     not_written: "書きこめませんでした：",
+    level_error,
+    replay_error,
+    only_flat: "立体のステージ（dim = 3）は まだあそべません。",
 };
+
+/// What went wrong; details, which name fields and lines of files, stay as they are.
+fn level_error(error: &LevelError) -> String {
+    match error {
+        LevelError::Scene(scene) => format!("このステージは読めませんでした。{scene}"),
+        LevelError::NoGame { id, field, reason } => {
+            format!("「{id}」は、このままでは あそべません。{field}: {reason}")
+        }
+        LevelError::Unknown { id, .. } => {
+            format!("「{id}」というステージもファイルもありません。")
+        }
+    }
+}
+
+fn replay_error(error: &ReplayError) -> String {
+    match error {
+        ReplayError::Text(reason) => format!("リプレイではないようです。{reason}"),
+        ReplayError::Version { found } => {
+            format!("ほかのバージョン（{found}）のリプレイなので、見られません。")
+        }
+        ReplayError::Level(level) => level_error(level),
+        ReplayError::LevelChanged => "このリプレイのステージは、書きかえられています。".into(),
+        ReplayError::Dimension { found, .. } => {
+            format!("立体のリプレイ（dim = {found}）は、まだ見られません。")
+        }
+        ReplayError::Differs { second } => {
+            format!("このリプレイは書きかえられています。{second}秒から ちがいます。")
+        }
+        ReplayError::OutcomeDiffers => {
+            "このリプレイは書きかえられています。けっかが ちがいます。".into()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tamaire_play::Level;
+
+    #[test]
+    fn what_is_wrong_is_said_in_japanese_and_where_it_stands_is_kept() {
+        let unknown = level_error(&Level::open("nowhere").unwrap_err());
+        assert!(unknown.contains("nowhere") && unknown.contains("ありません"));
+        let path = std::env::temp_dir().join(format!("tamaire-ja-{}.toml", std::process::id()));
+        std::fs::write(&path, "dim = 2\ngravity = \"down\"\n").unwrap();
+        let broken = level_error(&Level::open(&path.to_string_lossy()).unwrap_err());
+        std::fs::remove_file(path).unwrap();
+        assert!(broken.contains("読めません") && broken.contains("line 2"));
+        let old = replay_error(&ReplayError::Version { found: 7 });
+        assert!(old.contains("バージョン（7）"), "{old}");
+    }
+}

@@ -5,7 +5,8 @@ mod ja;
 
 use crate::input::Action;
 use serde::{Deserialize, Serialize};
-use tamaire_play::{Outcome, Route, Wish, Words as Name};
+use tamaire_play::level::LevelError;
+use tamaire_play::{Outcome, ReplayError, Route, Wish, Words as Name};
 
 /// A language of the game.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -96,4 +97,7 @@ pub struct Words {
     pub watching: &'static str,
     pub settings_kept: &'static str,
     pub not_written: &'static str,
+    pub level_error: fn(&LevelError) -> String,
+    pub replay_error: fn(&ReplayError) -> String,
+    pub only_flat: &'static str,
 }

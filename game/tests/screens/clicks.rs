@@ -160,7 +160,16 @@ fn settings_are_kept_and_the_language_changes_at_once() {
     frames(&mut window, 2);
     let after = game(&mut window).settings.volume;
     assert!((before - after - 0.05).abs() < 1e-3, "{before} {after}");
-    click(&mut window, "日本語");
+    let option = |window: &Window, name: &str| {
+        let option = window.get_by_role_and_label(egui::accesskit::Role::RadioButton, name);
+        option.accesskit_node().toggled()
+    };
+    use egui::accesskit::Toggled::{False, True};
+    assert_eq!(option(&window, "Less motion: Off"), Some(True));
+    assert_eq!(option(&window, "Safe colours: Off"), Some(True));
+    assert_eq!(option(&window, "Safe colours: On"), Some(False));
+    window.get_by_label("Language: 日本語").click();
+    frames(&mut window, 2);
     let said = Language::Japanese.words();
     window.get_by_label(said.volume);
     click(&mut window, said.back);
@@ -244,4 +253,19 @@ fn mouse_and_keys_are_two_players() {
     window.key_up(Key::D);
     press(&mut window, Key::J);
     assert_eq!(game(&mut window).players.second(), None);
+}
+
+#[test]
+fn the_font_has_every_letter_of_the_game() {
+    let window = window(Files::nowhere());
+    let mut texts = vec![
+        include_str!("../../src/words/en.rs"),
+        include_str!("../../src/words/ja.rs"),
+    ];
+    texts.extend(tamaire_play::level::NAMED.map(|(_, text)| text));
+    let font = egui::FontId::proportional(20.0);
+    for letter in texts.join("").chars().filter(|k| !k.is_control()) {
+        let is_there = window.ctx.fonts_mut(|fonts| fonts.has_glyph(&font, letter));
+        assert!(is_there, "{letter}: run game/fonts/make.py");
+    }
 }

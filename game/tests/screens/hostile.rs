@@ -1,13 +1,16 @@
 //! What the game puts up with.
 
 use crate::window::*;
+use egui::accesskit::Role;
 use egui::{DroppedFile, Event, Key, PointerButton, pos2};
+use egui_kittest::kittest::Queryable;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use sticks::{About, Device, DeviceId, Pad, PadButton, Snapshot};
 use tamaire::game::{Game, Screen};
 use tamaire::platform::{Files, Pads};
+use tamaire::words::Language;
 use tamaire_play::BotKind;
 
 #[derive(Debug)]
@@ -107,16 +110,29 @@ fn a_round_waits_while_the_window_is_not_looked_at() {
 
 #[test]
 fn every_button_fits_into_the_smallest_window_with_the_largest_letters() {
-    let mut window = open(Files::nowhere(), egui::vec2(640.0, 400.0), 0.5);
-    game(&mut window).settings.text_size = 1.6;
-    game(&mut window).start(0);
-    win(&mut window);
-    let screens = [Screen::Result, Screen::Paused, Screen::Title];
-    for (screen, last) in screens.into_iter().zip(["Levels", "Levels", "Quit"]) {
-        game(&mut window).screen = screen.clone();
-        frames(&mut window, 3);
-        let (rect, room) = (button(&window, last).rect(), window.ctx.content_rect());
-        assert!(room.contains_rect(rect), "{screen:?}: {rect:?} in {room:?}");
+    for size in [egui::vec2(900.0, 640.0), egui::vec2(640.0, 400.0)] {
+        let mut window = open(Files::nowhere(), size, 0.5);
+        game(&mut window).settings.text_size = 1.6;
+        game(&mut window).start(0);
+        win(&mut window);
+        let round = game(&mut window).session.round();
+        let wishes = round.level().game().wish.len();
+        assert!(wishes == 3 && game(&mut window).won.unwrap().1);
+        let screens = [Screen::Result, Screen::Paused, Screen::Title];
+        for (screen, count) in screens.into_iter().zip([5, 4, 4]) {
+            for (language, _) in Language::ALL {
+                game(&mut window).settings.language = language;
+                game(&mut window).screen = screen.clone();
+                frames(&mut window, 3);
+                let room = window.ctx.content_rect();
+                let buttons: Vec<_> = window.get_all_by_role(Role::Button).collect();
+                assert_eq!(buttons.len(), count, "{screen:?}");
+                for button in buttons {
+                    let rect = button.rect();
+                    assert!(room.contains_rect(rect), "{screen:?}: {rect:?} in {room:?}");
+                }
+            }
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! How it looks: pictures, compared with those in `tests/snapshots`.
 
 use crate::window::*;
-use egui::vec2;
+use egui::{Key, Vec2, pos2, vec2};
 use egui_kittest::SnapshotOptions;
 use tamaire::game::Screen;
 use tamaire::input::{Action, Seat};
@@ -14,6 +14,9 @@ use tamaire_play::BotKind;
 /// language differs by more than that.
 const STEP: f32 = 50.0;
 const PIXELS: usize = 800;
+
+/// What has much detail is shown smaller, for the files' sake.
+const SMALLER: Vec2 = vec2(592.0, 370.0);
 
 fn picture(window: &mut Window, name: &str) {
     let options = SnapshotOptions::new()
@@ -35,38 +38,49 @@ fn pictures(window: &mut Window, name: &str) {
 
 #[test]
 fn every_screen() {
-    let mut window = open(Files::nowhere(), vec2(800.0, 500.0), 1.0);
+    let mut window = open(Files::nowhere(), vec2(704.0, 440.0), 1.0);
     drive(game(&mut window), BotKind::Idle, |game| game.time < 2.0);
     pictures(&mut window, "title");
     game(&mut window).go(Screen::Levels);
+    // The map of each level takes a frame.
+    let levels = game(&mut window).levels.len();
+    frames(&mut window, levels);
     pictures(&mut window, "levels");
     game(&mut window).go(Screen::Settings(Box::new(Screen::Title)));
     pictures(&mut window, "settings");
 
     game(&mut window).start(0);
-    game(&mut window).act(Action::Pause, Seat::Keys);
+    // Keys need to see where they are.
+    press(&mut window, Key::P);
     pictures(&mut window, "paused");
     game(&mut window).go(Screen::Play);
+    window.hover_at(pos2(10.0, 10.0));
     win(&mut window);
     pictures(&mut window, "result");
 }
 
 #[test]
-fn a_round_and_a_tear() {
-    // What has much detail is smaller, for the files' sake.
-    let mut window = open(Files::nowhere(), vec2(560.0, 350.0), 1.0);
+fn a_round() {
+    let mut window = open(Files::nowhere(), SMALLER, 1.0);
     game(&mut window).start(0);
     drive(game(&mut window), BotKind::Squeeze, |game| {
         game.session.round().frames().len() < 150
     });
     frames(&mut window, 1);
     picture(&mut window, "play");
+}
+
+#[test]
+fn a_tear() {
+    let mut window = open(Files::nowhere(), SMALLER, 1.0);
     game(&mut window).start(0);
     drive(game(&mut window), BotKind::Shave, |game| {
         game.session.round().progress().pieces < 8
     });
     frames(&mut window, 1);
     picture(&mut window, "tear");
-    game(&mut window).act(Action::Elements, Seat::Keys);
+    for action in [Action::Elements, Action::Slow] {
+        game(&mut window).act(action, Seat::Keys);
+    }
     pictures(&mut window, "elements");
 }

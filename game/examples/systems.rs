@@ -1,0 +1,50 @@
+//! What the game costs a frame besides its simulation and its picture: input, rules as they are
+//! shown, camera, effects, feelings, sounds.
+//!
+//! ```text
+//! cargo run --release -p tamaire --example systems
+//! ```
+
+use fuwafuwa::Dim2;
+use fuwafuwa::world::TICK;
+use std::time::{Duration, Instant};
+use tamaire::game::Game;
+use tamaire::platform::{Files, Pads, Sound};
+use tamaire_play::{Bot, BotKind, Round};
+
+fn main() {
+    let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
+    game.start(0);
+    let mut bot = Bot::new(BotKind::Shave, 1);
+    let mut beside = Round::<Dim2>::new(game.session.round().level().clone());
+    let mut rest = Vec::new();
+    while game.won.is_none() && rest.len() < 40 * 60 {
+        game.devices.pointer = bot.frame(game.session.round()).goal(0);
+        let whole = time(|| game.pass(TICK));
+        // The very same tick without a game around it.
+        let played = game.session.round().frames();
+        let Some(&frame) = played.get(beside.frames().len()) else {
+            continue;
+        };
+        let simulation = time(|| {
+            beside.step(frame);
+        });
+        rest.push(whole.saturating_sub(simulation));
+    }
+    assert_eq!(beside.world().hash(), game.session.round().world().hash());
+    rest.sort();
+    let milliseconds = |place: usize| 1e3 * rest[place].as_secs_f64();
+    println!(
+        "{} frames; ms a frame: median {:.2}, 99 of 100 {:.2}, worst {:.2}",
+        rest.len(),
+        milliseconds(rest.len() / 2),
+        milliseconds(rest.len() * 99 / 100),
+        milliseconds(rest.len() - 1),
+    );
+}
+
+fn time(what: impl FnOnce()) -> Duration {
+    let start = Instant::now();
+    what();
+    start.elapsed()
+}

@@ -1,0 +1,121 @@
+//! What happens as time passes: ticks, wins, the end of what is watched.
+
+use super::{Game, Screen, attract, heard};
+use crate::input::Manner;
+use std::sync::Arc;
+use tamaire_play::{InputFrame, Replay};
+use tamaire_sound::Cue;
+
+/// After a win the round goes on for so long before the result is shown [s].
+const CHEER: f32 = 1.4;
+/// Slow motion is this share of the usual speed.
+const SLOW: f32 = 0.2;
+
+impl Game {
+    /// Lets `seconds` pass.
+    pub fn pass(&mut self, seconds: f32) {
+        self.time += seconds;
+        for notice in &mut self.notices {
+            notice.1 -= seconds;
+        }
+        self.notices.retain(|notice| notice.1 > 0.0);
+        let runs = !matches!(self.screen, Screen::Paused | Screen::Settings(_)) && !self.stepping;
+        let pace = if self.slow { SLOW } else { 1.0 } * self.settings.speed;
+        if runs {
+            self.pass_ticks(seconds * pace);
+            self.effects.pass(seconds * pace);
+        }
+        if let Some(complaint) = self.session.take_complaint() {
+            self.notify((self.words().replay_error)(&complaint));
+            if !self.session.is_played() {
+                self.session = attract(0);
+                if self.screen == Screen::Play {
+                    self.go(Screen::Replays);
+                }
+            }
+        }
+        self.celebrate(seconds);
+        if self.screen == Screen::Title && self.session.is_over() {
+            self.cheered += seconds;
+            if self.cheered > 4.0 {
+                self.cheered = 0.0;
+                self.session = attract(self.time as usize);
+            }
+        }
+        let arena = self.session.round().level().arena();
+        let hand = self.session.round().world().manipulators()[0].position();
+        self.camera
+            .follow(hand, arena, seconds, self.settings.reduced_motion);
+        self.sound
+            .update(&heard::soundscape(self), &self.settings.volumes());
+    }
+
+    pub(super) fn pass_ticks(&mut self, seconds: f32) {
+        let manner = Manner {
+            sensitivity: self.settings.sensitivity,
+            stick_places: self.settings.stick_places,
+            arena: self.session.round().level().arena(),
+        };
+        let still = self.settings.reduced_motion;
+        // In menus the same keys and sticks move the focus.
+        let in_round = self.screen == Screen::Play;
+        let Self {
+            session,
+            players,
+            devices,
+            settings,
+            effects,
+            camera,
+            sound,
+            ..
+        } = self;
+        session.advance(
+            seconds,
+            |round| {
+                if !in_round {
+                    return InputFrame::default();
+                }
+                // Who comes in only now begins where the level says.
+                let mut hands = round.level().scene().goals(0);
+                for (goal, hand) in hands.iter_mut().zip(round.world().manipulators()) {
+                    *goal = hand.goal();
+                }
+                let tick = fuwafuwa::world::TICK;
+                players.frame(devices, &settings.bindings, &manner, &hands, tick)
+            },
+            |round| {
+                effects.see(round, camera, still);
+                for cue in heard::cues(round) {
+                    sound.play(cue);
+                }
+            },
+        );
+    }
+
+    /// Notes a win once, lets the body beam for a moment, then shows the result.
+    fn celebrate(&mut self, seconds: f32) {
+        let Some(outcome) = self.session.round().progress().outcome else {
+            return;
+        };
+        if self.screen != Screen::Play {
+            return;
+        }
+        if self.session.is_played() && self.won.is_none() {
+            let level = self.session.round().level().clone();
+            let is_best = self.records.note(&level, &outcome);
+            self.won = Some((outcome, is_best));
+            self.last = Some(Arc::new(Replay::of(self.session.round())));
+            self.sound.play(Cue::Won(match outcome.route {
+                tamaire_play::Route::Squeeze => tamaire_sound::Route::Squeeze,
+                tamaire_play::Route::Shave => tamaire_sound::Route::Shave,
+                tamaire_play::Route::Mix => tamaire_sound::Route::Mix,
+            }));
+            let written = self.files.write("records.toml", &self.records);
+            self.report(written);
+        }
+        self.cheered += seconds;
+        if self.cheered >= CHEER && self.won.is_some() {
+            self.go(Screen::Result);
+        }
+    }
+}
