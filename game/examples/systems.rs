@@ -13,6 +13,26 @@ use tamaire::platform::{Files, Pads, Sound};
 use tamaire_play::{Bot, BotKind, Round};
 
 fn main() {
+    // A round goes the same way each time: the least of three is what a frame takes undisturbed.
+    let mut rest = round();
+    for _ in 0..2 {
+        for (least, found) in rest.iter_mut().zip(round()) {
+            *least = found.min(*least);
+        }
+    }
+    rest.sort();
+    let milliseconds = |place: usize| 1e3 * rest[place].as_secs_f64();
+    println!(
+        "{} frames; ms a frame: median {:.2}, 99 of 100 {:.2}, worst {:.2}",
+        rest.len(),
+        milliseconds(rest.len() / 2),
+        milliseconds(rest.len() * 99 / 100),
+        milliseconds(rest.len() - 1),
+    );
+}
+
+/// What each frame of a round costs so.
+fn round() -> Vec<Duration> {
     let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
     game.start(0);
     let mut bot = Bot::new(BotKind::Shave, 1);
@@ -32,15 +52,7 @@ fn main() {
         rest.push(whole.saturating_sub(simulation));
     }
     assert_eq!(beside.world().hash(), game.session.round().world().hash());
-    rest.sort();
-    let milliseconds = |place: usize| 1e3 * rest[place].as_secs_f64();
-    println!(
-        "{} frames; ms a frame: median {:.2}, 99 of 100 {:.2}, worst {:.2}",
-        rest.len(),
-        milliseconds(rest.len() / 2),
-        milliseconds(rest.len() * 99 / 100),
-        milliseconds(rest.len() - 1),
-    );
+    rest
 }
 
 fn time(what: impl FnOnce()) -> Duration {

@@ -89,6 +89,8 @@ pub struct Game {
     pub pads: Pads,
     sound: Sound,
     cheered: f32,
+    /// How many recorded rounds the title has shown.
+    attracted: usize,
 }
 
 impl Game {
@@ -127,6 +129,7 @@ impl Game {
             sound,
             pads,
             cheered: 0.0,
+            attracted: 0,
         };
         for aside in [settings_aside, records_aside].into_iter().flatten() {
             let kept = game.words().settings_kept;
@@ -163,10 +166,16 @@ impl Game {
         self.sound.play(Cue::Menu(menu));
     }
 
+    /// Plays the next recorded round.
+    fn attract(&mut self) {
+        self.attracted += 1;
+        self.session = attract(self.attracted);
+    }
+
     /// Shows another screen.
     pub fn go(&mut self, screen: Screen) {
         if screen == Screen::Title && self.session.is_played() {
-            self.session = attract(self.time as usize);
+            self.attract();
         }
         if screen == Screen::Replays {
             self.replays = self.files.replays();

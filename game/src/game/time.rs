@@ -1,6 +1,6 @@
 //! What happens as time passes: ticks, wins, the end of what is watched.
 
-use super::{Game, Screen, attract, heard};
+use super::{Game, Screen, heard};
 use crate::input::Manner;
 use std::sync::Arc;
 use tamaire_play::{InputFrame, Replay};
@@ -28,7 +28,7 @@ impl Game {
         if let Some(complaint) = self.session.take_complaint() {
             self.notify((self.words().replay_error)(&complaint));
             if !self.session.is_played() {
-                self.session = attract(0);
+                self.attract();
                 if self.screen == Screen::Play {
                     self.go(Screen::Replays);
                 }
@@ -39,7 +39,7 @@ impl Game {
             self.cheered += seconds;
             if self.cheered > 4.0 {
                 self.cheered = 0.0;
-                self.session = attract(self.time as usize);
+                self.attract();
             }
         }
         let arena = self.session.round().level().arena();
