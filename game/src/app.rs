@@ -26,6 +26,9 @@ const OF_MENUS: [Key; 8] = [
     Key::ArrowRight,
 ];
 
+/// Keys that count once however long they are held: what they lead to must not be left at once.
+const ONCE: [Key; 3] = [Key::Escape, Key::Enter, Key::Space];
+
 /// The game in a window.
 pub struct App {
     /// Its state.
@@ -34,6 +37,8 @@ pub struct App {
     navigators: Vec<(sticks::DeviceId, Navigator)>,
     presses: Presses,
     screen_before: Screen,
+    /// Whether the window has lost the focus.
+    is_away: bool,
 }
 
 /// The window has no GPU, not even one in software.
@@ -59,12 +64,17 @@ impl App {
             navigators,
             presses,
             screen_before,
+            is_away: false,
         })
     }
 
     /// Takes in sticks and pads: in a round they ask for actions, in a menu they move the focus.
     fn hear_sticks(&mut self, ctx: &egui::Context, seconds: f32) {
         let changes = self.game.hear_sticks();
+        if self.is_away {
+            // They are used for something else, in another window.
+            return;
+        }
         // What is to get a meaning has none now.
         let in_menu = self.game.screen != Screen::Play && self.game.rebinding.is_none();
         for change in changes {
@@ -122,14 +132,13 @@ impl App {
     /// Takes in keys and the pointer.
     fn hear_window(&mut self, ctx: &egui::Context) {
         let game = &mut self.game;
-        let (events, keys, pointer, is_down, focused) = ctx.input(|input| {
+        let (events, keys, pointer, is_down) = ctx.input(|input| {
             let pointer = &input.pointer;
             (
                 input.events.clone(),
                 input.keys_down.clone(),
                 pointer.latest_pos(),
                 pointer.button_down(PointerButton::Primary),
-                input.focused,
             )
         });
         for event in &events {
@@ -138,11 +147,26 @@ impl App {
                 Event::PointerMoved(_) | Event::PointerButton { .. } => {
                     screens::note_use_of_keys(ctx, false);
                 }
+                // A window may never get the focus, and be played with the mouse: only losing it counts.
+                Event::WindowFocused(focused) => {
+                    self.is_away = !focused;
+                    if self.is_away {
+                        game.rest();
+                    }
+                }
                 _ => {}
             }
         }
+        // Where the mouse is counts until a tick has heard of it; on a button it does not mean the hand.
         let has_moved = |event: &Event| matches!(event, Event::PointerMoved(_));
         let points = is_down || events.iter().any(has_moved);
+        let is_on_button = ctx.interaction_snapshot(|seen| !seen.hovered.is_empty());
+        if game.screen != Screen::Play || is_on_button {
+            game.devices.pointer = None;
+        } else if let (Some(view), Some(at), true) = (game.view, pointer, points) {
+            game.devices.pointer = Some(view.in_world(at));
+        }
+        game.devices.keys = keys.into_iter().collect();
         let mut taken = Vec::new();
         for event in &events {
             let Event::Key {
@@ -177,14 +201,6 @@ impl App {
             _ => false,
         };
         ctx.input_mut(|input| input.events.retain(|event| !is_taken(event)));
-        game.devices.keys = keys.into_iter().collect();
-        game.devices.pointer = match (game.view, pointer) {
-            (Some(view), Some(at)) if points => Some(view.in_world(at)),
-            _ => None,
-        };
-        if !focused {
-            game.rest();
-        }
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
         for file in dropped {
             game.open(file.path());
@@ -237,6 +253,8 @@ struct Waiting {
     keys: Vec<Key>,
     /// Whether up and down lead through everything in its order, and not to what lies above or below.
     in_order: bool,
+    /// Which of [`ONCE`] are held.
+    held: Vec<Key>,
 }
 
 impl Presses {
@@ -252,6 +270,22 @@ impl egui::Plugin for Presses {
 
     fn input_hook(&mut self, _: &egui::Context, input: &mut RawInput) {
         let mut waiting = self.waiting();
+        let held = &mut waiting.held;
+        input.events.retain(|event| match *event {
+            Event::Key { key, pressed, .. } if ONCE.contains(&key) => {
+                let was_held = held.contains(&key);
+                held.retain(|other| *other != key);
+                if pressed {
+                    held.push(key);
+                }
+                !(pressed && was_held)
+            }
+            Event::WindowFocused(false) => {
+                held.clear();
+                true
+            }
+            _ => true,
+        });
         for key in std::mem::take(&mut waiting.keys) {
             input.events.extend(stroke(key, Modifiers::NONE));
         }

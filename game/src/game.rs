@@ -12,6 +12,7 @@ use crate::records::Records;
 use crate::session::Session;
 use crate::settings::Settings;
 use crate::words::Words;
+use fuwafuwa::world::TICK;
 use fuwafuwa_render::frame::ElementColour;
 use std::path::Path;
 use std::sync::Arc;
@@ -75,8 +76,6 @@ pub struct Game {
     pub stepping: bool,
     /// The last win: how, and whether it was the best by its route.
     pub won: Option<(Outcome, bool)>,
-    /// The round that was just won, to be kept or raced.
-    pub last: Option<Arc<Replay>>,
     /// The rounds that were kept, as they were when their screen came up.
     pub replays: Vec<SavedReplay>,
     /// What the player should know, and for how long [s].
@@ -121,7 +120,6 @@ impl Game {
             slow: false,
             stepping: false,
             won: None,
-            last: None,
             replays: Vec::new(),
             notices: Vec::new(),
             time: 0.0,
@@ -181,6 +179,7 @@ impl Game {
             self.replays = self.files.replays();
         }
         self.stepping = false;
+        self.rebinding = None;
         self.screen = screen;
     }
 
@@ -214,8 +213,8 @@ impl Game {
     }
 
     fn begin(&mut self) {
-        let id = &self.session.round().level().id;
-        let known = self.levels.iter().position(|level| level.id == *id);
+        let level = self.session.round().level();
+        let known = self.levels.iter().position(|known| known == level);
         self.chosen = known.unwrap_or(self.chosen);
         self.players.start();
         self.effects = Effects::default();
@@ -230,7 +229,7 @@ impl Game {
             .extension()
             .and_then(|ending| ending.to_str())
             .unwrap_or("");
-        if ending == "tamaire" {
+        if ending.eq_ignore_ascii_case("tamaire") {
             return self.open_replay(path, Self::watch);
         }
         match Level::open(&path.to_string_lossy()) {
@@ -268,13 +267,11 @@ impl Game {
         self.report(written);
     }
 
-    /// Keeps the round that was just won.
+    /// Keeps the round as it was played so far.
     pub fn keep_replay(&mut self) {
-        if let Some(replay) = self.last.clone() {
-            match self.files.save_replay(&replay) {
-                Ok(path) => self.notify(format!("{} {}", self.words().saved, path.display())),
-                Err(error) => self.report(Err(error)),
-            }
+        match self.files.save_replay(&Replay::of(self.session.round())) {
+            Ok(path) => self.notify(format!("{} {}", self.words().saved, path.display())),
+            Err(error) => self.report(Err(error)),
         }
     }
 
@@ -312,11 +309,18 @@ impl Game {
             (Screen::Play, Action::Slow) => self.slow = !self.slow,
             (Screen::Play, Action::Step) => {
                 self.stepping = true;
-                self.pass_ticks(fuwafuwa::world::TICK);
+                self.pass_ticks(TICK);
+                self.effects.pass(TICK);
             }
-            (Screen::Play, Action::Join) => self.players.join(seat),
+            (Screen::Play, Action::Join) if self.takes_two() => self.players.join(seat),
             _ => {}
         }
+    }
+
+    /// Whether a second player can come in.
+    fn takes_two(&self) -> bool {
+        let level = self.session.round().level();
+        self.session.is_played() && level.scene().hand.len() > 1
     }
 
     /// Takes in what sticks and pads say; gives back what was pressed since. When one is unplugged

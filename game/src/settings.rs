@@ -64,7 +64,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// The same with every number in its range.
+    /// The same with every number in its range, and a key for every action.
     pub fn in_range(mut self) -> Self {
         let usual = Self::default();
         let fit = |value: &mut f32, low: f32, high: f32, usual: f32| {
@@ -82,6 +82,7 @@ impl Settings {
         fit(&mut self.speed, 0.5, 1.0, usual.speed);
         fit(&mut self.sensitivity, 0.3, 3.0, usual.sensitivity);
         fit(&mut self.text_size, 0.8, 1.6, usual.text_size);
+        self.bindings = self.bindings.complete();
         self
     }
 

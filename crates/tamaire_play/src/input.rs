@@ -10,6 +10,9 @@ pub const PLAYERS: usize = 2;
 /// arena lies within ±4 m of the origin.
 pub const UNITS_PER_METRE: f32 = 8192.0;
 
+/// What a row has in place of a hand that nobody plays: no goal is there.
+const ABSENT: [i16; 3] = [i16::MIN; 3];
+
 /// Where the players want their hands to be at the end of a tick.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct InputFrame {
@@ -26,8 +29,28 @@ impl InputFrame {
 
     /// The same with the place [m] where another player wants to be.
     pub fn with(mut self, player: usize, place: Vector) -> Self {
-        self.goals[player] = Some(place.map(|k| (k * UNITS_PER_METRE).round() as i16));
+        let unit = |k: f32| ((k * UNITS_PER_METRE).round() as i16).max(-i16::MAX);
+        self.goals[player] = Some(place.map(unit));
         self
+    }
+
+    /// The frame as a row of numbers: three for each hand up to the last that is played.
+    pub(crate) fn row(&self) -> Vec<i16> {
+        let hands = self.goals.iter().rposition(Option::is_some);
+        let goals = &self.goals[..hands.map_or(0, |last| last + 1)];
+        goals
+            .iter()
+            .flat_map(|goal| goal.unwrap_or(ABSENT))
+            .collect()
+    }
+
+    /// The frame of a row.
+    pub(crate) fn of_row(row: &[i16]) -> Self {
+        let mut frame = Self::default();
+        for (goal, given) in frame.goals.iter_mut().zip(row.chunks_exact(3)) {
+            *goal = Some([given[0], given[1], given[2]]).filter(|goal| *goal != ABSENT);
+        }
+        frame
     }
 
     /// Where a player wants to be [m].
@@ -48,5 +71,21 @@ mod tests {
         let nonsense = frame.goal(1).unwrap();
         assert!(nonsense.iter().all(|k| k.abs() <= 4.0), "{nonsense:?}");
         assert_eq!(InputFrame::default().goal(0), None);
+    }
+
+    #[test]
+    fn a_row_tells_which_hands_are_played() {
+        let far = InputFrame::towards([-1e9; 3]);
+        let second = InputFrame::default().with(1, [0.5, 0.0, 0.0]);
+        for (frame, length) in [
+            (InputFrame::default(), 0),
+            (far, 3),
+            (second, 6),
+            (far.with(1, [0.0; 3]), 6),
+        ] {
+            let row = frame.row();
+            assert_eq!(row.len(), length);
+            assert_eq!(InputFrame::of_row(&row), frame);
+        }
     }
 }

@@ -67,7 +67,9 @@ impl Level {
     /// [`LevelError`] says what is wrong, and in which line.
     pub fn open(id: &str) -> Result<Self, LevelError> {
         if let Some((_, text)) = NAMED.iter().find(|(known, _)| *known == id) {
-            return Self::of(id, Scene::read(id, text, &[])?);
+            let mut scene = Scene::read(id, text, &[])?;
+            scene.embed_files(&FILES)?;
+            return Self::of(id, scene);
         }
         let path = Path::new(id);
         if !path.exists() {
@@ -100,7 +102,8 @@ impl Level {
     /// # Errors
     /// [`LevelError`] says what is wrong with it.
     pub fn of(id: &str, mut scene: Scene) -> Result<Self, LevelError> {
-        scene.embed_files(&FILES)?;
+        // From here on it needs no file.
+        scene.embed_files(&[])?;
         let missing = |field, reason: &str| LevelError::NoGame {
             id: id.into(),
             field,
@@ -124,6 +127,13 @@ impl Level {
         match scene.dim {
             2 => check::<fuwafuwa::Dim2>(&scene)?,
             _ => check::<fuwafuwa::Dim3>(&scene)?,
+        }
+        let axes = 0..usize::from(scene.dim);
+        let room = axes.map(|axis| high[axis] - low[axis]);
+        let room = room.fold(f32::INFINITY, f32::min);
+        if scene.hand.iter().any(|hand| 2.0 * hand.radius > 0.9 * room) {
+            let reason = format!("expected hands that can move in the view, {room} m wide");
+            return Err(missing("hand", &reason));
         }
         let id = id.into();
         Ok(Self { id, scene, game })

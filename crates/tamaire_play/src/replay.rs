@@ -5,6 +5,7 @@ use crate::{InputFrame, Level, Outcome, Round};
 use fuwafuwa::Dim;
 use fuwafuwa_scenes::Scene;
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 use std::sync::Arc;
 
 /// Number of the format and of the rules; it changes when an older round would run differently.
@@ -27,7 +28,7 @@ pub struct Replay {
     pub level_hash: String,
     /// How it was won, if it was.
     pub outcome: Option<Outcome>,
-    /// The world's hash after every sixtieth tick, and after the last when it was won, in hexadecimal.
+    /// The world's hash after every sixtieth tick and after the last, in hexadecimal.
     pub hashes: Vec<String>,
     /// What was played: for each tick the goals of the hands.
     frames: Vec<Vec<i16>>,
@@ -76,27 +77,19 @@ impl Replay {
     /// What was played in a round so far.
     pub fn of<D: Dim>(round: &Round<D>) -> Self {
         let level = round.level();
-        let frame = |frame: &InputFrame| -> Vec<i16> {
-            // A hand that nobody plays says nothing, and so do those after it.
-            frame
-                .goals
-                .iter()
-                .map_while(|goal| *goal)
-                .flatten()
-                .collect()
-        };
+        let mut hashes = round.hashes().to_vec();
+        if hashes.len() < marks(round.frames().len()) {
+            hashes.push(round.world().hash());
+        }
         Self {
             version: VERSION,
             game: env!("CARGO_PKG_VERSION").into(),
-            level: level.id.clone(),
+            // Of a file not its folders, which are nobody else's business.
+            level: stem(&level.id),
             level_hash: format!("{:016x}", level.hash()),
             outcome: round.progress().outcome,
-            hashes: round
-                .hashes()
-                .iter()
-                .map(|hash| format!("{hash:016x}"))
-                .collect(),
-            frames: round.frames().iter().map(frame).collect(),
+            hashes: hashes.iter().map(|hash| format!("{hash:016x}")).collect(),
+            frames: round.frames().iter().map(InputFrame::row).collect(),
             scene: level.scene().clone(),
         }
     }
@@ -122,6 +115,19 @@ impl Replay {
             let reason = format!("expected {MAX_TICKS} ticks at most, found {ticks}");
             return Err(ReplayError::Text(reason));
         }
+        if let Some(tick) = replay
+            .frames
+            .iter()
+            .position(|row| ![0, 3, 6].contains(&row.len()))
+        {
+            let reason = format!("frame {tick}: expected 0, 3 or 6 numbers");
+            return Err(ReplayError::Text(reason));
+        }
+        let (found, expected) = (replay.hashes.len(), marks(ticks));
+        if found != expected {
+            let reason = format!("expected {expected} hashes for {ticks} ticks, found {found}");
+            return Err(ReplayError::Text(reason));
+        }
         Ok(replay)
     }
 
@@ -137,13 +143,8 @@ impl Replay {
 
     /// What was played in a tick; nothing after the last.
     pub fn frame(&self, tick: usize) -> InputFrame {
-        let mut frame = InputFrame::default();
-        if let Some(goals) = self.frames.get(tick) {
-            for (goal, given) in frame.goals.iter_mut().zip(goals.chunks_exact(3)) {
-                *goal = Some([given[0], given[1], given[2]]);
-            }
-        }
-        frame
+        let row = self.frames.get(tick);
+        row.map_or_else(InputFrame::default, |row| InputFrame::of_row(row))
     }
 
     /// The level it was played in.
@@ -155,6 +156,17 @@ impl Replay {
         let same = format!("{:016x}", level.hash()) == self.level_hash;
         same.then_some(level).ok_or(ReplayError::LevelChanged)
     }
+}
+
+/// How many hashes there are of so many ticks.
+fn marks(ticks: usize) -> usize {
+    ticks.div_ceil(60)
+}
+
+/// The name of a level without its folders and its ending.
+fn stem(id: &str) -> String {
+    let stem = Path::new(id).file_stem().unwrap_or_default();
+    stem.to_string_lossy().into()
 }
 
 /// A replay that is being played.
@@ -215,16 +227,12 @@ impl<D: Dim> Playback<D> {
         if was_over {
             return Ok(());
         }
-        let hashes = self.round.hashes();
-        let known = hashes.last().map(|hash| format!("{hash:016x}"));
-        if known.as_ref()
-            != hashes
-                .len()
-                .checked_sub(1)
-                .and_then(|last| self.replay.hashes.get(last))
-        {
-            let second = self.tick / 60;
-            return Err(ReplayError::Differs { second });
+        if self.tick.is_multiple_of(60) || self.is_over() {
+            let found = format!("{:016x}", self.round.world().hash());
+            if self.replay.hashes.get(marks(self.tick) - 1) != Some(&found) {
+                let second = self.tick / 60;
+                return Err(ReplayError::Differs { second });
+            }
         }
         let ends_alike = self.round.progress().outcome == self.replay.outcome;
         if self.is_over() && !ends_alike {

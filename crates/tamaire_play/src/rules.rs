@@ -114,7 +114,7 @@ impl Progress {
         self.held = if enough { self.held + TICK } else { 0.0 };
         if !enough {
             self.squeezed = f32::INFINITY;
-        } else if world.ticks().is_multiple_of(LOOK) {
+        } else if self.squeezed.is_infinite() || world.ticks().is_multiple_of(LOOK) {
             self.squeezed = self.squeezed.min(strain_inside(world, basket));
         }
         if enough && self.held >= level.game().hold {

@@ -2,8 +2,7 @@
 
 use super::{Game, Screen, heard};
 use crate::input::Manner;
-use std::sync::Arc;
-use tamaire_play::{InputFrame, Replay};
+use tamaire_play::InputFrame;
 use tamaire_sound::Cue;
 
 /// After a win the round goes on for so long before the result is shown [s].
@@ -59,6 +58,7 @@ impl Game {
         let still = self.settings.reduced_motion;
         // In menus the same keys and sticks move the focus.
         let in_round = self.screen == Screen::Play;
+        let mut is_heard = false;
         let Self {
             session,
             players,
@@ -72,6 +72,7 @@ impl Game {
         session.advance(
             seconds,
             |round| {
+                is_heard = true;
                 if !in_round {
                     return InputFrame::default();
                 }
@@ -90,6 +91,9 @@ impl Game {
                 }
             },
         );
+        if is_heard {
+            devices.pointer = None;
+        }
     }
 
     /// Notes a win once, lets the body beam for a moment, then shows the result.
@@ -100,11 +104,13 @@ impl Game {
         if self.screen != Screen::Play {
             return;
         }
+        self.cheered += seconds;
         if self.session.is_played() && self.won.is_none() {
             let level = self.session.round().level().clone();
-            let is_best = self.records.note(&level, &outcome);
+            // A round that somebody shared may have another level under a known name.
+            let is_known = self.levels.contains(&level);
+            let is_best = is_known && self.records.note(&level, &outcome);
             self.won = Some((outcome, is_best));
-            self.last = Some(Arc::new(Replay::of(self.session.round())));
             self.sound.play(Cue::Won(match outcome.route {
                 tamaire_play::Route::Squeeze => tamaire_sound::Route::Squeeze,
                 tamaire_play::Route::Shave => tamaire_sound::Route::Shave,
@@ -113,9 +119,13 @@ impl Game {
             let written = self.files.write("records.toml", &self.records);
             self.report(written);
         }
-        self.cheered += seconds;
-        if self.cheered >= CHEER && self.won.is_some() {
+        if self.has_cheered() && self.won.is_some() {
             self.go(Screen::Result);
         }
+    }
+
+    /// Whether a body that is in has beamed for long enough.
+    pub fn has_cheered(&self) -> bool {
+        self.cheered >= CHEER
     }
 }

@@ -8,7 +8,7 @@ use sticks::{Control, Direction, PadButton};
 
 /// Keys and buttons by action. No key and no button means two actions at once.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default)]
 pub struct Bindings {
     /// Keys.
     pub keys: BTreeMap<Action, Vec<Key>>,
@@ -29,6 +29,11 @@ impl PadKey {
             Control::Hat(_, direction) => format!("hat {direction:?}").to_lowercase(),
             Control::Pad(button) => format!("{button:?}").to_lowercase(),
         })
+    }
+
+    /// Whether it is on a plain stick: who holds a pad has none of those.
+    fn is_of_stick(&self) -> bool {
+        self.0.starts_with("hat ") || self.0.parse::<u8>().is_ok()
     }
 }
 
@@ -85,12 +90,38 @@ impl Bindings {
     /// Makes a key mean an action, and nothing else. An action that loses its only key takes the old
     /// one of this action in exchange, so that nothing gets out of reach.
     pub fn bind_key(&mut self, action: Action, key: Key) {
-        bind(&mut self.keys, action, key);
+        bind(&mut self.keys, action, key, |_| true);
     }
 
-    /// The same for a button.
+    /// The same for a button; those of pads and those of plain sticks do not know of each other.
     pub fn bind_button(&mut self, action: Action, control: Control) {
-        bind(&mut self.buttons, action, PadKey::of(control));
+        let button = PadKey::of(control);
+        let kind = button.is_of_stick();
+        bind(&mut self.buttons, action, button, |other| {
+            other.is_of_stick() == kind
+        });
+    }
+
+    /// The same with the usual keys and buttons for actions that have none.
+    pub fn complete(mut self) -> Self {
+        let usual = Self::default();
+        for action in Action::ALL {
+            complete(&mut self.keys, &usual.keys, action);
+            complete(&mut self.buttons, &usual.buttons, action);
+        }
+        self
+    }
+}
+
+fn complete<K: Clone + PartialEq>(
+    map: &mut BTreeMap<Action, Vec<K>>,
+    usual: &BTreeMap<Action, Vec<K>>,
+    action: Action,
+) {
+    if map.get(&action).is_none_or(Vec::is_empty) {
+        let is_free = |key: &&K| find(map, key).is_none();
+        let keys = usual[&action].iter().filter(is_free).cloned().collect();
+        map.insert(action, keys);
     }
 }
 
@@ -99,13 +130,22 @@ fn find<K: PartialEq>(map: &BTreeMap<Action, Vec<K>>, key: &K) -> Option<Action>
     found.map(|(&action, _)| action)
 }
 
-fn bind<K: PartialEq + Clone>(map: &mut BTreeMap<Action, Vec<K>>, action: Action, key: K) {
-    let before = map.insert(action, vec![key.clone()]).unwrap_or_default();
+/// Gives an action a key, in place of those it had of the same kind.
+fn bind<K: PartialEq + Clone>(
+    map: &mut BTreeMap<Action, Vec<K>>,
+    action: Action,
+    key: K,
+    is_alike: impl Fn(&K) -> bool,
+) {
+    let keys = map.entry(action).or_default();
+    let before = keys.iter().find(|&k| is_alike(k) && *k != key).cloned();
+    keys.retain(|k| !is_alike(k));
+    keys.insert(0, key.clone());
     for (_, keys) in map.iter_mut().filter(|(other, _)| **other != action) {
         if keys.contains(&key) {
             keys.retain(|k| *k != key);
-            if keys.is_empty() {
-                keys.extend(before.iter().find(|k| **k != key).cloned());
+            if !keys.iter().any(&is_alike) {
+                keys.extend(before.clone());
             }
         }
     }
@@ -127,7 +167,24 @@ mod tests {
             bindings.of_button(Control::Pad(PadButton::North)),
             Some(Action::Pause)
         );
+        // Who holds a pad takes over a button of it, and plain sticks stay as they were.
+        let start = Control::Pad(PadButton::Start);
+        assert_eq!(bindings.of_button(start), Some(Action::Retry));
         assert_eq!(bindings.of_button(Control::Button(3)), Some(Action::Retry));
+        assert_eq!(bindings.of_button(Control::Button(2)), Some(Action::Pause));
+    }
+
+    #[test]
+    fn what_a_file_leaves_out_is_as_usual_unless_it_means_something_else_there() {
+        let text = "[keys]\nretry = [\"P\"]\n[buttons]\nnonsense = []\n";
+        assert!(toml::from_str::<Bindings>(text).is_err(), "no such action");
+        let text = "[keys]\nretry = [\"P\"]\nfuture = 1\n";
+        assert!(toml::from_str::<Bindings>(text).is_err(), "no such action");
+        let text = "later = 1\n[keys]\nretry = [\"P\"]\n";
+        let bindings = toml::from_str::<Bindings>(text).unwrap().complete();
+        assert_eq!(bindings.of_key(Key::P), Some(Action::Retry));
+        assert_eq!(bindings.keys[&Action::Pause], [Key::Escape]);
+        assert_eq!(bindings.buttons, Bindings::default().buttons);
     }
 
     #[test]

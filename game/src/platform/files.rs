@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::fs;
-use std::io;
+use std::fs::{self, File};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 use tamaire_play::{Replay, ReplayError};
@@ -53,13 +53,16 @@ impl Files {
         let Some(path) = self.folder.as_ref().map(|folder| folder.join(name)) else {
             return (T::default(), None);
         };
-        let Ok(text) = fs::read_to_string(&path) else {
-            return (T::default(), path.exists().then_some(path));
-        };
-        if let Ok(value) = toml::from_str(&text) {
+        if !path.exists() {
+            return (T::default(), None);
+        }
+        let text = fs::read_to_string(&path).unwrap_or_default();
+        if let (false, Ok(value)) = (text.is_empty(), toml::from_str(&text)) {
             return (value, None);
         }
-        let aside = path.with_extension("broken.toml");
+        let free = (1..).map(|number| path.with_extension(format!("broken-{number}.toml")));
+        let aside = free.into_iter().find(|aside| !aside.exists());
+        let aside = aside.expect("some number is free");
         let moved = fs::rename(&path, &aside);
         (T::default(), Some(if moved.is_ok() { aside } else { path }))
     }
@@ -83,7 +86,7 @@ impl Files {
     pub fn save_replay(&self, replay: &Replay) -> io::Result<PathBuf> {
         let missing = || io::Error::new(io::ErrorKind::NotFound, "no folder for files");
         let folder = self.folder.as_ref().ok_or_else(missing)?.join("replays");
-        let is_plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '-';
+        let is_plain = |letter: char| letter.is_alphanumeric() || letter == '-';
         let stem = Path::new(&replay.level).file_stem().unwrap_or_default();
         let name: String = stem
             .to_string_lossy()
@@ -151,7 +154,9 @@ fn write_whole(path: &Path, text: &str) -> io::Result<()> {
     let folder = path.parent().unwrap_or(Path::new("."));
     fs::create_dir_all(folder)?;
     let draft = path.with_extension("draft");
-    fs::write(&draft, text)?;
+    let mut file = File::create(&draft)?;
+    file.write_all(text.as_bytes())?;
+    file.sync_all()?;
     fs::rename(&draft, path)
 }
 

@@ -283,7 +283,7 @@ pub fn header(ui: &mut Ui, theme: &Theme, back: &str, text: &str) -> Response {
 }
 
 /// Makes up and down go to what comes before and after, wherever it is. To be called before either.
-pub fn step_through(ui: &Ui) {
+fn step_through(ui: &Ui) {
     for (key, direction) in [
         (Key::ArrowDown, FocusDirection::Next),
         (Key::ArrowUp, FocusDirection::Previous),

@@ -14,9 +14,10 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
         card(ui, &theme, |ui| {
             title(ui, &theme, said.paused);
             ui.add_space(14.0);
-            let options: [(&str, Act); 4] = [
+            let options: [(&str, Act); 5] = [
                 (said.go_on, |game| game.go(Screen::Play)),
                 (said.again, Game::retry),
+                (said.save, Game::keep_replay),
                 (said.settings, |game| {
                     game.go(Screen::Settings(Box::new(Screen::Paused)))
                 }),
@@ -31,7 +32,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 } else {
                     Weight::Other
                 };
-                let response = button(ui, &theme, text, vec2(300.0, 58.0), weight);
+                let response = button(ui, &theme, text, vec2(300.0, 54.0), weight);
                 if place == 0 {
                     super::play::focus_first(ui, &response);
                 }

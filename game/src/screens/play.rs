@@ -45,7 +45,8 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     if game.session.is_played() && !is_on_button {
         ui.ctx().set_cursor_icon(egui::CursorIcon::None);
     }
-    if !game.session.is_played() && game.session.is_over() {
+    let is_seen = game.session.round().progress().outcome.is_none() || game.has_cheered();
+    if !game.session.is_played() && game.session.is_over() && is_seen {
         game.go(Screen::Replays);
     }
 }

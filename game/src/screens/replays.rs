@@ -4,7 +4,8 @@ use super::kit::{Weight, button, card, fitted, header, page, place_of_page};
 use super::veil;
 use crate::game::{Game, Screen};
 use crate::platform::SavedReplay;
-use egui::{RichText, Ui, vec2};
+use egui::{Id, RichText, Ui, vec2};
+use std::path::PathBuf;
 use tamaire_sound::Menu;
 
 /// Width of a button.
@@ -22,6 +23,12 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     veil(ui, 255);
     let (theme, said) = (game.theme(), game.words());
     let mut wanted: Option<(usize, Wish)> = None;
+    // What was asked to be deleted is deleted when it is asked for again.
+    let doomed = Id::unique("doomed");
+    let is_doomed = |ui: &Ui, saved: &SavedReplay| {
+        let asked = ui.data(|data| data.get_temp::<Option<PathBuf>>(doomed));
+        asked.flatten().as_ref() == Some(&saved.path)
+    };
     let mut back = ui.input(|input| input.key_pressed(egui::Key::Escape));
     let area = place_of_page(ui);
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
@@ -47,7 +54,13 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                         for (text, wish) in [
                             (said.watch, Wish::Watch),
                             (said.race, Wish::Race),
-                            (said.delete, Wish::Delete),
+                            (
+                                match is_doomed(ui, saved) {
+                                    true => said.surely,
+                                    false => said.delete,
+                                },
+                                Wish::Delete,
+                            ),
                         ] {
                             if button(ui, &theme, text, vec2(WIDE, 44.0), Weight::Other).clicked() {
                                 wanted = Some((place, wish));
@@ -65,7 +78,14 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     } else if let Some((place, wish)) = wanted {
         game.blip(Menu::Confirm);
         let saved = game.replays[place].clone();
-        fulfil(game, &saved, wish);
+        match wish {
+            Wish::Watch => game.open_replay(&saved.path, Game::watch),
+            Wish::Race => game.open_replay(&saved.path, Game::race),
+            Wish::Delete if is_doomed(ui, &saved) => game.delete(&saved),
+            Wish::Delete => {}
+        }
+        let asked = matches!(wish, Wish::Delete).then_some(saved.path);
+        ui.data_mut(|data| data.insert_temp(doomed, asked));
     }
 }
 
@@ -78,12 +98,4 @@ fn name_of(game: &Game, saved: &SavedReplay) -> String {
         Some(format!("{name} {number}"))
     });
     known.unwrap_or_else(|| stem.into())
-}
-
-fn fulfil(game: &mut Game, saved: &SavedReplay, wish: Wish) {
-    match wish {
-        Wish::Watch => game.open_replay(&saved.path, Game::watch),
-        Wish::Race => game.open_replay(&saved.path, Game::race),
-        Wish::Delete => game.delete(saved),
-    }
 }

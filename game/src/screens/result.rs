@@ -6,7 +6,8 @@ use crate::game::{Game, Screen};
 use crate::look::Theme;
 use crate::words::Words;
 use egui::{Align, Layout, Role, Sense, Ui, Vec2, WidgetInfo, pos2, vec2};
-use tamaire_play::{Outcome, Route, Wish};
+use std::sync::Arc;
+use tamaire_play::{Level, Outcome, Replay, Route, Wish};
 use tamaire_sound::Menu;
 
 /// Width of the card [points].
@@ -40,8 +41,10 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
             ui.add_space(12.0);
             wishes(ui, &theme, said, &outcome, &level.game().wish);
             ui.add_space(14.0);
-            line(ui, (said.other_way)(outcome.route), 23.0, theme.accent);
-            ui.add_space(GAP);
+            if can_tear(&level) {
+                line(ui, (said.other_way)(outcome.route), 23.0, theme.accent);
+                ui.add_space(GAP);
+            }
             buttons(ui, &theme, said)
         })
     });
@@ -52,6 +55,15 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
         game.blip(Menu::Confirm);
         act(game);
     }
+}
+
+/// Whether there is another way.
+fn can_tear(level: &Level) -> bool {
+    level
+        .scene()
+        .materials()
+        .iter()
+        .any(|material| material.strength.is_finite())
 }
 
 /// The route, as a sign and in words.
@@ -145,9 +157,8 @@ fn next(game: &mut Game) {
 }
 
 fn race(game: &mut Game) {
-    if let Some(last) = game.last.clone()
-        && let Err(error) = game.race(last)
-    {
+    let last = Arc::new(Replay::of(game.session.round()));
+    if let Err(error) = game.race(last) {
         game.notify((game.words().replay_error)(&error));
     }
 }

@@ -1,9 +1,10 @@
 //! What players choose.
 
-use super::kit::{Weight, button, card, choice, header, page, place_of_page, slider, step_through};
+use super::kit::{Weight, button, card, choice, header, page, place_of_page, slider};
 use super::veil;
 use crate::game::{Game, Screen};
 use crate::input::Action;
+use crate::look::Theme;
 use crate::settings::Settings;
 use crate::words::Language;
 use egui::{RichText, Ui, vec2};
@@ -17,9 +18,6 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, from: Screen) {
     let listens = game.rebinding.is_some();
     let mut back = !listens && ui.input(|input| input.key_pressed(egui::Key::Escape));
     let area = place_of_page(ui);
-    if !listens {
-        step_through(ui);
-    }
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
         let response = header(ui, &theme, said.back, said.settings);
         super::play::focus_first(ui, &response);
@@ -36,7 +34,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, from: Screen) {
                     &Language::ALL,
                 );
             });
-            section(ui, game, said.sound_section, |ui| {
+            section(ui, &theme, said.sound_section, |ui| {
                 slider(ui, &theme, said.volume, &mut chosen.volume, 0.0, 1.0, 0.05);
                 slider(
                     ui,
@@ -58,7 +56,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, from: Screen) {
                     0.05,
                 );
             });
-            section(ui, game, said.play_section, |ui| {
+            section(ui, &theme, said.play_section, |ui| {
                 slider(ui, &theme, said.speed, &mut chosen.speed, 0.5, 1.0, 0.05);
                 slider(
                     ui,
@@ -86,7 +84,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, from: Screen) {
                     0.05,
                 );
             });
-            section(ui, game, said.look_section, |ui| {
+            section(ui, &theme, said.look_section, |ui| {
                 choice(
                     ui,
                     &theme,
@@ -133,10 +131,9 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, from: Screen) {
     }
 }
 
-fn section(ui: &mut Ui, game: &Game, name: &str, contents: impl FnOnce(&mut Ui)) {
-    let theme = game.theme();
+fn section(ui: &mut Ui, theme: &Theme, name: &str, contents: impl FnOnce(&mut Ui)) {
     ui.add_space(10.0);
-    card(ui, &theme, |ui| {
+    card(ui, theme, |ui| {
         ui.set_width(ui.available_width());
         ui.label(RichText::new(name).size(26.0).color(theme.accent).strong());
         contents(ui);
@@ -146,7 +143,7 @@ fn section(ui: &mut Ui, game: &Game, name: &str, contents: impl FnOnce(&mut Ui))
 /// Which key and which button does what; a click, then a press, changes it.
 fn controls(ui: &mut Ui, game: &mut Game, chosen: &mut Settings) {
     let (theme, said) = (game.theme(), game.words());
-    section_of_controls(ui, game, |ui, game| {
+    section(ui, &theme, said.controls, |ui| {
         for action in Action::ALL {
             let keys = chosen.bindings.keys.get(&action).into_iter().flatten();
             let keys: Vec<&str> = keys.map(|&key| name_of(key)).collect();
@@ -192,19 +189,4 @@ fn name_of(key: egui::Key) -> &'static str {
         Key::ArrowRight => "→",
         key => key.symbol_or_name(),
     }
-}
-
-fn section_of_controls(ui: &mut Ui, game: &mut Game, contents: impl FnOnce(&mut Ui, &mut Game)) {
-    let (theme, said) = (game.theme(), game.words());
-    ui.add_space(10.0);
-    card(ui, &theme, |ui| {
-        ui.set_width(ui.available_width());
-        ui.label(
-            RichText::new(said.controls)
-                .size(26.0)
-                .color(theme.accent)
-                .strong(),
-        );
-        contents(ui, game);
-    });
 }

@@ -103,6 +103,8 @@ fn a_pad_alone_goes_everywhere() {
     table.tap(Down);
     assert!(table.has_focus("Again"));
     table.tap(Down);
+    assert!(table.has_focus("Save replay"));
+    table.tap(Down);
     table.tap(South);
     assert!(matches!(table.screen(), Screen::Settings(_)));
     assert!(table.has_focus("Back"));
