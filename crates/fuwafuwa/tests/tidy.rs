@@ -105,7 +105,9 @@ fn what_the_documents_name_is_there() {
         let quoted = text.split('`').skip(1).step_by(2);
         let paths = quoted.filter(|word| {
             let is_plain = !word.contains([' ', '*', ':', '<', '(']);
-            let is_ours = word.starts_with("crates/") || word.starts_with("xtask/");
+            let is_ours = ["crates/", "game/", "xtask/", "docs/"]
+                .iter()
+                .any(|folder| word.starts_with(folder));
             is_plain && (is_ours || word.ends_with(".md"))
         });
         for path in paths {
