@@ -37,8 +37,6 @@ pub struct App {
     navigators: Vec<(sticks::DeviceId, Navigator)>,
     presses: Presses,
     screen_before: Screen,
-    /// Whether the window has lost the focus.
-    is_away: bool,
 }
 
 /// The window has no GPU, not even one in software.
@@ -64,14 +62,13 @@ impl App {
             navigators,
             presses,
             screen_before,
-            is_away: false,
         })
     }
 
     /// Takes in sticks and pads: in a round they ask for actions, in a menu they move the focus.
     fn hear_sticks(&mut self, ctx: &egui::Context, seconds: f32) {
         let changes = self.game.hear_sticks();
-        if self.is_away {
+        if self.game.is_away {
             // They are used for something else, in another window.
             return;
         }
@@ -149,8 +146,8 @@ impl App {
                 }
                 // A window may never get the focus, and be played with the mouse: only losing it counts.
                 Event::WindowFocused(focused) => {
-                    self.is_away = !focused;
-                    if self.is_away {
+                    game.is_away = !focused;
+                    if game.is_away {
                         game.rest();
                     }
                 }

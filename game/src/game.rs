@@ -84,9 +84,13 @@ pub struct Game {
     pub time: f32,
     /// An action whose key or button the next one pressed becomes.
     pub rebinding: Option<Action>,
+    /// Whether the window has lost the focus.
+    pub is_away: bool,
     /// The sticks and pads that are listened to.
     pub pads: Pads,
     sound: Sound,
+    /// Why nothing is heard, as the player was told last.
+    trouble: Option<String>,
     cheered: f32,
     /// How many recorded rounds the title has shown.
     attracted: usize,
@@ -124,6 +128,8 @@ impl Game {
             notices: Vec::new(),
             time: 0.0,
             rebinding: None,
+            is_away: false,
+            trouble: None,
             sound,
             pads,
             cheered: 0.0,
@@ -132,10 +138,6 @@ impl Game {
         for aside in [settings_aside, records_aside].into_iter().flatten() {
             let kept = game.words().settings_kept;
             game.notify(format!("{kept} {}", aside.display()));
-        }
-        if let Some(trouble) = game.sound.trouble() {
-            let no_sound = game.words().no_sound;
-            game.notify(format!("{no_sound} ({trouble})"));
         }
         if game.pads.complaint().is_some() {
             game.notify(game.words().no_sticks.to_string());

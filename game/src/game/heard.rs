@@ -5,6 +5,11 @@ use fuwafuwa::{Dim2, Event, Vector, With};
 use tamaire_play::Round;
 use tamaire_sound::{Cue, Hush, Press, Soundscape};
 
+/// What has less than this share of the mass falls like a crumb.
+const CRUMB: f32 = 0.002;
+/// What is slower than this is heard no more when it lands [m/s].
+const LANDING: f32 = 0.3;
+
 /// What there is to hear now.
 pub(super) fn soundscape(game: &Game) -> Soundscape {
     let round = game.session.round();
@@ -29,6 +34,7 @@ pub(super) fn soundscape(game: &Game) -> Soundscape {
         hold: (round.progress().held / hold).min(1.0),
         music: true,
         hush: match game.screen {
+            _ if game.is_away => Hush::Everything,
             Screen::Paused | Screen::Settings(_) | Screen::Title => Hush::World,
             _ => Hush::Nothing,
         },
@@ -38,6 +44,15 @@ pub(super) fn soundscape(game: &Game) -> Soundscape {
 /// What there is to hear of a tick.
 pub(super) fn cues(round: &Round<Dim2>) -> Vec<Cue> {
     let arena = round.level().arena();
+    let bodies = round.world().bodies();
+    // The masses of the pieces of each body, looked up once they are asked for [kg].
+    let mut masses: Vec<Option<Vec<f32>>> = vec![None; bodies.len()];
+    let mut mass_of = |body: u32, piece: u32| {
+        let place = body as usize;
+        let views = || bodies[place].piece_views().into_iter();
+        let masses = masses[place].get_or_insert_with(|| views().map(|view| view.mass).collect());
+        masses[piece as usize]
+    };
     let mut cues = Vec::new();
     let (mut torn, mut at) = (0.0, 0.0);
     for event in round.world().events() {
@@ -52,12 +67,17 @@ pub(super) fn cues(round: &Round<Dim2>) -> Vec<Cue> {
                 with: With::Obstacle(_),
                 impulse,
                 at: place,
-                ..
+                body,
+                piece,
             } => {
-                cues.push(Cue::Thud {
-                    impulse,
-                    x: across(arena, place[0]),
-                });
+                let x = across(arena, place[0]);
+                let mass = mass_of(body, piece);
+                let speed = impulse / mass;
+                if mass > CRUMB * round.progress().mass {
+                    cues.push(Cue::Thud { impulse, x });
+                } else if speed > LANDING {
+                    cues.push(Cue::Crumb { speed, x });
+                }
             }
             _ => {}
         }

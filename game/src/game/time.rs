@@ -33,6 +33,13 @@ impl Game {
                 }
             }
         }
+        let trouble = self.sound.trouble();
+        if trouble != self.trouble {
+            self.trouble = trouble;
+            if let Some(trouble) = &self.trouble {
+                self.notify(format!("{} ({trouble})", self.words().no_sound));
+            }
+        }
         self.celebrate(seconds);
         if self.screen == Screen::Title && self.session.is_over() {
             self.cheered += seconds;
