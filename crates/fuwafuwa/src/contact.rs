@@ -106,6 +106,11 @@ impl Contacts {
             let body = &bodies[pair.body as usize];
             let collider = &colliders[pair.collider as usize];
             let node = pair.node as usize;
+            // What sleeps is touched by hands alone.
+            if body.lightness[node] == 0.0 && !collider.is_hand {
+                pair.impulse.release();
+                continue;
+            }
             let at = body.position[node];
             let (gap, normal) = collider.shape.distance(three(at));
             let normal = as_row(normal);
