@@ -58,6 +58,10 @@ pub struct NodePair {
     pub node: u32,
     /// What passed between them.
     pub impulse: Impulse,
+    /// How far anything must have come, since the list was made, before the node may be where it
+    /// touches a shape that stands still [m].
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub clear: f32,
 }
 
 /// What may touch what.
@@ -71,14 +75,14 @@ pub struct Nearby {
     /// How far nodes and hands may move before the list of nodes must be made anew [m], and how
     /// far the fastest have come since it was made.
     slack: f32,
-    travel: f32,
+    pub travel: f32,
     nodes_are_good: bool,
 }
 
 /// Slack of the list of nodes, in voxels, and in seconds at the speed of what is fastest: larger
 /// means longer lists, smaller more lists.
 const SLACK: f32 = 0.5;
-const SLACK_TIME: f32 = 1.0 / 60.0;
+const SLACK_TIME: f32 = 1.0 / 120.0;
 
 /// Nodes in a square of so many voxels are tested against a rigid shape together, before each is on
 /// its own.
@@ -156,6 +160,7 @@ impl Nearby {
                         body: key.1,
                         node,
                         impulse: known.map_or(Impulse::default(), |pair| pair.impulse),
+                        clear: 0.0,
                     });
                 }
             }

@@ -169,7 +169,9 @@ impl Skins {
         self.close.clear();
         // Where each of the old ones is now.
         let mut moved_to = vec![GONE; old.len()];
-        let mut strayed = Vec::new();
+        let mut strayed = Vec::with_capacity(old.len());
+        self.anchors.reserve(old.len());
+        self.list.reserve(old.len());
         let mut old = old.iter().enumerate().peekable();
         for skin in bodies.iter().enumerate().flat_map(skins_of) {
             let place = self.list.len() as u32;
