@@ -25,6 +25,9 @@ const BEHIND: f32 = 0.3;
 /// A sleeper wakes when what touches it moves at this speed [m/s]: what it did move, since deep in
 /// a heap the forces of a substep alone would give as much to what rests.
 const WAKE_SPEED: f32 = 0.15;
+/// A contact matters when the gap closes to so many voxels within so many substeps.
+const CLOSE: f32 = 0.05;
+const AHEAD: f32 = 1.5;
 
 /// A node against something rigid.
 #[derive(Copy, Clone, Debug)]
@@ -102,19 +105,33 @@ impl Contacts {
         self.nodes.clear();
         let obstacles = colliders.iter().filter(|collider| !collider.is_hand);
         let first_hand = obstacles.count() as u32;
+        let travel = nearby.travel;
         for (place, pair) in nearby.node_pairs.iter_mut().enumerate() {
             let body = &bodies[pair.body as usize];
             let collider = &colliders[pair.collider as usize];
             let node = pair.node as usize;
-            let at = body.position[node];
-            let (gap, normal) = collider.shape.distance(three(at));
-            let normal = as_row(normal);
-            let relative = minus(body.velocity[node], collider.velocity);
-            let size = body.grid.voxel_size();
-            if !is_close(gap, inner::<D>(relative, normal), size, duration) {
+            // What sleeps is touched by hands alone.
+            if body.lightness[node] == 0.0 && !collider.is_hand {
                 pair.impulse.release();
                 continue;
             }
+            let (at, velocity) = (body.position[node], body.velocity[node]);
+            // Most are so far from a wall that they could not come to it at any direction.
+            let reachable = (pair.clear - travel).max(0.0) / (AHEAD * duration);
+            if !collider.is_hand && inner::<D>(velocity, velocity) < reachable * reachable {
+                continue;
+            }
+            let (gap, normal) = collider.shape.distance(three(at));
+            let normal = as_row(normal);
+            let relative = minus(velocity, collider.velocity);
+            let size = body.grid.voxel_size();
+            if !is_close(gap, inner::<D>(relative, normal), size, duration) {
+                pair.impulse.release();
+                // With a little for rounding.
+                pair.clear = travel + gap - 1.1 * CLOSE * size;
+                continue;
+            }
+            pair.clear = 0.0;
             if collider.is_hand && gap < 0.1 * size && body.pieces.sleeps(pair.node) {
                 hits.push((pair.body, body.pieces.of_node(pair.node)));
             }
@@ -349,7 +366,7 @@ fn behind_skin<D: Dim>(bodies: &[Body<D>], [a, b]: [&Skin; 2], apart: Row) -> Op
 /// Whether a contact may matter in this substep: it overlaps, or will if nothing is done. What is not
 /// finite touches nothing, so that it spoils nothing else.
 fn is_close(gap: f32, approach: f32, size: f32, duration: f32) -> bool {
-    approach.is_finite() && gap + 1.5 * duration * approach.min(0.0) < 0.05 * size
+    approach.is_finite() && gap + AHEAD * duration * approach.min(0.0) < CLOSE * size
 }
 
 fn for_each<T>(rows: &mut [T], backwards: bool, mut solve: impl FnMut(&mut T)) {

@@ -14,8 +14,10 @@ use crate::dim::Dim;
 use crate::shape::Shape;
 use crate::solve::Row;
 use crate::vector::{dot, length, minus, plus, scaled, three};
+use bins::Bins;
 pub use captives::Captive;
 pub use skins::{MARGIN, Skin, Skins, mean};
+use std::ops::Range;
 
 /// Something rigid that nodes can touch.
 #[derive(Copy, Clone, Debug)]
@@ -56,30 +58,35 @@ pub struct NodePair {
     pub node: u32,
     /// What passed between them.
     pub impulse: Impulse,
+    /// How far anything must have come, since the list was made, before the node may be where it
+    /// touches a shape that stands still [m].
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub clear: f32,
 }
 
 /// What may touch what.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Nearby {
-    /// Nodes close to rigid shapes, by collider, body and node.
+    /// Nodes close to rigid shapes, asleep or not, by collider, body and node.
     pub node_pairs: Vec<NodePair>,
     /// The skins, and those of them that are close to each other.
     pub skins: Skins,
     /// How far nodes and hands may move before the list of nodes must be made anew [m], and how
     /// far the fastest have come since it was made.
     slack: f32,
-    travel: f32,
+    pub travel: f32,
     nodes_are_good: bool,
 }
 
 /// Slack of the list of nodes, in voxels, and in seconds at the speed of what is fastest: larger
 /// means longer lists, smaller more lists.
 const SLACK: f32 = 0.5;
-const SLACK_TIME: f32 = 1.0 / 60.0;
+const SLACK_TIME: f32 = 1.0 / 120.0;
 
-/// Nodes that are tested against a rigid shape together before each is on its own.
-const STRETCH: usize = 32;
+/// Nodes in a square of so many voxels are tested against a rigid shape together, before each is on
+/// its own.
+const SQUARE: f32 = 4.0;
 
 impl Nearby {
     /// The lists are out of date: the meshes have changed.
@@ -135,22 +142,16 @@ impl Nearby {
     fn find_node_pairs<D: Dim>(&mut self, bodies: &[Body<D>], colliders: &[Collider], reach: f32) {
         let old = std::mem::take(&mut self.node_pairs);
         let mut old = old.into_iter().peekable();
-        let stretches: Vec<Vec<Stretch>> = bodies.iter().map(stretches).collect();
+        let places: Vec<Places> = bodies.iter().map(Places::of).collect();
+        let mut near: Vec<u32> = Vec::new();
         for (index, collider) in colliders.iter().enumerate() {
-            for (place, body) in bodies.iter().enumerate() {
-                let all = stretches[place].iter().filter(|stretch| {
-                    let (gap, _) = collider.shape.distance(three(stretch.centre));
-                    gap <= stretch.radius + reach
-                });
-                // What sleeps is touched by hands alone.
-                let touchable = |node: &u32| collider.is_hand || !body.pieces.sleeps(*node);
-                let nodes = all.flat_map(|stretch| stretch.nodes.iter().copied());
-                for node in nodes.filter(touchable) {
-                    let at = three(body.position[node as usize]);
-                    if collider.shape.distance(at).0 > reach {
-                        continue;
-                    }
-                    let key = (index as u32, place as u32, node);
+            for (body, places) in places.iter().enumerate() {
+                near.clear();
+                places.within(reach, &collider.shape, &mut near);
+                // What is near comes square by square.
+                near.sort_unstable();
+                for &node in &near {
+                    let key = (index as u32, body as u32, node);
                     let key_of = |pair: &NodePair| (pair.collider, pair.body, pair.node);
                     while old.next_if(|pair| key_of(pair) < key).is_some() {}
                     let known = old.next_if(|pair| key_of(pair) == key);
@@ -159,6 +160,7 @@ impl Nearby {
                         body: key.1,
                         node,
                         impulse: known.map_or(Impulse::default(), |pair| pair.impulse),
+                        clear: 0.0,
                     });
                 }
             }
@@ -178,31 +180,63 @@ fn fastest<D: Dim>(bodies: &[Body<D>]) -> f32 {
     fastest.sqrt()
 }
 
-/// Some nodes of a body, ascending and mostly side by side, and a ball around them.
-struct Stretch {
+/// The nodes of a body, those in a square of space together: most squares are out of reach as a
+/// whole, however the body is torn.
+struct Places {
     nodes: Vec<u32>,
+    bins: Bins,
+    /// The places of `nodes` in each square that has any, and a ball around them.
+    squares: Vec<Square>,
+}
+
+struct Square {
+    points: Range<usize>,
     centre: Row,
     radius: f32,
 }
 
-/// All nodes of a body in stretches: most are out of reach as a whole.
-fn stretches<D: Dim>(body: &Body<D>) -> Vec<Stretch> {
-    let nodes: Vec<u32> = body.mesh.nodes().map(|(node, _)| node).collect();
-    let stretch = |nodes: &[u32]| {
+impl Places {
+    fn of<D: Dim>(body: &Body<D>) -> Self {
+        let nodes: Vec<u32> = body.mesh.nodes().map(|(node, _)| node).collect();
+        let points = nodes.iter().map(|&node| body.position[node as usize]);
+        let points: Vec<Row> = points.collect();
+        let bins = Bins::new::<D>(&points, SQUARE * body.grid.voxel_size());
+        let squares = bins.filled().map(|range| Square::around(&bins, range));
+        Self {
+            squares: squares.collect(),
+            nodes,
+            bins,
+        }
+    }
+
+    /// Adds the nodes that are no further from a shape than `reach` [m].
+    fn within(&self, reach: f32, shape: &Shape, near: &mut Vec<u32>) {
+        let is_near = |at: Row, reach: f32| shape.distance(three(at)).0 <= reach;
+        for square in &self.squares {
+            if !is_near(square.centre, square.radius + reach) {
+                continue;
+            }
+            let points = self.bins.points(&square.points).iter();
+            let points = points.filter(|(at, _)| is_near(*at, reach));
+            near.extend(points.map(|&(_, place)| self.nodes[place as usize]));
+        }
+    }
+}
+
+impl Square {
+    fn around(bins: &Bins, points: Range<usize>) -> Self {
         let (mut low, mut high) = ([f32::MAX; 4], [f32::MIN; 4]);
-        for &node in nodes {
-            let at = body.position[node as usize];
+        for (at, _) in bins.points(&points) {
             for axis in 0..4 {
                 low[axis] = low[axis].min(at[axis]);
                 high[axis] = high[axis].max(at[axis]);
             }
         }
         let centre = scaled(plus(low, high), 0.5);
-        Stretch {
-            nodes: nodes.to_vec(),
+        Self {
+            points,
             centre,
             radius: length(minus(high, centre)),
         }
-    };
-    nodes.chunks(STRETCH).map(stretch).collect()
+    }
 }

@@ -3,6 +3,7 @@
 use crate::dim::{Dim, Point};
 use crate::solve::Row;
 use crate::vector::{dot, minus};
+use std::ops::Range;
 
 /// Points in the bins of a grid that goes round and round: what lies a multiple of the grid's
 /// extent apart shares a bin, so bodies may fly off as far as they like.
@@ -44,6 +45,18 @@ impl Bins {
             *place += 1;
         }
         bins
+    }
+
+    /// Where the points of each bin that has any begin and end.
+    pub fn filled(&self) -> impl Iterator<Item = Range<usize>> + '_ {
+        let ends = self.start.windows(2);
+        let ranges = ends.map(|ends| ends[0] as usize..ends[1] as usize);
+        ranges.filter(|range| !range.is_empty())
+    }
+
+    /// Some points with their numbers.
+    pub fn points(&self, range: &Range<usize>) -> &[(Row, u32)] {
+        &self.points[range.clone()]
     }
 
     /// Calls `visit` with the number of each point that is no further from `at` than `reach` [m],

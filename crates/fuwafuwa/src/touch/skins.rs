@@ -20,6 +20,9 @@ const SLACK: f32 = 0.3;
 /// The share of its slack that a skin may have used up when others look for new pairs.
 const SPARE: f32 = 0.5;
 
+/// The place of a skin that is no more.
+const GONE: u32 = u32::MAX;
+
 /// The ball around a surface element that stands for its skin.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -112,15 +115,16 @@ impl Skins {
     }
 
     /// Follows the bodies: where the skins are now, and which pairs are close; `size` [m] is that
-    /// of the largest voxels. Returns whether the list of skins and of sleepers is still the same.
+    /// of the largest voxels. Returns whether the list of skins is still the same.
     pub fn follow<D: Dim>(&mut self, bodies: &[Body<D>], size: f32) -> bool {
+        let was_good = self.is_good;
         let is_same = self.is_good && self.rest_is_good;
-        if !self.is_good {
-            self.find(bodies);
-        }
         let mut strayed = Vec::new();
+        if !self.is_good {
+            strayed = self.find(bodies, SLACK * size);
+        }
         if !is_same {
-            strayed.resize(self.list.len(), !self.is_good);
+            strayed.resize(self.list.len(), false);
             for (skin, strayed) in self.list.iter_mut().zip(&mut strayed) {
                 let asleep = sleeps(bodies, skin);
                 *strayed |= skin.asleep && !asleep;
@@ -153,39 +157,47 @@ impl Skins {
             let velocity = &bodies[skin.body as usize].velocity;
             self.velocities[place as usize] = skin.mean::<D>(velocity);
         }
-        is_same
+        was_good
     }
 
-    /// Lists the skins of all bodies.
-    fn find<D: Dim>(&mut self, bodies: &[Body<D>]) {
-        self.list.clear();
-        for (place, body) in bodies.iter().enumerate() {
-            for (id, element) in body.mesh.elements() {
-                if element.cell.level > 0 || body.bare[id as usize] == 0 {
-                    continue;
-                }
-                let mut nodes = [0; 8];
-                nodes[..D::CORNERS].copy_from_slice(&element.nodes);
-                let mut skin = Skin {
-                    body: place as u32,
-                    element: id,
-                    piece: body.pieces.of_element(id),
-                    radius: 0.5 * body.grid.voxel_size(),
-                    asleep: false,
-                    bare: body.bare[id as usize],
-                    cell: element.cell.at,
-                    nodes,
-                };
-                skin.asleep = sleeps(bodies, &skin);
-                self.list.push(skin);
-            }
-        }
-        let position = |skin: &Skin| skin.mean::<D>(&bodies[skin.body as usize].position);
+    /// Lists the skins of all bodies anew. Those that were there before and have not come further
+    /// than by `slack` [m] keep their anchors and their pairs; marks the others as strayed.
+    fn find<D: Dim>(&mut self, bodies: &[Body<D>], slack: f32) -> Vec<bool> {
+        let old = std::mem::take(&mut self.list);
+        let anchors = std::mem::take(&mut self.anchors);
         self.centres.clear();
-        self.centres.extend(self.list.iter().map(position));
-        self.anchors.clone_from(&self.centres);
-        self.frame = [0.0; 4];
         self.close.clear();
+        // Where each of the old ones is now.
+        let mut moved_to = vec![GONE; old.len()];
+        let mut strayed = Vec::with_capacity(old.len());
+        self.anchors.reserve(old.len());
+        self.list.reserve(old.len());
+        let mut old = old.iter().enumerate().peekable();
+        for skin in bodies.iter().enumerate().flat_map(skins_of) {
+            let place = self.list.len() as u32;
+            let centre = skin.mean::<D>(&bodies[skin.body as usize].position);
+            let anchor = minus(centre, self.frame);
+            while old.next_if(|(_, old)| old.key() < skin.key()).is_some() {}
+            let known = old.next_if(|(_, old)| old.key() == skin.key());
+            let kept = known.filter(|(before, old)| {
+                let moved = minus(anchor, anchors[*before]);
+                old.nodes == skin.nodes && dot(moved, moved) <= slack * slack
+            });
+            if let Some((before, _)) = known {
+                moved_to[before] = place;
+            }
+            let asleep = known.map_or(skin.asleep, |(_, old)| old.asleep);
+            strayed.push(kept.is_none());
+            self.anchors
+                .push(kept.map_or(anchor, |(before, _)| anchors[before]));
+            self.centres.push(centre);
+            self.list.push(Skin { asleep, ..skin });
+        }
+        self.pairs.retain_mut(|pair| {
+            pair.skins = pair.skins.map(|skin| moved_to[skin as usize]);
+            !pair.skins.contains(&GONE)
+        });
+        strayed
     }
 
     /// Notes who is awake, and what a push meets.
@@ -293,11 +305,10 @@ impl Skins {
     /// Makes the new list of pairs from those just found and the old ones of which neither has
     /// strayed. Pairs that were known keep their impulses.
     fn merge(&mut self, found: &[[u32; 2]], strayed: &[bool]) {
-        let (list, is_good) = (&self.list, self.is_good);
-        // Where the skins are others than before, their old places say nothing.
+        let list = &self.list;
         let stays = |pair: &SkinPair| {
             let [a, b] = pair.skins.map(|skin| skin as usize);
-            is_good && !(strayed[a] || strayed[b] || list[a].asleep && list[b].asleep)
+            !(strayed[a] || strayed[b] || list[a].asleep && list[b].asleep)
         };
         let old = std::mem::take(&mut self.pairs);
         self.pairs.reserve(old.len().max(found.len()));
@@ -394,6 +405,28 @@ impl Skin {
         let has = |node: &u32| other.nodes[..D::CORNERS].contains(node);
         near && self.nodes[..D::CORNERS].iter().any(has)
     }
+}
+
+/// The skins of a body, which stands at a place among all.
+fn skins_of<D: Dim>((place, body): (usize, &Body<D>)) -> impl Iterator<Item = Skin> + '_ {
+    let elements = body.mesh.elements();
+    let bare =
+        elements.filter(|(id, element)| element.cell.level == 0 && body.bare[*id as usize] != 0);
+    bare.map(move |(id, element)| {
+        let mut nodes = [0; 8];
+        nodes[..D::CORNERS].copy_from_slice(&element.nodes);
+        let piece = body.pieces.of_element(id);
+        Skin {
+            body: place as u32,
+            element: id,
+            piece,
+            radius: 0.5 * body.grid.voxel_size(),
+            asleep: body.pieces.list[piece as usize].asleep,
+            bare: body.bare[id as usize],
+            cell: element.cell.at,
+            nodes,
+        }
+    })
 }
 
 /// Pairs of numbers below `count` in ascending order: by the first numbers at one go, and the few
