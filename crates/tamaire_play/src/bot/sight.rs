@@ -1,0 +1,190 @@
+//! What a bot sees: the basket, the piece that matters, and what is in the way.
+
+use super::map::Map;
+use crate::Round;
+use fuwafuwa::vector::{dot, length, minus, plus, scaled};
+use fuwafuwa::world::Obstacle;
+use fuwafuwa::{Dim, PieceView, Shape, Vector};
+
+/// Pieces with less than this share of the mass are not worth the way.
+const CRUMB: f32 = 0.003;
+/// What a step through something rigid costs more, and through all of the mass.
+const RIGID: f32 = 1000.0;
+const SOFT: f32 = 400.0;
+
+/// What a bot looks at.
+pub(super) struct Sight {
+    /// Into the basket, of length 1.
+    pub axis: Vector,
+    /// The piece that matters.
+    pub piece: Piece,
+    /// Share of all mass in the largest piece of all.
+    pub share: f32,
+    /// Share that is in the basket beyond what is needed.
+    pub surplus: f32,
+    pub hand: Vector,
+    pub goal: Vector,
+    /// Where the hand waits: in front of the basket, as far as it can.
+    pub away: Vector,
+    /// Where a hand can go, and what is in its way.
+    pub map: Map,
+}
+
+/// A piece, and what a hand has to do with it.
+#[derive(Copy, Clone, Debug)]
+pub(super) struct Piece {
+    pub centre: Vector,
+    /// Where it has to go, of length 1.
+    pub way: Vector,
+    /// From its middle to that of a hand that touches it from behind [m].
+    pub reach: f32,
+    /// Where a hand begins to push it [m].
+    pub behind: Vector,
+    mass: f32,
+    /// Whether a hand fits there.
+    is_reachable: bool,
+}
+
+/// The basket as a bot sees it.
+struct Basket {
+    axis: Vector,
+    /// Middle of its mouth, and half of its width [m].
+    mouth: Vector,
+    half_width: f32,
+}
+
+impl Sight {
+    /// What there is to see; `skips` = how many pieces that matter more are passed over.
+    pub(super) fn of<D: Dim>(round: &Round<D>, skips: usize, off: f32) -> Option<Self> {
+        let Shape::Box { centre, half } = *round.basket()? else {
+            return None;
+        };
+        let world = round.world();
+        let hand = world.manipulators().first()?;
+        let obstacles = world.obstacles();
+        let arena = round.level().arena();
+        let axis = inwards(centre, half, obstacles);
+        let across = [axis[1].abs(), axis[0].abs(), 0.0];
+        let basket = Basket {
+            axis,
+            mouth: minus(centre, scaled(axis, dot(half, axis).abs())),
+            half_width: dot(half, across),
+        };
+        let mass = round.progress().mass;
+        let mut map = Map::new(arena, |at| {
+            1.0 + RIGID * f32::from(u8::from(clearance(at, obstacles) < 0.9 * hand.radius))
+        });
+        let views: Vec<PieceView> = world
+            .bodies()
+            .iter()
+            .flat_map(|body| body.piece_views())
+            .collect();
+        let largest = views
+            .iter()
+            .max_by(|a, b| a.mass.total_cmp(&b.mass))?
+            .clone();
+        let mut pieces: Vec<PieceView> = views
+            .into_iter()
+            .filter(|view| view.mass > CRUMB * mass && !basket.holds(view))
+            .collect();
+        pieces.sort_by(|a, b| b.mass.total_cmp(&a.mass));
+        pieces.truncate(12);
+        if pieces.is_empty() {
+            pieces.push(largest.clone());
+        }
+        let front = minus(basket.mouth, scaled(axis, 0.5));
+        let ways = map.ways_to(front);
+        let mut pieces: Vec<Piece> = pieces
+            .iter()
+            .map(|view| {
+                let half = scaled(minus(view.high, view.low), 0.5);
+                let (along, aside) = split(minus(view.centre, basket.mouth), axis);
+                let room = (basket.half_width - dot(half, across)).max(off);
+                // Straight in, or first to a place in front of the mouth.
+                let target = match length(aside) > room {
+                    true => ways.next(view.centre),
+                    false => plus(basket.mouth, scaled(axis, along + 0.6)),
+                };
+                let way = unit(minus(target, view.centre));
+                let reach = length([0, 1, 2].map(|k| way[k] * half[k])) + hand.radius;
+                let behind = minus(view.centre, scaled(way, 1.1 * reach));
+                let is_reachable = clearance(behind, obstacles) > 0.5 * hand.radius;
+                Piece {
+                    centre: view.centre,
+                    way,
+                    reach,
+                    behind,
+                    mass: view.mass,
+                    is_reachable,
+                }
+            })
+            .collect();
+        pieces.sort_by(|a, b| (b.is_reachable, b.mass).partial_cmp(&(a.is_reachable, a.mass)).expect("masses are numbers"));
+        let piece = pieces[skips % pieces.len()];
+        for body in world.bodies() {
+            for (id, _) in body.mesh().nodes() {
+                let (at, _, share) = body.node_state(id);
+                map.add(at, SOFT * share / mass);
+            }
+        }
+        let out = minus(front, scaled(axis, 4.0));
+        Some(Self {
+            axis,
+            piece,
+            share: largest.mass / mass,
+            surplus: round.progress().inside - round.level().game().share,
+            hand: hand.position(),
+            goal: hand.goal(),
+            away: clamped(out, arena, hand.radius),
+            map,
+        })
+    }
+}
+
+impl Basket {
+    /// Whether all of a piece is in it.
+    fn holds(&self, piece: &PieceView) -> bool {
+        let half = scaled(minus(piece.high, piece.low), 0.5);
+        let middle = scaled(plus(piece.high, piece.low), 0.5);
+        let (along, aside) = split(minus(middle, self.mouth), self.axis);
+        along > dot(half, self.axis).abs() && length(aside) < self.half_width
+    }
+}
+
+/// The way into a basket: against the direction in which one sees farthest out of it.
+fn inwards(centre: Vector, half: Vector, obstacles: &[Obstacle]) -> Vector {
+    let ways = [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let sees = |way: &Vector| {
+        let place = |step: usize| minus(centre, scaled(*way, 0.05 * step as f32));
+        let free = (0..100).take_while(|&step| clearance(place(step), obstacles) > 0.0);
+        free.count() as f32 * 0.05 - dot(half, *way).abs()
+    };
+    ways.into_iter()
+        .max_by(|a, b| sees(a).total_cmp(&sees(b)))
+        .expect("there are four")
+}
+
+/// How far the nearest obstacle is [m]; negative in it.
+fn clearance(at: Vector, obstacles: &[Obstacle]) -> f32 {
+    let distances = obstacles.iter().map(|obstacle| obstacle.shape.distance(at).0);
+    distances.fold(f32::INFINITY, f32::min)
+}
+
+/// The place nearest to one that is in the room.
+fn clamped(place: Vector, [low, high]: [Vector; 2], margin: f32) -> Vector {
+    [0, 1, 2].map(|axis| {
+        let margin = margin.min(0.5 * (high[axis] - low[axis]));
+        place[axis].clamp(low[axis] + margin, high[axis] - margin)
+    })
+}
+
+/// The share of a vector along an axis of length 1, and the rest.
+pub(super) fn split(v: Vector, axis: Vector) -> (f32, Vector) {
+    let along = dot(v, axis);
+    (along, minus(v, scaled(axis, along)))
+}
+
+/// The same direction, of length 1.
+pub(super) fn unit(v: Vector) -> Vector {
+    scaled(v, 1.0 / length(v).max(1e-6))
+}
