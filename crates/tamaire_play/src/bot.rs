@@ -15,7 +15,7 @@ const BRISK: f32 = 3.0;
 const GENTLE: f32 = 0.7;
 /// A bot that gets nowhere for so many ticks looks at another piece.
 const PATIENCE: u32 = 300;
-/// The shaving bot pushes when the largest piece has this share of the mass.
+/// The shaving bot gathers when the largest piece has this share of what it had.
 const SMALL_ENOUGH: f32 = 0.95;
 
 /// What a bot is after.
@@ -53,6 +53,8 @@ pub struct Bot {
     stroke: Stroke,
     strokes: u32,
     gathers: bool,
+    /// Share of the mass in the largest piece at which it gathers.
+    aim: f32,
     /// The most that was in the basket, for how many ticks nothing got better, and how many pieces
     /// were given up for it.
     best: f32,
@@ -81,8 +83,10 @@ impl Bot {
             temper,
             whims: Default::default(),
             stroke: Stroke::Rest,
-            strokes: 0,
+            // The first is above or below.
+            strokes: u32::from(temper[0] > 0.0),
             gathers: false,
+            aim: SMALL_ENOUGH + 0.01 * temper[2],
             best: 0.0,
             waited: 0,
             skips: 0,
@@ -111,7 +115,7 @@ impl Bot {
         self.waited += 1;
         if inside > self.best + 0.005 {
             (self.best, self.waited) = (inside, 0);
-        } else if self.waited > PATIENCE {
+        } else if self.waited > PATIENCE + 1 {
             (self.best, self.waited) = (inside, 0);
             self.skips = (self.skips + 1) % 4;
         }
@@ -157,7 +161,10 @@ impl Bot {
     /// Strokes past the middle of the largest piece, now on one side of it, now on the other, until
     /// it is small enough; then gathers what is needed.
     fn shave(&mut self, sight: &Sight) -> Vector {
-        self.gathers |= sight.share < SMALL_ENOUGH + 0.01 * self.temper[2];
+        self.gathers |= sight.share < self.aim;
+        if self.gathers && self.waited > PATIENCE && !sight.piece.fits {
+            (self.gathers, self.aim) = (false, SMALL_ENOUGH * sight.share);
+        }
         if self.gathers {
             return self.push(sight);
         }
@@ -172,7 +179,7 @@ impl Bot {
                     -1.0
                 };
                 let aside = [-axis[1] * side, axis[0] * side, 0.0];
-                let from = plus(scaled(*axis, -1.15 * reach), scaled(aside, 0.75 * reach));
+                let from = plus(scaled(*axis, -1.15 * reach), scaled(aside, (0.75 + 0.04 * self.temper[1]) * reach));
                 self.stroke = Stroke::Reach(from, 90);
                 sight.hand
             }

@@ -40,6 +40,8 @@ pub(super) struct Piece {
     pub reach: f32,
     /// Where a hand begins to push it [m].
     pub behind: Vector,
+    /// Whether it is no wider than the mouth.
+    pub fits: bool,
     mass: f32,
     /// Whether a hand fits there.
     is_reachable: bool,
@@ -99,6 +101,7 @@ impl Sight {
             .map(|view| {
                 let half = scaled(minus(view.high, view.low), 0.5);
                 let (along, aside) = split(minus(view.centre, basket.mouth), axis);
+                let fits = dot(half, across) < basket.half_width;
                 let room = (basket.half_width - dot(half, across)).max(off);
                 // Straight in, or first to a place in front of the mouth.
                 let target = match length(aside) > room {
@@ -114,6 +117,7 @@ impl Sight {
                     way,
                     reach,
                     behind,
+                    fits,
                     mass: view.mass,
                     is_reachable,
                 }
