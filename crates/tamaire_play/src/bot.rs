@@ -13,10 +13,14 @@ use sight::{Sight, split};
 /// How fast a bot's hand goes where nothing is in the way, and when it pushes [m/s].
 const BRISK: f32 = 3.0;
 const GENTLE: f32 = 0.7;
+/// How fast it lets go: what was pressed together follows it without a spring [m/s].
+const CAREFUL: f32 = 0.2;
 /// A bot that gets nowhere for so many ticks looks at another piece.
 const PATIENCE: u32 = 300;
 /// The shaving bot gathers when the largest piece has this share of what it had.
 const SMALL_ENOUGH: f32 = 0.95;
+/// It presses for so many ticks when enough is in the basket, and lets go.
+const LONG_ENOUGH: u32 = 30;
 
 /// What a bot is after.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -60,6 +64,8 @@ pub struct Bot {
     best: f32,
     waited: u32,
     skips: usize,
+    /// For how many ticks enough has been in the basket.
+    pressed: u32,
 }
 
 /// What the shaving hand is at.
@@ -90,6 +96,7 @@ impl Bot {
             best: 0.0,
             waited: 0,
             skips: 0,
+            pressed: 0,
         }
     }
 
@@ -139,8 +146,14 @@ impl Bot {
 
     /// From behind, towards the basket; away once enough is in.
     fn push(&mut self, sight: &Sight) -> Vector {
-        if sight.surplus > 0.05 {
-            return self.go(sight, sight.away, GENTLE);
+        let lets_go = self.pressed > LONG_ENOUGH;
+        self.pressed = match sight.surplus > if lets_go { 0.0 } else { 0.05 } {
+            true => self.pressed + 1,
+            false => 0,
+        };
+        if self.pressed > LONG_ENOUGH {
+            let pace = if self.gathers { GENTLE } else { CAREFUL };
+            return self.go(sight, sight.away, pace);
         }
         let piece = sight.piece;
         let (along, aside) = split(minus(sight.hand, piece.centre), piece.way);

@@ -58,7 +58,8 @@ struct Basket {
 impl Sight {
     /// What there is to see; `skips` = how many pieces that matter more are passed over.
     pub(super) fn of<D: Dim>(round: &Round<D>, skips: usize, off: f32) -> Option<Self> {
-        let Shape::Box { centre, half } = *round.basket()? else {
+        let region = round.basket()?;
+        let Shape::Box { centre, half } = *region else {
             return None;
         };
         let world = round.world();
@@ -125,10 +126,14 @@ impl Sight {
             .collect();
         pieces.sort_by(|a, b| (b.is_reachable, b.mass).partial_cmp(&(a.is_reachable, a.mass)).expect("masses are numbers"));
         let piece = pieces[skips % pieces.len()];
+        let mut within = 0.0;
         for body in world.bodies() {
             for (id, _) in body.mesh().nodes() {
                 let (at, _, share) = body.node_state(id);
                 map.add(at, SOFT * share / mass);
+                if region.distance(at).0 < 0.0 {
+                    within += share / mass;
+                }
             }
         }
         let out = minus(front, scaled(axis, 4.0));
@@ -136,7 +141,7 @@ impl Sight {
             axis,
             piece,
             share: largest.mass / mass,
-            surplus: round.progress().inside - round.level().game().share,
+            surplus: within - round.level().game().share,
             hand: hand.position(),
             goal: hand.goal(),
             away: clamped(out, arena, hand.radius),
