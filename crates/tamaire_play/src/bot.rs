@@ -13,10 +13,10 @@ use sight::{Sight, split};
 /// How fast a bot's hand goes where nothing is in the way, and when it pushes [m/s].
 const BRISK: f32 = 3.0;
 const GENTLE: f32 = 0.7;
-/// How fast it lets go: what was pressed together follows it without a spring [m/s].
+/// How fast it begins to let go [m/s].
 const CAREFUL: f32 = 0.2;
 /// A bot that gets nowhere for so many ticks looks at another piece.
-const PATIENCE: u32 = 300;
+const PATIENCE: u32 = 210;
 /// The shaving bot gathers when the largest piece has this share of what it had.
 const SMALL_ENOUGH: f32 = 0.95;
 /// It presses for so many ticks when enough is in the basket, and lets go.
@@ -120,7 +120,7 @@ impl Bot {
     fn look<D: Dim>(&mut self, round: &Round<D>) -> Option<Sight> {
         let inside = round.progress().inside;
         self.waited += 1;
-        if inside > self.best + 0.005 {
+        if inside > self.best + 0.02 {
             (self.best, self.waited) = (inside, 0);
         } else if self.waited > PATIENCE + 1 {
             (self.best, self.waited) = (inside, 0);
@@ -152,8 +152,9 @@ impl Bot {
             false => 0,
         };
         if self.pressed > LONG_ENOUGH {
-            let pace = if self.gathers { GENTLE } else { CAREFUL };
-            return self.go(sight, sight.away, pace);
+            // First slowly: what was pressed together follows the hand without a spring.
+            let pace = CAREFUL + 0.004 * (self.pressed - LONG_ENOUGH) as f32;
+            return self.go(sight, sight.away, pace.min(BRISK));
         }
         let piece = sight.piece;
         let (along, aside) = split(minus(sight.hand, piece.centre), piece.way);
@@ -192,7 +193,10 @@ impl Bot {
                     -1.0
                 };
                 let aside = [-axis[1] * side, axis[0] * side, 0.0];
-                let from = plus(scaled(*axis, -1.15 * reach), scaled(aside, (0.75 + 0.04 * self.temper[1]) * reach));
+                let from = plus(
+                    scaled(*axis, -1.15 * reach),
+                    scaled(aside, (0.75 + 0.04 * self.temper[1]) * reach),
+                );
                 self.stroke = Stroke::Reach(from, 90);
                 sight.hand
             }

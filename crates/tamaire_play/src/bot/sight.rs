@@ -124,7 +124,11 @@ impl Sight {
                 }
             })
             .collect();
-        pieces.sort_by(|a, b| (b.is_reachable, b.mass).partial_cmp(&(a.is_reachable, a.mass)).expect("masses are numbers"));
+        pieces.sort_by(|a, b| {
+            (b.is_reachable, b.mass)
+                .partial_cmp(&(a.is_reachable, a.mass))
+                .expect("masses are numbers")
+        });
         let piece = pieces[skips % pieces.len()];
         let mut within = 0.0;
         for body in world.bodies() {
@@ -162,7 +166,12 @@ impl Basket {
 
 /// The way into a basket: against the direction in which one sees farthest out of it.
 fn inwards(centre: Vector, half: Vector, obstacles: &[Obstacle]) -> Vector {
-    let ways = [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let ways = [
+        [1.0, 0.0, 0.0],
+        [0.0, -1.0, 0.0],
+        [-1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+    ];
     let sees = |way: &Vector| {
         let place = |step: usize| minus(centre, scaled(*way, 0.05 * step as f32));
         let free = (0..100).take_while(|&step| clearance(place(step), obstacles) > 0.0);
@@ -175,7 +184,9 @@ fn inwards(centre: Vector, half: Vector, obstacles: &[Obstacle]) -> Vector {
 
 /// How far the nearest obstacle is [m]; negative in it.
 fn clearance(at: Vector, obstacles: &[Obstacle]) -> f32 {
-    let distances = obstacles.iter().map(|obstacle| obstacle.shape.distance(at).0);
+    let distances = obstacles
+        .iter()
+        .map(|obstacle| obstacle.shape.distance(at).0);
     distances.fold(f32::INFINITY, f32::min)
 }
 
