@@ -89,7 +89,7 @@ impl Bot {
             temper,
             whims: Default::default(),
             stroke: Stroke::Rest,
-            // The first is above or below.
+            // The first goes along one side or the other.
             strokes: u32::from(temper[0] > 0.0),
             gathers: false,
             aim: SMALL_ENOUGH + 0.01 * temper[2],
@@ -122,7 +122,7 @@ impl Bot {
         self.waited += 1;
         if inside > self.best + 0.02 {
             (self.best, self.waited) = (inside, 0);
-        } else if self.waited > PATIENCE + 1 {
+        } else if self.waited > PATIENCE {
             (self.best, self.waited) = (inside, 0);
             self.skips = (self.skips + 1) % 4;
         }
@@ -176,7 +176,8 @@ impl Bot {
     /// it is small enough; then gathers what is needed.
     fn shave(&mut self, sight: &Sight) -> Vector {
         self.gathers |= sight.share < self.aim;
-        if self.gathers && self.waited > PATIENCE && !sight.piece.fits {
+        // What is stuck in front of the mouth has to be smaller still.
+        if self.gathers && self.waited == PATIENCE && !sight.piece.fits {
             (self.gathers, self.aim) = (false, SMALL_ENOUGH * sight.share);
         }
         if self.gathers {
@@ -187,16 +188,11 @@ impl Bot {
         match self.stroke {
             Stroke::Rest => {
                 self.strokes += 1;
-                let side = if self.strokes.is_multiple_of(2) {
-                    1.0
-                } else {
-                    -1.0
-                };
+                let is_even = self.strokes.is_multiple_of(2);
+                let side = if is_even { 1.0 } else { -1.0 };
                 let aside = [-axis[1] * side, axis[0] * side, 0.0];
-                let from = plus(
-                    scaled(*axis, -1.15 * reach),
-                    scaled(aside, (0.75 + 0.04 * self.temper[1]) * reach),
-                );
+                let off = (0.75 + 0.04 * self.temper[1]) * reach;
+                let from = plus(scaled(*axis, -1.15 * reach), scaled(aside, off));
                 self.stroke = Stroke::Reach(from, 90);
                 sight.hand
             }

@@ -1,6 +1,6 @@
 //! What a bot sees: the basket, the piece that matters, and what is in the way.
 
-use super::map::Map;
+use super::map::{Map, Ways};
 use crate::Round;
 use fuwafuwa::vector::{dot, length, minus, plus, scaled};
 use fuwafuwa::world::Obstacle;
@@ -8,7 +8,9 @@ use fuwafuwa::{Dim, PieceView, Shape, Vector};
 
 /// Pieces with less than this share of the mass are not worth the way.
 const CRUMB: f32 = 0.003;
-/// What a step through something rigid costs more, and through all of the mass.
+/// Of the others, as many are looked at as matter most.
+const MOST: usize = 12;
+/// What a step costs through something rigid, and how much more through all of the mass.
 const RIGID: f32 = 1000.0;
 const SOFT: f32 = 400.0;
 
@@ -20,11 +22,12 @@ pub(super) struct Sight {
     pub piece: Piece,
     /// Share of all mass in the largest piece of all.
     pub share: f32,
-    /// Share that is in the basket beyond what is needed.
+    /// Share of it in the basket beyond what is needed, moving or not.
     pub surplus: f32,
+    /// Where the hand is, and where it is to go [m].
     pub hand: Vector,
     pub goal: Vector,
-    /// Where the hand waits: in front of the basket, as far as it can.
+    /// Where the hand waits: in front of the basket, as far as it can [m].
     pub away: Vector,
     /// Where a hand can go, and what is in its way.
     pub map: Map,
@@ -33,6 +36,7 @@ pub(super) struct Sight {
 /// A piece, and what a hand has to do with it.
 #[derive(Copy, Clone, Debug)]
 pub(super) struct Piece {
+    /// Its middle [m].
     pub centre: Vector,
     /// Where it has to go, of length 1.
     pub way: Vector,
@@ -42,13 +46,11 @@ pub(super) struct Piece {
     pub behind: Vector,
     /// Whether it is no wider than the mouth.
     pub fits: bool,
-    mass: f32,
-    /// Whether a hand fits there.
-    is_reachable: bool,
 }
 
 /// The basket as a bot sees it.
 struct Basket {
+    /// Into it, of length 1.
     axis: Vector,
     /// Middle of its mouth, and half of its width [m].
     mouth: Vector,
@@ -56,80 +58,37 @@ struct Basket {
 }
 
 impl Sight {
-    /// What there is to see; `skips` = how many pieces that matter more are passed over.
+    /// What there is to see; `skips` = how many pieces that matter more are passed over, `off` = how
+    /// far off the middle of the mouth a wide piece may be to be pushed straight in [m].
     pub(super) fn of<D: Dim>(round: &Round<D>, skips: usize, off: f32) -> Option<Self> {
-        let region = round.basket()?;
-        let Shape::Box { centre, half } = *region else {
-            return None;
-        };
-        let world = round.world();
+        let (world, arena) = (round.world(), round.level().arena());
+        let (region, obstacles) = (round.basket()?, world.obstacles());
+        let basket = Basket::of(region, obstacles)?;
         let hand = world.manipulators().first()?;
-        let obstacles = world.obstacles();
-        let arena = round.level().arena();
-        let axis = inwards(centre, half, obstacles);
-        let across = [axis[1].abs(), axis[0].abs(), 0.0];
-        let basket = Basket {
-            axis,
-            mouth: minus(centre, scaled(axis, dot(half, axis).abs())),
-            half_width: dot(half, across),
-        };
-        let mass = round.progress().mass;
         let mut map = Map::new(arena, |at| {
-            1.0 + RIGID * f32::from(u8::from(clearance(at, obstacles) < 0.9 * hand.radius))
+            match clearance(at, obstacles) < 0.9 * hand.radius {
+                true => RIGID,
+                false => 1.0,
+            }
         });
-        let views: Vec<PieceView> = world
-            .bodies()
-            .iter()
-            .flat_map(|body| body.piece_views())
+
+        let mass = round.progress().mass;
+        let bodies = world.bodies().iter();
+        let mut views: Vec<PieceView> = bodies.flat_map(|body| body.piece_views()).collect();
+        views.sort_by(|a, b| b.mass.total_cmp(&a.mass));
+        let largest = views.first()?;
+        let is_out = |view: &&PieceView| view.mass > CRUMB * mass && !basket.holds(view);
+        let ways = map.ways_to(basket.front());
+        let mut pieces: Vec<Piece> = (views.iter().filter(is_out).take(MOST))
+            .map(|view| Piece::of(view, &basket, &ways, off, hand.radius))
             .collect();
-        let largest = views
-            .iter()
-            .max_by(|a, b| a.mass.total_cmp(&b.mass))?
-            .clone();
-        let mut pieces: Vec<PieceView> = views
-            .into_iter()
-            .filter(|view| view.mass > CRUMB * mass && !basket.holds(view))
-            .collect();
-        pieces.sort_by(|a, b| b.mass.total_cmp(&a.mass));
-        pieces.truncate(12);
         if pieces.is_empty() {
-            pieces.push(largest.clone());
+            pieces.push(Piece::of(largest, &basket, &ways, off, hand.radius));
         }
-        let front = minus(basket.mouth, scaled(axis, 0.5));
-        let ways = map.ways_to(front);
-        let mut pieces: Vec<Piece> = pieces
-            .iter()
-            .map(|view| {
-                let half = scaled(minus(view.high, view.low), 0.5);
-                let (along, aside) = split(minus(view.centre, basket.mouth), axis);
-                let fits = dot(half, across) < basket.half_width;
-                let room = (basket.half_width - dot(half, across)).max(off);
-                // Straight in, or first to a place in front of the mouth.
-                let target = match length(aside) > room {
-                    true => ways.next(view.centre),
-                    false => plus(basket.mouth, scaled(axis, along + 0.6)),
-                };
-                let way = unit(minus(target, view.centre));
-                let reach = length([0, 1, 2].map(|k| way[k] * half[k])) + hand.radius;
-                let behind = minus(view.centre, scaled(way, 1.1 * reach));
-                let is_reachable = clearance(behind, obstacles) > 0.5 * hand.radius;
-                Piece {
-                    centre: view.centre,
-                    way,
-                    reach,
-                    behind,
-                    fits,
-                    mass: view.mass,
-                    is_reachable,
-                }
-            })
-            .collect();
-        pieces.sort_by(|a, b| {
-            (b.is_reachable, b.mass)
-                .partial_cmp(&(a.is_reachable, a.mass))
-                .expect("masses are numbers")
-        });
+        // Stays in order of mass otherwise.
+        pieces.sort_by_key(|piece| clearance(piece.behind, obstacles) < 0.5 * hand.radius);
         let piece = pieces[skips % pieces.len()];
+
         let mut within = 0.0;
         for body in world.bodies() {
             for (id, _) in body.mesh().nodes() {
@@ -140,9 +99,9 @@ impl Sight {
                 }
             }
         }
-        let out = minus(front, scaled(axis, 4.0));
+        let out = minus(basket.mouth, scaled(basket.axis, 4.0));
         Some(Self {
-            axis,
+            axis: basket.axis,
             piece,
             share: largest.mass / mass,
             surplus: within - round.level().game().share,
@@ -154,7 +113,55 @@ impl Sight {
     }
 }
 
+impl Piece {
+    fn of(view: &PieceView, basket: &Basket, ways: &Ways, off: f32, hand: f32) -> Self {
+        let centre = view.centre;
+        let half = scaled(minus(view.high, view.low), 0.5);
+        let (along, aside) = split(minus(centre, basket.mouth), basket.axis);
+        let spare = basket.half_width - dot(half, basket.across());
+        // Straight in, or first to a place in front of the mouth.
+        let target = match length(aside) > spare.max(off) {
+            true => ways.next(centre),
+            false => plus(basket.mouth, scaled(basket.axis, along + 0.6)),
+        };
+        let way = unit(minus(target, centre));
+        let reach = length([0, 1, 2].map(|k| way[k] * half[k])) + hand;
+        Self {
+            centre,
+            way,
+            reach,
+            behind: minus(centre, scaled(way, 1.1 * reach)),
+            fits: spare > 0.0,
+        }
+    }
+}
+
 impl Basket {
+    fn of(region: &Shape, obstacles: &[Obstacle]) -> Option<Self> {
+        let Shape::Box { centre, half } = *region else {
+            return None;
+        };
+        let axis = inwards(centre, half, obstacles);
+        let mouth = minus(centre, scaled(axis, dot(half, axis).abs()));
+        let mut basket = Self {
+            axis,
+            mouth,
+            half_width: 0.0,
+        };
+        basket.half_width = dot(half, basket.across());
+        Some(basket)
+    }
+
+    /// Along its mouth, of length 1.
+    fn across(&self) -> Vector {
+        [self.axis[1].abs(), self.axis[0].abs(), 0.0]
+    }
+
+    /// A place in front of its mouth [m].
+    fn front(&self) -> Vector {
+        minus(self.mouth, scaled(self.axis, 0.5))
+    }
+
     /// Whether all of a piece is in it.
     fn holds(&self, piece: &PieceView) -> bool {
         let half = scaled(minus(piece.high, piece.low), 0.5);
