@@ -122,7 +122,8 @@ impl Bot {
         self.waited += 1;
         if inside > self.best + 0.02 {
             (self.best, self.waited) = (inside, 0);
-        } else if self.waited > PATIENCE {
+            // In the tick before, who shaves may decide to go on shaving instead.
+        } else if self.waited > PATIENCE + 1 {
             (self.best, self.waited) = (inside, 0);
             self.skips = (self.skips + 1) % 4;
         }
@@ -177,7 +178,7 @@ impl Bot {
     fn shave(&mut self, sight: &Sight) -> Vector {
         self.gathers |= sight.share < self.aim;
         // What is stuck in front of the mouth has to be smaller still.
-        if self.gathers && self.waited == PATIENCE && !sight.piece.fits {
+        if self.gathers && self.waited > PATIENCE && !sight.piece.fits {
             (self.gathers, self.aim) = (false, SMALL_ENOUGH * sight.share);
         }
         if self.gathers {
