@@ -3,21 +3,35 @@
 use fuwafuwa::Dim2;
 use std::sync::Arc;
 use std::thread;
+use tamaire_play::level::NAMED;
 use tamaire_play::{Bot, BotKind, Level, Outcome, Round, Route};
 
-/// Forty seconds are long for Classic.
-const MOST_TICKS: usize = 2400;
+/// Nobody should take longer than a minute.
+const MINUTE: usize = 60 * 60;
 
-/// How a bot's rounds of Classic end, by seed, a round a thread.
-fn outcomes(kind: BotKind, seeds: u64, ticks: usize) -> Vec<Option<Outcome>> {
-    let level = Arc::new(Level::open("classic").unwrap());
+/// The bot that wins a level as it is meant, and how.
+const WINNERS: [(&str, BotKind, Route); 9] = [
+    ("classic", BotKind::Squeeze, Route::Squeeze),
+    ("gravity", BotKind::Squeeze, Route::Squeeze),
+    ("neck", BotKind::Squeeze, Route::Squeeze),
+    ("twins", BotKind::Squeeze, Route::Squeeze),
+    ("core", BotKind::Squeeze, Route::Squeeze),
+    ("donut", BotKind::Squeeze, Route::Squeeze),
+    ("cat", BotKind::Squeeze, Route::Squeeze),
+    ("rubber", BotKind::Squeeze, Route::Squeeze),
+    ("biscuit", BotKind::Shave, Route::Shave),
+];
+
+/// How a bot's rounds of a level end, by seed, a round a thread.
+fn outcomes(id: &str, kind: BotKind, seeds: u64, ticks: usize) -> Vec<Option<Outcome>> {
+    let level = Arc::new(Level::open(id).unwrap());
     let play = |seed| {
         let mut round = Round::<Dim2>::new(level.clone());
         let mut bot = Bot::new(kind, seed);
         for _ in 0..ticks {
             let frame = bot.frame(&round);
             let report = round.step(frame);
-            assert_eq!(report.quarantined, 0, "{kind:?}, seed {seed}");
+            assert_eq!(report.quarantined, 0, "{id}, {kind:?}, seed {seed}");
             if round.progress().outcome.is_some() {
                 break;
             }
@@ -36,33 +50,45 @@ fn outcomes(kind: BotKind, seeds: u64, ticks: usize) -> Vec<Option<Outcome>> {
     })
 }
 
-/// That so many of twenty rounds at least are won, all of them by a route.
-fn win_by(kind: BotKind, route: Route, least: usize) {
-    let won: Vec<Outcome> = outcomes(kind, 20, MOST_TICKS)
-        .into_iter()
-        .flatten()
-        .collect();
-    assert!(won.len() >= least, "{kind:?}: {} of 20 won", won.len());
-    assert!(won.iter().all(|outcome| outcome.route == route), "{won:?}");
+/// That a bot wins all rounds of a level by a route.
+fn wins(id: &str, kind: BotKind, route: Route, seeds: u64) {
+    for (outcome, seed) in outcomes(id, kind, seeds, MINUTE).into_iter().zip(1..) {
+        let found = outcome.map(|outcome| outcome.route);
+        assert_eq!(
+            found,
+            Some(route),
+            "{id}, {kind:?}, seed {seed}: {outcome:?}"
+        );
+    }
 }
 
 #[test]
-#[ignore = "takes long, and was not yet seen to pass"]
 fn squeezing_wins_twenty_of_twenty() {
-    win_by(BotKind::Squeeze, Route::Squeeze, 20);
-}
-
-/// Now and then it shreds the body so finely that gathering takes longer than this.
-#[test]
-#[ignore = "takes long, and was not yet seen to pass"]
-fn shaving_wins_nearly_always() {
-    win_by(BotKind::Shave, Route::Shave, 15);
+    wins("classic", BotKind::Squeeze, Route::Squeeze, 20);
 }
 
 #[test]
-#[ignore = "takes long, and was not yet seen to pass"]
+fn shaving_wins_twenty_of_twenty() {
+    wins("classic", BotKind::Shave, Route::Shave, 20);
+}
+
+#[test]
+fn every_level_with_a_basket_can_be_won_as_it_is_meant() {
+    for (id, _) in NAMED {
+        let has_basket = Level::open(id).unwrap().game().basket.is_some();
+        let is_listed = WINNERS.iter().any(|(known, ..)| *known == id);
+        assert_eq!(has_basket, is_listed, "{id}");
+    }
+    for (id, kind, route) in WINNERS {
+        wins(id, kind, route, 2);
+    }
+}
+
+#[test]
 fn who_does_nothing_never_wins_and_who_does_anything_rarely() {
-    assert_eq!(outcomes(BotKind::Idle, 1, 600), [None]);
-    let won = outcomes(BotKind::Random, 8, 1200);
+    for (id, ..) in WINNERS {
+        assert_eq!(outcomes(id, BotKind::Idle, 1, 600), [None], "{id}");
+    }
+    let won = outcomes("classic", BotKind::Random, 4, 1200);
     assert!(won.iter().flatten().count() <= 1, "{won:?}");
 }

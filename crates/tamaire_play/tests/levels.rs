@@ -6,7 +6,6 @@ use tamaire_play::level::NAMED;
 use tamaire_play::{Bot, BotKind, InputFrame, Level, Playback, Replay, ReplayError, Round};
 
 #[test]
-#[ignore = "takes long, and was not yet seen to pass"]
 fn nothing_tears_by_itself_and_everything_stays_in_the_room() {
     for (id, _) in NAMED {
         let level = Arc::new(Level::open(id).unwrap());
@@ -52,7 +51,6 @@ fn play(replay: Replay) -> Result<(), ReplayError> {
 }
 
 #[test]
-#[ignore = "takes long, and was not yet seen to pass"]
 fn a_replay_goes_as_it_went_and_a_changed_one_is_found_out() {
     let replay = played();
     let text = replay.text();
@@ -83,7 +81,6 @@ fn a_replay_goes_as_it_went_and_a_changed_one_is_found_out() {
 }
 
 #[test]
-#[ignore = "takes long, and was not yet seen to pass"]
 fn a_minute_of_two_hands_is_a_small_file() {
     let mut round = Round::<Dim2>::new(Arc::new(Level::open("classic").unwrap()));
     let mut bot = Bot::new(BotKind::Random, 3);
@@ -96,7 +93,6 @@ fn a_minute_of_two_hands_is_a_small_file() {
 }
 
 #[test]
-#[ignore = "takes long, and was not yet seen to pass"]
 fn what_is_wrong_with_a_level_is_said_with_its_line() {
     let folder = std::env::temp_dir().join(format!("tamaire-levels-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();

@@ -1,0 +1,217 @@
+//! What a bot sees: the basket, the piece that matters, and what is in the way.
+
+use super::map::{Map, Ways};
+use crate::Round;
+use fuwafuwa::vector::{dot, length, minus, plus, scaled};
+use fuwafuwa::world::Obstacle;
+use fuwafuwa::{Dim, PieceView, Shape, Vector};
+
+/// Pieces with less than this share of the mass are not worth the way.
+const CRUMB: f32 = 0.003;
+/// Of the others, as many are looked at as matter most.
+const MOST: usize = 12;
+/// What a step costs through something rigid, and how much more through all of the mass.
+const RIGID: f32 = 1000.0;
+const SOFT: f32 = 400.0;
+
+/// What a bot looks at.
+pub(super) struct Sight {
+    /// Into the basket, of length 1.
+    pub axis: Vector,
+    /// The piece that matters.
+    pub piece: Piece,
+    /// Share of all mass in the largest piece of all.
+    pub share: f32,
+    /// Share of it in the basket beyond what is needed, moving or not.
+    pub surplus: f32,
+    /// Where the hand is, and where it is to go [m].
+    pub hand: Vector,
+    pub goal: Vector,
+    /// Where the hand waits: in front of the basket, as far as it can [m].
+    pub away: Vector,
+    /// Where a hand can go, and what is in its way.
+    pub map: Map,
+}
+
+/// A piece, and what a hand has to do with it.
+#[derive(Copy, Clone, Debug)]
+pub(super) struct Piece {
+    /// Its middle [m].
+    pub centre: Vector,
+    /// Where it has to go, of length 1.
+    pub way: Vector,
+    /// From its middle to that of a hand that touches it from behind [m].
+    pub reach: f32,
+    /// Where a hand begins to push it [m].
+    pub behind: Vector,
+    /// Whether it is no wider than the mouth.
+    pub fits: bool,
+}
+
+/// The basket as a bot sees it.
+struct Basket {
+    /// Into it, of length 1.
+    axis: Vector,
+    /// Middle of its mouth, and half of its width [m].
+    mouth: Vector,
+    half_width: f32,
+}
+
+impl Sight {
+    /// What there is to see; `skips` = how many pieces that matter more are passed over, `off` = how
+    /// far off the middle of the mouth a wide piece may be to be pushed straight in [m].
+    pub(super) fn of<D: Dim>(round: &Round<D>, skips: usize, off: f32) -> Option<Self> {
+        let (world, arena) = (round.world(), round.level().arena());
+        let (region, obstacles) = (round.basket()?, world.obstacles());
+        let basket = Basket::of(region, obstacles)?;
+        let hand = world.manipulators().first()?;
+        let mut map = Map::new(arena, |at| {
+            match clearance(at, obstacles) < 0.9 * hand.radius {
+                true => RIGID,
+                false => 1.0,
+            }
+        });
+
+        let mass = round.progress().mass;
+        let bodies = world.bodies().iter();
+        let mut views: Vec<PieceView> = bodies.flat_map(|body| body.piece_views()).collect();
+        views.sort_by(|a, b| b.mass.total_cmp(&a.mass));
+        let largest = views.first()?;
+        let is_out = |view: &&PieceView| view.mass > CRUMB * mass && !basket.holds(view);
+        let ways = map.ways_to(basket.front());
+        let mut pieces: Vec<Piece> = (views.iter().filter(is_out).take(MOST))
+            .map(|view| Piece::of(view, &basket, &ways, off, hand.radius))
+            .collect();
+        if pieces.is_empty() {
+            pieces.push(Piece::of(largest, &basket, &ways, off, hand.radius));
+        }
+        // Stays in order of mass otherwise.
+        pieces.sort_by_key(|piece| clearance(piece.behind, obstacles) < 0.5 * hand.radius);
+        let piece = pieces[skips % pieces.len()];
+
+        let mut within = 0.0;
+        for body in world.bodies() {
+            for (id, _) in body.mesh().nodes() {
+                let (at, _, share) = body.node_state(id);
+                map.add(at, SOFT * share / mass);
+                if region.distance(at).0 < 0.0 {
+                    within += share / mass;
+                }
+            }
+        }
+        let out = minus(basket.mouth, scaled(basket.axis, 4.0));
+        Some(Self {
+            axis: basket.axis,
+            piece,
+            share: largest.mass / mass,
+            surplus: within - round.level().game().share,
+            hand: hand.position(),
+            goal: hand.goal(),
+            away: clamped(out, arena, hand.radius),
+            map,
+        })
+    }
+}
+
+impl Piece {
+    fn of(view: &PieceView, basket: &Basket, ways: &Ways, off: f32, hand: f32) -> Self {
+        let centre = view.centre;
+        let half = scaled(minus(view.high, view.low), 0.5);
+        let (along, aside) = split(minus(centre, basket.mouth), basket.axis);
+        let spare = basket.half_width - dot(half, basket.across());
+        // Straight in, or first to a place in front of the mouth.
+        let target = match length(aside) > spare.max(off) {
+            true => ways.next(centre),
+            false => plus(basket.mouth, scaled(basket.axis, along + 0.6)),
+        };
+        let way = unit(minus(target, centre));
+        let reach = length([0, 1, 2].map(|k| way[k] * half[k])) + hand;
+        Self {
+            centre,
+            way,
+            reach,
+            behind: minus(centre, scaled(way, 1.1 * reach)),
+            fits: spare > 0.0,
+        }
+    }
+}
+
+impl Basket {
+    fn of(region: &Shape, obstacles: &[Obstacle]) -> Option<Self> {
+        let Shape::Box { centre, half } = *region else {
+            return None;
+        };
+        let axis = inwards(centre, half, obstacles);
+        let mouth = minus(centre, scaled(axis, dot(half, axis).abs()));
+        let mut basket = Self {
+            axis,
+            mouth,
+            half_width: 0.0,
+        };
+        basket.half_width = dot(half, basket.across());
+        Some(basket)
+    }
+
+    /// Along its mouth, of length 1.
+    fn across(&self) -> Vector {
+        [self.axis[1].abs(), self.axis[0].abs(), 0.0]
+    }
+
+    /// A place in front of its mouth [m].
+    fn front(&self) -> Vector {
+        minus(self.mouth, scaled(self.axis, 0.5))
+    }
+
+    /// Whether all of a piece is in it.
+    fn holds(&self, piece: &PieceView) -> bool {
+        let half = scaled(minus(piece.high, piece.low), 0.5);
+        let middle = scaled(plus(piece.high, piece.low), 0.5);
+        let (along, aside) = split(minus(middle, self.mouth), self.axis);
+        along > dot(half, self.axis).abs() && length(aside) < self.half_width
+    }
+}
+
+/// The way into a basket: against the direction in which one sees farthest out of it.
+fn inwards(centre: Vector, half: Vector, obstacles: &[Obstacle]) -> Vector {
+    let ways = [
+        [1.0, 0.0, 0.0],
+        [0.0, -1.0, 0.0],
+        [-1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+    ];
+    let sees = |way: &Vector| {
+        let place = |step: usize| minus(centre, scaled(*way, 0.05 * step as f32));
+        let free = (0..100).take_while(|&step| clearance(place(step), obstacles) > 0.0);
+        free.count() as f32 * 0.05 - dot(half, *way).abs()
+    };
+    ways.into_iter()
+        .max_by(|a, b| sees(a).total_cmp(&sees(b)))
+        .expect("there are four")
+}
+
+/// How far the nearest obstacle is [m]; negative in it.
+fn clearance(at: Vector, obstacles: &[Obstacle]) -> f32 {
+    let distances = obstacles
+        .iter()
+        .map(|obstacle| obstacle.shape.distance(at).0);
+    distances.fold(f32::INFINITY, f32::min)
+}
+
+/// The place nearest to one that is in the room.
+fn clamped(place: Vector, [low, high]: [Vector; 2], margin: f32) -> Vector {
+    [0, 1, 2].map(|axis| {
+        let margin = margin.min(0.5 * (high[axis] - low[axis]));
+        place[axis].clamp(low[axis] + margin, high[axis] - margin)
+    })
+}
+
+/// The share of a vector along an axis of length 1, and the rest.
+pub(super) fn split(v: Vector, axis: Vector) -> (f32, Vector) {
+    let along = dot(v, axis);
+    (along, minus(v, scaled(axis, along)))
+}
+
+/// The same direction, of length 1.
+pub(super) fn unit(v: Vector) -> Vector {
+    scaled(v, 1.0 / length(v).max(1e-6))
+}
