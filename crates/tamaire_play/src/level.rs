@@ -39,6 +39,10 @@ pub enum LevelError {
     },
 }
 
+/// Most voxels in the grids of all bodies of a level together, solid or not: a square of 256. Even
+/// when each of them is an element, the game can move them all, and one buffer of the GPU holds them.
+pub const MAX_VOXELS: usize = 1 << 16;
+
 /// The levels that come along, in the order in which they are offered.
 pub const NAMED: [(&str, &str); 10] = [
     ("classic", include_str!("../levels/classic.toml")),
@@ -160,6 +164,23 @@ impl Level {
 }
 
 fn check<D: Dim>(scene: &Scene) -> Result<(), SceneError> {
-    scene.build::<D>()?;
+    scene.build_within::<D>(MAX_VOXELS)?;
     scene.basket::<D>().map(|_| ())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_level_has_no_more_voxels_than_the_game_can_move() {
+        let (id, text) = NAMED[0];
+        let changes = ["body.n=257".to_string()];
+        let scene = Scene::read(id, text, &changes).unwrap();
+        let error = Level::of(id, scene).unwrap_err().to_string();
+        assert!(
+            error.contains("body 1, n: expected 65536 voxels at most"),
+            "{error}"
+        );
+    }
 }

@@ -1,6 +1,7 @@
 //! A round on file, to be watched, raced and shared.
 
 use crate::level::LevelError;
+use crate::round::MAX_TICKS;
 use crate::{InputFrame, Level, Outcome, Round};
 use fuwafuwa::Dim;
 use fuwafuwa_scenes::Scene;
@@ -9,9 +10,6 @@ use std::sync::Arc;
 
 /// Number of the format and of the rules; it changes when an older round would run differently.
 pub const VERSION: u32 = 1;
-
-/// Most ticks in a replay: an hour.
-pub const MAX_TICKS: usize = 60 * 60 * 60;
 
 /// A round: the level itself, what was played in it, and what came of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -73,9 +71,10 @@ pub enum ReplayError {
 }
 
 impl Replay {
-    /// What was played in a round so far.
+    /// What was played in a round so far. Of one that is longer than [`MAX_TICKS`] it is the beginning,
+    /// which was not won.
     pub fn of<D: Dim>(round: &Round<D>) -> Self {
-        let level = round.level();
+        let (level, outcome) = (round.level(), round.progress().outcome);
         let frame = |frame: &InputFrame| -> Vec<i16> {
             // A hand that nobody plays says nothing, and so do those after it.
             frame
@@ -90,7 +89,7 @@ impl Replay {
             game: env!("CARGO_PKG_VERSION").into(),
             level: level.id.clone(),
             level_hash: format!("{:016x}", level.hash()),
-            outcome: round.progress().outcome,
+            outcome: outcome.filter(|outcome| outcome.ticks == round.frames().len() as u64),
             hashes: round
                 .hashes()
                 .iter()
@@ -120,6 +119,12 @@ impl Replay {
         let ticks = replay.frames.len();
         if ticks > MAX_TICKS {
             let reason = format!("expected {MAX_TICKS} ticks at most, found {ticks}");
+            return Err(ReplayError::Text(reason));
+        }
+        let mut bodies = replay.scene.body.iter();
+        if bodies.any(|body| body.file.is_some() && body.content.is_none()) {
+            // Whose replay it is does not say which files are opened.
+            let reason = "expected the content of every body that has a file".into();
             return Err(ReplayError::Text(reason));
         }
         Ok(replay)
@@ -231,5 +236,23 @@ impl<D: Dim> Playback<D> {
             return Err(ReplayError::OutcomeDiffers);
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fuwafuwa::Dim2;
+
+    #[test]
+    fn a_replay_brings_its_files_along() {
+        let level = Arc::new(Level::open("cat").unwrap());
+        let text = Replay::of(&Round::<Dim2>::new(level)).text();
+        assert!(Replay::read(&text).is_ok());
+        let lines = text.lines().filter(|line| !line.starts_with("content = "));
+        let bare: Vec<&str> = lines.collect();
+        assert!(bare.len() < text.lines().count());
+        let error = Replay::read(&bare.join("\n")).unwrap_err().to_string();
+        assert!(error.contains("content"), "{error}");
     }
 }
