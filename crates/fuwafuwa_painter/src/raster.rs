@@ -28,10 +28,26 @@ impl Painter {
     /// # Errors
     /// As [`Painter::pixels`].
     pub fn png(&self) -> Result<Vec<u8>, PaintError> {
-        self.pixels()?
-            .encode_png()
-            .map_err(PaintError::packing("PNG"))
+        png_of(&self.pixels()?)
     }
+}
+
+/// Pixels as the bytes of a PNG file.
+pub(crate) fn png_of(pixels: &Pixmap) -> Result<Vec<u8>, PaintError> {
+    let straight = pixels.pixels().iter().flat_map(|pixel| {
+        let pixel = pixel.demultiply();
+        [pixel.red(), pixel.green(), pixel.blue(), pixel.alpha()]
+    });
+    let straight: Vec<u8> = straight.collect();
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, pixels.width(), pixels.height());
+    encoder.set_color(png::ColorType::Rgba);
+    let packed = encoder.write_header().and_then(|mut writer| {
+        writer.write_image_data(&straight)?;
+        writer.finish()
+    });
+    packed.map_err(PaintError::packing("PNG"))?;
+    Ok(bytes)
 }
 
 fn paint(pixels: &mut Pixmap, shape: &Shape) -> Result<(), PaintError> {

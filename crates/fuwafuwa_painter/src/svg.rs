@@ -1,5 +1,6 @@
 //! The painter's shapes as an SVG document.
 
+use crate::raster::png_of;
 use crate::theme::{colour, opacity};
 use crate::{PaintError, Painter, Role, Shape, Spot};
 use std::fmt::Write;
@@ -55,7 +56,7 @@ fn write_shape(text: &mut String, shape: &Shape) -> Result<(), PaintError> {
             at[1],
             pixels.width(),
             pixels.height(),
-            base64(&pixels.encode_png().map_err(PaintError::packing("PNG"))?)
+            base64(&png_of(pixels)?)
         ),
     };
     written.expect("a string has room");

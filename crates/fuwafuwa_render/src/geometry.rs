@@ -81,11 +81,7 @@ impl Geometry {
         let points = self.rings.points.iter().map(|point| point.at);
         let bounds = points.fold(NOWHERE, around);
         self.bounds = bounds.into_iter().fold(self.bounds, around);
-        let first = body
-            .grid()
-            .voxels()
-            .map(|voxel| body.grid().material(voxel));
-        let first = first.filter(|&number| number > 0).min().unwrap_or(1);
+        let first = rest.first_material();
         let colour = |number| bytes(frame.theme.material(number), 1.0);
         self.skin.add_rectangle(bounds, colour(first));
         if body.materials().len() > 1 {

@@ -24,8 +24,9 @@ pub struct Rest {
     sides: Vec<u32>,
     /// At the start and at the end of a side [voxels].
     offsets: Vec<[Flat; 2]>,
-    /// Of the grid they belong to.
-    fingerprint: u64,
+    /// The grid they belong to.
+    grid: Option<VoxelGrid<Dim2>>,
+    first_material: u8,
 }
 
 impl Rest {
@@ -61,16 +62,23 @@ impl Rest {
                 offsets.extend(moved.iter().zip(next).map(|(a, b)| [*a, *b]));
             }
         }
+        let materials = grid.voxels().map(|voxel| grid.material(voxel));
         Self {
             sides,
             offsets,
-            fingerprint: fingerprint(grid),
+            grid: Some(grid.clone()),
+            first_material: materials.filter(|&number| number > 0).min().unwrap_or(1),
         }
     }
 
     /// Whether these are the offsets of a grid.
     pub fn fits(&self, grid: &VoxelGrid<Dim2>) -> bool {
-        self.fingerprint == fingerprint(grid)
+        self.grid.as_ref() == Some(grid)
+    }
+
+    /// The lowest number of a material in the grid.
+    pub fn first_material(&self) -> u8 {
+        self.first_material
     }
 
     /// The offsets [voxels] at the start and at the end of a side of the original surface, which
@@ -152,20 +160,6 @@ fn limited(offset: Flat) -> Flat {
     }
 }
 
-/// [FNV-1a] over all that the offsets depend on.
-fn fingerprint(grid: &VoxelGrid<Dim2>) -> u64 {
-    let size = grid.size();
-    let mut hash = 0xcbf2_9ce4_8422_2325u64;
-    let mut add = |bits: u64| hash = (hash ^ bits).wrapping_mul(0x0100_0000_01b3);
-    add(size[0] as u64);
-    for y in 0..size[1] {
-        for x in 0..size[0] {
-            add(u64::from(grid.is_solid([x, y, 0])));
-        }
-    }
-    hash
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -216,5 +210,11 @@ mod tests {
         let [disc, larger] = [24, 25].map(|n| VoxelGrid::<Dim2>::ball(n, 1.0).unwrap());
         assert!(Rest::new(&disc).fits(&disc));
         assert!(!Rest::new(&disc).fits(&larger));
+        let other = VoxelGrid::from_fn([24, 24, 1], disc.voxel_size(), |voxel| {
+            3 * disc.material(voxel)
+        });
+        let other = other.unwrap();
+        assert!(!Rest::new(&disc).fits(&other));
+        assert_eq!(Rest::new(&other).first_material(), 3);
     }
 }

@@ -60,7 +60,7 @@ impl Theme {
         }
     }
 
-    /// Colours that people who see few colours can tell apart, by lightness too [Okabe & Ito 2008].
+    /// Colours that people who see few colours can tell apart, by lightness too [Okabe 2008].
     pub fn colour_safe() -> Self {
         Self {
             floor: [rgb(0xf7f7f5), rgb(0xdde3e8)],

@@ -20,6 +20,10 @@ struct Picture {
 
 /// A device with what WebGL2 has and nothing more; none where there is no adapter.
 fn device() -> Option<(wgpu::Device, wgpu::Queue)> {
+    device_with(wgpu::Limits::downlevel_webgl2_defaults())
+}
+
+fn device_with(required_limits: wgpu::Limits) -> Option<(wgpu::Device, wgpu::Queue)> {
     let instance = wgpu::Instance::default();
     let adapter = pollster::block_on(instance.request_adapter(&Default::default()));
     let Ok(adapter) = adapter else {
@@ -32,7 +36,7 @@ fn device() -> Option<(wgpu::Device, wgpu::Queue)> {
         return None;
     };
     let descriptor = wgpu::DeviceDescriptor {
-        required_limits: wgpu::Limits::downlevel_webgl2_defaults(),
+        required_limits,
         ..Default::default()
     };
     Some(pollster::block_on(adapter.request_device(&descriptor)).expect("a modest device"))
@@ -187,10 +191,12 @@ fn elements_have_the_colour_of_their_level() {
     let Some(picture) = take(&world, TextureFormat::Rgba8Unorm, |frame| frame.look = look) else {
         return;
     };
-    for view in world.bodies()[0]
-        .element_views()
+    let views = world.bodies()[0].element_views();
+    let views: Vec<_> = views
         .filter(|view| view.level > 1 && view.children == Dim2::ALL_CORNERS)
-    {
+        .collect();
+    assert!(views.len() > 8, "{} large elements", views.len());
+    for view in views {
         let [x, y, _] = view.child_corners::<Dim2>(0)[3];
         let quarter =
             world.bodies()[0].grid().voxel_size() * 0.5 * f32::from(1u8 << (view.level - 1));
@@ -281,7 +287,7 @@ fn every_format_shows_the_same() {
 }
 
 #[test]
-fn nothing_is_a_picture_too_and_so_is_what_cannot_tear() {
+fn nothing_is_a_picture_too_and_so_is_what_has_no_skin() {
     let Some((device, queue)) = device() else {
         return;
     };
@@ -297,12 +303,82 @@ fn nothing_is_a_picture_too_and_so_is_what_cannot_tear() {
         Grading::Coarse,
     );
     coarse.add_body(body.unwrap());
-    for world in [floating(), coarse] {
-        for size in [[7, 5], [1, 1], [300, 2]] {
-            let image =
-                renderer.render_to_image(&device, &queue, &world, &frame(camera, &theme), size);
-            assert_eq!(image.unwrap().len(), 4 * (size[0] * size[1]) as usize);
-        }
+    let elements = Look::Elements {
+        colour: ElementColour::Level,
+        ages: &[],
+        nodes: false,
+    };
+    for size in [[64, 48], [7, 5], [300, 2], [1, 1]] {
+        let mut image = |world: &World<Dim2>, look| {
+            let frame = Frame {
+                look,
+                ..frame(camera, &theme)
+            };
+            let image = renderer.render_to_image(&device, &queue, world, &frame, size);
+            image.unwrap()
+        };
+        let bare = image(&floating(), Look::Skin);
+        assert_eq!(bare.len(), 4 * (size[0] * size[1]) as usize);
+        // It has elements, but no skin.
+        assert_eq!(bare, image(&coarse, Look::Skin));
+        let middle = 4 * (size[1] / 2 * size[0] + size[0] / 2) as usize;
+        let shown = &image(&coarse, elements)[middle..middle + 3];
+        let floor = &bare[middle..middle + 3];
+        let apart = shown.iter().zip(floor).map(|(a, b)| a.abs_diff(*b)).max();
+        assert!(apart > Some(40), "{size:?}: {shown:?} on {floor:?}");
+    }
+}
+
+#[test]
+fn a_window_wider_than_a_texture_can_be_is_drawn_smaller() {
+    let Some((device, queue)) = device() else {
+        return;
+    };
+    assert_eq!(device.limits().max_texture_dimension_2d, 2048);
+    let mut renderer = Renderer::new(&device, TextureFormat::Rgba8Unorm);
+    let size = [2560, 800];
+    let frame = frame(Camera::fit([0.0; 3], [1.0; 3], size), &THEME);
+    let mut encoder = device.create_command_encoder(&Default::default());
+    renderer.prepare(&device, &queue, &mut encoder, &disc(), &frame, size);
+    queue.submit([encoder.finish()]);
+
+    let refused = renderer.render_to_image(&device, &queue, &disc(), &frame, size);
+    let refused = refused.unwrap_err().to_string();
+    assert!(
+        refused.contains("2560 x 800") && refused.contains("2048"),
+        "{refused}"
+    );
+}
+
+#[test]
+fn what_is_too_much_for_a_buffer_is_left_out() {
+    let limits = wgpu::Limits {
+        max_buffer_size: 50_000,
+        ..wgpu::Limits::downlevel_webgl2_defaults()
+    };
+    let Some((device, queue)) = device_with(limits) else {
+        return;
+    };
+    let mut world = floating();
+    let grid = VoxelGrid::ball(40, 1.0).unwrap();
+    let body = Body::with(
+        grid,
+        &[Material::default()],
+        Law::default(),
+        Grading::Uniform,
+    );
+    world.add_body(body.unwrap());
+    let mut renderer = Renderer::new(&device, TextureFormat::Rgba8Unorm);
+    let size = [96, 96];
+    let mut frame = frame(Camera::fit([0.0; 3], [1.0; 3], size), &THEME);
+    for colour in [None, Some(ElementColour::Level)] {
+        frame.look = colour.map_or(Look::Skin, |colour| Look::Elements {
+            colour,
+            ages: &[],
+            nodes: true,
+        });
+        let image = renderer.render_to_image(&device, &queue, &world, &frame, size);
+        assert!(image.is_ok());
     }
 }
 

@@ -136,15 +136,26 @@ fn name_of(path: &Path) -> String {
     path.display().to_string()
 }
 
-/// The bytes of a file, refused when there are more than [`MAX_FILE_BYTES`]. The length that the
-/// system reports is not asked: pipes and devices have none.
+/// The bytes of a file, refused when there are more than [`MAX_FILE_BYTES`], and when it is a pipe or a
+/// device: who reads one may wait for ever.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, ImportError> {
+    in_file(&name_of(path), try_read(path))
+}
+
+fn try_read(path: &Path) -> Result<Vec<u8>, Complaint> {
+    let unreadable = |error| (Place::File, Problem::Unreadable(error));
+    if !path.metadata().map_err(unreadable)?.is_file() {
+        return Err(unexpected(
+            Place::File,
+            "a file",
+            "a folder, a pipe or a device",
+        ));
+    }
     let mut bytes = Vec::new();
-    let outcome = File::open(path)
-        .and_then(|file| file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes))
-        .map_err(|error| (Place::File, Problem::Unreadable(error)));
-    in_file(&name_of(path), outcome)?;
-    in_file(&name_of(path), check_length(&bytes))?;
+    let file = File::open(path).map_err(unreadable)?;
+    let outcome = file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes);
+    outcome.map_err(unreadable)?;
+    check_length(&bytes)?;
     Ok(bytes)
 }
 

@@ -5,7 +5,7 @@ mod damage;
 use damage::Noise;
 use fuwafuwa::{BuildError, Dim2, VoxelGrid};
 use fuwafuwa_scenes::import::{
-    Colours, ImportError, MAX_PIXELS, Picture, Place, Problem, png, png_bytes,
+    Colours, ImportError, MAX_FILE_BYTES, MAX_PIXELS, Picture, Place, Problem, png, png_bytes,
 };
 use png::{BitDepth, ColorType, Encoder, Filter};
 use std::path::Path;
@@ -289,19 +289,32 @@ fn a_file_is_read_and_a_missing_one_named() {
     let path = folder.join("drawing.png");
     std::fs::write(&path, drawing(&["##", "#."])).unwrap();
     assert_eq!(rows(&png(&path, 8, 0.5).unwrap()), ["##", "#."]);
-    for unreadable in [&folder.join("no such drawing.png"), folder] {
-        let error = png(unreadable, 8, 0.5).unwrap_err();
-        assert!(matches!(error.problem, Problem::Unreadable(_)));
-        let name = unreadable.display().to_string();
-        assert!(error.to_string().starts_with(&name), "{error}");
-    }
+    let missing = png(&folder.join("no such drawing.png"), 8, 0.5).unwrap_err();
+    assert!(matches!(missing.problem, Problem::Unreadable(_)));
+    let name = folder.join("no such drawing.png").display().to_string();
+    assert!(missing.to_string().starts_with(&name), "{missing}");
+    let no_file = png(folder, 8, 0.5).unwrap_err();
+    assert!(matches!(no_file.problem, Problem::Unexpected { .. }));
+
+    let long = folder.join("longer than it may be.png");
+    let file = std::fs::File::create(&long).unwrap();
+    file.set_len(MAX_FILE_BYTES + 1).unwrap();
+    let error = png(&long, 8, 0.5).unwrap_err().to_string();
+    std::fs::remove_file(&long).unwrap();
+    assert!(error.contains("the limit is 134217728"), "{error}");
 }
 
 #[cfg(unix)]
 #[test]
-fn a_file_without_an_end_is_not_read_to_its_end() {
-    let error = png(Path::new("/dev/zero"), 8, 0.5).unwrap_err().to_string();
-    assert!(error.contains("the limit is 134217728"), "{error}");
+fn nobody_waits_for_a_pipe() {
+    let pipe = std::env::temp_dir().join(format!("fuwafuwa-pipe-{}.png", std::process::id()));
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.unwrap().success());
+    for path in [&*pipe, Path::new("/dev/zero")] {
+        let error = png(path, 8, 0.5).unwrap_err().to_string();
+        assert!(error.contains("expected a file"), "{error}");
+    }
+    std::fs::remove_file(pipe).unwrap();
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use fuwafuwa::{Dim2, Dim3};
 use fuwafuwa_scenes::Scene;
+use std::time::{Duration, Instant};
 
 const GOOD: &str = "dim = 2
 [[material]]
@@ -361,4 +362,29 @@ fn texts_that_are_no_scenes_are_refused_briefly() {
         let endless = Scene::open("/dev/zero", &[]).unwrap_err().to_string();
         assert!(endless.contains("1048576 bytes at most"), "{endless}");
     }
+}
+
+#[test]
+fn bodies_are_limited_in_number_and_in_their_sum() {
+    let many = GOOD.to_string() + &"[[body]]\nshape = \"box\"\nn = 1\n".repeat(1024);
+    assert_eq!(
+        complaint(&many),
+        "toy.toml, line 5: body: expected 1024 bodies at most, found 1025"
+    );
+    let two = GOOD.to_string() + "[[body]]\nshape = \"heart\"\nn = 12\n";
+    let scene = Scene::read("toy.toml", &two, &[]).unwrap();
+    assert!(scene.build_within::<Dim2>(288).is_ok());
+    assert_eq!(
+        scene.build_within::<Dim2>(287).unwrap_err().to_string(),
+        "toy.toml, line 18: body 2, n: expected 287 voxels at most in the grids of all bodies together, found 288"
+    );
+}
+
+#[test]
+fn a_long_text_is_read_as_fast_as_it_is_long() {
+    let path = "path = [".to_string() + &"[0,0,0,0],\n".repeat(30_000) + "[0,0,0,nan]";
+    let text = GOOD.replace("path = [[0.0, -0.3, 0.5, 0.0]", &path);
+    let start = Instant::now();
+    assert!(complaint(&text).starts_with("toy.toml, line "));
+    assert!(start.elapsed() < Duration::from_secs(10));
 }

@@ -88,7 +88,8 @@ impl Sticks {
         })
     }
 
-    /// What all devices say now; at most 2 ms old unless a driver holds SDL up. Costs a lock and a count.
+    /// What all devices say now; at most 2 ms old, 100 ms while no device is there, unless a driver holds SDL up. Costs a
+    /// lock and a count.
     pub fn snapshot(&self) -> Arc<Snapshot> {
         self.latest.get()
     }

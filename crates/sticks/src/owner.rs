@@ -17,6 +17,8 @@ use crate::{Button, Device, DeviceId, Direction, Hat, Latest, NoSticks, Pad, Pad
 const PERIOD: Duration = Duration::from_millis(2);
 /// How long it may take to notice the first device. Nobody feels it, and until then the thread costs next to nothing.
 const IDLE_PERIOD: Duration = Duration::from_millis(100);
+/// How long SDL may take to start. A broken device can hold it up for ever, and the game is to go on without.
+const PATIENCE: Duration = Duration::from_secs(5);
 
 /// Holds the thread; dropping it ends the thread and waits for that.
 pub struct Owner {
@@ -75,14 +77,21 @@ impl Owner {
                         let _ = ready.send(Err(error));
                     }
                 })?;
-        let owner = Owner {
+        let mut owner = Owner {
             orders: Some(Arc::new(orders)),
             thread: Some(thread),
         };
-        match started.recv() {
+        match started.recv_timeout(PATIENCE) {
             Ok(Ok(())) => Ok(owner),
             Ok(Err(error)) => Err(NoSticks::Sdl(error)),
-            Err(_) => Err(NoSticks::Sdl("its thread panicked".into())),
+            Err(RecvTimeoutError::Disconnected) => Err(NoSticks::Sdl("its thread panicked".into())),
+            Err(RecvTimeoutError::Timeout) => {
+                // To join it would take as long. Should SDL start after all, it finds no orders and ends.
+                owner.thread = None;
+                let seconds = PATIENCE.as_secs();
+                let reason = format!("it did not start within {seconds} s; is a device broken?");
+                Err(NoSticks::Sdl(reason))
+            }
         }
     }
 

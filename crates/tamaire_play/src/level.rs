@@ -39,6 +39,11 @@ pub enum LevelError {
     },
 }
 
+/// Most voxels in the grids of all bodies of a level together, solid or not: eight squares of 64. Even
+/// crumbled or diced into single voxels, they are there within seconds and move, if slowly, and one
+/// buffer of the GPU holds them.
+pub const MAX_VOXELS: usize = 1 << 15;
+
 /// The levels that come along, in the order in which they are offered.
 pub const NAMED: [(&str, &str); 10] = [
     ("classic", include_str!("../levels/classic.toml")),
@@ -170,6 +175,30 @@ impl Level {
 }
 
 fn check<D: Dim>(scene: &Scene) -> Result<(), SceneError> {
-    scene.build::<D>()?;
+    scene.build_within::<D>(MAX_VOXELS)?;
     scene.basket::<D>().map(|_| ())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_that_come_along_can_be_opened() {
+        for (id, _) in NAMED {
+            assert!(Level::open(id).is_ok(), "{id}");
+        }
+    }
+
+    #[test]
+    fn a_level_has_no_more_voxels_than_the_game_can_move() {
+        let (id, text) = NAMED[0];
+        let changes = ["body.n=182".to_string()];
+        let scene = Scene::read(id, text, &changes).unwrap();
+        let error = Level::of(id, scene).unwrap_err().to_string();
+        assert!(
+            error.contains("body 1, n: expected 32768 voxels at most"),
+            "{error}"
+        );
+    }
 }

@@ -1,6 +1,7 @@
 //! A round on file, to be watched, raced and shared.
 
 use crate::level::LevelError;
+use crate::round::MAX_TICKS;
 use crate::{InputFrame, Level, Outcome, Round};
 use fuwafuwa::Dim;
 use fuwafuwa_scenes::Scene;
@@ -10,9 +11,6 @@ use std::sync::Arc;
 
 /// Number of the format and of the rules; it changes when an older round would run differently.
 pub const VERSION: u32 = 1;
-
-/// Most ticks in a replay: an hour.
-pub const MAX_TICKS: usize = 60 * 60 * 60;
 
 /// A round: the level itself, what was played in it, and what came of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -74,9 +72,10 @@ pub enum ReplayError {
 }
 
 impl Replay {
-    /// What was played in a round so far.
+    /// What was played in a round so far. Of one that is longer than [`MAX_TICKS`] it is the beginning,
+    /// which was not won.
     pub fn of<D: Dim>(round: &Round<D>) -> Self {
-        let level = round.level();
+        let (level, outcome) = (round.level(), round.progress().outcome);
         let mut hashes = round.hashes().to_vec();
         if hashes.len() < marks(round.frames().len()) {
             hashes.push(round.world().hash());
@@ -87,7 +86,7 @@ impl Replay {
             // Of a file not its folders, which are nobody else's business.
             level: stem(&level.id),
             level_hash: format!("{:016x}", level.hash()),
-            outcome: round.progress().outcome,
+            outcome: outcome.filter(|outcome| outcome.ticks == round.frames().len() as u64),
             hashes: hashes.iter().map(|hash| format!("{hash:016x}")).collect(),
             frames: round.frames().iter().map(InputFrame::row).collect(),
             scene: level.scene().clone(),
@@ -126,6 +125,12 @@ impl Replay {
         let (found, expected) = (replay.hashes.len(), marks(ticks));
         if found != expected {
             let reason = format!("expected {expected} hashes for {ticks} ticks, found {found}");
+            return Err(ReplayError::Text(reason));
+        }
+        let mut bodies = replay.scene.body.iter();
+        if bodies.any(|body| body.file.is_some() && body.content.is_none()) {
+            // Whose replay it is does not say which files are opened.
+            let reason = "expected the content of every body that has a file".into();
             return Err(ReplayError::Text(reason));
         }
         Ok(replay)
@@ -239,5 +244,23 @@ impl<D: Dim> Playback<D> {
             return Err(ReplayError::OutcomeDiffers);
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fuwafuwa::Dim2;
+
+    #[test]
+    fn a_replay_brings_its_files_along() {
+        let level = Arc::new(Level::open("cat").unwrap());
+        let text = Replay::of(&Round::<Dim2>::new(level)).text();
+        assert!(Replay::read(&text).is_ok());
+        let lines = text.lines().filter(|line| !line.starts_with("content = "));
+        let bare: Vec<&str> = lines.collect();
+        assert!(bare.len() < text.lines().count());
+        let error = Replay::read(&bare.join("\n")).unwrap_err().to_string();
+        assert!(error.contains("content"), "{error}");
     }
 }

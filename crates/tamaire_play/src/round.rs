@@ -12,6 +12,9 @@ pub const TOP_SPEED: f32 = 6.0;
 /// can, and a hand that comes free has no long way to shoot.
 pub const LEASH: f32 = 0.4;
 
+/// Most ticks that are recorded: an hour. A round may go on for longer.
+pub const MAX_TICKS: usize = 60 * 60 * 60;
+
 /// One go at a level, from the first tick on.
 #[derive(Clone, Debug)]
 pub struct Round<D: Dim> {
@@ -60,9 +63,11 @@ impl<D: Dim> Round<D> {
         }
         let basket = self.basket.as_ref();
         self.progress.watch(&self.level, basket, &self.world);
-        self.frames.push(frame);
-        if self.frames.len().is_multiple_of(60) || self.progress.outcome.is_some() {
-            self.hashes.push(self.world.hash());
+        if self.frames.len() < MAX_TICKS {
+            self.frames.push(frame);
+            if self.frames.len().is_multiple_of(60) || self.progress.outcome.is_some() {
+                self.hashes.push(self.world.hash());
+            }
         }
         report
     }
@@ -95,7 +100,7 @@ impl<D: Dim> Round<D> {
         &self.progress
     }
 
-    /// What was played until it was won, tick by tick.
+    /// What was played until it was won, tick by tick; [`MAX_TICKS`] at most.
     pub fn frames(&self) -> &[InputFrame] {
         &self.frames
     }
@@ -140,4 +145,32 @@ fn near(from: Vector, wish: Vector, most: f32) -> Vector {
         1.0
     };
     [0, 1, 2].map(|axis| from[axis] + share * way[axis])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Replay, Route};
+    use fuwafuwa::Dim2;
+
+    #[test]
+    fn what_goes_on_for_ever_is_recorded_for_an_hour() {
+        let mut round = Round::<Dim2>::new(Arc::new(Level::open("sandbox").unwrap()));
+        round.frames = vec![InputFrame::default(); MAX_TICKS - 1];
+        for _ in 0..3 {
+            round.step(InputFrame::default());
+        }
+        assert_eq!((round.frames.len(), round.hashes.len()), (MAX_TICKS, 1));
+
+        // Won after that, which the record does not show.
+        round.progress.outcome = Some(crate::Outcome {
+            ticks: MAX_TICKS as u64 + 1,
+            route: Route::Squeeze,
+            kept: 1.0,
+            inside: 1.0,
+            pieces: 1,
+            lost: 0,
+        });
+        assert_eq!(Replay::of(&round).outcome, None);
+    }
 }

@@ -10,6 +10,9 @@ fn main() {
         Ok(speaker) => speaker,
         Err(why) => return println!("Nothing will be heard: {why}."),
     };
+    if let Some(why) = speaker.trouble() {
+        println!("Nothing is heard just now: {why}.");
+    }
     for tick in 0..300 {
         let time = tick as f32 / 60.0;
         let press = Press {
@@ -28,9 +31,6 @@ fn main() {
             },
             &Volumes::default(),
         );
-        if let Some(why) = speaker.trouble() {
-            println!("Nothing is heard just now: {why}.");
-        }
         std::thread::sleep(Duration::from_millis(16));
     }
 }

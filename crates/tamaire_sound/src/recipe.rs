@@ -154,6 +154,11 @@ const MIX: Tune = &[
     (0.54, 84.0),
 ];
 
+/// Whether a note is of the chord at the end, of which the top may come a little later.
+fn is_last(tune: Tune, delay: f32) -> bool {
+    delay >= tune[tune.len() - 2].0
+}
+
 fn jingle(route: Route, voices: &mut Voices) {
     let (tune, ring) = match route {
         Route::Squeeze => (SQUEEZE, 0.5),
@@ -162,8 +167,11 @@ fn jingle(route: Route, voices: &mut Voices) {
     };
     for (place, (delay, number)) in tune.iter().enumerate() {
         let x = if place % 2 == 0 { -0.3 } else { 0.3 };
-        let last = *delay == tune[tune.len() - 2].0;
-        let ring = if last { 2.0 * ring } else { ring };
+        let ring = if is_last(tune, *delay) {
+            2.0 * ring
+        } else {
+            ring
+        };
         let bell = Grain {
             bus: Bus::Interface,
             x,
@@ -222,5 +230,19 @@ pub(crate) fn strike(bell: Grain) -> Grain {
         gain: 0.25 * bell.gain,
         pitch: bell.pitch.map(|pitch| 3.93 * pitch),
         ..bell
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_whole_chord_at_the_end_rings_on() {
+        let notes = [SQUEEZE, SHAVE, MIX].map(|tune| {
+            let last = tune.iter().filter(|(delay, _)| is_last(tune, *delay));
+            last.count()
+        });
+        assert_eq!(notes, [4, 3, 3]);
     }
 }

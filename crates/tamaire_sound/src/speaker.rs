@@ -2,7 +2,7 @@
 //!
 //! Three threads meet at a mailbox: the game leaves there what is to be heard; the device's own
 //! thread takes it, and goes on with what it has while the game is just writing; a keeper opens the
-//! device, and again when it was lost.
+//! device, and goes on trying while there is none.
 
 use crate::cue::Cue;
 use crate::soundscape::{Hush, Soundscape, Volumes};
@@ -17,8 +17,8 @@ use std::time::Duration;
 /// Until a device that does not answer counts as none.
 const PATIENCE: Duration = Duration::from_secs(3);
 
-/// Between two attempts to open a device that was lost.
-const PAUSE: Duration = Duration::from_secs(1);
+/// Between two attempts to open a device.
+const PAUSE: Duration = Duration::from_secs(2);
 
 /// As many cues may wait for the device; a tick of heavy tearing has some hundred.
 const MOST_CUES: usize = 256;
@@ -53,21 +53,24 @@ pub struct Speaker {
 }
 
 impl Speaker {
-    /// Opens the device that the system prefers. It may take a moment, at most three seconds.
+    /// Opens the device that the system prefers. It may take a moment, at most three seconds. While
+    /// there is none, [`Speaker::trouble`] says so, and it is looked for again and again.
     ///
     /// # Errors
-    /// [`NoSound`] says why nothing would be heard.
+    /// [`NoSound`] when there is no thread to be had for it.
     pub fn open() -> Result<Self, NoSound> {
-        let mailbox = Arc::new(Mutex::new(Mailbox::new()));
+        let mailbox = Arc::new(Mutex::new(Mailbox {
+            trouble: Some(NoSound::NoAnswer),
+            ..Mailbox::new()
+        }));
         let (opened, answer) = mpsc::channel();
         let keeper = Arc::downgrade(&mailbox);
         thread::Builder::new()
             .name("sound".to_owned())
-            .spawn(move || keep_open(&keeper, &opened))
+            .spawn(move || keep_open(&keeper, opened, |lost| open_stream(&keeper, lost)))
             .map_err(|error| NoSound::Refused(error.to_string()))?;
-        answer
-            .recv_timeout(PATIENCE)
-            .unwrap_or(Err(NoSound::NoAnswer))?;
+        // Whatever became of it stands in the mailbox.
+        let _ = answer.recv_timeout(PATIENCE);
         Ok(Self { mailbox })
     }
 
@@ -85,7 +88,7 @@ impl Speaker {
     }
 
     /// Why nothing is heard just now, if so: the device was unplugged, say. It is looked for again
-    /// every second.
+    /// every few seconds.
     pub fn trouble(&self) -> Option<NoSound> {
         lock(&self.mailbox).trouble.clone()
     }
@@ -192,22 +195,18 @@ impl Source {
     }
 }
 
-/// Keeps a device open until the speaker is gone, and tells `opened` how the first attempt ended.
-fn keep_open(mailbox: &Weak<Mutex<Mailbox>>, opened: &Sender<Result<(), NoSound>>) {
-    let mut is_first = true;
+/// Keeps a device open until the speaker is gone, and drops `opened` after the first attempt.
+fn keep_open<Stream>(
+    mailbox: &Weak<Mutex<Mailbox>>,
+    opened: Sender<()>,
+    open: impl Fn(Sender<NoSound>) -> Result<Stream, NoSound>,
+) {
+    let mut opened = Some(opened);
     while mailbox.strong_count() > 0 {
         let (lost, losses) = mpsc::channel();
-        let stream = open_stream(mailbox, lost);
-        let trouble = stream.as_ref().err().cloned();
-        report(mailbox, trouble.clone());
-        if is_first {
-            is_first = false;
-            // Nobody listens any more if it took too long; then the speaker is gone, too.
-            let _ = opened.send(trouble.clone().map_or(Ok(()), Err));
-            if trouble.is_some() {
-                return;
-            }
-        }
+        let stream = open(lost);
+        report(mailbox, stream.as_ref().err().cloned());
+        drop(opened.take());
         while stream.is_ok() && mailbox.strong_count() > 0 {
             match losses.recv_timeout(PAUSE) {
                 Err(RecvTimeoutError::Timeout) => {}
@@ -304,6 +303,7 @@ mod tests {
     use super::*;
     use crate::cue::{Menu, Route};
     use crate::soundscape::Press;
+    use std::time::Instant;
 
     fn speaker() -> (Speaker, Source) {
         let mailbox = Arc::new(Mutex::new(Mailbox::new()));
@@ -373,6 +373,30 @@ mod tests {
         speaker.play(Cue::Won(Route::Shave));
         report(&weak, None);
         assert_eq!((speaker.trouble(), loudest(&mut source)), (None, 0.0));
+    }
+
+    #[test]
+    fn a_device_that_comes_later_is_found() {
+        let (speaker, _) = speaker();
+        let weak = Arc::downgrade(&speaker.mailbox);
+        let (opened, answer) = mpsc::channel();
+        let (plug, socket) = mpsc::channel();
+        let keeper = thread::spawn(move || {
+            keep_open(&weak, opened, |lost| {
+                socket.try_recv().map_err(|_| NoSound::NoDevice)?;
+                Ok::<_, NoSound>(lost)
+            });
+        });
+        assert!(answer.recv().is_err(), "the first attempt is over");
+        assert_eq!(speaker.trouble(), Some(NoSound::NoDevice));
+        plug.send(()).unwrap();
+        let patience = Instant::now() + 5 * PAUSE;
+        while speaker.trouble().is_some() && Instant::now() < patience {
+            thread::sleep(Duration::from_millis(50));
+        }
+        assert_eq!(speaker.trouble(), None);
+        drop(speaker);
+        keeper.join().unwrap();
     }
 
     #[test]

@@ -50,6 +50,8 @@ pub struct Stage {
     state: RenderState,
     renderer: Arc<Mutex<Renderer>>,
     ages: Ages,
+    /// The level of the round that `ages` follows, and how far it had come [ticks].
+    followed: Option<(Arc<Level>, u64)>,
     maps: Maps,
     time: f32,
 }
@@ -78,6 +80,7 @@ impl Stage {
             state: state.clone(),
             renderer: Arc::new(Mutex::new(renderer)),
             ages: Ages::default(),
+            followed: None,
             maps: Maps::default(),
             time: 0.0,
         }
@@ -95,6 +98,7 @@ impl Stage {
         let scale = ui.ctx().pixels_per_point();
         let size = (view.rect.size() * scale).max(vec2(1.0, 1.0));
         let size = [size.x.round() as u32, size.y.round() as u32];
+        self.forget_ages_of_another(round);
         self.ages
             .follow(round.world(), (look.time - self.time).max(0.0));
         self.time = look.time;
@@ -131,6 +135,19 @@ impl Stage {
         }
         hint::draw(painter, round, look);
         look.effects.confetti.draw(painter, view);
+    }
+
+    /// A round that starts anew has new elements: none of them was remodelled.
+    fn forget_ages_of_another(&mut self, round: &Round<Dim2>) {
+        let ticks = round.world().ticks();
+        let goes_on = self
+            .followed
+            .as_ref()
+            .is_some_and(|(level, before)| Arc::ptr_eq(level, round.level()) && *before <= ticks);
+        if !goes_on {
+            self.ages = Ages::default();
+        }
+        self.followed = Some((round.level().clone(), ticks));
     }
 }
 

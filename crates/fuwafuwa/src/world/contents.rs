@@ -169,7 +169,7 @@ impl<D: Dim> World<D> {
     }
 
     /// A number that two worlds share only when every node and hand of them is in the same state,
-    /// to the last bit [FNV-1a].
+    /// to the last bit; as [FNV-1a], with words of 64 bits in place of bytes.
     pub fn hash(&self) -> u64 {
         let mut hash = 0xcbf2_9ce4_8422_2325u64;
         let mut add = |bits: u64| hash = (hash ^ bits).wrapping_mul(0x0100_0000_01b3);

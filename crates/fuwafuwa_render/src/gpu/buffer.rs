@@ -1,13 +1,15 @@
-//! Buffers that grow.
+//! Buffers that grow, as far as the device lets them.
 
 use bytemuck::Pod;
 use wgpu::{Buffer, BufferDescriptor, BufferUsages, Device, Queue};
 
-/// A buffer on the GPU that is written anew every frame and grows when it must.
+/// A buffer on the GPU that is written anew every frame and grows when it must. What is more than a
+/// buffer of the device can hold is left out.
 pub struct GrowingBuffer {
     buffer: Buffer,
     label: &'static str,
     usage: BufferUsages,
+    count: u32,
 }
 
 impl GrowingBuffer {
@@ -17,25 +19,45 @@ impl GrowingBuffer {
             buffer: create(device, label, usage, 1 << 12),
             label,
             usage,
+            count: 0,
         }
     }
 
     /// Writes values to its beginning.
     pub fn write<T: Pod>(&mut self, device: &Device, queue: &Queue, values: &[T]) {
-        let bytes: &[u8] = bytemuck::cast_slice(values);
+        let most = device.limits().max_buffer_size;
+        let fit = (most / size_of::<T>() as u64).min(values.len() as u64);
+        self.count = fit as u32;
+        let bytes: &[u8] = bytemuck::cast_slice(&values[..fit as usize]);
         if bytes.is_empty() {
             return;
         }
         if bytes.len() as u64 > self.buffer.size() {
-            let size = (bytes.len() as u64).next_power_of_two();
+            let size = (bytes.len() as u64).next_power_of_two().min(most);
             self.buffer = create(device, self.label, self.usage, size);
         }
         queue.write_buffer(&self.buffer, 0, bytes);
     }
 
+    /// How many values it holds.
+    pub fn count(&self) -> u32 {
+        self.count
+    }
+
     pub fn all(&self) -> wgpu::BufferSlice<'_> {
         self.buffer.slice(..)
     }
+}
+
+/// Of triangles, given by three indices each, those before the first whose vertices are not all among
+/// the first `there`.
+pub fn drawable<'a, T>(indices: &'a [u32], vertices: &[T], there: u32) -> &'a [u32] {
+    if vertices.len() == there as usize {
+        return indices;
+    }
+    let missing = indices.iter().position(|&index| index >= there);
+    let end = missing.unwrap_or(indices.len());
+    &indices[..end - end % 3]
 }
 
 fn create(device: &Device, label: &'static str, usage: BufferUsages, size: u64) -> Buffer {

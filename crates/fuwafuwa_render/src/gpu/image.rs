@@ -11,6 +11,15 @@ use wgpu::*;
 pub enum ImageError {
     /// The renderer draws in a format that is not four bytes of colour.
     Format(TextureFormat),
+    /// The device takes no image that large.
+    Size {
+        /// Asked for [px].
+        size: [u32; 2],
+        /// Most pixels on a side.
+        side: u32,
+        /// Most bytes in all.
+        bytes: u64,
+    },
     /// The device did not finish.
     Poll(PollError),
     /// What it drew cannot be read.
@@ -26,6 +35,14 @@ impl fmt::Display for ImageError {
                 f,
                 "an image needs a renderer for Rgba8 or Bgra8, this one is for {format:?}"
             ),
+            Self::Size {
+                size: [width, height],
+                side,
+                bytes,
+            } => write!(
+                f,
+                "an image of {width} x {height} pixels is too large for the device, which takes {side} on a side and {bytes} bytes in all"
+            ),
             Self::Poll(error) => write!(f, "the device did not finish drawing: {error}"),
             Self::Map(error) => write!(f, "the image cannot be read from the device: {error}"),
             Self::Range(error) => write!(f, "the image cannot be read from the device: {error}"),
@@ -40,7 +57,8 @@ impl Renderer {
     /// row from the upper left corner. Waits until it is there.
     ///
     /// # Errors
-    /// [`ImageError`] when the format is none for images, or the device fails.
+    /// [`ImageError`] when the format is none for images, when the device takes none of that size, or
+    /// when it fails.
     pub fn render_to_image(
         &mut self,
         device: &Device,
@@ -54,6 +72,13 @@ impl Renderer {
             return Err(ImageError::Format(self.format));
         }
         let size = size.map(|side| side.max(1));
+        let row = (4 * u64::from(size[0])).next_multiple_of(COPY_BYTES_PER_ROW_ALIGNMENT.into());
+        let length = row * u64::from(size[1]);
+        let limits = device.limits();
+        let (side, bytes) = (limits.max_texture_dimension_2d, limits.max_buffer_size);
+        if size[0].max(size[1]) > side || length > bytes {
+            return Err(ImageError::Size { size, side, bytes });
+        }
         let extent = Extent3d {
             width: size[0],
             height: size[1],
@@ -70,10 +95,9 @@ impl Renderer {
             view_formats: &[],
         });
         let view = texture.create_view(&TextureViewDescriptor::default());
-        let row = (4 * size[0]).next_multiple_of(COPY_BYTES_PER_ROW_ALIGNMENT);
         let buffer = device.create_buffer(&BufferDescriptor {
             label: Some("image"),
-            size: u64::from(row) * u64::from(size[1]),
+            size: length,
             usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
@@ -99,7 +123,7 @@ impl Renderer {
             buffer: &buffer,
             layout: TexelCopyBufferLayout {
                 offset: 0,
-                bytes_per_row: Some(row),
+                bytes_per_row: Some(row as u32),
                 rows_per_image: None,
             },
         };

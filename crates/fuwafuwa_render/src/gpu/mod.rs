@@ -9,10 +9,11 @@ pub use image::ImageError;
 
 use crate::frame::{Camera, Frame, Look};
 use crate::geometry::Geometry;
-use buffer::GrowingBuffer;
+use buffer::{GrowingBuffer, drawable};
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::{Dim2, World};
 use pipelines::Pipelines;
+use std::ops::Range;
 use targets::{NARROW, REACH, Targets, bind};
 use wgpu::*;
 
@@ -115,9 +116,10 @@ impl Renderer {
     /// Puts the picture that was made ready into a pass, filling its viewport.
     pub fn paint(&self, pass: &mut RenderPass<'static>) {
         let (pipelines, rigid) = (&self.pipelines, &self.geometry.rigid);
-        let bars = 0..rigid.bar_count;
-        let hands = bars.end..bars.end + rigid.hand_count;
-        let basket = hands.end..rigid.shapes.len() as u32;
+        let there = self.shapes.count();
+        let bars = 0..rigid.bar_count.min(there);
+        let hands = bars.end..(bars.end + rigid.hand_count).min(there);
+        let basket = hands.end..there;
         pass.set_bind_group(0, &self.globals, &[]);
         pass.set_bind_group(1, &self.targets.body, &[]);
         pass.set_vertex_buffer(0, self.shapes.all());
@@ -142,7 +144,7 @@ impl Renderer {
         draw(&pipelines.hand, hands);
         pass.set_vertex_buffer(0, self.dots.all());
         pass.set_pipeline(&pipelines.particle);
-        pass.draw(0..4, 0..rigid.dots.len() as u32);
+        pass.draw(0..4, 0..self.dots.count());
     }
 
     fn covered(&self, camera: &Camera, target_size: [u32; 2]) -> Option<[[f32; 2]; 2]> {
@@ -175,11 +177,16 @@ impl Renderer {
             ..
         } = &self.geometry;
         self.skin_vertices.write(device, queue, &skin.vertices);
-        self.fans.write(device, queue, &skin.fans);
-        self.bands.write(device, queue, &skin.bands);
+        let there = self.skin_vertices.count();
+        let fans = drawable(&skin.fans, &skin.vertices, there);
+        let bands = drawable(&skin.bands, &skin.vertices, there);
+        self.fans.write(device, queue, fans);
+        self.bands.write(device, queue, bands);
         self.element_vertices
             .write(device, queue, &elements.vertices);
-        self.element_indices.write(device, queue, &elements.indices);
+        let there = self.element_vertices.count();
+        let indices = drawable(&elements.indices, &elements.vertices, there);
+        self.element_indices.write(device, queue, indices);
         self.shapes.write(device, queue, &rigid.shapes);
         self.dots.write(device, queue, &rigid.dots);
 
@@ -267,18 +274,19 @@ impl Renderer {
                 (&pipelines.cover, body.cover.clone()),
                 (&pipelines.wipe, whole),
             ];
-            for (pipeline, indices) in steps {
+            for (pipeline, Range { start, end }) in steps {
+                let there = self.fans.count();
                 pass.set_pipeline(pipeline);
-                pass.draw_indexed(indices, 0, 0..1);
+                pass.draw_indexed(start.min(there)..end.min(there), 0, 0..1);
             }
         }
         pass.set_pipeline(&pipelines.band);
         pass.set_index_buffer(self.bands.all(), IndexFormat::Uint32);
-        pass.draw_indexed(0..self.geometry.skin.bands.len() as u32, 0, 0..1);
+        pass.draw_indexed(0..self.bands.count(), 0, 0..1);
         pass.set_pipeline(&pipelines.element);
         pass.set_vertex_buffer(0, self.element_vertices.all());
         pass.set_index_buffer(self.element_indices.all(), IndexFormat::Uint32);
-        pass.draw_indexed(0..self.geometry.elements.indices.len() as u32, 0, 0..1);
+        pass.draw_indexed(0..self.element_indices.count(), 0, 0..1);
     }
 
     fn blur(&self, encoder: &mut CommandEncoder) {

@@ -49,8 +49,11 @@ struct Blur {
 impl Targets {
     pub fn new(device: &Device, pipelines: &Pipelines, window: [u32; 2]) -> Self {
         let window = window.map(|side| side.max(1));
-        let shrunk = (MOST_PIXELS / (window[0] as f32 * window[1] as f32))
+        let [width, height] = window.map(|side| side as f32);
+        let longest = device.limits().max_texture_dimension_2d as f32 / width.max(height);
+        let shrunk = (MOST_PIXELS / (width * height))
             .sqrt()
+            .min(longest)
             .min(1.0);
         let size = window.map(|side| ((side as f32 * shrunk) as u32).max(1));
         let (inside, readable) = (

@@ -189,10 +189,21 @@ impl BodyText {
         Ok(())
     }
 
-    pub(super) fn build<D: Dim>(&self, materials: &[Material]) -> Result<Body<D>, Wrong> {
+    /// The body, where its voxels and those of the bodies before it are `most` at most.
+    pub(super) fn build<D: Dim>(
+        &self,
+        materials: &[Material],
+        most: usize,
+        voxels: &mut usize,
+    ) -> Result<Body<D>, Wrong> {
         require_vector(D::N, "at", self.at)?;
         require_vector(D::N, "velocity", self.velocity)?;
-        let grid = grid::of(self)?;
+        let grid = grid::of::<D>(self)?;
+        *voxels += grid.voxels().count();
+        let expected = format!(
+            "expected {most} voxels at most in the grids of all bodies together, found {voxels}"
+        );
+        require(*voxels <= most, "n", expected)?;
         self.check_diced(grid.voxel_size())?;
         let law = match self.paper_law {
             true => Law::Endo2004,

@@ -55,7 +55,7 @@ impl SceneError {
             message = message.replace(type_name, words);
         }
         let span = error.span().filter(|span| !span.is_empty());
-        let line = span.map(|span| line_of(text, span.start));
+        let line = span.map(|span| line_of(&line_starts(text), span.start));
         let reason = match line.and_then(|line| text.lines().nth(line - 1)) {
             Some(found) => format!("{}: {message}", shortened(found.trim(), 80)),
             None => message,
@@ -85,9 +85,14 @@ fn shortened(text: &str, most: usize) -> String {
     }
 }
 
-fn line_of(text: &str, place: usize) -> usize {
-    let before = text.as_bytes()[..place].iter();
-    1 + before.filter(|&&byte| byte == b'\n').count()
+/// Where each line of a text begins.
+fn line_starts(text: &str) -> Vec<usize> {
+    let after = text.match_indices('\n').map(|(place, _)| place + 1);
+    std::iter::once(0).chain(after).collect()
+}
+
+fn line_of(starts: &[usize], place: usize) -> usize {
+    starts.partition_point(|&start| start <= place)
 }
 
 fn in_line(line: &Option<usize>) -> String {
@@ -154,7 +159,7 @@ impl Origin {
     pub(super) fn of(name: &str, text: &str) -> Self {
         let mut origin = Self::named(name);
         if let Ok(table) = DeTable::parse(text) {
-            origin.note_table("", table.get_ref(), text);
+            origin.note_table("", table.get_ref(), &line_starts(text));
         }
         origin
     }
@@ -186,33 +191,33 @@ impl Origin {
         }
     }
 
-    fn note_table(&mut self, path: &str, table: &DeTable, text: &str) {
+    fn note_table(&mut self, path: &str, table: &DeTable, starts: &[usize]) {
         for (key, value) in table {
             let path = match path {
                 "" => key.get_ref().to_string(),
                 _ => format!("{path}.{}", key.get_ref()),
             };
-            self.note(&path, key.span().start, text);
-            self.note_value(&path, value, text);
+            self.note(&path, key.span().start, starts);
+            self.note_value(&path, value, starts);
         }
     }
 
-    fn note_value(&mut self, path: &str, value: &Spanned<DeValue>, text: &str) {
+    fn note_value(&mut self, path: &str, value: &Spanned<DeValue>, starts: &[usize]) {
         match value.get_ref() {
-            DeValue::Table(table) => self.note_table(path, table, text),
+            DeValue::Table(table) => self.note_table(path, table, starts),
             DeValue::Array(entries) => {
                 for (index, entry) in entries.iter().enumerate() {
                     let path = format!("{path}.{}", index + 1);
-                    self.note(&path, entry.span().start, text);
-                    self.note_value(&path, entry, text);
+                    self.note(&path, entry.span().start, starts);
+                    self.note_value(&path, entry, starts);
                 }
             }
             _ => {}
         }
     }
 
-    fn note(&mut self, path: &str, place: usize, text: &str) {
-        self.lines.insert(path.into(), line_of(text, place));
+    fn note(&mut self, path: &str, place: usize, starts: &[usize]) {
+        self.lines.insert(path.into(), line_of(starts, place));
     }
 }
 
