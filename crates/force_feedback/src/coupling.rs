@@ -1,68 +1,78 @@
-//! The spring between where the stick points and where the simulation's hand is: the virtual coupling of
-//! [Colgate 1995], evaluated at the rate of the device.
+//! The virtual coupling [Colgate 1995] between a stick and the simulation's hand, evaluated at the rate of the device.
 //!
-//! **Why it is stable.** From a push to what is felt of it pass up to T ≈ 20 ms of driver and wire, and half an update. A
-//! spring that answers T late is a spring with a damper of −K T. So the coupling has a damper of its own, `LEAD` · K with
-//! `LEAD` ≈ T, and K ends at [`HARDEST`]: what is left of −K T then is less than what the hinges of a stick take out, and
-//! a damper that answers late does not yet swing by itself. Where the simulation's hand is comes late too, but that helps:
-//! a spring whose far end follows late drags. So places are smoothed and never guessed ahead. The velocity of that hand
-//! is not asked for: an old place only holds, an old velocity would go on pushing.
+//! A spring and a damper lead from where the stick points *now* to a **proxy**, F = K (proxy − stick) + B Δv. The proxy
+//! stays where it is while the simulation's hand is pushed at least as strongly as the spring would pull, and else slips
+//! after the stick until the spring pulls no more than that; across the push it always slips. In free space it is where
+//! the stick is, and nothing is felt; at a wall it stops; a soft body lets it slip as far as it gives way; when that
+//! tears, it slips at once.
+//!
+//! ```text
+//!      stick ──/\/\/\── proxy ──▐slips at the contact force▌── ground
+//!            ──[ B  ]──
+//! ```
+//!
+//! **Why not a spring to the hand itself?** The simulation speaks 60 times a second at best, and late. A spring to where
+//! the hand was then is hard or loose as frames come and go, and its far end, moving late, can push. Here the simulation
+//! only says how much the slider bears, and a spring on a slider takes out energy whatever that is, however late or rough
+//! it comes: slipping is always in the direction of the pull. (The set of pulls that it bears, from none to the contact
+//! force, is convex and holds zero; the pull is the nearest to what the spring wants.)
+//!
+//! **Why the damper.** From a push to its being felt pass up to T ≈ 20 ms of driver and wire, and half an update. A
+//! spring that answers T late has a damper of −K T in it. B = `LEAD` · K makes up for that, and K ends at [`HARDEST`],
+//! where what is left is less than what hinge and hand take out, and where a damper that answers late does not yet swing
+//! by itself. `tests/closed_loop.rs` has the sticks that this is good for.
+//!
+//! **What is given up for it:** nothing pushes a hand that holds still. It only ever gets back what it put in, which for
+//! a toy in public is not the worst of rules. A stick that steers has its proxy in the middle, and does feel what comes.
 
 use crate::Settings;
 
-/// The stiffest that a coupling may be [full forces / way of the stick from its middle to its rim]. `tests/closed_loop.rs`
-/// has the sticks that this is good for.
-pub const HARDEST: f32 = 1.0;
-/// The damper of the coupling over its spring [s]. About as long as what lies between a push and its being felt.
-const LEAD: f32 = 0.02;
+/// The stiffest that a coupling may be [full forces for the way of the stick from its middle to its rim].
+pub const HARDEST: f32 = 0.5;
+/// The damper of the coupling over its spring [s]; about what lies between a push and its being felt.
+const LEAD: f32 = 0.025;
 /// Over this time the speed of the stick is taken [s]. Longer lags, shorter feels the steps of a coarse axis.
 const SPEED: f32 = 0.008;
-/// Over this time the places of the simulation's hand are smoothed [s]: one tick, which would else be heard as a hum.
-const PLACES: f32 = 0.016;
-/// Over this time a touch is felt or lost [s].
-const TOUCH: f32 = 0.02;
-/// From this contact force on the hand touches something for good [full forces].
+/// Over this time the contact force is smoothed [s]: one tick, which would else be felt as a hum.
+const TICK: f32 = 0.016;
+/// From this contact force on the damper is there in full [full forces].
 const TOUCHING: f32 = 0.02;
 
 /// What the simulation said last.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
-    /// Where the hand is [m].
-    pub hand: [f32; 2],
-    /// With what everything that it touches pushes it, averaged over the last tick [N]. Nothing is felt while this is 0.
+    /// With what everything that the hand touches pushes it, averaged over the last tick [N]. x to the right, y away from
+    /// the player, like the stick.
     pub contact: [f32; 2],
-    /// What the stick means to it.
+    /// What the stick means to the hand.
     pub manner: Manner,
 }
 
 /// What it means that a stick leans.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Manner {
     /// It points at a place.
-    Places {
-        /// Where it points while it is upright [m].
-        middle: [f32; 2],
-        /// How far from there it points while it leans all the way along x and y [m].
-        reach: [f32; 2],
-    },
-    /// It says how fast to go. Leaning towards what resists is resisted as much.
+    Places,
+    /// It says how fast to go. Its proxy never leaves the middle.
     Steers,
 }
 
-/// A spring and a damper between stick and hand.
+/// A spring, a damper and a slider.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Coupling {
+    /// None at the start.
     memory: Option<Memory>,
 }
 
-/// Everything smoothed.
 #[derive(Clone, Copy, Debug)]
 struct Memory {
-    hand: [f32; 2],
+    /// Where the stick pointed, and the same smoothed.
+    aim: [f32; 2],
+    slow_aim: [f32; 2],
+    /// The smoothed contact force [full forces].
     contact: [f32; 2],
-    /// How much it touches, 0 to 1.
-    touch: f32,
-    stretch: [f32; 2],
+    /// How the spring pulls the stick [full forces].
+    pull: [f32; 2],
 }
 
 impl Coupling {
@@ -80,56 +90,40 @@ impl Coupling {
         settings: &Settings,
         duration: f32,
     ) -> [f32; 2] {
-        let strength = length(state.contact) / settings.full;
         let memory = self.memory.get_or_insert(Memory {
-            hand: state.hand,
-            contact: state.contact,
-            touch: 0.0,
-            stretch: [f32::NAN; 2],
+            aim,
+            slow_aim: aim,
+            contact: [0.0; 2],
+            pull: [0.0; 2],
         });
-        let share = |time: f32| duration / (time + duration);
-        let full = match state.manner {
-            Manner::Places { .. } => TOUCHING,
-            Manner::Steers => 1.0,
+        let contact = state.contact.map(|k| k / settings.full);
+        approach(&mut memory.contact, contact, duration / (TICK + duration));
+        let bears = length(memory.contact);
+        let along = memory.contact.map(|k| k / bears.max(f32::MIN_POSITIVE));
+
+        let spring = settings.stiffness;
+        let moved = [0, 1].map(|axis| aim[axis] - memory.aim[axis]);
+        memory.aim = aim;
+        let pull = match state.manner {
+            Manner::Places => dot(memory.pull, along) - spring * dot(moved, along),
+            Manner::Steers => -spring * dot(aim, along),
         };
-        approach(&mut memory.hand, state.hand, share(PLACES));
-        approach(&mut memory.contact, state.contact, share(TOUCH));
-        memory.touch += ((strength / full).min(1.0) - memory.touch) * share(TOUCH);
-        let (stretch, reach) = memory.stretch(&state.manner, aim);
-        if memory.stretch[0].is_nan() {
-            memory.stretch = stretch;
-        }
-        let before = memory.stretch;
-        approach(&mut memory.stretch, stretch, share(SPEED));
-        [0, 1].map(|axis| {
-            let hardest = HARDEST * settings.full / reach[axis].abs().max(f32::MIN_POSITIVE);
-            let stiffness = memory.touch * settings.stiffness.min(hardest);
-            let speed = (stretch[axis] - before[axis]) / (SPEED + duration);
-            stiffness * (stretch[axis] + LEAD * speed)
-        })
+        let pull = pull.clamp(0.0, bears);
+        memory.pull = along.map(|k| k * pull);
+
+        let late = [0, 1].map(|axis| aim[axis] - memory.slow_aim[axis]);
+        let share = duration / (SPEED + duration);
+        approach(&mut memory.slow_aim, aim, share);
+        let damper = spring * LEAD * (bears / TOUCHING).min(1.0);
+        let drag = late.map(|k| damper * k / (SPEED + duration));
+        // What touches pushes, and never pulls.
+        let back = (dot(drag, along) - pull).max(0.0);
+        [0, 1].map(|axis| (memory.pull[axis] - drag[axis] + back * along[axis]) * settings.full)
     }
 }
 
-impl Memory {
-    /// From where the stick points to where the hand is, and how long the way of the stick is on each axis [m].
-    fn stretch(&self, manner: &Manner, aim: [f32; 2]) -> ([f32; 2], [f32; 2]) {
-        match manner {
-            Manner::Places { middle, reach } => {
-                let stretch =
-                    [0, 1].map(|axis| self.hand[axis] - middle[axis] - reach[axis] * aim[axis]);
-                (stretch, *reach)
-            }
-            Manner::Steers => {
-                let along = self.contact.map(|k| k / length(self.contact).max(1e-9));
-                let lean = (-aim[0] * along[0] - aim[1] * along[1]).max(0.0);
-                (along.map(|k| k * lean), [1.0; 2])
-            }
-        }
-    }
-}
-
-/// How a tear is felt: what was pushed against gives way for a moment. It takes from a force and never adds to one, so
-/// it cannot push anybody.
+/// How a tear is felt, beside what it does to the contact force: what was pushed against gives way for a moment. It takes
+/// from a force and never adds to one, so it cannot push anybody.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Give(f32);
 
@@ -160,6 +154,10 @@ fn approach(from: &mut [f32; 2], to: [f32; 2], share: f32) {
     for (from, to) in from.iter_mut().zip(to) {
         *from += (to - *from) * share;
     }
+}
+
+fn dot(a: [f32; 2], b: [f32; 2]) -> f32 {
+    a[0] * b[0] + a[1] * b[1]
 }
 
 fn length(of: [f32; 2]) -> f32 {

@@ -17,7 +17,7 @@ pub struct Feel {
 pub struct Felt {
     /// What the device is to be told.
     pub output: Output,
-    /// What the coupling pushes with [N], before it is made safe.
+    /// What there would be to feel [N], before it is made safe.
     pub newtons: [f32; 2],
     /// Why there is nothing, if something forbids it.
     pub silent: Option<Stop>,
@@ -48,7 +48,10 @@ impl Feel {
             .before
             .map_or(0.0, |before| now.saturating_sub(before).as_secs_f32());
         self.before = Some(now);
-        let newtons = self.coupling.step(&state, aim, settings, duration);
+        let newtons = match ability {
+            Ability::Force => self.coupling.step(&state, aim, settings, duration),
+            Ability::Rumble | Ability::Nothing => state.contact,
+        };
         if !newtons.iter().all(|k| k.is_finite()) {
             // What is no number would stay in its memory.
             self.coupling.rest();

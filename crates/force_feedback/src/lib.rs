@@ -6,15 +6,15 @@
 //! ```text
 //! the game, at its own pace                        one thread, 125 to 250 times a second
 //! ─────────────────────────                        ─────────────────────────────────────
-//! Line::feel(State) ──► latest mail ──► Watchdog ─► Coupling ─► Give ─► Chain ─► Pace ─► Sink
-//! Line::tear(size)                      may it act? F = K (…)   tears   safe     news?   a device
+//! Line::feel(State) ──► latest mail ──► Watchdog ──► Coupling ──► Give ──► Chain ──► Sink
+//! Line::tear(size)                      may it act?  F = K (…)    tears    safe      a device
 //! Line::stop(why)
 //! ```
 //!
 //! - [`Settings`]: what people and games may choose, and within which bounds.
 //! - [`Chain`]: newtons → full forces: gain, soft clip, slew limit, clamp; armed gently after each stop.
 //! - [`Watchdog`]: why there is no force now. Old mail is one reason, a stop that was asked for another.
-//! - [`Coupling`]: a spring with a damper from where the stick points *now* to where the simulation's hand was last, so
+//! - [`Coupling`]: a spring with a damper from where the stick points *now* to a proxy that the contact force holds, so
 //!   that a slow frame makes the stick neither hard nor loose.
 //! - [`Feel`]: those together for one device, a step at a time, with no clock: what a headless run and the tests use.
 //! - [`Sink`]: a device, as seen from here. [`Recording`] and [`Nothing`] stand in for one.
@@ -30,9 +30,8 @@
 //! let recording = Recording::default();
 //! let line = force.add(Box::new(recording.clone()), Settings::default());
 //! line.feel(State {
-//!     hand: [0.0, 0.0],
 //!     contact: [-30.0, 0.0],
-//!     manner: Manner::Places { middle: [0.0, 0.0], reach: [1.0, 1.0] },
+//!     manner: Manner::Places,
 //! });
 //! line.stop(Stop::Paused);
 //! assert_eq!(line.report().silent, Some(Stop::Paused));

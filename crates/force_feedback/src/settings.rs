@@ -1,5 +1,6 @@
 //! What people and games may choose about one device.
 
+use crate::HARDEST;
 use std::ops::RangeInclusive;
 
 /// How strongly and how quickly a device may push.
@@ -7,10 +8,10 @@ use std::ops::RangeInclusive;
 pub struct Settings {
     /// Share of the force that is played, 0 to 1: the slider. At 0 nothing is sent at all.
     pub strength: f32,
-    /// This much is full force [N], 1 to 10,000; about 100. Less makes everything stronger and sooner clipped.
+    /// This much is full force [N], 1 to 10,000; about 150. Less makes everything stronger and sooner clipped.
     pub full: f32,
-    /// Stiffness of the coupling [N/m], 0 to 100,000. What is stiffer than a device bears counts as
-    /// [`HARDEST`](crate::HARDEST).
+    /// Stiffness of the coupling [full forces for the way of the stick from its middle to its rim], 0 to [`HARDEST`].
+    /// Less makes everything softer.
     pub stiffness: f32,
     /// The force changes no faster than this [full forces/s], 10 to 100; about 30. Slower lags behind the hand and swings,
     /// faster jerks.
@@ -35,9 +36,9 @@ pub struct Calibration {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            strength: 0.6,
-            full: 100.0,
-            stiffness: 100.0,
+            strength: 0.8,
+            full: 150.0,
+            stiffness: HARDEST,
             slew: 30.0,
             clamp: 0.9,
             calibration: Calibration::default(),
@@ -60,8 +61,8 @@ impl Settings {
     pub const SHARE: RangeInclusive<f32> = 0.0..=1.0;
     /// Bounds of `full` [N].
     pub const FULL: RangeInclusive<f32> = 1.0..=10_000.0;
-    /// Bounds of `stiffness` [N/m].
-    pub const STIFFNESS: RangeInclusive<f32> = 0.0..=100_000.0;
+    /// Bounds of `stiffness`.
+    pub const STIFFNESS: RangeInclusive<f32> = 0.0..=HARDEST;
     /// Bounds of `slew` [full forces/s].
     pub const SLEW: RangeInclusive<f32> = 10.0..=100.0;
 
@@ -89,6 +90,27 @@ impl Settings {
 }
 
 impl Calibration {
+    /// How a device is built in whose stick moved by `moves[0]` when the motor x pushed and by `moves[1]` when the motor y
+    /// did. None if that is not clear: somebody held it too firmly, or nothing pushed.
+    ///
+    /// Better measured than guessed: a stick that is pushed the wrong way runs away from the hand, as far and as strongly
+    /// as the clamp lets it.
+    pub fn measured(moves: [[f32; 2]; 2]) -> Option<Self> {
+        let main = moves.map(|[x, y]| usize::from(y.abs() > x.abs()));
+        let is_clear = |motor: usize| {
+            let (most, other) = (moves[motor][main[motor]], moves[motor][1 - main[motor]]);
+            most.abs() > 0.02 && most.abs() > 2.0 * other.abs()
+        };
+        if main[0] == main[1] || !is_clear(0) || !is_clear(1) {
+            return None;
+        }
+        Some(Self {
+            swap: main[0] == 1,
+            invert: [0, 1].map(|motor| moves[motor][main[motor]] < 0.0),
+            gain: [1.0; 2],
+        })
+    }
+
     /// What the motors are told so that the stick is pushed by `force`.
     pub fn apply(&self, [x, y]: [f32; 2]) -> [f32; 2] {
         let swapped = if self.swap { [y, x] } else { [x, y] };

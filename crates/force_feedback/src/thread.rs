@@ -33,7 +33,7 @@ pub struct Report {
     pub ability: Ability,
     /// What it plays.
     pub output: Output,
-    /// What the coupling pushes with [N], before it is made safe.
+    /// What there would be to feel [N], before it is made safe.
     pub newtons: [f32; 2],
     /// Why nothing is played, if something forbids it.
     pub silent: Option<Stop>,
