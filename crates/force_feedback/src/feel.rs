@@ -1,7 +1,10 @@
 //! All of it for one device, a step at a time.
 
-use crate::{Ability, Chain, Coupling, Give, Mail, Output, Settings, Stop, Watchdog};
+use crate::{Ability, Chain, Coupling, Give, Mail, Output, Settings, State, Stop, Watchdog};
 use std::time::Duration;
+
+/// Contact forces are not believed to be larger than this along an axis [N].
+const MOST: f32 = 1e6;
 
 /// What one hand feels.
 #[derive(Clone, Copy, Debug, Default)]
@@ -48,14 +51,14 @@ impl Feel {
             .before
             .map_or(0.0, |before| now.saturating_sub(before).as_secs_f32());
         self.before = Some(now);
-        let newtons = match ability {
-            Ability::Force => self.coupling.step(&state, aim, settings, duration),
-            Ability::Rumble | Ability::Nothing => state.contact,
+        let newtons = match (sane(state.contact, MOST), sane(aim, 1.0)) {
+            (Some(contact), Some(aim)) if ability == Ability::Force => {
+                let state = State { contact, ..state };
+                self.coupling.step(&state, aim, settings, duration)
+            }
+            (Some(contact), _) if ability != Ability::Force => contact,
+            _ => [0.0; 2],
         };
-        if !newtons.iter().all(|k| k.is_finite()) {
-            // What is no number would stay in its memory.
-            self.coupling.rest();
-        }
         let given = self.give.step(newtons, duration);
         let output = match ability {
             Ability::Force => {
@@ -87,4 +90,10 @@ impl Feel {
             silent: Some(why),
         }
     }
+}
+
+/// Both within these bounds, if they are numbers.
+fn sane(both: [f32; 2], most: f32) -> Option<[f32; 2]> {
+    let are_numbers = both.iter().all(|k| !k.is_nan());
+    are_numbers.then(|| both.map(|k| k.clamp(-most, most)))
 }
