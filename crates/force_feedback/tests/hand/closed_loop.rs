@@ -1,13 +1,8 @@
-//! Sticks in hands, in closed loop: nothing that a user can set makes one swing, and no motor works.
+//! Sticks in hands, in closed loop: nothing that a user can set makes one swing.
 
-mod stick;
-
+use crate::body::Disc;
+use crate::stick::{Other, Play, Stick, Trace, Wall, play};
 use force_feedback::{Calibration, HARDEST, Settings};
-use fuwafuwa::{
-    Body, Dim2, Drive, Elasticity, Manipulator, Material, Settings as WorldSettings, Shape,
-    VoxelGrid, World,
-};
-use stick::{Other, Play, Stick, Trace, Wall, play};
 
 /// A consumer's stick at a finger's tip, in a loose, a usual and a firm hand, and a strong one that is driven quickly: mass
 /// [kg], damping [N s/m], grip [N/m], full force [N], travel [m] and the longest delay [ms].
@@ -125,59 +120,6 @@ fn a_wall_never_makes_a_stick_swing() {
     assert!(strongest > 0.3, "there is a wall to be felt: {strongest}");
 }
 
-/// A soft disc between three walls, open to the left.
-struct Disc {
-    world: World<Dim2>,
-    hand: usize,
-}
-
-impl Disc {
-    fn new(young: f64) -> Self {
-        let mut world = World::new(WorldSettings {
-            gravity: [0.0; 3],
-            drag: 1.0,
-            ..WorldSettings::default()
-        })
-        .expect("they are within bounds");
-        let material = Material {
-            elasticity: Elasticity {
-                young,
-                poisson: 0.3,
-            },
-            strength: f32::INFINITY,
-            ..Material::default()
-        };
-        let grid = VoxelGrid::ball(12, 1.0).expect("it is small");
-        world.add_body(Body::new(grid, &[material]).expect("it is a disc"));
-        // In a corner from which it does not roll away.
-        for (normal, at) in [
-            ([-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]),
-            ([0.0, 1.0, 0.0], [0.0; 3]),
-            ([0.0, -1.0, 0.0], [0.0, 1.0, 0.0]),
-        ] {
-            let wall = Shape::half_space(normal, at);
-            world.add_obstacle(wall, 0.5).expect("it is a shape");
-        }
-        let hand = Manipulator::new([-0.3, 0.5, 0.0], 0.15).driven(Drive::default());
-        let hand = world.add_manipulator(hand).expect("it is a hand");
-        Self { world, hand }
-    }
-}
-
-impl Other for Disc {
-    fn tick(&mut self, goal: [f32; 2]) -> ([f32; 2], [f32; 2]) {
-        self.world
-            .set_goal(self.hand, [goal[0], 0.5 + goal[1], 0.0]);
-        self.world.step();
-        let hand = &self.world.manipulators()[self.hand];
-        let all = hand.reactions();
-        let mean =
-            |axis: usize| all.iter().map(|one| one.contact[axis]).sum::<f32>() / all.len() as f32;
-        let [x, y, _] = hand.position();
-        ([x, y - 0.5], [mean(0), mean(1)])
-    }
-}
-
 #[test]
 fn a_soft_body_never_makes_a_stick_swing() {
     let mut strongest = 0.0f32;
@@ -204,7 +146,7 @@ fn a_soft_body_never_makes_a_stick_swing() {
                     reach: 1.0,
                     seconds: 6.0,
                 };
-                let trace = knock(&stick, &mut Disc::new(young), &how);
+                let trace = knock(&stick, &mut Disc::new(young, f32::INFINITY), &how);
                 check_calm(&stick, &how, &trace);
                 let force = trace.force.iter().map(|force| -force[0]);
                 strongest = force.fold(strongest, f32::max);

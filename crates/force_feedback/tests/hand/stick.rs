@@ -170,19 +170,21 @@ impl Other for Wall {
         let speed = [0, 1].map(|axis| (goal[axis] - self.goal[axis]) / TICK as f32);
         let mut contact = [0.0; 2];
         for _substep in 0..substeps {
-            for axis in 0..2 {
-                self.goal[axis] += speed[axis] * duration;
-                let mut force = spring * (self.goal[axis] - self.hand[axis])
-                    + damper * (speed[axis] - self.velocity[axis]);
-                if axis == 0 && self.hand[0] > 0.0 {
-                    let wall =
-                        (self.stiffness * self.hand[0] + self.damping * self.velocity[0]).max(0.0);
-                    contact[0] -= wall / substeps as f32;
-                    force -= wall;
-                }
-                self.velocity[axis] += force / mass * duration;
-                self.hand[axis] += self.velocity[axis] * duration;
-            }
+            let bears = (self.stiffness * self.hand[0] + self.damping * self.velocity[0]).max(0.0);
+            let wall = if self.hand[0] > 0.0 { bears } else { 0.0 };
+            contact[0] -= wall / substeps as f32;
+            let push = [-wall, 0.0];
+            let forces = [0, 1].map(|axis| {
+                let stretch = self.goal[axis] + speed[axis] * duration - self.hand[axis];
+                let slip = speed[axis] - self.velocity[axis];
+                push[axis] + spring * stretch + damper * slip
+            });
+            let step = |from: [f32; 2], rate: [f32; 2]| {
+                [0, 1].map(|axis| from[axis] + rate[axis] * duration)
+            };
+            self.goal = step(self.goal, speed);
+            self.velocity = step(self.velocity, forces.map(|force| force / mass));
+            self.hand = step(self.hand, self.velocity);
         }
         (self.hand, contact)
     }
