@@ -71,7 +71,9 @@ pub fn play(
     let steps = (play.seconds / STEP) as usize;
     for step in 0..steps {
         let time = step as f64 * STEP;
-        let aim = place.map(|k| (k / stick.travel).clamp(-1.0, 1.0) as f32);
+        // Of ten bits, as consumers' sticks have.
+        let aim =
+            place.map(|k| ((k / stick.travel).clamp(-1.0, 1.0) * 512.0).round() as f32 / 512.0);
         if time >= next_frame {
             let mut felt = ([0.0; 2], [0.0; 2]);
             for _tick in 0..play.frame {
