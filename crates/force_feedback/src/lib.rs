@@ -40,6 +40,7 @@
 
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
+#![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
 
 mod chain;
 mod coupling;
