@@ -20,7 +20,11 @@
 //! **Why the damper.** From a push to its being felt pass up to T ≈ 20 ms of driver and wire, and half an update. A
 //! spring that answers T late has a damper of −K T in it. B = `LEAD` · K makes up for that, and K ends at [`HARDEST`],
 //! where what is left is less than what hinge and hand take out, and where a damper that answers late does not yet swing
-//! by itself. `tests/closed_loop.rs` has the sticks that this is good for.
+//! by itself. `tests/hand/closed_loop.rs` has the sticks that this is good for; one that takes out less than they do by
+//! hinge and hand (damping × travel / full force below 8 ms) and answers 20 ms late can still swing a little.
+//!
+//! **Why it drags across the push too.** The direction of a contact turns as the hand slides over what is round, and comes
+//! late. Nothing else would take out the swing to the sides that this can feed from the spring.
 //!
 //! **What is given up for it:** nothing pushes a hand that holds still. It only ever gets back what it put in, which for
 //! a toy in public is not the worst of rules. A stick that steers has its proxy in the middle, and does feel what comes.
@@ -28,9 +32,9 @@
 use crate::Settings;
 
 /// The stiffest that a coupling may be [full forces for the way of the stick from its middle to its rim].
-pub const HARDEST: f32 = 0.5;
+pub const HARDEST: f32 = 0.4;
 /// The damper of the coupling over its spring [s]; about what lies between a push and its being felt.
-const LEAD: f32 = 0.025;
+const LEAD: f32 = 0.03;
 /// Over this time the speed of the stick is taken [s]. Longer lags, shorter feels the steps of a coarse axis.
 const SPEED: f32 = 0.008;
 /// Over this time the contact force is smoothed [s]: one tick, which would else be felt as a hum.

@@ -193,3 +193,63 @@ fn what_was_measured_makes_it_right() {
         assert_eq!(Calibration::measured(unclear), None);
     }
 }
+
+/// Hands and sticks of all kinds, as long as they take out some of a swing by themselves: with a damping ratio of 0.25 at
+/// least, and at least 8 ms of damping × travel / full force.
+#[test]
+fn sticks_of_all_kinds_calm_down() {
+    let mut rng = fastrand::Rng::with_seed(4);
+    let mut between = |low: f64, high: f64| low * (high / low).powf(rng.f64());
+    let mut tried = 0;
+    while tried < 400 {
+        let stick = Stick {
+            mass: between(0.08, 1.5),
+            damping: between(1.0, 15.0),
+            grip: between(3.0, 800.0),
+            full: between(2.0, 12.0),
+            travel: between(0.03, 0.08),
+            delay: between(0.001, 0.02),
+        };
+        let ratio = 0.5 * stick.damping / (stick.grip * stick.mass).sqrt();
+        if ratio < 0.25 || stick.damping * stick.travel < 0.008 * stick.full {
+            continue;
+        }
+        tried += 1;
+        let settings = Settings {
+            strength: 1.0,
+            clamp: 1.0,
+            full: between(1.0, 1000.0) as f32,
+            slew: between(10.0, 100.0) as f32,
+            ..Settings::default()
+        };
+        let how = Play {
+            settings,
+            rate: between(125.0, 250.0) as u32,
+            frame: between(1.0, 4.9) as u32,
+            steers: false,
+            reach: 1.0,
+            seconds: 6.0,
+        };
+        let stiffness = between(100.0, 50_000.0);
+        let is_body = tried % 8 == 0;
+        let trace = if is_body {
+            knock(&stick, &mut Disc::new(0.4 * stiffness, f32::INFINITY), &how)
+        } else {
+            knock(&stick, &mut Wall::new(stiffness as f32, 20.0), &how)
+        };
+        let second = how.rate as usize;
+        let [before, now] = [2, 1].map(|ago| {
+            let from = trace.force.len() - ago * second;
+            let part = &trace.force[from..from + second];
+            let swings = [0, 1].map(|axis| {
+                let of = || part.iter().map(|force| force[axis]);
+                of().fold(f32::MIN, f32::max) - of().fold(f32::MAX, f32::min)
+            });
+            swings[0].max(swings[1])
+        });
+        // A body in a corner may itself still move a little, and be felt.
+        let most = if is_body { 0.025 } else { 0.01 };
+        let is_calm = now < most || now < 0.9 * before;
+        assert!(is_calm, "{now} after {before}: {stick:?}, {how:?}");
+    }
+}
