@@ -370,18 +370,32 @@ mod felt {
             low: 0.5,
             high: 1.0,
         };
-        let start = Instant::now();
-        assert!(haptic.play(hum).is_ok());
-        until("it rumbles", || pad.rumble() == [32768, 65534]);
+        let mut start = Instant::now();
+        until("it rumbles", || {
+            start = Instant::now();
+            assert!(haptic.play(hum).is_ok());
+            pad.rumble() == [32768, 65534]
+        });
         until("it ends", || pad.rumble() == [0, 0]);
-        assert!(start.elapsed() >= LENGTH);
+        // SDL counts whole milliseconds.
+        let length = start.elapsed() + Duration::from_millis(2);
+        assert!(length >= LENGTH, "{length:?}");
 
-        assert!(haptic.play(hum).is_ok());
-        until("it rumbles again", || pad.rumble() == [32768, 65534]);
-        let start = Instant::now();
         drop(haptic);
-        until("it is let go", || pad.rumble() == [0, 0]);
-        assert!(start.elapsed() < LENGTH);
+        // On a busy machine it may take long now and then.
+        let is_quick = (0..20).any(|_try| {
+            let mut haptic = sticks.haptic(pad.id());
+            until("it can rumble", || haptic.ability() == Ability::Rumble);
+            until("it rumbles again", || {
+                assert!(haptic.play(hum).is_ok());
+                pad.rumble() == [32768, 65534]
+            });
+            let start = Instant::now();
+            drop(haptic);
+            until("it is let go", || pad.rumble() == [0, 0]);
+            start.elapsed() < LENGTH / 2
+        });
+        assert!(is_quick, "to drop it is to let go");
     }
 
     #[test]
