@@ -25,12 +25,17 @@
 //!
 //! What a device says is not tampered with: no dead zone, no calibration. Those are functions of numbers, such as
 //! [`radial_dead_zone`] and [`Navigator`], and the caller's choice.
+//!
+//! With the feature `haptic` `Sticks::haptic` lets a device be felt through `force_feedback`: by forces along two axes if it
+//! has motors for them, else by rumbling.
 
 #![deny(unsafe_code)]
 
 mod device;
 mod feel;
 
+#[cfg(all(feature = "haptic", not(target_family = "wasm")))]
+mod haptic;
 #[cfg(all(feature = "sdl", not(target_family = "wasm")))]
 mod owner;
 #[cfg(not(all(feature = "sdl", not(target_family = "wasm"))))]
@@ -52,6 +57,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 pub use device::{About, Button, Change, Control, Device, DeviceId, Hat, Pad, PadButton, Snapshot};
 pub use feel::{Direction, Navigator, Repeat, radial_dead_zone};
+#[cfg(all(feature = "haptic", not(target_family = "wasm")))]
+pub use haptic::Haptic;
 #[cfg(all(
     any(test, feature = "virtual"),
     feature = "sdl",

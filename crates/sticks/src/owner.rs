@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::thread::{self, JoinHandle};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use sdl3_sys::gamepad::{
     SDL_GAMEPAD_AXIS_LEFT_TRIGGER, SDL_GAMEPAD_AXIS_LEFTX, SDL_GAMEPAD_AXIS_LEFTY,
@@ -39,6 +39,9 @@ pub struct Hub<'sdl> {
 }
 
 struct Connected<'sdl> {
+    /// Before `open`, so that it is dropped first.
+    #[cfg(feature = "haptic")]
+    held: crate::haptic::Held<'sdl>,
     open: Open<'sdl>,
     device: Device,
 }
@@ -96,7 +99,7 @@ impl Owner {
     }
 
     /// Where to have something done on the thread. Weak, since the thread runs while somebody may still give orders.
-    #[cfg(any(test, feature = "virtual"))]
+    #[cfg(any(test, feature = "virtual", feature = "haptic"))]
     pub fn orders(&self) -> std::sync::Weak<Sender<Order>> {
         self.orders.as_ref().map(Arc::downgrade).unwrap_or_default()
     }
@@ -113,20 +116,37 @@ impl Drop for Owner {
 }
 
 impl<'sdl> Hub<'sdl> {
-    /// Until the owner is dropped. An order interrupts the wait.
+    /// Until the owner is dropped. An order interrupts the wait, and however many come, they do not put it off.
     fn run(&mut self, inbox: &Receiver<Order>) {
+        let mut pumped = Instant::now();
         loop {
             let period = if self.connected.is_empty() {
                 IDLE_PERIOD
             } else {
                 PERIOD
             };
-            match inbox.recv_timeout(period) {
+            match inbox.recv_timeout(period.saturating_sub(pumped.elapsed())) {
                 Ok(order) => order(self),
-                Err(RecvTimeoutError::Timeout) => self.pump(),
+                Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => return,
             }
+            if pumped.elapsed() >= period {
+                self.pump();
+                #[cfg(feature = "haptic")]
+                for connected in &mut self.connected {
+                    connected.held.expire(&connected.open);
+                }
+                pumped = Instant::now();
+            }
         }
+    }
+
+    /// A device, and what can be felt of it.
+    #[cfg(feature = "haptic")]
+    pub fn held(&mut self, id: DeviceId) -> Option<(&Open<'sdl>, &mut crate::haptic::Held<'sdl>)> {
+        let mut all = self.connected.iter_mut();
+        let connected = all.find(|connected| connected.device.id == id)?;
+        Some((&connected.open, &mut connected.held))
     }
 
     /// Takes in all that happened and publishes it.
@@ -172,7 +192,12 @@ impl<'sdl> Hub<'sdl> {
             let (axes, buttons, hats) = (open.axis_count(), open.button_count(), open.hat_count());
             let mut device = Device::at_rest(id, open.about(), axes, buttons, hats);
             device.pad = open.is_pad().then(Pad::default);
-            let mut connected = Connected { open, device };
+            let mut connected = Connected {
+                #[cfg(feature = "haptic")]
+                held: crate::haptic::Held::default(),
+                open,
+                device,
+            };
             connected.read();
             self.connected.push(connected);
         }
@@ -220,7 +245,7 @@ impl Connected<'_> {
 
     /// What is down and where axes are. Presses are counted from events, since one may begin and end between two reads.
     fn read(&mut self) {
-        let Connected { open, device } = self;
+        let Connected { open, device, .. } = self;
         for (number, axis) in device.axes.iter_mut().enumerate() {
             *axis = open.axis(number);
         }

@@ -4,7 +4,7 @@ use std::sync::Weak;
 use std::sync::mpsc::{self, Sender};
 
 use crate::owner::{Hub, Order, Owner};
-use crate::sdl::puppets::{PuppetAct, PuppetForm};
+use crate::sdl::puppets::{PuppetAct, PuppetForm, Rumble};
 use crate::sdl::{HatBits, Sdl, Turn};
 use crate::{DeviceId, Direction, Latest, NoSticks, PadButton, Sticks};
 
@@ -13,6 +13,7 @@ use crate::{DeviceId, Direction, Latest, NoSticks, PadButton, Sticks};
 pub struct Puppet {
     id: DeviceId,
     owner: Weak<Sender<Order>>,
+    rumble: Rumble,
 }
 
 impl Sticks {
@@ -52,10 +53,12 @@ impl Sticks {
     fn plug_in(&self, name: &str, form: PuppetForm) -> Result<Puppet, NoSticks> {
         let owner = self.owner.orders();
         let name = name.to_owned();
-        let id = done(&owner, move |hub| hub.sdl.plug_in(&name, form))
+        let rumble = Rumble::default();
+        let felt = rumble.clone();
+        let id = done(&owner, move |hub| hub.sdl.plug_in(&name, form, &felt))
             .unwrap_or_else(|| Err("its thread has ended".into()))
             .map_err(NoSticks::Sdl)?;
-        Ok(Puppet { id, owner })
+        Ok(Puppet { id, owner, rumble })
     }
 }
 
@@ -83,6 +86,11 @@ impl Puppet {
     /// Pushes a hat to a direction or, between two, to both; to none lets it go. Whether there is such a hat.
     pub fn hat(&self, hat: usize, directions: &[Direction]) -> bool {
         self.act(PuppetAct::Hat(hat, HatBits::of(directions)))
+    }
+
+    /// How strongly its slow and its fast motor rumble now, 0 to 65535.
+    pub fn rumble(&self) -> [u16; 2] {
+        self.rumble.get()
     }
 
     fn act(&self, act: PuppetAct) -> bool {

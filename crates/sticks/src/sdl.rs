@@ -13,6 +13,8 @@
 
 #![allow(unsafe_code)]
 
+#[cfg(feature = "haptic")]
+pub mod motors;
 #[cfg(any(test, feature = "virtual"))]
 pub mod puppets;
 
@@ -34,8 +36,8 @@ use sdl3_sys::gamepad::{
 };
 use sdl3_sys::guid::SDL_GUIDToString;
 use sdl3_sys::hints::{
-    SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, SDL_HINT_NO_SIGNAL_HANDLERS, SDL_HINT_OVERRIDE,
-    SDL_SetHintWithPriority,
+    SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, SDL_HINT_JOYSTICK_HIDAPI_LG4FF,
+    SDL_HINT_NO_SIGNAL_HANDLERS, SDL_HINT_OVERRIDE, SDL_SetHintWithPriority,
 };
 use sdl3_sys::init::{SDL_INIT_GAMEPAD, SDL_Init, SDL_Quit};
 use sdl3_sys::joystick::{
@@ -53,6 +55,9 @@ pub struct Turn(());
 /// SDL, running on this thread, reading devices and nothing else.
 pub struct Sdl {
     _turn: Turn,
+    /// Whether it can push back.
+    #[cfg(feature = "haptic")]
+    feels: bool,
     _stays_on_this_thread: PhantomData<*const ()>,
 }
 
@@ -115,12 +120,16 @@ impl Drop for Turn {
 
 impl Sdl {
     pub fn start(turn: Turn) -> Result<Sdl, String> {
-        let sdl = Sdl {
+        #[allow(unused_mut, reason = "only what can push back changes")]
+        let mut sdl = Sdl {
             _turn: turn,
+            #[cfg(feature = "haptic")]
+            feels: false,
             _stays_on_this_thread: PhantomData,
         };
         // SAFETY: see the module; the hints are constants that end in a zero. SDL has no window, so it would never think
-        // itself in the background, but drivers ask for it. Signals belong to the program.
+        // itself in the background, but drivers ask for it. Signals belong to the program. Wheels of Logitech go through the
+        // kernel: SDL 3.4 reads the wrong structure where it compares a haptic device of its own driver with another.
         let started = unsafe {
             SDL_SetHintWithPriority(
                 SDL_HINT_NO_SIGNAL_HANDLERS,
@@ -132,9 +141,19 @@ impl Sdl {
                 c"1".as_ptr(),
                 SDL_HINT_OVERRIDE,
             );
+            SDL_SetHintWithPriority(
+                SDL_HINT_JOYSTICK_HIDAPI_LG4FF,
+                c"0".as_ptr(),
+                SDL_HINT_OVERRIDE,
+            );
             SDL_Init(SDL_INIT_GAMEPAD)
         };
-        if started { Ok(sdl) } else { Err(sdl.error()) }
+        if !started {
+            return Err(sdl.error());
+        }
+        #[cfg(feature = "haptic")]
+        sdl.start_to_feel();
+        Ok(sdl)
     }
 
     /// Lets SDL look at all devices and tells what happened since the last call.

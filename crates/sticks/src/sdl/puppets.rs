@@ -1,6 +1,8 @@
 //! The part of SDL that makes devices of nothing.
 
-use std::ffi::{CString, c_int};
+use std::ffi::{CString, c_int, c_void};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use sdl3_sys::joystick::{
     SDL_AttachVirtualJoystick, SDL_DetachVirtualJoystick, SDL_IsJoystickVirtual,
@@ -19,6 +21,34 @@ pub enum PuppetForm {
     Stick { axes: u16, buttons: u16, hats: u16 },
 }
 
+/// How strongly a device made of nothing rumbles, as SDL last told it.
+#[derive(Clone, Debug, Default)]
+pub struct Rumble(Arc<AtomicU32>);
+
+impl Rumble {
+    /// The slow motor and the fast one.
+    pub fn get(&self) -> [u16; 2] {
+        let both = self.0.load(Ordering::Relaxed);
+        [(both >> 16) as u16, both as u16]
+    }
+}
+
+/// # Safety
+/// `rumble` is what `plug_in` gave away.
+unsafe extern "C" fn take_rumble(rumble: *mut c_void, low: u16, high: u16) -> bool {
+    // SAFETY: the caller's; it is there until `clean_up`.
+    let rumble = unsafe { &*rumble.cast::<AtomicU32>() };
+    rumble.store(u32::from(low) << 16 | u32::from(high), Ordering::Relaxed);
+    true
+}
+
+/// # Safety
+/// As for `take_rumble`, and it is not called any more.
+unsafe extern "C" fn clean_up(rumble: *mut c_void) {
+    // SAFETY: the caller's.
+    drop(unsafe { Arc::from_raw(rumble.cast_const().cast::<AtomicU32>()) });
+}
+
 /// What is moved on a device made of nothing, and where to.
 #[derive(Clone, Copy, Debug)]
 pub enum PuppetAct {
@@ -29,7 +59,12 @@ pub enum PuppetAct {
 
 impl Sdl {
     /// Plugs in a device made of nothing, which lasts until it is unplugged or SDL ends.
-    pub fn plug_in(&self, name: &str, form: PuppetForm) -> Result<DeviceId, String> {
+    pub fn plug_in(
+        &self,
+        name: &str,
+        form: PuppetForm,
+        rumble: &Rumble,
+    ) -> Result<DeviceId, String> {
         let name = CString::new(name).map_err(|error| error.to_string())?;
         let mut wish = SDL_VirtualJoystickDesc::new();
         wish.name = name.as_ptr();
@@ -43,7 +78,13 @@ impl Sdl {
             } => (SDL_JOYSTICK_TYPE_FLIGHT_STICK, axes, buttons, hats),
         };
         wish.r#type = kind.0 as u16;
-        // SAFETY: see the module; SDL copies the wish and its name, and there are no callbacks in it.
+        let given = Arc::into_raw(rumble.0.clone()).cast_mut().cast::<c_void>();
+        wish.userdata = given;
+        wish.Rumble = Some(take_rumble);
+        wish.Cleanup = Some(clean_up);
+        // SAFETY: see the module; SDL copies the wish and its name, and its callbacks are functions of the program. What is
+        // given away SDL gives back when the device goes. When it refuses, it may have done so or not: then a few bytes of a
+        // test are lost rather than freed twice.
         match unsafe { SDL_AttachVirtualJoystick(&wish) } {
             SDL_JoystickID(0) => Err(self.error()),
             SDL_JoystickID(id) => Ok(DeviceId(id)),

@@ -1,0 +1,63 @@
+//! A real soft body to push at.
+
+use crate::stick::Other;
+use fuwafuwa::{
+    Body, Dim2, Drive, Elasticity, Manipulator, Material, Settings as WorldSettings, Shape,
+    VoxelGrid, World,
+};
+
+/// A soft disc between three walls, open to the left.
+pub struct Disc {
+    pub world: World<Dim2>,
+    hand: usize,
+}
+
+impl Disc {
+    /// Of this stiffness [Pa], and so many times as strong as usual.
+    pub fn new(young: f64, strength: f32) -> Self {
+        let mut world = World::new(WorldSettings {
+            gravity: [0.0; 3],
+            drag: 1.0,
+            ..WorldSettings::default()
+        })
+        .expect("they are within bounds");
+        let usual = Material::default();
+        let material = Material {
+            elasticity: Elasticity {
+                young,
+                poisson: 0.3,
+            },
+            strength: strength * usual.strength,
+            toughness: strength * usual.toughness,
+            ..usual
+        };
+        let grid = VoxelGrid::ball(12, 1.0).expect("it is small");
+        world.add_body(Body::new(grid, &[material]).expect("it is a disc"));
+        // In a corner from which it does not roll away.
+        for (normal, at) in [
+            ([-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]),
+            ([0.0, 1.0, 0.0], [0.0; 3]),
+            ([0.0, -1.0, 0.0], [0.0, 1.0, 0.0]),
+        ] {
+            let wall = Shape::half_space(normal, at);
+            world.add_obstacle(wall, 0.5).expect("it is a shape");
+        }
+        let hand = Manipulator::new([-0.3, 0.5, 0.0], 0.15).driven(Drive::default());
+        let hand = world.add_manipulator(hand).expect("it is a hand");
+        Self { world, hand }
+    }
+}
+
+impl Other for Disc {
+    fn tick(&mut self, goal: [f32; 2]) -> ([f32; 2], [f32; 2]) {
+        self.world
+            .set_goal(self.hand, [goal[0], 0.5 + goal[1], 0.0]);
+        self.world.step();
+        let hand = &self.world.manipulators()[self.hand];
+        let all = hand.reactions();
+        let mean =
+            |axis: usize| all.iter().map(|one| one.contact[axis]).sum::<f32>() / all.len() as f32;
+        let [x, y, _] = hand.position();
+        ([x, y - 0.5], [mean(0), mean(1)])
+    }
+}

@@ -1,0 +1,255 @@
+//! Sticks in hands, in closed loop: nothing that a user can set makes one swing.
+
+use crate::body::Disc;
+use crate::stick::{Other, Play, Stick, Trace, Wall, play};
+use force_feedback::{Calibration, HARDEST, Settings};
+
+/// A consumer's stick at a finger's tip, in a loose, a usual and a firm hand, and a strong one that is driven quickly: mass
+/// [kg], damping [N s/m], grip [N/m], full force [N], travel [m] and the longest delay [ms].
+const STICKS: [(f64, f64, f64, f64, f64, u32); 5] = [
+    (0.15, 1.5, 5.0, 7.0, 0.05, 20),
+    (0.15, 1.5, 30.0, 7.0, 0.05, 20),
+    (0.4, 4.0, 120.0, 7.0, 0.05, 20),
+    (1.0, 15.0, 500.0, 7.0, 0.05, 20),
+    (0.6, 6.0, 200.0, 40.0, 0.07, 5),
+];
+
+fn sticks() -> impl Iterator<Item = Stick> {
+    STICKS
+        .into_iter()
+        .flat_map(|(mass, damping, grip, full, travel, longest)| {
+            let delays = [1, 5, 10, 20].into_iter().filter(move |ms| *ms <= longest);
+            delays.map(move |ms| Stick {
+                mass,
+                damping,
+                grip,
+                full,
+                travel,
+                delay: f64::from(ms) * 1e-3,
+            })
+        })
+}
+
+/// Into what stands in the way, a hard knock, and then held still. Who steers lets go after a while: a hand that goes on
+/// has a force that goes on.
+fn knock(stick: &Stick, other: &mut dyn Other, how: &Play) -> Trace {
+    let full = stick.full;
+    play(
+        stick,
+        other,
+        how,
+        &|time| {
+            let lets_go = how.steers && time > 3.0;
+            [if lets_go { 0.0 } else { (time - 0.3).min(0.5) }, 0.0]
+        },
+        &|time| match time {
+            2.0..2.02 => [2.0 * full, full],
+            _ => [0.0; 2],
+        },
+    )
+}
+
+fn check_calm(stick: &Stick, how: &Play, trace: &Trace) {
+    let what = || format!("{stick:?}, {how:?}");
+    let last = trace.force.len() - how.rate as usize;
+    for axis in 0..2 {
+        let of = || trace.force[last..].iter().map(|force| force[axis]);
+        let swing = of().fold(f32::MIN, f32::max) - of().fold(f32::MAX, f32::min);
+        assert!(swing < 0.01, "it swings by {swing}: {}", what());
+    }
+    // What a full force does along the way of the stick.
+    let unit = stick.full * stick.travel;
+    let moves = trace.kinetic[last..].iter().copied().fold(0.0, f64::max);
+    assert!(moves < 1e-4 * unit, "it moves, {moves} J: {}", what());
+    // Once nobody knocks any more, it calms down.
+    let window = how.rate as usize / 2;
+    let quiet = (if how.steers { 3.1 } else { 2.1 }) * f64::from(how.rate);
+    let mut before = f64::INFINITY;
+    for part in trace.kinetic[quiet as usize..].chunks(window) {
+        let energy = part.iter().copied().fold(0.0, f64::max);
+        let grows = energy > before.max(1e-3 * unit);
+        assert!(!grows, "{energy} J after {before} J: {}", what());
+        before = energy;
+    }
+}
+
+#[test]
+fn a_wall_never_makes_a_stick_swing() {
+    let mut strongest = 0.0f32;
+    for stick in sticks() {
+        for (strength, clamp) in [(1.0, 1.0), (0.3, 1.0), (1.0, 0.1)] {
+            for stiffness in [0.1 * HARDEST, 0.5 * HARDEST, f32::INFINITY] {
+                for slew in [0.0, 30.0, 1000.0] {
+                    let settings = Settings {
+                        strength,
+                        clamp,
+                        stiffness,
+                        slew,
+                        ..Settings::default()
+                    };
+                    // Each wall with its own pace and scale, so that there is some of everything.
+                    for (wall, full, rate, frame, steers) in [
+                        (100.0, 1.0, 125, 1, false),
+                        (100.0, 1000.0, 125, 3, true),
+                        (500.0, 100.0, 250, 3, false),
+                        (500.0, 1000.0, 125, 1, true),
+                        (5e3, 1000.0, 125, 1, false),
+                        (5e3, 100.0, 250, 1, true),
+                        (5e4, 100.0, 125, 3, false),
+                        (5e4, 1000.0, 250, 1, false),
+                        (5e4, 1.0, 125, 3, true),
+                    ] {
+                        let settings = Settings { full, ..settings };
+                        let how = Play {
+                            settings,
+                            rate,
+                            frame,
+                            steers,
+                            reach: 1.0,
+                            seconds: 6.0,
+                        };
+                        let trace = knock(&stick, &mut Wall::new(wall, 20.0), &how);
+                        check_calm(&stick, &how, &trace);
+                        let force = trace.force.iter().map(|force| -force[0]);
+                        strongest = force.fold(strongest, f32::max);
+                    }
+                }
+            }
+        }
+    }
+    assert!(strongest > 0.3, "there is a wall to be felt: {strongest}");
+}
+
+#[test]
+fn a_soft_body_never_makes_a_stick_swing() {
+    let mut strongest = 0.0f32;
+    for stick in sticks() {
+        for (young, full, frame, steers) in [
+            (1000.0, 100.0, 1, false),
+            (5000.0, 1000.0, 3, false),
+            (20_000.0, 100.0, 1, false),
+            (5000.0, 100.0, 1, true),
+        ] {
+            for hardness in [0.3 * HARDEST, HARDEST] {
+                let settings = Settings {
+                    strength: 1.0,
+                    clamp: 1.0,
+                    full,
+                    stiffness: hardness,
+                    ..Settings::default()
+                };
+                let how = Play {
+                    settings,
+                    rate: 125,
+                    frame,
+                    steers,
+                    reach: 1.0,
+                    seconds: 6.0,
+                };
+                let trace = knock(&stick, &mut Disc::new(young, f32::INFINITY), &how);
+                check_calm(&stick, &how, &trace);
+                let force = trace.force.iter().map(|force| -force[0]);
+                strongest = force.fold(strongest, f32::max);
+            }
+        }
+    }
+    assert!(strongest > 0.1, "there is a body to be felt: {strongest}");
+}
+
+/// A device that is built in another way round is felt the same, once it is calibrated.
+#[test]
+fn what_was_measured_makes_it_right() {
+    for (swap, invert) in [
+        (false, [false, false]),
+        (false, [true, false]),
+        (true, [false, true]),
+        (true, [true, true]),
+    ] {
+        let built = Calibration {
+            swap,
+            invert,
+            ..Calibration::default()
+        };
+        // The device does to what it is told what a calibration has to undo, and more of it along y.
+        let moves = |[x, y]: [f32; 2]| {
+            let [x, y] = [0, 1].map(|axis| [x, y][axis] * if invert[axis] { -0.1 } else { 0.1 });
+            if swap {
+                [y + 0.01, 2.0 * x]
+            } else {
+                [x, 2.0 * y + 0.01]
+            }
+        };
+        let measured = Calibration::measured([moves([1.0, 0.0]), moves([0.0, 1.0])]);
+        assert_eq!(measured, Some(built));
+        for wish in [[1.0, 0.0], [0.0, 1.0], [-0.5, 0.25]] {
+            let moved = moves(built.apply(wish));
+            assert!(
+                (0..2).all(|axis| moved[axis] * wish[axis] >= 0.0),
+                "{built:?}"
+            );
+        }
+    }
+    for unclear in [[[0.1, 0.0], [0.1, 0.0]], [[0.0; 2]; 2], [[f32::NAN; 2]; 2]] {
+        assert_eq!(Calibration::measured(unclear), None);
+    }
+}
+
+/// Hands and sticks of all kinds, as long as they take out some of a swing by themselves: with a damping ratio of 0.25 at
+/// least, and at least 8 ms of damping × travel / full force.
+#[test]
+fn sticks_of_all_kinds_calm_down() {
+    let mut rng = fastrand::Rng::with_seed(4);
+    let mut between = |low: f64, high: f64| low * (high / low).powf(rng.f64());
+    let mut tried = 0;
+    while tried < 400 {
+        let stick = Stick {
+            mass: between(0.08, 1.5),
+            damping: between(1.0, 15.0),
+            grip: between(3.0, 800.0),
+            full: between(2.0, 12.0),
+            travel: between(0.03, 0.08),
+            delay: between(0.001, 0.02),
+        };
+        let ratio = 0.5 * stick.damping / (stick.grip * stick.mass).sqrt();
+        if ratio < 0.25 || stick.damping * stick.travel < 0.008 * stick.full {
+            continue;
+        }
+        tried += 1;
+        let settings = Settings {
+            strength: 1.0,
+            clamp: 1.0,
+            full: between(1.0, 1000.0) as f32,
+            slew: between(10.0, 100.0) as f32,
+            ..Settings::default()
+        };
+        let how = Play {
+            settings,
+            rate: between(125.0, 250.0) as u32,
+            frame: between(1.0, 4.9) as u32,
+            steers: false,
+            reach: 1.0,
+            seconds: 6.0,
+        };
+        let stiffness = between(100.0, 50_000.0);
+        let is_body = tried % 8 == 0;
+        let trace = if is_body {
+            knock(&stick, &mut Disc::new(0.4 * stiffness, f32::INFINITY), &how)
+        } else {
+            knock(&stick, &mut Wall::new(stiffness as f32, 20.0), &how)
+        };
+        let second = how.rate as usize;
+        let [before, now] = [2, 1].map(|ago| {
+            let from = trace.force.len() - ago * second;
+            let part = &trace.force[from..from + second];
+            let swings = [0, 1].map(|axis| {
+                let of = || part.iter().map(|force| force[axis]);
+                of().fold(f32::MIN, f32::max) - of().fold(f32::MAX, f32::min)
+            });
+            swings[0].max(swings[1])
+        });
+        // A body in a corner may itself still move a little, and be felt.
+        let most = if is_body { 0.025 } else { 0.01 };
+        let is_calm = now < most || now < 0.9 * before;
+        assert!(is_calm, "{now} after {before}: {stick:?}, {how:?}");
+    }
+}

@@ -1,0 +1,6 @@
+//! What a hand feels that holds a stick.
+
+mod body;
+mod closed_loop;
+mod real_body;
+mod stick;

@@ -1,0 +1,170 @@
+//! The part of SDL that pushes back.
+
+use std::ffi::{c_int, c_void};
+use std::marker::PhantomData;
+use std::ptr::NonNull;
+
+use sdl3_sys::assert::{
+    SDL_ASSERTION_ALWAYS_IGNORE, SDL_AssertData, SDL_AssertState, SDL_SetAssertionHandler,
+};
+use sdl3_sys::haptic::{
+    SDL_CloseHaptic, SDL_CreateHapticEffect, SDL_GetHapticFeatures, SDL_GetNumHapticAxes,
+    SDL_HAPTIC_AUTOCENTER, SDL_HAPTIC_CARTESIAN, SDL_HAPTIC_CONSTANT, SDL_HAPTIC_INFINITY,
+    SDL_Haptic, SDL_HapticConstant, SDL_HapticDirection, SDL_HapticEffect, SDL_HapticEffectID,
+    SDL_HapticEffectType, SDL_OpenHapticFromJoystick, SDL_RunHapticEffect, SDL_SetHapticAutocenter,
+    SDL_UpdateHapticEffect,
+};
+use sdl3_sys::init::{SDL_INIT_HAPTIC, SDL_InitSubSystem};
+use sdl3_sys::joystick::{
+    SDL_GetJoystickProduct, SDL_GetJoystickProperties, SDL_GetJoystickVendor,
+    SDL_PROP_JOYSTICK_CAP_RUMBLE_BOOLEAN, SDL_RumbleJoystick,
+};
+use sdl3_sys::properties::SDL_GetBooleanProperty;
+
+use super::{Open, Sdl};
+
+/// What SDL does when one of its own assumptions fails, as for a device that it did not list when it started: go on. In
+/// debug it would else ask on the terminal, and this thread would wait for the answer.
+unsafe extern "C" fn go_on(_: *const SDL_AssertData, _: *mut c_void) -> SDL_AssertState {
+    SDL_ASSERTION_ALWAYS_IGNORE
+}
+
+/// Two constant forces of a device that is held open, along x and y. They go when this is dropped.
+pub struct Motors<'sdl> {
+    haptic: NonNull<SDL_Haptic>,
+    effects: [SDL_HapticEffectID; 2],
+    /// Of the effects [ms].
+    length: u32,
+    _sdl: PhantomData<&'sdl Sdl>,
+}
+
+/// Where the forces come from that push to the right and away from the player: x to the right, y towards the player.
+/// They stay; drivers start an effect again whose direction changes.
+const FROM: [[i32; 3]; 2] = [[-1, 0, 0], [0, 1, 0]];
+
+impl Sdl {
+    /// Where this fails, devices can still be read.
+    pub(super) fn start_to_feel(&mut self) {
+        // SAFETY: see the module; the handler is one for as long as the program runs.
+        self.feels = unsafe {
+            SDL_SetAssertionHandler(Some(go_on), std::ptr::null_mut());
+            SDL_InitSubSystem(SDL_INIT_HAPTIC)
+        };
+    }
+
+    /// Takes hold of the motors of a device and lets them do nothing. None if it has none that push along two axes. Pads
+    /// have none, SDL says. It must be dropped before the device.
+    pub fn motors<'sdl>(
+        &'sdl self,
+        open: &Open<'sdl>,
+        length: Option<u32>,
+    ) -> Option<Motors<'sdl>> {
+        if !self.feels {
+            return None;
+        }
+        // SAFETY: see the module; what is no haptic device gives null. SDL closes in `drop` what it opens here.
+        let haptic = unsafe { SDL_OpenHapticFromJoystick(open.joystick.as_ptr()) };
+        let mut motors = Motors {
+            haptic: NonNull::new(haptic)?,
+            effects: [SDL_HapticEffectID(-1); 2],
+            length: length.unwrap_or(SDL_HAPTIC_INFINITY),
+            _sdl: PhantomData,
+        };
+        if !motors.has(SDL_HAPTIC_CONSTANT) || motors.axis_count() < 2 {
+            return None;
+        }
+        if motors.has(SDL_HAPTIC_AUTOCENTER) {
+            // SAFETY: see the module; it was opened above.
+            unsafe { SDL_SetHapticAutocenter(haptic, 0) };
+        }
+        for axis in 0..2 {
+            // SAFETY: as above; SDL copies the effect.
+            let effect = unsafe { SDL_CreateHapticEffect(haptic, &motors.effect(axis, 0)) };
+            if effect.0 < 0 {
+                return None;
+            }
+            motors.effects[axis] = effect;
+        }
+        Some(motors)
+    }
+}
+
+impl Open<'_> {
+    /// Who made it and what it is, as USB numbers them; 0 where nobody knows.
+    pub fn model(&self) -> (u16, u16) {
+        let joystick = self.joystick.as_ptr();
+        // SAFETY: see the module.
+        unsafe {
+            (
+                SDL_GetJoystickVendor(joystick),
+                SDL_GetJoystickProduct(joystick),
+            )
+        }
+    }
+
+    pub fn can_rumble(&self) -> bool {
+        // SAFETY: see the module; the name is a constant that ends in a zero.
+        unsafe {
+            let properties = SDL_GetJoystickProperties(self.joystick.as_ptr());
+            SDL_GetBooleanProperty(properties, SDL_PROP_JOYSTICK_CAP_RUMBLE_BOOLEAN, false)
+        }
+    }
+
+    /// Shakes it for a time [ms]. Whether it could.
+    pub fn rumble(&self, low: u16, high: u16, length: u32) -> bool {
+        // SAFETY: see the module.
+        unsafe { SDL_RumbleJoystick(self.joystick.as_ptr(), low, high, length) }
+    }
+}
+
+impl Motors<'_> {
+    /// Pushes; `anew` also lets the time run again after which it ends. Whether it could.
+    pub fn push(&self, levels: [i16; 2], anew: bool) -> bool {
+        let haptic = self.haptic.as_ptr();
+        let mut could = true;
+        for (axis, level) in levels.into_iter().enumerate() {
+            // SAFETY: see the module; the effect is one of this device, and SDL copies what it becomes.
+            unsafe {
+                let effect = self.effects[axis];
+                could &= SDL_UpdateHapticEffect(haptic, effect, &self.effect(axis, level));
+                if anew {
+                    could &= SDL_RunHapticEffect(haptic, effect, 1);
+                }
+            }
+        }
+        could
+    }
+
+    fn effect(&self, axis: usize, level: i16) -> SDL_HapticEffect {
+        SDL_HapticEffect {
+            constant: SDL_HapticConstant {
+                r#type: SDL_HAPTIC_CONSTANT,
+                direction: SDL_HapticDirection {
+                    r#type: SDL_HAPTIC_CARTESIAN,
+                    dir: FROM[axis],
+                },
+                length: self.length,
+                level,
+                ..SDL_HapticConstant::default()
+            },
+        }
+    }
+
+    fn has(&self, feature: SDL_HapticEffectType) -> bool {
+        // SAFETY: see the module.
+        let features = unsafe { SDL_GetHapticFeatures(self.haptic.as_ptr()) };
+        features & u32::from(feature.0) != 0
+    }
+
+    fn axis_count(&self) -> c_int {
+        // SAFETY: see the module.
+        unsafe { SDL_GetNumHapticAxes(self.haptic.as_ptr()) }
+    }
+}
+
+impl Drop for Motors<'_> {
+    fn drop(&mut self) {
+        // SAFETY: see the module; it is closed as often as it was opened, and SDL takes its effects away first.
+        unsafe { SDL_CloseHaptic(self.haptic.as_ptr()) };
+    }
+}
