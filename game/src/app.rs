@@ -37,6 +37,8 @@ pub struct App {
     navigators: Vec<(sticks::DeviceId, Navigator)>,
     presses: Presses,
     screen_before: Screen,
+    /// Whether the window ever had the focus.
+    had_focus: bool,
 }
 
 /// The window has no GPU, not even one in software.
@@ -62,6 +64,7 @@ impl App {
             navigators,
             presses,
             screen_before,
+            had_focus: false,
         })
     }
 
@@ -146,7 +149,8 @@ impl App {
                 }
                 // A window may never get the focus, and be played with the mouse: only losing it counts.
                 Event::WindowFocused(focused) => {
-                    game.is_away = !focused;
+                    game.is_away = self.had_focus && !focused;
+                    self.had_focus |= focused;
                     if game.is_away {
                         game.rest();
                     }

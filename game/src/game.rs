@@ -174,8 +174,11 @@ impl Game {
 
     /// Shows another screen.
     pub fn go(&mut self, screen: Screen) {
-        if screen == Screen::Title && self.session.is_played() {
-            self.attract();
+        if screen == Screen::Title {
+            self.slow = false;
+            if self.session.is_played() {
+                self.attract();
+            }
         }
         if screen == Screen::Replays {
             self.replays = self.files.replays();

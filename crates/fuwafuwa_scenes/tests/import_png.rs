@@ -100,7 +100,7 @@ fn every_colour_type_and_depth_is_read() {
         (Grayscale, Sixteen, &[127, 255, 128, 0], &none),
         (GrayscaleAlpha, Eight, &[255, 128, 0, 127], &none),
         (GrayscaleAlpha, Sixteen, half, &none),
-        (Rgb, Eight, &[255, 0, 0, 0, 255, 0], &none),
+        (Rgb, Eight, &[255, 0, 0, 200, 255, 220], &none),
         (
             Rgb,
             Sixteen,
@@ -145,7 +145,7 @@ fn an_interlaced_picture_is_put_together() {
 }
 
 #[test]
-fn a_sprite_is_what_is_opaque_and_a_drawing_what_is_dark() {
+fn a_sprite_is_what_is_opaque_and_a_drawing_what_is_dark_or_coloured() {
     let pixels = |pixels: &[[u8; 4]]| {
         let size = [pixels.len() as u32, 1];
         encode(size, COLOUR, pixels.as_flattened(), |_| {})
@@ -155,7 +155,10 @@ fn a_sprite_is_what_is_opaque_and_a_drawing_what_is_dark() {
     // Nothing is more than half transparent: on white paper, and grey where it shines through.
     check(&pixels(&[black, white, [0, 0, 0, 128]]), 8, &["#.#"]);
     check(&pixels(&[black, white, [20, 20, 20, 128]]), 8, &["#.."]);
-    check(&pixels(&[[0, 0, 255, 255], [0, 255, 0, 255]]), 8, &["#."]);
+    // Orange, yellow, a pale pink, light grey.
+    let crayons = [[255, 165, 0], [255, 255, 0], [255, 190, 200], [200; 3]];
+    let crayons = crayons.map(|[red, green, blue]| [red, green, blue, 255]);
+    check(&pixels(&crayons), 8, &["##.."]);
 }
 
 #[test]
@@ -223,7 +226,7 @@ fn a_picture_has_no_palette_indices() {
 fn an_empty_picture_says_what_it_looked_for() {
     assert_eq!(
         complaint(&drawing(&["..", ".."])),
-        "test.png: the shape is empty: there is no pixel with a luminance below 128"
+        "test.png: the shape is empty: there is no pixel with a red, green or blue below 128"
     );
     let clear = (ColorType::GrayscaleAlpha, BitDepth::Eight);
     let clear = complaint(&encode([1, 1], clear, &[0, 127], |_| {}));

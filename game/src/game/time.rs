@@ -63,8 +63,9 @@ impl Game {
             arena: self.session.round().level().arena(),
         };
         let still = self.settings.reduced_motion;
-        // In menus the same keys and sticks move the focus.
-        let in_round = self.screen == Screen::Play;
+        // In menus the same keys and sticks move the focus; what is won is not torn any more.
+        let is_won = self.session.round().progress().outcome.is_some();
+        let in_round = self.screen == Screen::Play && !is_won;
         let mut is_heard = false;
         let Self {
             session,

@@ -238,8 +238,16 @@ fn draw_ghost(painter: &Painter, round: &Round<Dim2>, view: &View) {
     let stroke = Stroke::new(2.5, Color32::from_rgba_unmultiplied(90, 80, 120, 120));
     for body in round.world().bodies() {
         for outline in body.outlines() {
-            let points = outline.points.iter().map(|&at| view.on_screen(at));
-            painter.add(PathShape::closed_line(points.collect(), stroke));
+            let mut points: Vec<Pos2> = outline
+                .points
+                .iter()
+                .map(|&at| view.on_screen(at))
+                .collect();
+            // Corners of lines with no length shoot far out.
+            points.dedup_by(|next, last| next.distance(*last) < 1.5);
+            if points.len() > 2 {
+                painter.add(PathShape::closed_line(points, stroke));
+            }
         }
     }
     for hand in round.world().manipulators() {

@@ -92,8 +92,8 @@ impl Picture {
     ///   that is 0 or the pixel is more than half transparent (alpha below 128).
     /// - Otherwise all are of material 1. If any pixel is more than half transparent, it is a sprite,
     ///   and the others are solid.
-    /// - If none is, it is a drawing on white paper, and the dark pixels are solid: those with a
-    ///   luminance below 128 of 255 (ITU-R BT.709, of the values as stored).
+    /// - If none is, it is a drawing on white paper, and what is drawn is solid, in ink or in colours:
+    ///   the pixels whose red, green or blue is below 128 of 255, as stored.
     ///
     /// A picture with more than `across` pixels on its longer side is scaled down to that many voxels. A
     /// voxel is solid when at least half of what it covers is, and of the material of which it covers
@@ -150,7 +150,7 @@ impl Picture {
 enum Rule<'a> {
     Colour(&'a Colours),
     Alpha,
-    Dark,
+    Drawn,
 }
 
 impl<'a> Rule<'a> {
@@ -159,7 +159,7 @@ impl<'a> Rule<'a> {
             return Self::Colour(colours);
         }
         let is_sprite = picture.pixels.iter().any(|&pixel| !is_opaque(pixel));
-        if is_sprite { Self::Alpha } else { Self::Dark }
+        if is_sprite { Self::Alpha } else { Self::Drawn }
     }
 
     /// The material of a pixel, 0 where it is not solid.
@@ -169,7 +169,7 @@ impl<'a> Rule<'a> {
             Self::Colour(_) if !is_opaque(pixel) => 0,
             Self::Colour(colours) => colours.nearest([red, green, blue]).unwrap_or(0),
             Self::Alpha => u8::from(is_opaque(pixel)),
-            Self::Dark => u8::from(is_dark(pixel)),
+            Self::Drawn => u8::from(is_drawn(pixel)),
         }
     }
 
@@ -177,7 +177,7 @@ impl<'a> Rule<'a> {
         match self {
             Self::Colour(_) => "pixel with an alpha of 128 or more whose colour is not empty",
             Self::Alpha => "pixel with an alpha of 128 or more",
-            Self::Dark => "pixel with a luminance below 128",
+            Self::Drawn => "pixel with a red, green or blue below 128",
         }
     }
 }
@@ -186,13 +186,12 @@ fn is_opaque(pixel: [u8; 4]) -> bool {
     pixel[3] >= 128
 }
 
-/// Whether a pixel on white paper is dark.
-fn is_dark(pixel: [u8; 4]) -> bool {
-    const WHITE: u32 = 255 * 10_000;
+/// Whether there is ink or colour on a pixel of white paper.
+fn is_drawn(pixel: [u8; 4]) -> bool {
+    const WHITE: u32 = 255;
     let [red, green, blue, alpha] = pixel.map(u32::from);
-    let luminance = 2126 * red + 7152 * green + 722 * blue;
-    let shade = (WHITE - luminance) * alpha / 255;
-    WHITE - shade < 128 * 10_000
+    let shade = (WHITE - red.min(green).min(blue)) * alpha / WHITE;
+    WHITE - shade < 128
 }
 
 type Pixels = ([usize; 2], Vec<[u8; 4]>);
