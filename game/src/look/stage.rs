@@ -5,7 +5,6 @@ use super::face::Place;
 use super::feelings::Feeling;
 use super::{Effects, Maps, Mood, Theme, draw_face, glow, hint};
 use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait, RenderState};
-use egui::epaint::PathShape;
 use egui::{Color32, PaintCallbackInfo, Painter, Pos2, Stroke, Ui, vec2};
 use fuwafuwa::Dim2;
 use fuwafuwa_render::frame::ElementColour;
@@ -238,15 +237,12 @@ fn draw_ghost(painter: &Painter, round: &Round<Dim2>, view: &View) {
     let stroke = Stroke::new(2.5, Color32::from_rgba_unmultiplied(90, 80, 120, 120));
     for body in round.world().bodies() {
         for outline in body.outlines() {
-            let mut points: Vec<Pos2> = outline
-                .points
-                .iter()
-                .map(|&at| view.on_screen(at))
-                .collect();
-            // Corners of lines with no length shoot far out.
-            points.dedup_by(|next, last| next.distance(*last) < 1.5);
-            if points.len() > 2 {
-                painter.add(PathShape::closed_line(points, stroke));
+            let points = outline.points.iter().map(|&at| view.on_screen(at));
+            let points: Vec<Pos2> = points.collect();
+            // Edge by edge: where a crack turns back, a line with corners shoots far out.
+            for (place, &point) in points.iter().enumerate() {
+                let next = points[(place + 1) % points.len()];
+                painter.line_segment([point, next], stroke);
             }
         }
     }
