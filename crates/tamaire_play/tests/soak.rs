@@ -82,9 +82,11 @@ fn ten_minutes_of_anything_on_every_level() {
         let threads: Vec<_> = NAMED.iter().map(start).collect();
         for (id, thread) in threads {
             let held = thread.join().unwrap();
-            let half = held[..MINUTES / 2].iter().max().unwrap();
-            let most = half + half / 4 + KEPT;
-            assert!(held.iter().all(|&held| held < most), "{id}: {held:?}");
+            // By then what can be ground is ground; tables double now and then.
+            let (early, late) = held.split_at(7);
+            let early = early.iter().max().unwrap();
+            let most = early + early / 4 + KEPT;
+            assert!(late.iter().all(|&held| held < most), "{id}: {held:?}");
         }
     });
 }
