@@ -100,6 +100,15 @@ impl<D: Dim> Round<D> {
         &self.progress
     }
 
+    /// For which share of the time that it has to rest in the basket enough has rested there; 1 once
+    /// it is won.
+    pub fn held(&self) -> f32 {
+        match self.progress.outcome {
+            Some(_) => 1.0,
+            None => (self.progress.held / self.level.game().hold.max(0.1)).clamp(0.0, 1.0),
+        }
+    }
+
     /// What was played until it was won, tick by tick; [`MAX_TICKS`] at most.
     pub fn frames(&self) -> &[InputFrame] {
         &self.frames

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// What moves faster than this does not rest in the basket [m/s].
 const RESTING: f32 = 0.4;
 /// What has less than this share of the mass is a crumb, which may get lost on the way.
-const CRUMB: f32 = 0.002;
+pub const CRUMB: f32 = 0.002;
 /// Share of the mass that must still hang together for a body to count as whole.
 const WHOLE: f32 = 0.99;
 /// What is strained by more than this on the mean while it rests is held squeezed by the bars.

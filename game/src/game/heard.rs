@@ -3,10 +3,9 @@
 use super::{Game, Screen};
 use fuwafuwa::{Dim2, Event, Vector, With};
 use tamaire_play::Round;
+use tamaire_play::rules::CRUMB;
 use tamaire_sound::{Cue, Hush, Press, Soundscape};
 
-/// What has less than this share of the mass falls like a crumb.
-const CRUMB: f32 = 0.002;
 /// What is slower than this is heard no more when it lands [m/s].
 const LANDING: f32 = 0.3;
 

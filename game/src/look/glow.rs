@@ -12,10 +12,7 @@ const GOLD: Color32 = Color32::from_rgb(255, 205, 70);
 /// Draws it.
 pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &Look) {
     let (progress, view) = (round.progress(), &look.view);
-    let held = match progress.outcome {
-        Some(_) => 1.0,
-        None => (progress.held / round.level().game().hold.max(0.1)).clamp(0.0, 1.0),
-    };
+    let held = round.held();
     if held == 0.0 {
         return;
     }

@@ -232,10 +232,7 @@ fn draw_jar(ui: &Ui, middle: Pos2, scale: f32, game: &Game) {
     painter.extend(Shape::dashed_line(&ends, dashes, 6.0 * scale, 4.0 * scale));
     let edge = Stroke::new(2.0 * scale, theme.ink.gamma_multiply(0.35));
     painter.circle_stroke(middle, glass, edge);
-    let held = match progress.outcome {
-        Some(_) => 1.0,
-        None => (progress.held / rules.hold.max(0.1)).clamp(0.0, 1.0),
-    };
+    let held = round.held();
     if held > 0.0 {
         let ring = Stroke::new(7.0 * scale, theme.good);
         marks::arc(painter, middle, scale * JAR, held, ring);
