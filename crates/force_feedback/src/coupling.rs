@@ -59,6 +59,9 @@ pub enum Manner {
     Places,
     /// It says how fast to go. Its proxy never leaves the middle.
     Steers,
+    /// Nothing: it is pushed, whatever it does. For a [`Measurement`](crate::Measurement), and for nothing that depends on
+    /// where the stick is, since that could swing.
+    Yields,
 }
 
 /// A spring, a damper and a slider.
@@ -111,6 +114,7 @@ impl Coupling {
         let pull = match state.manner {
             Manner::Places => dot(memory.pull, along) - spring * dot(moved, along),
             Manner::Steers => -spring * dot(aim, along),
+            Manner::Yields => return state.contact,
         };
         let pull = pull.clamp(0.0, bears);
         memory.pull = along.map(|k| k * pull);

@@ -17,6 +17,7 @@
 //! - [`Coupling`]: a spring with a damper from where the stick points *now* to a proxy that the contact force holds, so
 //!   that a slow frame makes the stick neither hard nor loose.
 //! - [`Feel`]: those together for one device, a step at a time, with no clock: what a headless run and the tests use.
+//! - [`Measurement`]: how a device is built in, found out by pushing it.
 //! - [`Sink`]: a device, as seen from here. [`Recording`] and [`Nothing`] stand in for one.
 //! - [`Force`]: the thread that owns all sinks. A [`Line`] leads from the game to one of them; to drop it, as a panic does,
 //!   is to stop.
@@ -45,6 +46,7 @@
 mod chain;
 mod coupling;
 mod feel;
+mod measurement;
 mod settings;
 mod sink;
 mod thread;
@@ -53,6 +55,7 @@ mod watchdog;
 pub use chain::Chain;
 pub use coupling::{Coupling, Give, HARDEST, Manner, State};
 pub use feel::{Feel, Felt};
+pub use measurement::{Measured, Measurement};
 pub use settings::{Calibration, Settings};
 pub use sink::{Ability, Gone, LENGTH, Nothing, Output, Played, Recording, Sink};
 pub use thread::{Force, Line, RATES, Report};

@@ -24,6 +24,7 @@ pub struct Settings {
 
 /// How the axes of a device's motors lie to those of its stick.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Calibration {
     /// The motor that is called x pushes along y, and the other way round.
     pub swap: bool,
@@ -48,11 +49,7 @@ impl Default for Settings {
 
 impl Default for Calibration {
     fn default() -> Self {
-        Self {
-            swap: false,
-            invert: [false; 2],
-            gain: [1.0; 2],
-        }
+        Self::USUAL
     }
 }
 
@@ -90,6 +87,13 @@ impl Settings {
 }
 
 impl Calibration {
+    /// Nothing to put right.
+    pub const USUAL: Self = Self {
+        swap: false,
+        invert: [false; 2],
+        gain: [1.0; 2],
+    };
+
     /// How a device is built in whose stick moved by `moves[0]` when the motor x pushed and by `moves[1]` when the motor y
     /// did. None if that is not clear: somebody held it too firmly, or nothing pushed.
     ///
@@ -107,7 +111,7 @@ impl Calibration {
         Some(Self {
             swap: main[0] == 1,
             invert: [0, 1].map(|motor| moves[motor][main[motor]] < 0.0),
-            gain: [1.0; 2],
+            ..Self::USUAL
         })
     }
 

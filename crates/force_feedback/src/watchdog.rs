@@ -11,6 +11,8 @@ pub const OLDEST: Duration = Duration::from_millis(84);
 pub enum Stop {
     /// Nothing was said yet.
     Unheard,
+    /// Nobody plays with it.
+    Idle,
     /// The game rests.
     Paused,
     /// Another window has the keyboard.
