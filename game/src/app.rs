@@ -1,7 +1,7 @@
 //! The loop: devices → actions and wishes → time → picture and sound.
 
 use crate::game::{Game, Screen};
-use crate::input::Seat;
+use crate::input::{Action, Seat};
 use crate::look::Stage;
 use crate::screens;
 use egui::{Event, Key, Modifiers, PointerButton, RawInput};
@@ -87,18 +87,20 @@ impl App {
                 self.game.keep_settings();
                 continue;
             }
-            match control {
-                Control::Pad(PadButton::South) | Control::Button(0) if in_menu => {
+            let action = self.game.settings.bindings.of_button(control);
+            match (control, action) {
+                // Whatever is on: it must not be looked for.
+                (_, Some(Action::CutForces)) => {
+                    self.game.act(Action::CutForces, Seat::Stick(device))
+                }
+                (Control::Pad(PadButton::South) | Control::Button(0), _) if in_menu => {
                     self.press(Key::Enter)
                 }
-                Control::Pad(PadButton::East) | Control::Button(1) if in_menu => {
+                (Control::Pad(PadButton::East) | Control::Button(1), _) if in_menu => {
                     self.press(Key::Escape)
                 }
-                _ => {
-                    if let Some(action) = self.game.settings.bindings.of_button(control) {
-                        self.game.act(action, Seat::Stick(device));
-                    }
-                }
+                (_, Some(action)) => self.game.act(action, Seat::Stick(device)),
+                (_, None) => {}
             }
         }
         let devices = self.game.devices.sticks.devices.clone();
@@ -187,11 +189,12 @@ impl App {
                 taken.push(key);
                 continue;
             }
-            // In a menu these move about in it, whatever they mean in a round.
-            if game.screen != Screen::Play && OF_MENUS.contains(&key) {
-                continue;
-            }
-            if let Some(action) = game.settings.bindings.of_key(key) {
+            let action = game.settings.bindings.of_key(key);
+            // In a menu these move about in it, whatever they mean in a round. But for what must not be looked for.
+            let is_of_menu = game.screen != Screen::Play && OF_MENUS.contains(&key);
+            if let Some(action) =
+                action.filter(|action| !is_of_menu || *action == Action::CutForces)
+            {
                 game.act(action, Seat::Keys);
                 taken.push(key);
             }
@@ -228,7 +231,10 @@ impl eframe::App for App {
         }
         screens::show(&mut self.game, &mut self.stage, ui);
         // What stands in these is of many widths.
-        let is_list = matches!(self.game.screen, Screen::Settings(_) | Screen::Replays);
+        let is_list = matches!(
+            self.game.screen,
+            Screen::Settings(_) | Screen::Forces(_) | Screen::Replays
+        );
         self.presses.waiting().in_order = is_list && self.game.rebinding.is_none();
         ctx.request_repaint();
     }

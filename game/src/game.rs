@@ -1,13 +1,15 @@
 //! The state of the game between two frames, and what can happen to it. Everything that a screen
 //! shows is worked out from here.
 
+pub mod felt;
 mod heard;
 mod time;
+pub mod trial;
 
 use crate::attract::attract;
 use crate::input::{Action, Devices, Players, Seat};
 use crate::look::{Camera, Effects, Theme, View};
-use crate::platform::{Files, Pads, SavedReplay, Sound};
+use crate::platform::{Files, Forces, Pads, SavedReplay, Sound};
 use crate::records::Records;
 use crate::session::Session;
 use crate::settings::Settings;
@@ -19,6 +21,7 @@ use std::sync::Arc;
 use tamaire_play::level::NAMED;
 use tamaire_play::{Level, Outcome, Playback, Replay, ReplayError};
 use tamaire_sound::{Cue, Menu};
+use trial::Trial;
 
 /// What there is to see.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -35,6 +38,8 @@ pub enum Screen {
     Result,
     /// What players choose, and from where they came.
     Settings(Box<Screen>),
+    /// What sticks and pads can do and what they are made to do, and from where the player came.
+    Forces(Box<Screen>),
     /// Rounds that were kept.
     Replays,
 }
@@ -88,6 +93,10 @@ pub struct Game {
     pub is_away: bool,
     /// The sticks and pads that are listened to.
     pub pads: Pads,
+    /// What they are made to do.
+    pub forces: Forces,
+    /// The one that is tried or measured.
+    pub trial: Option<Trial>,
     sound: Sound,
     /// Why nothing is heard, as the player was told last.
     trouble: Option<String>,
@@ -132,6 +141,8 @@ impl Game {
             trouble: None,
             sound,
             pads,
+            forces: Forces::default(),
+            trial: None,
             cheered: 0.0,
             attracted: 0,
         };
@@ -185,6 +196,7 @@ impl Game {
         }
         self.stepping = false;
         self.rebinding = None;
+        self.trial = None;
         self.screen = screen;
     }
 
@@ -296,6 +308,10 @@ impl Game {
     /// Something was asked for with a key or button.
     pub fn act(&mut self, action: Action, seat: Seat) {
         match (&self.screen, action) {
+            (_, Action::CutForces) => {
+                self.forces.cut();
+                self.notify(self.words().cut_now.to_string());
+            }
             (Screen::Play | Screen::Paused | Screen::Result, Action::Retry) => self.retry(),
             (Screen::Play, Action::Pause) => {
                 self.go(Screen::Paused);

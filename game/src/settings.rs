@@ -2,7 +2,10 @@
 
 use crate::input::Bindings;
 use crate::words::Language;
+use force_feedback::Calibration;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use sticks::Device;
 use tamaire_sound::Volumes;
 
 /// What players chose.
@@ -19,8 +22,10 @@ pub struct Settings {
     pub music: f32,
     /// Menus and jingles, 0 to 1.
     pub interface: f32,
-    /// How strongly sticks and pads push back, 0 to 1.
+    /// How strongly sticks and pads push back, 0 to 1; at 0 they are not even taken hold of.
     pub haptics: f32,
+    /// How those sticks are built in that were measured, by what names their model.
+    pub calibrations: BTreeMap<String, Calibration>,
     /// Share of the usual speed, 0.5 to 1.
     pub speed: f32,
     /// How far keys and sticks move the hand, 0.3 to 3; 1 = usual.
@@ -52,6 +57,7 @@ impl Default for Settings {
             music,
             interface,
             haptics: 0.7,
+            calibrations: BTreeMap::new(),
             speed: 1.0,
             sensitivity: 1.0,
             stick_places: false,
@@ -84,6 +90,17 @@ impl Settings {
         fit(&mut self.text_size, 0.8, 1.6, usual.text_size);
         self.bindings = self.bindings.complete();
         self
+    }
+
+    /// How a device is to be felt; not at all where forces are off.
+    pub fn force(&self, device: &Device) -> Option<force_feedback::Settings> {
+        let calibration = self.calibrations.get(&device.about.guid).copied();
+        let settings = force_feedback::Settings {
+            strength: self.haptics,
+            calibration: calibration.unwrap_or_default(),
+            ..force_feedback::Settings::default()
+        };
+        (self.haptics > 0.0).then_some(settings)
     }
 
     /// How loud what is.

@@ -1,6 +1,6 @@
 //! What is heard: of a tick, and for as long as it lasts.
 
-use super::{Game, Screen};
+use super::{Game, Screen, felt};
 use fuwafuwa::{Dim2, Event, Vector, With};
 use tamaire_play::Round;
 use tamaire_play::rules::CRUMB;
@@ -16,13 +16,8 @@ pub(super) fn soundscape(game: &Game) -> Soundscape {
     let hold = round.level().game().hold.max(0.1);
     let mut presses = [Press::default(); 2];
     for (press, hand) in presses.iter_mut().zip(round.world().manipulators()) {
-        let force = hand
-            .reactions()
-            .iter()
-            .map(|reaction| length(reaction.contact));
-        let count = hand.reactions().len().max(1) as f32;
         *press = Press {
-            force: force.sum::<f32>() / count,
+            force: length(felt::contact(hand)),
             slip: length(hand.velocity()),
             x: across(arena, hand.position()[0]),
         };
@@ -34,7 +29,7 @@ pub(super) fn soundscape(game: &Game) -> Soundscape {
         music: true,
         hush: match game.screen {
             _ if game.is_away => Hush::Everything,
-            Screen::Paused | Screen::Settings(_) | Screen::Title => Hush::World,
+            Screen::Paused | Screen::Settings(_) | Screen::Forces(_) | Screen::Title => Hush::World,
             _ => Hush::Nothing,
         },
     }

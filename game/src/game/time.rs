@@ -1,8 +1,8 @@
 //! What happens as time passes: ticks, wins, the end of what is watched.
 
-use super::{Game, Screen, heard};
+use super::{Game, Screen, felt, heard};
 use crate::input::Manner;
-use tamaire_play::InputFrame;
+use tamaire_play::{InputFrame, PLAYERS};
 use tamaire_sound::Cue;
 
 /// After a win the round goes on for so long before the result is shown [s].
@@ -18,7 +18,10 @@ impl Game {
             notice.1 -= seconds;
         }
         self.notices.retain(|notice| notice.1 > 0.0);
-        let runs = !matches!(self.screen, Screen::Paused | Screen::Settings(_)) && !self.stepping;
+        let runs = !matches!(
+            self.screen,
+            Screen::Paused | Screen::Settings(_) | Screen::Forces(_)
+        ) && !self.stepping;
         let pace = if self.slow { SLOW } else { 1.0 } * self.settings.speed;
         if runs {
             self.pass_ticks(seconds * pace);
@@ -41,6 +44,7 @@ impl Game {
             }
         }
         self.celebrate(seconds);
+        self.feel(seconds);
         if self.screen == Screen::Title && self.session.is_over() {
             self.cheered += seconds;
             if self.cheered > 4.0 {
@@ -67,6 +71,7 @@ impl Game {
         let is_won = self.session.round().progress().outcome.is_some();
         let in_round = self.screen == Screen::Play && !is_won;
         let mut is_heard = false;
+        let mut tears = [0.0f32; PLAYERS];
         let Self {
             session,
             players,
@@ -75,6 +80,7 @@ impl Game {
             effects,
             camera,
             sound,
+            forces,
             ..
         } = self;
         session.advance(
@@ -94,6 +100,9 @@ impl Game {
             },
             |round| {
                 effects.see(round, camera, still);
+                for (player, size) in felt::tears(round.world()).into_iter().enumerate() {
+                    tears[player] = size.max(tears[player]);
+                }
                 for cue in heard::cues(round) {
                     sound.play(cue);
                 }
@@ -101,6 +110,15 @@ impl Game {
         );
         if is_heard {
             devices.pointer = None;
+        }
+        for (player, size) in tears
+            .into_iter()
+            .enumerate()
+            .filter(|(_, size)| *size > 0.0)
+        {
+            if let Some(device) = players.held(player).filter(|_| in_round) {
+                forces.tear(device, size);
+            }
         }
     }
 

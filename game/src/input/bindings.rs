@@ -50,6 +50,7 @@ impl Default for Bindings {
             (Action::Slow, vec![Key::F]),
             (Action::Step, vec![Key::Period]),
             (Action::Join, vec![Key::J]),
+            (Action::CutForces, vec![Key::X, Key::F12]),
         ];
         let pad = |button| PadKey::of(Control::Pad(button));
         let stick = |index| PadKey::of(Control::Button(index));
@@ -68,6 +69,10 @@ impl Default for Bindings {
             (Action::Slow, vec![pad(PadButton::RightShoulder), stick(5)]),
             (Action::Step, vec![pad(PadButton::LeftShoulder), stick(6)]),
             (Action::Join, vec![pad(PadButton::Back), stick(7)]),
+            (
+                Action::CutForces,
+                vec![pad(PadButton::RightStick), stick(8)],
+            ),
         ];
         Self {
             keys: keys.into(),
@@ -85,6 +90,19 @@ impl Bindings {
     /// What a button means.
     pub fn of_button(&self, control: Control) -> Option<Action> {
         find(&self.buttons, &PadKey::of(control))
+    }
+
+    /// The keys and buttons of an action as they are written, those of the keyboard first.
+    pub fn names(&self, action: Action) -> [String; 2] {
+        let keys = self.keys.get(&action).into_iter().flatten();
+        let buttons = self.buttons.get(&action).into_iter().flatten();
+        [
+            keys.map(|&key| name_of(key)).collect::<Vec<_>>().join(" "),
+            buttons
+                .map(|button| button.0.as_str())
+                .collect::<Vec<_>>()
+                .join(" "),
+        ]
     }
 
     /// Makes a key mean an action, and nothing else. An action that loses its only key takes the old
@@ -110,6 +128,17 @@ impl Bindings {
             complete(&mut self.buttons, &usual.buttons, action);
         }
         self
+    }
+}
+
+/// A key as it is written: egui's arrows are in no font of ours.
+fn name_of(key: Key) -> &'static str {
+    match key {
+        Key::ArrowUp => "↑",
+        Key::ArrowDown => "↓",
+        Key::ArrowLeft => "←",
+        Key::ArrowRight => "→",
+        key => key.symbol_or_name(),
     }
 }
 

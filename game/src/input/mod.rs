@@ -32,11 +32,13 @@ pub enum Action {
     Step,
     /// A second player comes in on this device, or leaves.
     Join,
+    /// An end to all that sticks and pads do to hands.
+    CutForces,
 }
 
 impl Action {
     /// All of them, in the order in which settings list them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Up,
         Self::Down,
         Self::Left,
@@ -47,5 +49,6 @@ impl Action {
         Self::Slow,
         Self::Step,
         Self::Join,
+        Self::CutForces,
     ];
 }

@@ -45,6 +45,8 @@ pub struct Players {
     /// How sticks leaned in the last tick. One that points at a place does so when it moves; while
     /// it is still, be it at rest, mouse and keys have their say.
     leans: BTreeMap<DeviceId, [f32; 2]>,
+    /// With what each moved the hand last.
+    used: [Option<Seat>; PLAYERS],
 }
 
 /// How the devices of a player are taken.
@@ -64,6 +66,14 @@ impl Players {
         self.second
     }
 
+    /// The stick or pad with which a player moved the hand last, unless it was something else. Who has several feels one.
+    pub fn held(&self, player: usize) -> Option<DeviceId> {
+        match self.used[player] {
+            Some(Seat::Stick(id)) => Some(id),
+            _ => None,
+        }
+    }
+
     /// A device asks to join, or to leave again.
     pub fn join(&mut self, seat: Seat) {
         self.second = match self.second {
@@ -73,13 +83,14 @@ impl Players {
             _ => Some(seat),
         };
         self.goals[1] = None;
+        self.used = [self.used[0].filter(|used| *used != seat), self.second];
     }
 
     /// A new round: everybody wants to be where the hand is.
     pub fn start(&mut self) {
-        let second = self.second;
         *self = Self {
-            second,
+            second: self.second,
+            used: self.used,
             ..Self::default()
         };
     }
@@ -136,7 +147,11 @@ impl Players {
         let mut place = None;
         if holds(Seat::Keys) {
             let means = |action| move |&key| bindings.of_key(key) == Some(action);
-            lean += direction(|action| devices.keys.iter().any(means(action)));
+            let keys = direction(|action| devices.keys.iter().any(means(action)));
+            if keys != Vec2::ZERO {
+                self.used[player] = Some(Seat::Keys);
+            }
+            lean += keys;
         }
         let all = devices.sticks.devices.iter();
         for device in all.filter(|device| holds(Seat::Stick(device.id))) {
@@ -152,10 +167,17 @@ impl Players {
                 .filter(|(_, button)| button.down)
                 .filter_map(|(control, _)| bindings.of_button(control))
                 .collect();
-            lean += direction(|action| held.contains(&action));
+            let hat = direction(|action| held.contains(&action));
+            lean += hat;
+            let is_used =
+                hat != Vec2::ZERO || stick != before || (stick != [0.0; 2] && !manner.stick_places);
+            if is_used {
+                self.used[player] = Some(Seat::Stick(device.id));
+            }
         }
-        if holds(Seat::Pointer) {
-            place = devices.pointer.or(place);
+        if holds(Seat::Pointer) && devices.pointer.is_some() {
+            place = devices.pointer;
+            self.used[player] = Some(Seat::Pointer);
         }
         if let Some(place) = place {
             self.goals[player] = Some(place);

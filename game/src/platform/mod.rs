@@ -1,7 +1,8 @@
 //! What differs between a desktop and a browser: where things are kept, how sound comes out, which
-//! sticks can be read. Nothing else in the game knows on which it runs.
+//! sticks can be read and felt. Nothing else in the game knows on which it runs.
 
 mod files;
+mod forces;
 #[cfg(not(target_family = "wasm"))]
 mod sound;
 #[cfg(target_family = "wasm")]
@@ -10,5 +11,6 @@ mod sound;
 mod sticks;
 
 pub use files::{Files, SavedReplay};
+pub use forces::Forces;
 pub use sound::Sound;
 pub use sticks::Pads;

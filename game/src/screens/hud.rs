@@ -145,6 +145,9 @@ fn draw_chips(row: &mut Row, theme: &Theme, game: &Game) {
     if game.players.second().is_some() {
         chip("●●", said.join_hint);
     }
+    if game.forces.is_cut() {
+        chip("×", said.forces_cut);
+    }
     if let Some(colour) = game.elements {
         draw_legend(row, theme, colour);
     }

@@ -1,6 +1,7 @@
 //! What there is to see and to choose. Each screen is a function of the game and asks it for what
 //! should happen.
 
+mod forces;
 mod hud;
 mod kit;
 mod levels;
@@ -31,6 +32,7 @@ pub fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
         Screen::Paused => paused::show(game, ui),
         Screen::Result => result::show(game, ui),
         Screen::Settings(from) => settings::show(game, ui, *from),
+        Screen::Forces(from) => forces::show(game, ui, *from),
         Screen::Replays => replays::show(game, ui),
     }
     notices(game, ui);

@@ -17,6 +17,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, from: Screen) {
     let mut chosen = before.clone();
     let listens = game.rebinding.is_some();
     let mut back = !listens && ui.input(|input| input.key_pressed(egui::Key::Escape));
+    let mut to_forces = false;
     let area = place_of_page(ui);
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
         let response = header(ui, &theme, said.back, said.settings);
@@ -74,15 +75,10 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, from: Screen) {
                     &mut chosen.stick_places,
                     &options,
                 );
-                slider(
-                    ui,
-                    &theme,
-                    said.haptics,
-                    &mut chosen.haptics,
-                    0.0,
-                    1.0,
-                    0.05,
-                );
+                let strength = &mut chosen.haptics;
+                slider(ui, &theme, said.haptics, strength, 0.0, 1.0, 0.05);
+                let size = vec2(ui.available_width(), 44.0);
+                to_forces = button(ui, &theme, said.try_forces, size, Weight::Other).clicked();
             });
             section(ui, &theme, said.look_section, |ui| {
                 choice(
@@ -124,7 +120,10 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, from: Screen) {
         game.settings = chosen.in_range();
         game.keep_settings();
     }
-    if back {
+    if to_forces {
+        game.blip(Menu::Confirm);
+        game.go(Screen::Forces(Box::new(Screen::Settings(Box::new(from)))));
+    } else if back {
         game.rebinding = None;
         game.blip(Menu::Back);
         game.go(from);
@@ -145,19 +144,11 @@ fn controls(ui: &mut Ui, game: &mut Game, chosen: &mut Settings) {
     let (theme, said) = (game.theme(), game.words());
     section(ui, &theme, said.controls, |ui| {
         for action in Action::ALL {
-            let keys = chosen.bindings.keys.get(&action).into_iter().flatten();
-            let keys: Vec<&str> = keys.map(|&key| name_of(key)).collect();
-            let buttons = chosen.bindings.buttons.get(&action).into_iter().flatten();
-            let buttons: Vec<&str> = buttons.map(|button| button.0.as_str()).collect();
+            let [keys, buttons] = chosen.bindings.names(action);
             let listens = game.rebinding == Some(action);
             let text = match listens {
                 true => said.press_any.to_string(),
-                false => format!(
-                    "{}: {}  ·  {}",
-                    (said.action)(action),
-                    keys.join(" "),
-                    buttons.join(" ")
-                ),
+                false => format!("{}: {keys}  ·  {buttons}", (said.action)(action)),
             };
             let weight = if listens { Weight::Main } else { Weight::Other };
             let response = button(ui, &theme, &text, vec2(ui.available_width(), 44.0), weight);
@@ -177,16 +168,4 @@ fn controls(ui: &mut Ui, game: &mut Game, chosen: &mut Settings) {
             ui.add_space(4.0);
         }
     });
-}
-
-/// A key as it is written: egui's arrows are in no font of ours.
-fn name_of(key: egui::Key) -> &'static str {
-    use egui::Key;
-    match key {
-        Key::ArrowUp => "↑",
-        Key::ArrowDown => "↓",
-        Key::ArrowLeft => "←",
-        Key::ArrowRight => "→",
-        key => key.symbol_or_name(),
-    }
 }

@@ -2,6 +2,7 @@
 
 use super::Words;
 use crate::input::Action;
+use force_feedback::{Ability, Stop};
 use tamaire_play::Route;
 
 pub(super) const WORDS: Words = Words {
@@ -62,7 +63,59 @@ pub(super) const WORDS: Words = Words {
     effects: "Effects",
     music: "Music",
     interface: "Menus",
-    haptics: "Rumble",
+    haptics: "Force",
+    forces: "Forces",
+    try_forces: "Sticks and pads…",
+    no_devices: "No stick or pad is plugged in.",
+    ability: |ability| match ability {
+        Ability::Force => "It can push the stick",
+        Ability::Rumble => "It can rumble",
+        Ability::Nothing => "It cannot be felt",
+    },
+    forces_off: "Force is 0: nothing is sent",
+    silent: |why| match why {
+        Stop::Unheard | Stop::Idle => "Nothing: nobody plays with it",
+        Stop::Paused => "Nothing: the game is paused",
+        Stop::FocusLost => "Nothing: another window is in front",
+        Stop::Menu => "Nothing: a menu is open",
+        Stop::Won => "Nothing: the round is won",
+        Stop::Reset => "Nothing: the round begins",
+        Stop::Unplugged => "Nothing: it is unplugged",
+        Stop::Stale => "Nothing: the game is too slow",
+        Stop::Emergency => "Nothing: forces are off",
+        Stop::Ended => "Nothing: force feedback broke down",
+    },
+    motors: ["Slow motor", "Fast motor"],
+    gains: ["Gain ←→", "Gain ↑↓"],
+    try_it: "Try it",
+    enough: "Enough",
+    push_it: "Push the stick: it pushes back, and tears at its rim.",
+    measure: "Measure",
+    hands_off: "Let go of the stick!",
+    measured: "Measured.",
+    not_measured: "That was not clear. Let go of the stick while it is measured.",
+    built: |built| match (built.swap, built.invert) {
+        (false, [false, false]) => "Built in as usual".into(),
+        (swap, [x, y]) => {
+            let parts = [
+                (swap, "swapped"),
+                (x, "←→ turned round"),
+                (y, "↑↓ turned round"),
+            ];
+            let parts: Vec<&str> = parts
+                .iter()
+                .filter(|part| part.0)
+                .map(|part| part.1)
+                .collect();
+            format!("Motors: {}", parts.join(", "))
+        }
+    },
+    forces_cut: "Forces off",
+    cut_now: "All forces are off. Switch them on again in the settings, under Sticks and pads.",
+    cut_hint: |[keys, buttons]| {
+        format!("To switch all forces off at once, press {keys} or button {buttons}.")
+    },
+    restore: "Switch forces on again",
     speed: "Game speed",
     sensitivity: "Sensitivity",
     stick_places: "Stick points at the place",
@@ -86,6 +139,7 @@ pub(super) const WORDS: Words = Words {
         Action::Slow => "Slow motion",
         Action::Step => "Single step",
         Action::Join => "Second player",
+        Action::CutForces => "Forces off",
     },
     on: "On",
     off: "Off",

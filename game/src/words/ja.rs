@@ -2,6 +2,7 @@
 
 use super::Words;
 use crate::input::Action;
+use force_feedback::{Ability, Stop};
 use tamaire_play::level::LevelError;
 use tamaire_play::{ReplayError, Route};
 
@@ -63,7 +64,55 @@ pub(super) const WORDS: Words = Words {
     effects: "効果音",
     music: "音楽",
     interface: "メニュー音",
-    haptics: "しんどう",
+    haptics: "手ごたえ",
+    forces: "手ごたえ",
+    try_forces: "スティックとパッド…",
+    no_devices: "スティックもパッドも つながっていません。",
+    ability: |ability| match ability {
+        Ability::Force => "おしかえせます",
+        Ability::Rumble => "しんどうできます",
+        Ability::Nothing => "手ごたえは ありません",
+    },
+    forces_off: "手ごたえが0なので、何も送りません",
+    silent: |why| match why {
+        Stop::Unheard | Stop::Idle => "なし：だれも使っていません",
+        Stop::Paused => "なし：ひとやすみ中",
+        Stop::FocusLost => "なし：ほかのウィンドウが前にあります",
+        Stop::Menu => "なし：メニュー中",
+        Stop::Won => "なし：もう かちました",
+        Stop::Reset => "なし：はじまるところです",
+        Stop::Unplugged => "なし：ぬけています",
+        Stop::Stale => "なし：ゲームが おそすぎます",
+        Stop::Emergency => "なし：手ごたえを切りました",
+        Stop::Ended => "なし：手ごたえが こわれました",
+    },
+    motors: ["おそいモーター", "はやいモーター"],
+    gains: ["強さ ←→", "強さ ↑↓"],
+    try_it: "ためす",
+    enough: "おわり",
+    push_it: "スティックをおすと おしかえし、はしまで行くと ちぎれます。",
+    measure: "はかる",
+    hands_off: "スティックから手をはなしてね！",
+    measured: "はかりました。",
+    not_measured: "うまくはかれませんでした。はかるあいだは 手をはなしてね。",
+    built: |built| match (built.swap, built.invert) {
+        (false, [false, false]) => "モーターの向き：ふつう".into(),
+        (swap, [x, y]) => {
+            let parts = [(swap, "入れかえ"), (x, "←→ が反対"), (y, "↑↓ が反対")];
+            let parts: Vec<&str> = parts
+                .iter()
+                .filter(|part| part.0)
+                .map(|part| part.1)
+                .collect();
+            format!("モーターの向き：{}", parts.join("・"))
+        }
+    },
+    forces_cut: "手ごたえ オフ",
+    cut_now: "手ごたえを切りました。せっていの「スティックとパッド」で もどせます。",
+    cut_hint: |[keys, buttons]| {
+        format!("{keys} か、ボタン {buttons} をおすと、手ごたえが すぐ切れます。")
+    },
+    restore: "手ごたえをもどす",
     speed: "はやさ",
     sensitivity: "うごきの大きさ",
     stick_places: "スティックで場所をさす",
@@ -87,6 +136,7 @@ pub(super) const WORDS: Words = Words {
         Action::Slow => "スロー",
         Action::Step => "コマおくり",
         Action::Join => "ふたりで",
+        Action::CutForces => "手ごたえを切る",
     },
     on: "オン",
     off: "オフ",

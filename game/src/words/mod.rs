@@ -4,6 +4,7 @@ mod en;
 mod ja;
 
 use crate::input::Action;
+use force_feedback::{Ability, Calibration, Stop};
 use serde::{Deserialize, Serialize};
 use tamaire_play::level::LevelError;
 use tamaire_play::{Outcome, ReplayError, Route, Wish, Words as Name};
@@ -72,6 +73,26 @@ pub struct Words {
     pub music: &'static str,
     pub interface: &'static str,
     pub haptics: &'static str,
+    pub forces: &'static str,
+    pub try_forces: &'static str,
+    pub no_devices: &'static str,
+    pub ability: fn(Ability) -> &'static str,
+    pub forces_off: &'static str,
+    pub silent: fn(Stop) -> &'static str,
+    pub motors: [&'static str; 2],
+    pub gains: [&'static str; 2],
+    pub try_it: &'static str,
+    pub enough: &'static str,
+    pub push_it: &'static str,
+    pub measure: &'static str,
+    pub hands_off: &'static str,
+    pub measured: &'static str,
+    pub not_measured: &'static str,
+    pub built: fn(&Calibration) -> String,
+    pub forces_cut: &'static str,
+    pub cut_now: &'static str,
+    pub cut_hint: fn(&[String; 2]) -> String,
+    pub restore: &'static str,
     pub speed: &'static str,
     pub sensitivity: &'static str,
     pub stick_places: &'static str,

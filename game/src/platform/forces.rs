@@ -1,0 +1,100 @@
+//! What the hands that hold sticks and pads are made to feel.
+
+use super::Pads;
+use force_feedback::{Force, Line, Report, Settings, State, Stop};
+use std::collections::BTreeMap;
+use sticks::{Device, DeviceId, Snapshot};
+
+/// How often a second devices are told what to do.
+const RATE: u32 = 250;
+
+/// Leads to all devices that can be felt. Nothing is taken hold of before it is asked for, and dropping this lets go of all.
+#[derive(Default)]
+pub struct Forces {
+    lines: BTreeMap<DeviceId, Line>,
+    /// None until the first device comes.
+    force: Option<Force>,
+    is_cut: bool,
+}
+
+impl Forces {
+    /// Takes hold of devices that came and lets go of those that left. `settings` says how each is to be felt; those of which
+    /// it says nothing are let go too.
+    pub fn attend(
+        &mut self,
+        devices: &Snapshot,
+        pads: &Pads,
+        settings: impl Fn(&Device) -> Option<Settings>,
+    ) {
+        let wanted = devices.devices.iter();
+        let wanted: BTreeMap<DeviceId, Settings> = wanted
+            .filter_map(|device| Some((device.id, settings(device)?)))
+            .collect();
+        self.lines.retain(|id, _| wanted.contains_key(id));
+        for (id, settings) in wanted {
+            if let Some(line) = self.lines.get(&id) {
+                line.set(settings);
+            } else if let Some(force) = self.force() {
+                let line = force.add(pads.haptic(id), settings);
+                self.lines.insert(id, line);
+            }
+        }
+    }
+
+    /// The thread, unless the system has none to give: then nothing is felt.
+    fn force(&mut self) -> Option<&Force> {
+        // A browser has neither threads nor a clock for them.
+        if self.force.is_none() && !cfg!(target_family = "wasm") {
+            self.force = Force::start(RATE).ok();
+            if let (Some(force), true) = (&self.force, self.is_cut) {
+                force.emergency_stop();
+            }
+        }
+        self.force.as_ref()
+    }
+
+    /// Tells each device what there is to feel, or why there is nothing.
+    pub fn tell(&self, wish: impl Fn(DeviceId) -> Result<State, Stop>) {
+        for (&id, line) in &self.lines {
+            match wish(id) {
+                Ok(state) => line.feel(state),
+                // Once is enough: it lasts.
+                Err(why) if line.report().silent != Some(why) => line.stop(why),
+                Err(_) => {}
+            }
+        }
+    }
+
+    /// Something tore that a device is to feel; 1 is as large as a tear gets.
+    pub fn tear(&self, device: DeviceId, size: f32) {
+        if let Some(line) = self.lines.get(&device) {
+            line.tear(size);
+        }
+    }
+
+    /// Ends all forces at once, and for as long as this is not taken back.
+    pub fn cut(&mut self) {
+        self.is_cut = true;
+        if let Some(force) = &self.force {
+            force.emergency_stop();
+        }
+    }
+
+    /// Takes back that.
+    pub fn restore(&mut self) {
+        self.is_cut = false;
+        if let Some(force) = &self.force {
+            force.release();
+        }
+    }
+
+    /// Whether all forces were cut.
+    pub fn is_cut(&self) -> bool {
+        self.is_cut
+    }
+
+    /// What a device can do, and what it does.
+    pub fn report(&self, device: DeviceId) -> Option<Report> {
+        self.lines.get(&device).map(Line::report)
+    }
+}

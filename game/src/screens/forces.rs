@@ -1,0 +1,280 @@
+//! What sticks and pads can do, what they say, and what they are made to do, as it happens.
+
+use super::kit::{Weight, button, card, fitted, header, page, place_of_page, slider};
+use super::veil;
+use crate::game::trial::Trial;
+use crate::game::{Game, Screen};
+use crate::look::Theme;
+use crate::words::Words;
+use egui::{Color32, Painter, Pos2, Rect, RichText, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
+use force_feedback::{Ability, Output, Report};
+use sticks::Device;
+use tamaire_sound::Menu;
+
+/// Radius of the circle in which a stick is seen to lean.
+const CIRCLE: f32 = 78.0;
+/// A bar that fills: its size, and from one to the next.
+const BAR: egui::Vec2 = vec2(150.0, 14.0);
+const ROW: f32 = 34.0;
+/// A light for a button, and from one to the next.
+const LIGHT: f32 = 6.0;
+const LIGHTS: f32 = 17.0;
+
+pub(super) fn show(game: &mut Game, ui: &mut Ui, from: Screen) {
+    veil(ui, 255);
+    let (theme, said) = (game.theme(), game.words());
+    let before = game.settings.clone();
+    let mut chosen = before.clone();
+    let mut back = ui.input(|input| input.key_pressed(egui::Key::Escape));
+    let area = place_of_page(ui);
+    ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
+        let response = header(ui, &theme, said.back, said.forces);
+        super::play::focus_first(ui, &response);
+        back |= response.clicked();
+        page(ui, 860.0, |ui| {
+            card(ui, &theme, |ui| {
+                ui.set_width(ui.available_width());
+                let strength = &mut chosen.haptics;
+                slider(ui, &theme, said.haptics, strength, 0.0, 1.0, 0.05);
+                if game.forces.is_cut() {
+                    let width = ui.available_width();
+                    let text = said.restore;
+                    if button(ui, &theme, text, vec2(width, 48.0), Weight::Main).clicked() {
+                        game.forces.restore();
+                    }
+                } else {
+                    let keys = game
+                        .settings
+                        .bindings
+                        .names(crate::input::Action::CutForces);
+                    let hint = (said.cut_hint)(&keys);
+                    ui.label(RichText::new(hint).size(18.0).color(theme.faint));
+                }
+            });
+            ui.add_space(12.0);
+            let devices = game.devices.sticks.devices.clone();
+            if devices.is_empty() {
+                ui.vertical_centered(|ui| {
+                    ui.add_space(60.0);
+                    ui.label(RichText::new(said.no_devices).size(22.0).color(theme.faint));
+                });
+            }
+            for device in &devices {
+                card(ui, &theme, |ui| {
+                    ui.set_width(ui.available_width());
+                    show_device(ui, &theme, game, device);
+                    let report = game.forces.report(device.id);
+                    if report.is_some_and(|report| report.ability == Ability::Force) {
+                        let model = &device.about.guid;
+                        let known = chosen.calibrations.get(model).copied();
+                        let mut calibration = known.unwrap_or_default();
+                        for (name, gain) in said.gains.iter().zip(&mut calibration.gain) {
+                            slider(ui, &theme, name, gain, 0.0, 1.0, 0.05);
+                        }
+                        if calibration != known.unwrap_or_default() {
+                            chosen.calibrations.insert(model.clone(), calibration);
+                        }
+                    }
+                });
+                ui.add_space(12.0);
+            }
+        });
+    });
+    if chosen != before {
+        game.settings = chosen.in_range();
+        game.keep_settings();
+    }
+    if back {
+        game.blip(Menu::Back);
+        game.go(from);
+    }
+}
+
+fn show_device(ui: &mut Ui, theme: &Theme, game: &mut Game, device: &Device) {
+    let said = game.words();
+    let report = game.forces.report(device.id);
+    let is_off = game.settings.haptics == 0.0;
+    let can = match report {
+        _ if is_off => said.forces_off,
+        Some(report) => (said.ability)(report.ability),
+        None => (said.ability)(Ability::Nothing),
+    };
+    let size = vec2(ui.available_width(), 34.0);
+    let (place, _) = ui.allocate_exact_size(size, Sense::hover());
+    let right = fitted(ui.painter(), can, 19.0, 0.4 * size.x, theme.faint);
+    let width = size.x - right.size().x - 20.0;
+    let left = fitted(ui.painter(), &device.about.name, 24.0, width, theme.ink);
+    let at = place.left_center() - vec2(0.0, 0.5 * left.size().y);
+    ui.painter().galley(at, left, theme.ink);
+    let at = place.right_center() - vec2(right.size().x, 0.5 * right.size().y);
+    ui.painter().galley(at, right, theme.faint);
+    ui.horizontal(|ui| {
+        let size = vec2(2.0 * CIRCLE, 2.0 * CIRCLE + 8.0);
+        let (place, _) = ui.allocate_exact_size(size, Sense::hover());
+        draw_stick(ui.painter(), theme, place.center(), device, report);
+        ui.add_space(14.0);
+        ui.vertical(|ui| draw_report(ui, theme, said, device, report));
+        ui.add_space(14.0);
+        ui.vertical(|ui| show_acts(ui, theme, game, device, report));
+    });
+}
+
+/// Where the stick leans, and how it is pushed.
+fn draw_stick(
+    painter: &Painter,
+    theme: &Theme,
+    middle: Pos2,
+    device: &Device,
+    report: Option<Report>,
+) {
+    let rim = Stroke::new(3.0, theme.button);
+    painter.circle(middle, CIRCLE, theme.paper, rim);
+    for way in [vec2(1.0, 0.0), vec2(0.0, 1.0)] {
+        let ends = [middle - CIRCLE * way, middle + CIRCLE * way];
+        painter.line_segment(ends, Stroke::new(1.5, theme.button));
+    }
+    let [x, y] = device.aim().map(|k| k.clamp(-1.0, 1.0));
+    let knob = middle + (CIRCLE - 12.0) * vec2(x, -y);
+    painter.circle(knob, 12.0, theme.card, Stroke::new(4.0, theme.ink));
+    if let Some(Output::Force([x, y])) = report.map(|report| report.output) {
+        let push = CIRCLE * vec2(x, -y);
+        if push.length() > 2.0 {
+            painter.arrow(knob, push, Stroke::new(5.0, theme.accent));
+        }
+    }
+}
+
+/// What is sent, in numbers, and every axis and button.
+fn draw_report(ui: &mut Ui, theme: &Theme, said: &Words, device: &Device, report: Option<Report>) {
+    let rows = device.axes.len().div_ceil(2) as f32;
+    let width = 330.0;
+    let (place, _) = ui.allocate_exact_size(
+        vec2(width, 2.0 * ROW + 30.0 + 12.0 * rows + LIGHTS),
+        Sense::hover(),
+    );
+    let painter = ui.painter();
+    let mut at = place.left_top();
+    let zero = Output::Force([0.0; 2]);
+    let output = report.map_or(zero, |report| report.output);
+    let (names, levels) = match output {
+        Output::Force(force) => (["←→", "↑↓"], force),
+        Output::Rumble { low, high } => (said.motors, [low, high]),
+    };
+    for (name, level) in names.into_iter().zip(levels) {
+        let galley = fitted(painter, name, 17.0, 100.0, theme.ink);
+        let height = galley.size().y;
+        painter.galley(at + vec2(0.0, 0.5 * (ROW - height)), galley, theme.ink);
+        let bar = Rect::from_min_size(at + vec2(104.0, 0.5 * (ROW - BAR.y)), BAR);
+        let is_signed = matches!(output, Output::Force(_));
+        draw_bar(painter, theme, bar, level, is_signed, theme.accent);
+        let text = format!("{level:+.2}");
+        let galley = fitted(painter, &text, 17.0, 70.0, theme.ink);
+        painter.galley(
+            bar.right_center() + vec2(10.0, -0.5 * height),
+            galley,
+            theme.ink,
+        );
+        at.y += ROW;
+    }
+    let text = match report {
+        None => String::new(),
+        Some(Report {
+            silent: Some(why), ..
+        }) => (said.silent)(why).to_string(),
+        Some(Report {
+            newtons: [x, y], ..
+        }) => format!("{:.0} N", x.hypot(y)),
+    };
+    let galley = fitted(painter, &text, 17.0, width, theme.faint);
+    painter.galley(at + vec2(0.0, 3.0), galley, theme.faint);
+    at.y += 30.0;
+    for (number, &axis) in device.axes.iter().enumerate() {
+        let corner = vec2(
+            0.5 * width * (number % 2) as f32,
+            12.0 * (number / 2) as f32,
+        );
+        let bar = Rect::from_min_size(at + corner, vec2(0.5 * width - 14.0, 7.0));
+        draw_bar(painter, theme, bar, axis, true, theme.ink);
+    }
+    at.y += 12.0 * rows + LIGHT;
+    for (number, (_, button)) in device.controls().enumerate() {
+        let middle = at + vec2(LIGHT + LIGHTS * number as f32, LIGHT);
+        if middle.x > place.right() {
+            break;
+        }
+        let fill = if button.down {
+            theme.accent
+        } else {
+            theme.button
+        };
+        painter.circle_filled(middle, LIGHT, fill);
+    }
+}
+
+/// A bar that fills from its left end, or from its middle.
+fn draw_bar(
+    painter: &Painter,
+    theme: &Theme,
+    bar: Rect,
+    level: f32,
+    is_signed: bool,
+    fill: Color32,
+) {
+    let round = 0.5 * bar.height();
+    painter.rect_filled(bar, round, theme.button);
+    let level = level.clamp(-1.0, 1.0);
+    let (start, length) = match is_signed {
+        true => (bar.center().x, 0.5 * level * bar.width()),
+        false => (bar.left(), level * bar.width()),
+    };
+    let ends = [start, start + length];
+    let filled = Rect::from_x_y_ranges(
+        ends[0].min(ends[1])..=ends[0].max(ends[1]),
+        bar.top()..=bar.bottom(),
+    );
+    painter.rect_filled(filled, round, fill);
+    let edge = Stroke::new(1.0, theme.faint);
+    painter.rect_stroke(bar, round, edge, StrokeKind::Outside);
+    if is_signed {
+        let middle = [pos2(start, bar.top()), pos2(start, bar.bottom())];
+        painter.line_segment(middle, edge);
+    }
+}
+
+/// What can be done with a device.
+fn show_acts(ui: &mut Ui, theme: &Theme, game: &mut Game, device: &Device, report: Option<Report>) {
+    let said = game.words();
+    let ability = report.map_or(Ability::Nothing, |report| report.ability);
+    if ability == Ability::Nothing || game.forces.is_cut() {
+        return;
+    }
+    let size = vec2(ui.available_width(), 48.0);
+    let trial = game.trial.filter(|trial| trial.device == device.id);
+    let progress = trial.and_then(|trial| trial.progress());
+    let (text, weight) = match (trial, progress) {
+        (None, _) => (said.try_it, Weight::Other),
+        (Some(_), _) => (said.enough, Weight::Main),
+    };
+    if button(ui, theme, text, size, weight).clicked() {
+        game.trial = trial.is_none().then(|| Trial::spring(device.id));
+    }
+    ui.add_space(6.0);
+    let text = match progress {
+        Some(_) => said.hands_off,
+        None if trial.is_some() => said.push_it,
+        None => "",
+    };
+    if trial.is_none() && ability == Ability::Force {
+        if button(ui, theme, said.measure, size, Weight::Other).clicked() {
+            game.trial = Some(Trial::measure(device.id));
+        }
+        let known = game.settings.calibrations.get(&device.about.guid);
+        let text = (said.built)(&known.copied().unwrap_or_default());
+        ui.label(RichText::new(text).size(16.0).color(theme.faint));
+    }
+    ui.label(RichText::new(text).size(17.0).color(theme.ink));
+    if let Some(share) = progress {
+        let (bar, _) = ui.allocate_exact_size(vec2(size.x, BAR.y), Sense::hover());
+        draw_bar(ui.painter(), theme, bar, share, false, theme.good);
+    }
+}

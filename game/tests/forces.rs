@@ -1,0 +1,366 @@
+//! What reaches the hands that hold sticks and pads, and every way in which it ends. No window is open, but the thread
+//! that tells the devices is real.
+
+use force_feedback::{Ability, Calibration, Output, Recording, Stop};
+use fuwafuwa::world::TICK;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::time::{Duration, Instant};
+use sticks::{About, Device, DeviceId, PadButton, Snapshot, Sticks};
+use tamaire::game::trial::Trial;
+use tamaire::game::{Game, Screen};
+use tamaire::input::{Action, Seat};
+use tamaire::platform::{Files, Pads, Sound};
+
+/// However busy the machine is.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A game with sticks that note what they are made to do.
+struct Table {
+    game: Game,
+    devices: Vec<Device>,
+    notes: Vec<Recording>,
+}
+
+impl Table {
+    fn with(count: u32) -> Self {
+        let devices: Vec<Device> = (0..count).map(stick).collect();
+        let notes = devices.iter().map(|_| Recording::default()).collect();
+        let mut table = Self {
+            game: Game::new(Files::nowhere(), Sound::none(), Pads::none()),
+            devices,
+            notes,
+        };
+        table.plug_in();
+        table
+    }
+
+    /// As `devices` say.
+    fn plug_in(&mut self) {
+        let devices = self.devices.clone();
+        for (device, note) in devices.iter().zip(&self.notes) {
+            note.lean(Ok(device.aim()));
+        }
+        let notes = devices.iter().map(|device| device.id);
+        let notes = notes.zip(self.notes.iter().cloned()).collect();
+        self.game.pads = Pads::of(Snapshot { devices }).noting(notes);
+    }
+
+    /// Pushes the first stick, or another, to the right.
+    fn lean(&mut self, stick: usize, right: f32) {
+        self.devices[stick].axes[0] = right;
+        self.plug_in();
+    }
+
+    fn frame(&mut self) {
+        std::thread::sleep(Duration::from_millis(4));
+        self.game.hear_sticks();
+        self.game.pass(TICK);
+    }
+
+    /// Lets time pass until something is so.
+    fn until(&mut self, what: &str, mut is_so: impl FnMut(&mut Self) -> bool) {
+        let start = Instant::now();
+        while !is_so(self) {
+            assert!(start.elapsed() < PATIENCE, "never {what}");
+            self.frame();
+        }
+    }
+
+    /// What a stick was told last, and all before it that was asked for.
+    fn told(&self, stick: usize) -> Option<Output> {
+        self.notes[stick].take().last().map(|played| played.output)
+    }
+
+    fn until_pushed(&mut self, stick: usize) {
+        self.until("pushed", |table| {
+            table.told(stick).is_some_and(|output| !output.is_zero())
+        });
+    }
+
+    fn until_let_go(&mut self, stick: usize) {
+        self.until("let go", |table| {
+            table.told(stick).is_some_and(|output| output.is_zero())
+        });
+    }
+
+    /// For a while nothing is told to a stick.
+    fn hears_nothing(&mut self, stick: usize) {
+        self.notes[stick].take();
+        for _frame in 0..60 {
+            self.frame();
+        }
+        assert_eq!(self.told(stick), None);
+    }
+
+    fn silent(&self, stick: usize) -> Option<Stop> {
+        let report = self.game.forces.report(self.devices[stick].id);
+        report.expect("it is held").silent
+    }
+
+    /// In the first level, with the hand against the body.
+    fn pushing() -> Self {
+        let mut table = Self::with(1);
+        table.game.start(0);
+        table.lean(0, 1.0);
+        table.until_pushed(0);
+        table
+    }
+}
+
+fn stick(id: u32) -> Device {
+    let about = About {
+        name: "Stick".into(),
+        guid: format!("{id:032}"),
+    };
+    Device::at_rest(DeviceId(id), about, 2, 12, 1)
+}
+
+#[test]
+fn a_stick_that_pushes_the_body_is_pushed_back() {
+    let mut table = Table::with(1);
+    table.game.start(0);
+    table.hears_nothing(0);
+    table.lean(0, 1.0);
+    table.until("pushed to the left", |table| match table.told(0) {
+        Some(Output::Force([x, y])) => {
+            assert!(x <= 0.0 && x >= -0.9 && y.abs() <= 0.9, "{x} {y}");
+            x < -0.05
+        }
+        _ => false,
+    });
+}
+
+#[test]
+fn it_ends_with_a_pause_a_menu_a_new_round_and_another_window() {
+    let ways: [(fn(&mut Game), Stop); 5] = [
+        (|game| game.act(Action::Pause, Seat::Keys), Stop::Paused),
+        (|game| game.go(Screen::Title), Stop::Menu),
+        (|game| game.start(0), Stop::Reset),
+        (|game| game.is_away = true, Stop::FocusLost),
+        (|game| game.act(Action::Step, Seat::Keys), Stop::Paused),
+    ];
+    for (way, reason) in ways {
+        let mut table = Table::pushing();
+        way(&mut table.game);
+        table.game.pass(0.0);
+        assert_eq!(table.silent(0), Some(reason));
+        table.until_let_go(0);
+    }
+}
+
+#[test]
+fn it_ends_with_a_win() {
+    let mut table = Table::pushing();
+    let bot = tamaire_play::BotKind::NAMED[0].1;
+    let mut bot = tamaire_play::Bot::new(bot, 1);
+    table.until("won", |table| {
+        // The bot plays with the stick, that points at places.
+        table.game.settings.stick_places = true;
+        let round = table.game.session.round();
+        let [low, high] = round.level().arena();
+        let goal = bot.frame(round).goal(0).expect("it plays");
+        let [x, y] = [0, 1].map(|axis| {
+            let middle = 0.5 * (low[axis] + high[axis]);
+            (goal[axis] - middle) / (0.5 * (high[axis] - low[axis]))
+        });
+        // What the dead zone takes is put in before.
+        let lean = x.hypot(y).max(1e-3);
+        let share = (0.15 + 0.8 * lean) / lean;
+        table.devices[0].axes = vec![share * x, -share * y];
+        table.plug_in();
+        table.game.session.round().progress().outcome.is_some()
+    });
+    assert_eq!(table.silent(0), Some(Stop::Won));
+    table.until_let_go(0);
+}
+
+#[test]
+fn it_ends_when_the_stick_is_unplugged_and_the_round_waits() {
+    let mut table = Table::pushing();
+    let note = table.notes[0].clone();
+    let device = table.devices.remove(0);
+    table.plug_in();
+    table.frame();
+    assert_eq!(table.game.screen, Screen::Paused);
+    assert_eq!(table.game.forces.report(device.id), None);
+    table.until("let go", |_| {
+        let told = note.take().last().map(|played| played.output);
+        told.is_some_and(|output| output.is_zero())
+    });
+    // Plugged in again it has another id, and plays on.
+    table.devices.push(stick(7));
+    table.notes = vec![Recording::default()];
+    table.lean(0, 1.0);
+    table.frame();
+    table.game.go(Screen::Play);
+    table.until_pushed(0);
+}
+
+#[test]
+fn it_ends_when_the_game_panics_or_is_closed() {
+    let mut table = Table::pushing();
+    let note = table.notes[0].clone();
+    let panicked = catch_unwind(AssertUnwindSafe(move || {
+        table.frame();
+        panic!("on purpose");
+    }));
+    assert!(panicked.is_err());
+    let last = note.take().last().map(|played| played.output);
+    assert!(last.is_some_and(|output| output.is_zero()), "{last:?}");
+
+    let mut table = Table::pushing();
+    let note = table.notes[0].clone();
+    table.frame();
+    drop(table);
+    let last = note.take().last().map(|played| played.output);
+    assert!(last.is_some_and(|output| output.is_zero()), "{last:?}");
+}
+
+#[test]
+fn the_emergency_key_ends_it_until_it_is_taken_back() {
+    let mut table = Table::pushing();
+    table.game.act(Action::CutForces, Seat::Keys);
+    table.until_let_go(0);
+    table.hears_nothing(0);
+    assert!(table.game.forces.is_cut() && !table.game.notices.is_empty());
+    // In a new round as well.
+    table.game.start(0);
+    table.hears_nothing(0);
+    table.game.forces.restore();
+    table.until_pushed(0);
+}
+
+#[test]
+fn at_strength_0_nothing_is_sent_and_nothing_taken_hold_of() {
+    let mut table = Table::with(1);
+    table.game.settings.haptics = 0.0;
+    table.game.start(0);
+    table.lean(0, 1.0);
+    table.hears_nothing(0);
+    assert_eq!(table.game.forces.report(table.devices[0].id), None);
+    table.game.settings.haptics = 0.5;
+    table.until_pushed(0);
+    table.game.settings.haptics = 0.0;
+    table.frame();
+    table.until_let_go(0);
+}
+
+#[test]
+fn each_player_feels_the_own_hand() {
+    let mut table = Table::with(2);
+    table.game.start(0);
+    table.game.act(Action::Join, Seat::Stick(DeviceId(1)));
+    // The second hand comes in far above the body, and stays there.
+    table.lean(0, 1.0);
+    table.until_pushed(0);
+    assert_eq!(table.told(1), None);
+    // And pushes into it from above while the first lets go.
+    table.lean(0, 0.0);
+    table.devices[1].axes = vec![0.6, 0.6];
+    table.plug_in();
+    table.until_pushed(1);
+}
+
+#[test]
+fn a_stick_that_lies_on_the_table_is_left_alone() {
+    let mut table = Table::pushing();
+    table.game.devices.keys.insert(egui::Key::D);
+    table.lean(0, 0.0);
+    table.until("left alone", |table| table.silent(0) == Some(Stop::Idle));
+    table.until("let go", |table| {
+        let report = table.game.forces.report(DeviceId(0));
+        report.is_some_and(|report| report.output.is_zero())
+    });
+    table.hears_nothing(0);
+}
+
+#[test]
+fn a_pad_hums_when_it_pushes_and_rattles_when_it_tears() {
+    let mut table = Table::with(1);
+    table.notes = vec![Recording::new(Ability::Rumble)];
+    table.game.start(0);
+    table.lean(0, 1.0);
+    let (mut hummed, mut rattled) = (false, false);
+    table.until("torn", |table| {
+        // To and fro, as hard as it goes.
+        let to_and_fro = table.game.session.round().world().ticks() / 20 % 3;
+        table.lean(0, if to_and_fro == 2 { -1.0 } else { 1.0 });
+        for played in table.notes[0].take() {
+            let Output::Rumble { low, high } = played.output else {
+                panic!("it is a pad")
+            };
+            hummed |= low > 0.1;
+            rattled |= high > 0.1;
+        }
+        hummed && rattled
+    });
+}
+
+#[test]
+fn a_stick_can_be_tried_and_measured() {
+    let mut table = Table::with(1);
+    table.game.go(Screen::Forces(Box::new(Screen::Title)));
+    table.lean(0, 0.5);
+    table.hears_nothing(0);
+    table.game.trial = Some(Trial::spring(DeviceId(0)));
+    table.until_pushed(0);
+    table.game.go(Screen::Title);
+    table.until_let_go(0);
+    assert!(table.game.trial.is_none());
+
+    // This one is built in the wrong way round, and goes where it is pushed.
+    table.game.go(Screen::Forces(Box::new(Screen::Title)));
+    table.lean(0, 0.0);
+    table.game.trial = Some(Trial::measure(DeviceId(0)));
+    table.until("measured", |table| {
+        if let Some(Output::Force([x, y])) = table.told(0) {
+            table.devices[0].axes = vec![-y, -x];
+            table.plug_in();
+        }
+        table.game.trial.is_none()
+    });
+    let guid = &table.devices[0].about.guid;
+    let known = table.game.settings.calibrations.get(guid);
+    let wanted = Calibration {
+        swap: true,
+        invert: [false, true],
+        ..Calibration::USUAL
+    };
+    assert_eq!(known, Some(&wanted));
+}
+
+/// Through all of SDL, with a pad that only its driver knows not to be real.
+#[test]
+#[cfg(feature = "haptic")]
+fn a_pad_made_of_nothing_is_played_felt_and_unplugged() {
+    let sticks = Sticks::open_for_puppets().expect("SDL starts");
+    let pad = sticks.plug_in_pad("Pad").expect("a pad");
+    let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::through(sticks));
+    game.start(0);
+    let until = |game: &mut Game, what: &str, is_so: &dyn Fn(&Game) -> bool| {
+        let start = Instant::now();
+        while !is_so(game) {
+            assert!(start.elapsed() < PATIENCE, "never {what}");
+            std::thread::sleep(Duration::from_millis(4));
+            for change in game.hear_sticks() {
+                if let sticks::Change::Pressed { device, control } = change
+                    && let Some(action) = game.settings.bindings.of_button(control)
+                {
+                    game.act(action, Seat::Stick(device));
+                }
+            }
+            game.pass(TICK);
+        }
+    };
+    assert!(pad.axis(0, 1.0));
+    until(&mut game, "felt", &|_| pad.rumble()[0] > 0);
+    assert!(pad.pad_button(PadButton::Start, true));
+    until(&mut game, "paused", &|game| game.screen == Screen::Paused);
+    until(&mut game, "let go", &|_| pad.rumble() == [0; 2]);
+    game.go(Screen::Play);
+    until(&mut game, "felt again", &|_| pad.rumble()[0] > 0);
+    drop(pad);
+    until(&mut game, "unplugged", &|game| {
+        game.screen == Screen::Paused && game.devices.sticks.devices.is_empty()
+    });
+}
