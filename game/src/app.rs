@@ -114,7 +114,12 @@ impl App {
             });
             for direction in self.navigators[place].1.step(device, seconds) {
                 screens::note_use_of_keys(ctx, true);
-                if in_menu {
+                // One that is tried is pushed about for its own sake.
+                let is_tried = self
+                    .game
+                    .trial
+                    .is_some_and(|trial| trial.device == device.id);
+                if in_menu && !is_tried {
                     self.press(match direction {
                         sticks::Direction::Up => Key::ArrowUp,
                         sticks::Direction::Down => Key::ArrowDown,

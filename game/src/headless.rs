@@ -1,12 +1,14 @@
 //! Playing without a window: a bot or a replay, as fast as it goes. Tells how it went, and films it.
 
 mod film;
+mod force_log;
 mod report;
 
 use crate::platform::Files;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use film::Film;
+use force_log::ForceLog;
 use fuwafuwa::Dim2;
 use fuwafuwa_painter::PaintError;
 use report::{Refusal, Report};
@@ -53,6 +55,9 @@ pub struct Options {
     /// Write a replay of the round (.tamaire)
     #[arg(long, requires = "headless", value_name = "FILE", conflicts_with = "replay", value_parser = replay_path)]
     pub save: Option<PathBuf>,
+    /// Write what would be felt (.csv): a row for each substep and for each update of a stick and a pad
+    #[arg(long, requires = "headless", value_name = "FILE", value_parser = table_path)]
+    pub force_log: Option<PathBuf>,
     /// Tell how it went as JSON
     #[arg(long, requires = "headless")]
     pub json: bool,
@@ -139,10 +144,12 @@ fn try_bot(options: &Options) -> Result<String, Trouble> {
     for path in options.film.iter().chain(&options.save) {
         can_be_written(path)?;
     }
+    let mut log = force_log(options)?;
     let named = BotKind::NAMED.iter().find(|(name, _)| *name == options.bot);
     let (_, kind) = named.expect("the parser lets no other through");
     let most = (options.seconds * RATE) as u64;
-    let played = of_bot(level, Bot::new(*kind, options.seed), most);
+    let played = of_bot(level, Bot::new(*kind, options.seed), most, &mut log);
+    finish(log, options)?;
     if let Some(path) = &options.save {
         write(path, Replay::of(&played.round).text().as_bytes())?;
     }
@@ -169,7 +176,9 @@ fn check(path: &Path, options: &Options) -> Result<String, Trouble> {
     };
     let replay = Files::replay(path).map_err(refused)?;
     plane(replay.level().map_err(refused)?)?;
-    let played = of_replay(Arc::new(replay)).map_err(refused)?;
+    let mut log = force_log(options)?;
+    let played = of_replay(Arc::new(replay), &mut log).map_err(refused)?;
+    finish(log, options)?;
     let by = report::Player::Replay {
         replay: path.display().to_string(),
         genuine: true,
@@ -196,7 +205,7 @@ fn plane(level: Level) -> Result<Arc<Level>, Trouble> {
     }
 }
 
-fn of_bot(level: Arc<Level>, mut bot: Bot, most_ticks: u64) -> Played {
+fn of_bot(level: Arc<Level>, mut bot: Bot, most_ticks: u64, log: &mut Option<ForceLog>) -> Played {
     let mut round = Round::new(level);
     let mut times = Vec::new();
     while round.progress().outcome.is_none() && round.world().ticks() < most_ticks {
@@ -204,20 +213,48 @@ fn of_bot(level: Arc<Level>, mut bot: Bot, most_ticks: u64) -> Played {
         let start = Instant::now();
         round.step(frame);
         times.push(start.elapsed());
+        if let Some(log) = log {
+            log.note(&round);
+        }
     }
     Played { round, times }
 }
 
-fn of_replay(replay: Arc<Replay>) -> Result<Played, ReplayError> {
+fn of_replay(replay: Arc<Replay>, log: &mut Option<ForceLog>) -> Result<Played, ReplayError> {
     let mut playback = Playback::new(replay)?;
     let mut times = Vec::new();
     while !playback.is_over() {
         let start = Instant::now();
         playback.step()?;
         times.push(start.elapsed());
+        if let Some(log) = log {
+            log.note(playback.round());
+        }
     }
     let round = playback.round().clone();
     Ok(Played { round, times })
+}
+
+/// The table of forces, if it was asked for.
+fn force_log(options: &Options) -> Result<Option<ForceLog>, Trouble> {
+    let create = |path: &PathBuf| {
+        ForceLog::create(path).map_err(|reason| Trouble::File {
+            path: path.clone(),
+            reason,
+        })
+    };
+    options.force_log.as_ref().map(create).transpose()
+}
+
+fn finish(log: Option<ForceLog>, options: &Options) -> Result<(), Trouble> {
+    if let (Some(log), Some(path)) = (log, &options.force_log) {
+        log.finish().map_err(|reason| Trouble::File {
+            path: path.clone(),
+            reason,
+        })?;
+        eprintln!("wrote {}", path.display());
+    }
+    Ok(())
 }
 
 /// Better to hear of a missing folder before a long round than after it.
@@ -264,6 +301,11 @@ fn film_path(text: &str) -> Result<PathBuf, String> {
 /// Where a replay goes.
 fn replay_path(text: &str) -> Result<PathBuf, String> {
     ends_in(text, &[REPLAY])
+}
+
+/// Where a table goes.
+fn table_path(text: &str) -> Result<PathBuf, String> {
+    ends_in(text, &["csv"])
 }
 
 fn ends_in(text: &str, endings: &[&str]) -> Result<PathBuf, String> {

@@ -5,8 +5,11 @@ use crate::words::Language;
 use force_feedback::Calibration;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use sticks::Device;
 use tamaire_sound::Volumes;
+
+/// Felt as full force [N]. In the levels hands are pushed with 100 to 500: with less all bodies would feel alike, with
+/// more a soft one would not be felt.
+pub const FULL: f32 = 500.0;
 
 /// What players chose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -92,11 +95,12 @@ impl Settings {
         self
     }
 
-    /// How a device is to be felt; not at all where forces are off.
-    pub fn force(&self, device: &Device) -> Option<force_feedback::Settings> {
-        let calibration = self.calibrations.get(&device.about.guid).copied();
+    /// How a device of this model is to be felt; not at all where forces are off.
+    pub fn force(&self, model: &str) -> Option<force_feedback::Settings> {
+        let calibration = self.calibrations.get(model).copied();
         let settings = force_feedback::Settings {
             strength: self.haptics,
+            full: FULL,
             calibration: calibration.unwrap_or_default(),
             ..force_feedback::Settings::default()
         };

@@ -123,7 +123,7 @@ fn a_stick_that_pushes_the_body_is_pushed_back() {
     table.lean(0, 1.0);
     table.until("pushed to the left", |table| match table.told(0) {
         Some(Output::Force([x, y])) => {
-            assert!(x <= 0.0 && x >= -0.9 && y.abs() <= 0.9, "{x} {y}");
+            assert!((-0.9..=0.0).contains(&x) && y.abs() <= 0.9, "{x} {y}");
             x < -0.05
         }
         _ => false,
@@ -132,7 +132,8 @@ fn a_stick_that_pushes_the_body_is_pushed_back() {
 
 #[test]
 fn it_ends_with_a_pause_a_menu_a_new_round_and_another_window() {
-    let ways: [(fn(&mut Game), Stop); 5] = [
+    type Way = fn(&mut Game);
+    let ways: [(Way, Stop); 5] = [
         (|game| game.act(Action::Pause, Seat::Keys), Stop::Paused),
         (|game| game.go(Screen::Title), Stop::Menu),
         (|game| game.start(0), Stop::Reset),

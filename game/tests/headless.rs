@@ -221,3 +221,59 @@ fn levels_are_listed_by_name() {
         "{told}"
     );
 }
+
+#[test]
+fn what_would_be_felt_is_written_down() {
+    let folder = folder();
+    let run = "--headless --bot squeeze --force-log forces.csv";
+    assert_eq!(tamaire(folder.path(), run).status.code(), Some(0));
+    let table = fs::read_to_string(folder.path().join("forces.csv")).unwrap();
+    let mut lines = table
+        .lines()
+        .map(|line| line.split(',').collect::<Vec<_>>());
+    let columns = lines.next().unwrap();
+    let at = |name: &str| columns.iter().position(|column| *column == name).unwrap();
+    let rows: Vec<Vec<&str>> = lines.collect();
+    assert!(rows.iter().all(|row| row.len() == columns.len()));
+    let number = |row: &Vec<&str>, name: &str| row[at(name)].parse::<f64>().unwrap();
+    let of = |kind: &str| -> Vec<&Vec<&str>> {
+        let rows = rows.iter().filter(|row| row[at("row")] == kind);
+        rows.collect()
+    };
+    let (substeps, updates) = (of("substep"), of("device"));
+
+    // 960 and 250 a second.
+    let seconds = number(substeps[substeps.len() - 1], "seconds");
+    assert!(
+        (substeps.len() as f64 - 960.0 * seconds).abs() <= 1.0,
+        "{seconds}"
+    );
+    assert!((updates.len() as f64 - 250.0 * seconds).abs() <= 10.0);
+
+    // The hand pushes to the right, and the stick is pushed to the left; never with a jerk, but to let go.
+    let least = |rows: &[&Vec<&str>], name| {
+        let values = rows.iter().map(|row| number(row, name));
+        values.fold(0.0, f64::min)
+    };
+    assert!(least(&substeps, "contact_x_N") < -100.0);
+    assert!(least(&updates, "stick_x") < -0.05);
+    for pair in updates
+        .windows(2)
+        .filter(|pair| pair[1][at("silent")].is_empty())
+    {
+        for name in ["stick_x", "stick_y"] {
+            let step = number(pair[1], name) - number(pair[0], name);
+            assert!(step.abs() <= 0.1201, "{step}");
+        }
+    }
+    assert!(updates.iter().any(|row| number(row, "pad_slow") > 0.1));
+    let last = updates[updates.len() - 1];
+    assert_eq!((last[at("silent")], number(last, "stick_x")), ("Won", 0.0));
+
+    check_refused("--headless --force-log forces.txt", 2, &[".csv"]);
+    check_refused(
+        "--headless --force-log no/forces.csv",
+        2,
+        &["no/forces.csv"],
+    );
+}

@@ -6,7 +6,7 @@ use force_feedback::{Manner, State, Stop};
 use fuwafuwa::world::TICK;
 use fuwafuwa::{Dim, Event, Manipulator, Vector, World};
 use sticks::DeviceId;
-use tamaire_play::PLAYERS;
+use tamaire_play::{PLAYERS, Round};
 
 /// A round has begun once it is so old [s]: until then hands are elsewhere.
 const BEGUN: f32 = 0.1;
@@ -47,6 +47,14 @@ pub fn tears<D: Dim>(world: &World<D>) -> [f32; PLAYERS] {
     })
 }
 
+/// Why nobody feels anything in a round that goes on, if so.
+pub fn silence<D: Dim>(round: &Round<D>) -> Option<Stop> {
+    if round.progress().outcome.is_some() {
+        return Some(Stop::Won);
+    }
+    ((round.world().ticks() as f32) < BEGUN / TICK).then_some(Stop::Reset)
+}
+
 impl Game {
     /// Tells devices what there is to feel, and those that feel nothing why.
     pub(super) fn feel(&mut self, seconds: f32) {
@@ -54,7 +62,7 @@ impl Game {
         let (settings, trial) = (&self.settings, &self.trial);
         self.forces
             .attend(&self.devices.sticks, &self.pads, |device| {
-                let usual = settings.force(device)?;
+                let usual = settings.force(&device.about.guid)?;
                 let tried = trial.as_ref().and_then(|trial| trial.settings(device.id));
                 Some(tried.unwrap_or(usual))
             });
@@ -111,14 +119,11 @@ impl Game {
 
     /// Why nobody feels anything now, if so.
     pub fn silence(&self) -> Option<Stop> {
-        let round = self.session.round();
         match self.screen {
             _ if self.is_away => Some(Stop::FocusLost),
             Screen::Play if !self.session.is_played() => Some(Stop::Idle),
-            Screen::Play if round.progress().outcome.is_some() => Some(Stop::Won),
-            Screen::Play if (round.world().ticks() as f32) < BEGUN / TICK => Some(Stop::Reset),
             Screen::Play if self.stepping => Some(Stop::Paused),
-            Screen::Play => None,
+            Screen::Play => silence(self.session.round()),
             Screen::Paused => Some(Stop::Paused),
             _ => Some(Stop::Menu),
         }

@@ -1,5 +1,6 @@
 //! What a device is made to do on the screen where people try it.
 
+use crate::settings::FULL;
 use force_feedback::{Calibration, Manner, Measured, Measurement, Settings, State};
 use sticks::{DeviceId, Snapshot};
 
@@ -70,8 +71,7 @@ impl Trial {
         let aim = device.aim();
         match &mut self.act {
             Act::Spring => {
-                let full = Settings::default().full;
-                self.state.contact = aim.map(|k| -full * k);
+                self.state.contact = aim.map(|k| -FULL * k);
                 let lean = aim[0].hypot(aim[1]);
                 if lean > RIM && !self.is_at_rim {
                     self.tear = Some(1.0);

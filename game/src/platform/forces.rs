@@ -95,6 +95,10 @@ impl Forces {
 
     /// What a device can do, and what it does.
     pub fn report(&self, device: DeviceId) -> Option<Report> {
-        self.lines.get(&device).map(Line::report)
+        let mut report = self.lines.get(&device)?.report();
+        if self.is_cut {
+            report.silent = Some(Stop::Emergency);
+        }
+        Some(report)
     }
 }

@@ -161,13 +161,16 @@ fn draw_report(ui: &mut Ui, theme: &Theme, said: &Words, device: &Device, report
         Output::Rumble { low, high } => (said.motors, [low, high]),
     };
     for (name, level) in names.into_iter().zip(levels) {
-        let galley = fitted(painter, name, 17.0, 100.0, theme.ink);
+        let galley = fitted(painter, name, 17.0, 94.0, theme.ink);
         let height = galley.size().y;
         painter.galley(at + vec2(0.0, 0.5 * (ROW - height)), galley, theme.ink);
         let bar = Rect::from_min_size(at + vec2(104.0, 0.5 * (ROW - BAR.y)), BAR);
         let is_signed = matches!(output, Output::Force(_));
         draw_bar(painter, theme, bar, level, is_signed, theme.accent);
-        let text = format!("{level:+.2}");
+        let text = match is_signed {
+            true => format!("{level:+.2}"),
+            false => format!("{level:.2}"),
+        };
         let galley = fitted(painter, &text, 17.0, 70.0, theme.ink);
         painter.galley(
             bar.right_center() + vec2(10.0, -0.5 * height),

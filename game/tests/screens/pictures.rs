@@ -3,9 +3,11 @@
 use crate::window::*;
 use egui::{Key, Vec2, pos2, vec2};
 use egui_kittest::SnapshotOptions;
+use force_feedback::{Ability, Recording};
+use sticks::{About, Device, DeviceId, Pad, Snapshot};
 use tamaire::game::Screen;
 use tamaire::input::{Action, Seat};
-use tamaire::platform::Files;
+use tamaire::platform::{Files, Pads};
 use tamaire::words::Language;
 use tamaire_play::BotKind;
 
@@ -48,6 +50,13 @@ fn every_screen() {
     pictures(&mut window, "levels");
     game(&mut window).go(Screen::Settings(Box::new(Screen::Title)));
     pictures(&mut window, "settings");
+    game(&mut window).pads = sticks_and_pads();
+    game(&mut window).go(Screen::Forces(Box::new(Screen::Title)));
+    // Its thread says what they can do.
+    frames(&mut window, 5);
+    pictures(&mut window, "forces");
+    game(&mut window).pads = Pads::none();
+    frames(&mut window, 1);
 
     game(&mut window).start(0);
     // Keys need to see where they are.
@@ -57,6 +66,24 @@ fn every_screen() {
     window.hover_at(pos2(10.0, 10.0));
     win(&mut window);
     pictures(&mut window, "result");
+}
+
+/// A stick that pushes back and a pad that rumbles, of which nobody plays with either.
+fn sticks_and_pads() -> Pads {
+    let about = |name: &str| About {
+        name: name.into(),
+        guid: name.into(),
+    };
+    let mut stick = Device::at_rest(DeviceId(1), about("Force Stick 3D"), 4, 12, 1);
+    stick.axes = vec![0.6, -0.4, 0.2, -1.0];
+    stick.buttons[4].down = true;
+    let mut pad = Device::at_rest(DeviceId(2), about("Rumble Pad"), 6, 0, 0);
+    pad.pad = Some(Pad::default());
+    pad.axes[5] = -1.0;
+    let abilities = [(stick.id, Ability::Force), (pad.id, Ability::Rumble)];
+    let notes = abilities.map(|(id, ability)| (id, Recording::new(ability)));
+    let devices = vec![stick, pad];
+    Pads::of(Snapshot { devices }).noting(notes.into())
 }
 
 #[test]
