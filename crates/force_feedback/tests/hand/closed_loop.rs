@@ -77,7 +77,11 @@ fn check_calm(stick: &Stick, how: &Play, trace: &Trace) {
 fn a_wall_never_makes_a_stick_swing() {
     let mut strongest = 0.0f32;
     for stick in sticks() {
-        for (strength, clamp) in [(1.0, 1.0), (0.3, 1.0), (1.0, 0.1)] {
+        for (strength, clamp, gain) in [(1.0, 1.0, 1.0), (0.3, 1.0, 0.5), (1.0, 0.1, 1.0)] {
+            let calibration = Calibration {
+                gain: [1.0, gain],
+                ..Calibration::USUAL
+            };
             for stiffness in [0.1 * HARDEST, 0.5 * HARDEST, f32::INFINITY] {
                 for slew in [0.0, 30.0, 1000.0] {
                     let settings = Settings {
@@ -85,19 +89,20 @@ fn a_wall_never_makes_a_stick_swing() {
                         clamp,
                         stiffness,
                         slew,
+                        calibration,
                         ..Settings::default()
                     };
                     // Each wall with its own pace and scale, so that there is some of everything.
-                    for (wall, full, rate, frame, steers) in [
-                        (100.0, 1.0, 125, 1, false),
-                        (100.0, 1000.0, 125, 3, true),
-                        (500.0, 100.0, 250, 3, false),
-                        (500.0, 1000.0, 125, 1, true),
-                        (5e3, 1000.0, 125, 1, false),
-                        (5e3, 100.0, 250, 1, true),
-                        (5e4, 100.0, 125, 3, false),
-                        (5e4, 1000.0, 250, 1, false),
-                        (5e4, 1.0, 125, 3, true),
+                    for (wall, full, rate, frame, steers, reach) in [
+                        (100.0, 1.0, 125, 1, false, 1.0),
+                        (100.0, 1000.0, 125, 3, true, 3.0),
+                        (500.0, 100.0, 250, 3, false, 1.0),
+                        (500.0, 500.0, 125, 1, true, 0.3),
+                        (5e3, 1000.0, 125, 1, false, 1.6),
+                        (5e3, 100.0, 250, 1, true, 1.0),
+                        (5e4, 100.0, 125, 3, false, 1.0),
+                        (5e4, 1000.0, 250, 1, false, 1.0),
+                        (5e4, 1.0, 125, 3, true, 3.0),
                     ] {
                         let settings = Settings { full, ..settings };
                         let how = Play {
@@ -105,7 +110,7 @@ fn a_wall_never_makes_a_stick_swing() {
                             rate,
                             frame,
                             steers,
-                            reach: 1.0,
+                            reach,
                             seconds: 6.0,
                         };
                         let trace = knock(&stick, &mut Wall::new(wall, 20.0), &how);
@@ -124,11 +129,11 @@ fn a_wall_never_makes_a_stick_swing() {
 fn a_soft_body_never_makes_a_stick_swing() {
     let mut strongest = 0.0f32;
     for stick in sticks() {
-        for (young, full, frame, steers) in [
-            (1000.0, 100.0, 1, false),
-            (5000.0, 1000.0, 3, false),
-            (20_000.0, 100.0, 1, false),
-            (5000.0, 100.0, 1, true),
+        for (young, full, frame, steers, reach) in [
+            (1000.0, 100.0, 1, false, 1.0),
+            (5000.0, 1000.0, 3, false, 1.0),
+            (20_000.0, 500.0, 1, false, 1.6),
+            (5000.0, 100.0, 1, true, 3.0),
         ] {
             for hardness in [0.3 * HARDEST, HARDEST] {
                 let settings = Settings {
@@ -143,7 +148,7 @@ fn a_soft_body_never_makes_a_stick_swing() {
                     rate: 125,
                     frame,
                     steers,
-                    reach: 1.0,
+                    reach,
                     seconds: 6.0,
                 };
                 let trace = knock(&stick, &mut Disc::new(young, f32::INFINITY), &how);

@@ -39,6 +39,7 @@ pub struct Play {
     /// How many ticks pass at once.
     pub frame: u32,
     pub steers: bool,
+    /// How far the stick reaches [m], or how fast it goes [2 m/s].
     pub reach: f32,
     pub seconds: f64,
 }
@@ -80,7 +81,7 @@ pub fn play(
                 for axis in 0..2 {
                     if play.steers {
                         let hand = felt.0[axis];
-                        goal[axis] += aim[axis] * 2.0 * TICK as f32;
+                        goal[axis] += aim[axis] * 2.0 * play.reach * TICK as f32;
                         if felt.0 != [0.0; 2] {
                             goal[axis] = goal[axis].clamp(hand - 0.4, hand + 0.4);
                         }
