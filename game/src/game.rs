@@ -1,7 +1,7 @@
 //! The state of the game between two frames, and what can happen to it. Everything that a screen
 //! shows is worked out from here.
 
-pub mod felt;
+mod feel;
 mod heard;
 mod time;
 pub mod trial;

@@ -1,6 +1,7 @@
 //! What is heard: of a tick, and for as long as it lasts.
 
-use super::{Game, Screen, felt};
+use super::{Game, Screen};
+use crate::felt;
 use fuwafuwa::{Dim2, Event, Vector, With};
 use tamaire_play::Round;
 use tamaire_play::rules::CRUMB;

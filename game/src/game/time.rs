@@ -1,6 +1,7 @@
 //! What happens as time passes: ticks, wins, the end of what is watched.
 
-use super::{Game, Screen, felt, heard};
+use super::{Game, Screen, heard};
+use crate::felt;
 use crate::input::Manner;
 use tamaire_play::{InputFrame, PLAYERS};
 use tamaire_sound::Cue;

@@ -1,6 +1,6 @@
 //! What a round would be felt like: the forces on each hand in every substep, and what a stick and a pad would be told.
 
-use crate::game::felt;
+use crate::felt;
 use crate::settings::Settings;
 use force_feedback::{Ability, Feel, Mail, Manner, Output, State, Watchdog};
 use fuwafuwa::world::TICK;
