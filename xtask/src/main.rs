@@ -113,6 +113,11 @@ const CHECK: &[Step] = &[
         hint: "mend the warnings above; if cargo has no clippy, `rustup component add clippy`",
     },
     Step {
+        arguments: &["check", "--package", "tamaire", "--no-default-features"],
+        environment: &[],
+        hint: "something needs force feedback, which may be left out",
+    },
+    Step {
         arguments: &["doc", "--workspace", "--all-features", "--no-deps"],
         environment: &[("RUSTDOCFLAGS", "-Dwarnings")],
         hint: "mend the documentation warnings above; most are links to names that moved",

@@ -3,6 +3,7 @@
 use crate::window::*;
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
+use force_feedback::{Ability, Recording};
 use sticks::{About, Device, DeviceId, Pad, PadButton, Snapshot};
 use tamaire::game::Screen;
 use tamaire::input::{Action, Seat};
@@ -12,19 +13,29 @@ use tamaire::platform::{Files, Pads};
 struct Table {
     window: Window,
     devices: Vec<Device>,
+    rumbles: Recording,
 }
 
 impl Table {
     fn with(devices: Vec<Device>) -> Self {
         let window = window(Files::nowhere());
-        let mut table = Self { window, devices };
+        let rumbles = Recording::new(Ability::Rumble);
+        let mut table = Self {
+            window,
+            devices,
+            rumbles,
+        };
         table.frames(2);
         table
     }
 
     fn frames(&mut self, count: usize) {
         let devices = self.devices.clone();
-        game(&mut self.window).pads = Pads::of(Snapshot { devices });
+        let notes = devices
+            .iter()
+            .map(|device| (device.id, self.rumbles.clone()));
+        let notes = notes.collect();
+        game(&mut self.window).pads = Pads::of(Snapshot { devices }).noting(notes);
         frames(&mut self.window, count);
     }
 
@@ -138,11 +149,12 @@ fn a_pad_alone_goes_everywhere() {
     assert!(room.contains_rect(seen), "{seen:?} in {room:?}");
     table.tap(Up);
     table.tap(South);
-    assert_eq!(game(&mut table.window).rebinding, Some(Action::Join));
+    let last = Action::ALL[Action::ALL.len() - 1];
+    assert_eq!(game(&mut table.window).rebinding, Some(last));
     table.tap(Down);
     let bindings = &game(&mut table.window).settings.bindings;
     let down = sticks::Control::Pad(Down);
-    assert_eq!(bindings.of_button(down), Some(Action::Join));
+    assert_eq!(bindings.of_button(down), Some(last));
     table.tap(East);
     assert_eq!(table.screen(), Screen::Paused);
     table.tap(East);
@@ -214,4 +226,56 @@ fn a_second_player_joins_leaves_and_is_unplugged() {
     assert_eq!(table.screen(), Screen::Play);
     assert_eq!(second(&mut table), None);
     table.frames(5);
+}
+
+#[test]
+fn a_pad_is_tried_and_its_stick_moves_nothing_else_meanwhile() {
+    use PadButton::*;
+    let mut table = Table::with(vec![pad(1)]);
+    let from = Box::new(Screen::Title);
+    game(&mut table.window).go(Screen::Settings(from));
+    table.frames(2);
+    for _ in 0..20 {
+        if !table.has_focus("Sticks and pads…") {
+            table.tap(Down);
+        }
+    }
+    table.tap(South);
+    assert!(matches!(table.screen(), Screen::Forces(_)));
+    // What the pad can do is known once its line has said so.
+    for _ in 0..20 {
+        if !table.has_focus("Try it") {
+            table.tap(Down);
+        }
+    }
+    table.tap(South);
+    assert!(game(&mut table.window).trial.is_some());
+    assert!(table.has_focus("Enough"));
+    table.rumbles.take();
+    let strength = game(&mut table.window).settings.haptics;
+    for lean in [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]] {
+        table.devices[0].pad.as_mut().unwrap().left = lean;
+        table.frames(20);
+    }
+    assert!(table.has_focus("Enough"));
+    assert_eq!(game(&mut table.window).settings.haptics, strength);
+    let played = table.rumbles.take();
+    assert!(played.iter().any(|played| !played.output.is_zero()));
+    table.tap(South);
+    assert!(game(&mut table.window).trial.is_none());
+
+    // Off at once, on every screen; and on again where it says so.
+    table.tap(RightStick);
+    assert!(game(&mut table.window).forces.is_cut());
+    table.tap(Up);
+    for _ in 0..20 {
+        if !table.has_focus("Switch forces on again") {
+            table.tap(Up);
+        }
+    }
+    table.tap(South);
+    assert!(!game(&mut table.window).forces.is_cut());
+    table.tap(East);
+    table.tap(East);
+    assert_eq!(table.screen(), Screen::Title);
 }
