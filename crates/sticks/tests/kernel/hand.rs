@@ -18,7 +18,7 @@ const LATE: Duration = Duration::from_millis(30);
 pub fn settings() -> Settings {
     Settings {
         slew: *Settings::SLEW.start(),
-        clamp: 0.4,
+        clamp: 0.25,
         ..Settings::default()
     }
 }

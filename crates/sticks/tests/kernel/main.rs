@@ -10,7 +10,7 @@
 mod hand;
 mod uinput;
 
-use std::process::{Child, Command};
+use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -217,7 +217,8 @@ fn every_way_to_stop_is_quick() {
         let thread = std::thread::spawn(move || {
             simulate(&line, LEFT, 50 * MS);
             tell.send(Instant::now()).expect("the test waits for it");
-            panic!("on purpose");
+            // A panic, but for what it prints.
+            std::panic::resume_unwind(Box::new(()));
         });
         thread.join().expect_err("it panics");
         told.recv().expect("it told when")
@@ -319,6 +320,7 @@ impl Process {
         let child = Command::new(std::env::current_exe().expect("this is running"))
             .args(["--exact", "the_process_that_plays", "--ignored"])
             .env(PLAYS, "1")
+            .stdout(Stdio::null())
             .spawn()
             .expect("this can be started");
         let process = Process(child);
