@@ -70,10 +70,17 @@ impl Game {
         snapshot.devices.last().map(|device| device.aim())
     }
 
-    /// Leans the stick against something that pushes it back, for some time.
-    fn is_pushed(&self, stick: &Stick, push: [f32; 2], duration: Duration) {
+    /// Leans the stick against something that pushes it back, until it is felt this strongly. Returns when the simulation
+    /// said so last.
+    fn is_pushed(&self, stick: &Stick, push: [f32; 2], strength: f32) -> Instant {
         stick.lean(push.map(|k| -k)).expect("it is plugged in");
-        simulate(self.line(), push, duration);
+        let mut last = Instant::now();
+        until("it pushes", || {
+            last = simulate(self.line(), push, 50 * MS);
+            let felt = force_at(&stick.told(), Instant::now());
+            felt[0] * push[0] + felt[1] * push[1] >= strength
+        });
+        last
     }
 }
 
@@ -105,11 +112,14 @@ fn until(what: &str, mut holds: impl FnMut() -> bool) {
     }
 }
 
+/// Since when nothing is felt any more.
 fn until_quiet(stick: &Stick) -> Instant {
-    until("it is told to rest", || {
-        quiet_since(&stick.told()).is_some()
+    let quiet = || quiet_since(&stick.told());
+    // The whole machine may have been held up and gone on, with a pause that nobody asked for: that one does not last.
+    until("it rests", || {
+        quiet().is_some_and(|since| since.elapsed() > 50 * MS)
     });
-    quiet_since(&stick.told()).expect("it just was")
+    quiet().expect("nobody says any more that there is something to feel")
 }
 
 fn until_erased(stick: &Stick) {
@@ -161,14 +171,18 @@ fn the_stick_is_pushed_the_way_that_the_hand_is() {
     let stick = plug_in();
     let game = Game::start();
     for push in WAYS {
-        game.is_pushed(&stick, push, 1500 * MS);
-        let force = force_at(&stick.told(), Instant::now());
-        println!("pushed {push:?}: felt {force:.3?}");
-        let along = force[0] * push[0] + force[1] * push[1];
-        let across = force[0] * push[1] - force[1] * push[0];
-        assert!(along > 0.2 && across.abs() < 0.02, "{force:?}");
+        let before = stick.told().len();
+        game.is_pushed(&stick, push, 0.2);
         game.line().stop(Stop::Paused);
         until_quiet(&stick);
+        for [x, y] in forces(&stick.told()).split_off(before) {
+            let (along, across) = (x * push[0] + y * push[1], x * push[1] - y * push[0]);
+            assert!(
+                along >= 0.0 && across == 0.0,
+                "pushed {push:?}: felt {:?}",
+                [x, y]
+            );
+        }
     }
     check(&stick.told());
 }
@@ -178,22 +192,16 @@ fn the_stick_is_pushed_the_way_that_the_hand_is() {
 fn a_stick_that_is_shaken_keeps_its_bounds() {
     let stick = plug_in();
     let game = Game::start();
-    game.is_pushed(&stick, LEFT, 1200 * MS);
+    // As strongly as it may be.
+    game.is_pushed(&stick, LEFT, settings().clamp - 0.001);
     for turn in 0..60 {
-        game.is_pushed(&stick, WAYS[turn % 2], 35 * MS);
+        let (way, back) = (WAYS[turn % 2], WAYS[(turn + 1) % 2]);
+        stick.lean(back).expect("it is plugged in");
+        simulate(game.line(), way, 35 * MS);
     }
     game.line().stop(Stop::Menu);
     until_quiet(&stick);
-    let told = stick.told();
-    let strongest = forces(&told)
-        .iter()
-        .fold(0.0, |most: f32, force| most.max(force[0].abs()));
-    println!(
-        "the strongest push: {strongest:.2} of full force; told {} times",
-        told.len()
-    );
-    assert!(strongest >= settings().clamp - 0.001, "the clamp is met");
-    check(&told);
+    check(&stick.told());
 }
 
 #[test]
@@ -244,9 +252,9 @@ fn every_way_to_stop_is_quick() {
         let times = (0..7).map(|_try| {
             let stick = plug_in();
             let mut game = Game::start();
-            game.is_pushed(&stick, LEFT, 400 * MS);
+            game.is_pushed(&stick, LEFT, 0.08);
             let start = way(&mut game);
-            until_quiet(&stick) - start
+            until_quiet(&stick).saturating_duration_since(start)
         });
         took(what, times.collect(), 20 * MS);
     }
@@ -258,12 +266,11 @@ fn a_simulation_that_stalls_stops_within_a_tenth_of_a_second() {
     let stick = plug_in();
     let game = Game::start();
     let times = (0..7).map(|_try| {
-        stick.lean(RIGHT).expect("it is plugged in");
-        let last = simulate(game.line(), LEFT, 400 * MS);
+        let last = game.is_pushed(&stick, LEFT, 0.08);
         // This is the thread that simulates, and here it hangs.
         sleep(300 * MS);
         assert_eq!(game.line().report().silent, Some(Stop::Stale));
-        until_quiet(&stick) - last
+        until_quiet(&stick).saturating_duration_since(last)
     });
     took("a stall", times.collect(), 100 * MS);
     check(&stick.told());
@@ -274,12 +281,11 @@ fn a_simulation_that_stalls_stops_within_a_tenth_of_a_second() {
 fn a_device_that_is_let_go_keeps_nothing() {
     let stick = plug_in();
     let mut game = Game::start();
-    game.is_pushed(&stick, LEFT, 300 * MS);
+    game.is_pushed(&stick, LEFT, 0.05);
     game.line = None;
     until_erased(&stick);
     game.take_hold();
-    game.is_pushed(&stick, LEFT, 300 * MS);
-    assert!(quiet_since(&stick.told()).is_none(), "it pushes again");
+    game.is_pushed(&stick, LEFT, 0.05);
 }
 
 #[test]
@@ -289,7 +295,7 @@ fn a_device_that_is_unplugged_and_plugged_in_again_pushes_again() {
     let mut game = Game::start();
     for _try in 0..3 {
         let before = game.id();
-        game.is_pushed(&stick, LEFT, 300 * MS);
+        game.is_pushed(&stick, LEFT, 0.05);
         drop(stick);
         until("the line says so", || {
             simulate(game.line(), LEFT, 30 * MS);
@@ -302,8 +308,7 @@ fn a_device_that_is_unplugged_and_plugged_in_again_pushes_again() {
         assert_ne!(game.id(), before);
         game.line = None;
         game.take_hold();
-        game.is_pushed(&stick, LEFT, 300 * MS);
-        assert!(quiet_since(&stick.told()).is_none(), "it pushes again");
+        game.is_pushed(&stick, LEFT, 0.05);
         game.line().stop(Stop::Paused);
         until_quiet(&stick);
         check(&stick.told());
