@@ -18,7 +18,8 @@ const LATE: Duration = Duration::from_millis(30);
 pub fn settings() -> Settings {
     Settings {
         slew: *Settings::SLEW.start(),
-        clamp: 0.25,
+        clamp: 0.35,
+        strength: 1.0,
         ..Settings::default()
     }
 }

@@ -73,7 +73,9 @@ impl Game {
     /// Leans the stick against something that pushes it back, until it is felt this strongly. Returns when the simulation
     /// said so last.
     fn is_pushed(&self, stick: &Stick, push: [f32; 2], strength: f32) -> Instant {
-        stick.lean(push.map(|k| -k)).expect("it is plugged in");
+        let aim = push.map(|k| -k);
+        stick.lean(aim).expect("it is plugged in");
+        until("it leans", || self.aim() == Some(aim));
         let mut last = Instant::now();
         until("it pushes", || {
             last = simulate(self.line(), push, 50 * MS);
@@ -191,10 +193,10 @@ fn a_stick_that_is_shaken_keeps_its_bounds() {
     let game = Game::start();
     // As strongly as it may be.
     game.is_pushed(&stick, LEFT, settings().clamp - 0.001);
-    for turn in 0..60 {
+    for turn in 0..30 {
         let (way, back) = (WAYS[turn % 2], WAYS[(turn + 1) % 2]);
         stick.lean(back).expect("it is plugged in");
-        simulate(game.line(), way, 35 * MS);
+        simulate(game.line(), way, 80 * MS);
     }
     game.line().stop(Stop::Menu);
     until_quiet(&stick);
