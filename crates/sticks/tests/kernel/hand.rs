@@ -149,15 +149,12 @@ fn check_motor(told: &[Told]) -> u16 {
         .map(|(at, effect)| (*at, f32::from(effect.level) / 32767.0))
         .collect();
     for many in levels.windows(5) {
-        let ((before, from), (at, to)) = (many[0], many[4]);
+        // What stays the same is not told: the first of these may have lasted until the next began.
+        let (from, before, (at, to)) = (many[0].1, many[1].0, many[4]);
         let most = settings.slew * (at - before + LATE).as_secs_f32();
         // To stop is not to slew.
-        let stops = many.iter().any(|(_, level)| *level == 0.0);
-        assert!(
-            stops || (to - from).abs() <= most,
-            "from {from} to {to} in {:?}",
-            at - before
-        );
+        let is_slow = to == 0.0 || (to - from).abs() <= most;
+        assert!(is_slow, "from {from} to {to} in {:?}", at - before);
         assert!(to.abs() <= settings.clamp + 1e-4, "{to}");
     }
 
