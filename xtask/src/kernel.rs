@@ -22,6 +22,8 @@ const FETCH: &str = r#"
         dpkg-deb --fsys-tarfile "$package"_*.deb | tar -x --wildcards --transform 's,.*/,,' "$@"
     rm -f "$package"_*.deb
 "#;
+/// Where SDL is built with this, it does not push without, though nobody speaks to it in the machine.
+const UDEV: &str = "/lib/x86_64-linux-gnu/libudev.so.1";
 /// How long the machine may run [s]; it takes a minute or two.
 const PATIENCE: &str = "400";
 
@@ -197,8 +199,10 @@ fn pack(folder: &Path, guest: &Guest, test: &Path) -> io::Result<()> {
         let name = module.file_name().expect("it was found by its name");
         fs::copy(module, disk.join("modules").join(name))?;
     }
-    let ldd = Command::new("ldd").arg(test).output()?;
-    for library in libraries(&String::from_utf8_lossy(&ldd.stdout)) {
+    let ldd = |program: &str| output_of("ldd", &[program]).unwrap_or_default();
+    let needed = ldd(&test.to_string_lossy()) + &ldd(UDEV);
+    let udev = Some(UDEV).filter(|udev| Path::new(udev).exists());
+    for library in libraries(&needed).into_iter().chain(udev) {
         let copy = disk.join(library.trim_start_matches('/'));
         fs::create_dir_all(copy.parent().expect("it lies in a folder"))?;
         fs::copy(library, copy)?;
