@@ -4,7 +4,7 @@
 //! The machine is QEMU's, without hardware acceleration, which some machines only seem to have. Its kernel is Debian's or
 //! Ubuntu's, and lies in the target folder, with busybox to start the test: neither is installed.
 
-use crate::packages::{IfMissing, Lack, apt_get, install_arguments, list_lacks};
+use crate::packages::{self, IfMissing, Lack, Purpose, apt_get, install_arguments, list_lacks};
 use crate::{CANNOT, FAILED, Failure, answers, cargo, execute, output_of, root, show, target};
 use std::fs;
 use std::io;
@@ -40,6 +40,7 @@ pub fn run(if_missing: IfMissing) -> Result<(), Failure> {
         found = find_guest(&folder);
     }
     let guest = found.map_err(|lacks| cannot(&lacks, if_missing))?;
+    packages::provide(&[Purpose::Build], if_missing);
     let test = build()?;
     pack(&folder, &guest, &test).map_err(|error| Failure {
         message: format!("the machine could not be packed: {error}"),
