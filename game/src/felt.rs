@@ -21,7 +21,7 @@ pub fn contact(hand: &Manipulator) -> Vector {
     [0, 1, 2].map(mean)
 }
 
-/// How strongly each player feels what tore in the last tick, 0 to 1: whoever's hand is nearest.
+/// How strongly each player feels what tore in the last tick, 0 to 1: whoever's hand is nearest of those that touch something.
 pub fn tears<D: Dim>(world: &World<D>) -> [f32; PLAYERS] {
     let mut counts = [0u32; PLAYERS];
     for event in world.events() {
@@ -33,6 +33,7 @@ pub fn tears<D: Dim>(world: &World<D>) -> [f32; PLAYERS] {
             square(0) + square(1) + square(2)
         };
         let hands = world.manipulators().iter().take(PLAYERS).enumerate();
+        let hands = hands.filter(|(_, hand)| contact(hand) != [0.0; 3]);
         let nearest = hands.min_by(|(_, a), (_, b)| away(a).total_cmp(&away(b)));
         if let Some((player, _)) = nearest {
             counts[player] += 1;

@@ -115,7 +115,13 @@ const CHECK: &[Step] = &[
         hint: "mend the warnings above; if cargo has no clippy, `rustup component add clippy`",
     },
     Step {
-        arguments: &["check", "--package", "tamaire", "--no-default-features"],
+        arguments: &[
+            "check",
+            "--package",
+            "tamaire",
+            "--no-default-features",
+            "--all-targets",
+        ],
         environment: &[],
         hint: "something needs force feedback, which may be left out",
     },

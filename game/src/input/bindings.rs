@@ -50,7 +50,7 @@ impl Default for Bindings {
             (Action::Slow, vec![Key::F]),
             (Action::Step, vec![Key::Period]),
             (Action::Join, vec![Key::J]),
-            (Action::CutForces, vec![Key::X, Key::F12]),
+            (Action::CutForces, vec![Key::F12, Key::X]),
         ];
         let pad = |button| PadKey::of(Control::Pad(button));
         let stick = |index| PadKey::of(Control::Button(index));
@@ -69,10 +69,8 @@ impl Default for Bindings {
             (Action::Slow, vec![pad(PadButton::RightShoulder), stick(5)]),
             (Action::Step, vec![pad(PadButton::LeftShoulder), stick(6)]),
             (Action::Join, vec![pad(PadButton::Back), stick(7)]),
-            (
-                Action::CutForces,
-                vec![pad(PadButton::RightStick), stick(8)],
-            ),
+            // On a pad a child would press it by accident, and a pad does nothing worse than hum.
+            (Action::CutForces, vec![stick(8)]),
         ];
         Self {
             keys: keys.into(),
@@ -97,11 +95,13 @@ impl Bindings {
         let keys = self.keys.get(&action).into_iter().flatten();
         let buttons = self.buttons.get(&action).into_iter().flatten();
         [
-            keys.map(|&key| name_of(key)).collect::<Vec<_>>().join(" "),
+            keys.map(|&key| name_of(key))
+                .collect::<Vec<_>>()
+                .join(" / "),
             buttons
                 .map(|button| button.0.as_str())
                 .collect::<Vec<_>>()
-                .join(" "),
+                .join(" / "),
         ]
     }
 
@@ -123,6 +123,11 @@ impl Bindings {
     /// The same with the usual keys and buttons for actions that have none.
     pub fn complete(mut self) -> Self {
         let usual = Self::default();
+        // There must be a key for this one, whatever it meant before.
+        complete(&mut self.keys, &usual.keys, Action::CutForces);
+        if self.keys[&Action::CutForces].is_empty() {
+            self.bind_key(Action::CutForces, usual.keys[&Action::CutForces][0]);
+        }
         for action in Action::ALL {
             complete(&mut self.keys, &usual.keys, action);
             complete(&mut self.buttons, &usual.buttons, action);
@@ -214,6 +219,19 @@ mod tests {
         assert_eq!(bindings.of_key(Key::P), Some(Action::Retry));
         assert_eq!(bindings.keys[&Action::Pause], [Key::Escape]);
         assert_eq!(bindings.buttons, Bindings::default().buttons);
+    }
+
+    #[test]
+    fn there_is_always_a_key_that_cuts_forces() {
+        let text = "[keys]\nretry = [\"F12\"]\npause = [\"X\"]\n";
+        let bindings = toml::from_str::<Bindings>(text).unwrap().complete();
+        assert_eq!(bindings.of_key(Key::F12), Some(Action::CutForces));
+        assert_eq!(bindings.of_key(Key::X), Some(Action::Pause));
+        assert!(
+            Action::ALL
+                .iter()
+                .all(|action| !bindings.keys[action].is_empty())
+        );
     }
 
     #[test]
