@@ -24,7 +24,7 @@ const FETCH: &str = r#"
 "#;
 /// Where SDL is built with this, it does not push without, though nobody speaks to it in the machine.
 const UDEV: &str = "/lib/x86_64-linux-gnu/libudev.so.1";
-/// How long the machine may run [s]; it takes a minute or two.
+/// How long the machine may run, in seconds; it takes a minute or two.
 const PATIENCE: &str = "400";
 
 /// Builds the tests, boots the machine, and fails where a test does.
