@@ -18,6 +18,8 @@ const SOFT: f32 = 400.0;
 pub(super) struct Sight {
     /// Into the basket, of length 1.
     pub axis: Vector,
+    /// Along its mouth, of length 1; level where the mouth is not.
+    pub across: Vector,
     /// The piece that matters.
     pub piece: Piece,
     /// Share of all mass in the largest piece of all.
@@ -103,6 +105,7 @@ impl Sight {
         let out = minus(basket.mouth, scaled(basket.axis, 4.0));
         Some(Self {
             axis: basket.axis,
+            across: across::<D>(basket.axis),
             piece,
             share: largest.mass / mass,
             surplus: within - round.level().game().share,
@@ -187,6 +190,13 @@ fn inwards<D: Dim>(centre: Vector, half: Vector, obstacles: &[Obstacle]) -> Vect
     let ways = WAYS.into_iter().take(2 * D::N);
     ways.max_by(|a, b| sees(a).total_cmp(&sees(b)))
         .expect("there are four at least")
+}
+
+/// A direction across an axis: from the first axis to the last that counts, and else to the first.
+fn across<D: Dim>(axis: Vector) -> Vector {
+    let mut across = [-axis[1] - axis[2], 0.0, 0.0];
+    across[D::N - 1] = axis[0];
+    across
 }
 
 /// How far the nearest obstacle is [m]; negative in it.
