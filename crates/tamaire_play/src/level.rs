@@ -44,7 +44,7 @@ pub enum LevelError {
 /// buffer of the GPU holds them.
 pub const MAX_VOXELS: usize = 1 << 15;
 
-/// The levels that come along, in the order in which they are offered.
+/// The levels in the plane that come along, in the order in which they are offered.
 pub const NAMED: [(&str, &str); 10] = [
     ("classic", include_str!("../levels/classic.toml")),
     ("gravity", include_str!("../levels/gravity.toml")),
@@ -57,6 +57,9 @@ pub const NAMED: [(&str, &str); 10] = [
     ("biscuit", include_str!("../levels/biscuit.toml")),
     ("sandbox", include_str!("../levels/sandbox.toml")),
 ];
+
+/// Those in space, in the order in which they are offered.
+pub const NAMED_3D: [(&str, &str); 1] = [("classic-3d", include_str!("../levels/classic-3d.toml"))];
 
 /// Pictures that those levels are made from.
 const FILES: [(&str, &[u8]); 1] = [("cat.png", include_bytes!("../levels/cat.png"))];
@@ -71,14 +74,16 @@ impl Level {
     /// # Errors
     /// [`LevelError`] says what is wrong, and in which line.
     pub fn open(id: &str) -> Result<Self, LevelError> {
-        if let Some((_, text)) = NAMED.iter().find(|(known, _)| *known == id) {
+        let mut named = NAMED.iter().chain(&NAMED_3D);
+        if let Some((_, text)) = named.find(|(known, _)| *known == id) {
             let mut scene = Scene::read(id, text, &[])?;
             scene.embed_files(&FILES)?;
             return Self::of(id, scene);
         }
         let path = Path::new(id);
         if !path.exists() {
-            let known: Vec<&str> = NAMED.iter().map(|(known, _)| *known).collect();
+            let named = NAMED.iter().chain(&NAMED_3D);
+            let known: Vec<&str> = named.map(|(known, _)| *known).collect();
             let (id, known) = (id.into(), known.join(", "));
             return Err(LevelError::Unknown { id, known });
         }
@@ -185,7 +190,7 @@ mod tests {
 
     #[test]
     fn all_that_come_along_can_be_opened() {
-        for (id, _) in NAMED {
+        for (id, _) in NAMED.iter().chain(&NAMED_3D) {
             assert!(Level::open(id).is_ok(), "{id}");
         }
     }
