@@ -2,8 +2,8 @@
 
 use force_feedback::Stop;
 use fuwafuwa::world::TICK;
-use fuwafuwa::{Dim, Event, Manipulator, Vector, World};
-use tamaire_play::{PLAYERS, Round};
+use fuwafuwa::{Event, Manipulator, Vector};
+use tamaire_play::{AnyRound, PLAYERS};
 
 /// A round has begun once it is so old [s]: until then hands are elsewhere.
 const BEGUN: f32 = 0.1;
@@ -22,9 +22,9 @@ pub fn contact(hand: &Manipulator) -> Vector {
 }
 
 /// How strongly each player feels what tore in the last tick, 0 to 1: whoever's hand is nearest.
-pub fn tears<D: Dim>(world: &World<D>) -> [f32; PLAYERS] {
+pub fn tears(round: &AnyRound) -> [f32; PLAYERS] {
     let mut counts = [0u32; PLAYERS];
-    for event in world.events() {
+    for event in round.events() {
         let Event::Released { at, .. } = *event else {
             continue;
         };
@@ -32,7 +32,7 @@ pub fn tears<D: Dim>(world: &World<D>) -> [f32; PLAYERS] {
             let square = |axis: usize| (hand.position()[axis] - at[axis]).powi(2);
             square(0) + square(1) + square(2)
         };
-        let hands = world.manipulators().iter().take(PLAYERS).enumerate();
+        let hands = round.hands().iter().take(PLAYERS).enumerate();
         let nearest = hands.min_by(|(_, a), (_, b)| away(a).total_cmp(&away(b)));
         if let Some((player, _)) = nearest {
             counts[player] += 1;
@@ -45,9 +45,9 @@ pub fn tears<D: Dim>(world: &World<D>) -> [f32; PLAYERS] {
 }
 
 /// Why nobody feels anything in a round that goes on, if so.
-pub fn silence<D: Dim>(round: &Round<D>) -> Option<Stop> {
+pub fn silence(round: &AnyRound) -> Option<Stop> {
     if round.progress().outcome.is_some() {
         return Some(Stop::Won);
     }
-    ((round.world().ticks() as f32) < BEGUN / TICK).then_some(Stop::Reset)
+    ((round.ticks() as f32) < BEGUN / TICK).then_some(Stop::Reset)
 }

@@ -286,7 +286,7 @@ impl Game {
 
     /// Keeps the round as it was played so far.
     pub fn keep_replay(&mut self) {
-        match self.files.save_replay(&Replay::of(self.session.round())) {
+        match self.files.save_replay(&self.session.round().replay()) {
             Ok(path) => self.notify(format!("{} {}", self.words().saved, path.display())),
             Err(error) => self.report(Err(error)),
         }

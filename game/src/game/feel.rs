@@ -57,7 +57,7 @@ impl Game {
     /// What the player who holds a device feels.
     fn state(&self, id: DeviceId) -> Option<State> {
         let player = (0..PLAYERS).find(|&player| self.players.held(player) == Some(id))?;
-        let hands = self.session.round().world().manipulators();
+        let hands = self.session.round().hands();
         let [x, y, _] = felt::contact(hands.get(player)?);
         let manner = match self.settings.stick_places {
             true => Manner::Places,

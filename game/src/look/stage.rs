@@ -10,7 +10,7 @@ use fuwafuwa::Dim2;
 use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_render::{Ages, Basket, Camera, Frame, Particle, Renderer};
 use std::sync::{Arc, Mutex, PoisonError};
-use tamaire_play::{Level, Round};
+use tamaire_play::{AnyRound, Level, Round};
 
 /// How to show a round.
 #[derive(Copy, Clone, Debug)]
@@ -26,7 +26,7 @@ pub struct Look<'a> {
     /// Seconds since the game began, for blinking.
     pub time: f32,
     /// The same level as somebody played it before.
-    pub ghost: Option<&'a Round<Dim2>>,
+    pub ghost: Option<&'a AnyRound>,
     /// Whether to show what the hand could do, until it moves.
     pub hint: Hint,
     /// With reduced motion.
@@ -92,7 +92,14 @@ impl Stage {
     }
 
     /// Draws a round.
-    pub fn draw(&mut self, ui: &Ui, round: &Round<Dim2>, look: &Look) {
+    pub fn draw(&mut self, ui: &Ui, round: &AnyRound, look: &Look) {
+        match round {
+            AnyRound::Plane(round) => self.draw_plane(ui, round, look),
+            AnyRound::Space(_) => {}
+        }
+    }
+
+    fn draw_plane(&mut self, ui: &Ui, round: &Round<Dim2>, look: &Look) {
         let view = &look.view;
         let scale = ui.ctx().pixels_per_point();
         let size = (view.rect.size() * scale).max(vec2(1.0, 1.0));
@@ -126,7 +133,7 @@ impl Stage {
         let painter = ui.painter();
         painter.add(Callback::new_paint_callback(view.rect, paint));
         glow::draw(painter, round, look);
-        if let Some(ghost) = look.ghost {
+        if let Some(AnyRound::Plane(ghost)) = look.ghost {
             draw_ghost(painter, ghost, view);
         }
         if look.elements.is_none() {

@@ -172,9 +172,6 @@ fn replay_error(error: &ReplayError) -> String {
         }
         ReplayError::Level(level) => level_error(level),
         ReplayError::LevelChanged => "このリプレイのステージは、書きかえられています。".into(),
-        ReplayError::Dimension { found, .. } => {
-            format!("立体のリプレイ（dim = {found}）は、まだ見られません。")
-        }
         ReplayError::Differs { second } => {
             format!("このリプレイは書きかえられています。{second}秒から ちがいます。")
         }
