@@ -199,7 +199,18 @@ impl<D: Dim> Body<D> {
 
     /// All elements, to be looked at.
     pub fn element_views(&self) -> impl Iterator<Item = ElementView> + '_ {
-        self.mesh.elements().map(|(id, element)| ElementView {
+        self.mesh
+            .elements()
+            .map(|(id, element)| self.view_of(id, element))
+    }
+
+    /// An element, to be looked at, if it is alive.
+    pub fn element_view(&self, id: u32) -> Option<ElementView> {
+        Some(self.view_of(id, self.mesh.element(id)?))
+    }
+
+    fn view_of(&self, id: u32, element: &Element) -> ElementView {
+        ElementView {
             id,
             level: element.cell.level,
             piece: self.pieces.of_element(id),
@@ -207,7 +218,7 @@ impl<D: Dim> Body<D> {
             children: element.children,
             strain: self.strain(id, element),
             slots: self.slot_positions(element),
-        })
+        }
     }
 
     /// ‖F − R‖ of an element: 0.1 is a stretch by a tenth.
