@@ -87,6 +87,47 @@ fn a_blade_cuts_in_two() {
 }
 
 #[test]
+fn what_a_cut_changed_is_told_by_bare_faces_and_nodes() {
+    let mut world = World::<Dim3>::new(WEIGHTLESS).unwrap();
+    world.add_body(ball(16, unbreakable()));
+    let forms = |world: &World<Dim3>| -> Vec<(u8, Vec<u32>)> {
+        let body = &world.bodies()[0];
+        let form = |id| {
+            let nodes = body.mesh().element(id).map(|element| element.nodes.clone());
+            (body.bare_faces(id), nodes.unwrap_or_default())
+        };
+        (0..body.mesh().element_capacity() as u32)
+            .map(form)
+            .collect()
+    };
+    let before = forms(&world);
+    let (from, across, along) = ([0.5, -0.2, -0.2], [0.0, 0.4, 0.0], [0.0, 0.0, 1.4]);
+    world.cut(
+        0,
+        &Blade {
+            from,
+            across,
+            along,
+        },
+    );
+    let (after, body) = (forms(&world), &world.bodies()[0]);
+    let told: u32 = after.iter().map(|(bare, _)| bare.count_ones()).sum();
+    assert_eq!(told as usize, body.facets().count());
+    for facet in body.facets() {
+        for (node, corner) in facet.nodes.iter().zip(facet.corners) {
+            assert_eq!(body.positions()[*node as usize][..3], corner);
+        }
+        let (old, new) = (
+            before.get(facet.element as usize),
+            &after[facet.element as usize],
+        );
+        let is_far = facet.corners[0][1] > 0.6;
+        assert!(!is_far || old == Some(new), "{facet:?}");
+        assert!(!facet.is_fresh || old != Some(new), "{facet:?}");
+    }
+}
+
+#[test]
 fn a_short_blade_leaves_a_slit() {
     let mut world = World::<Dim2>::new(WEIGHTLESS).unwrap();
     world.add_body(ball(24, unbreakable()));

@@ -25,6 +25,7 @@ mod rest;
 mod rigid;
 mod rings;
 mod skin;
+pub mod space;
 pub mod theme;
 
 pub use ages::Ages;

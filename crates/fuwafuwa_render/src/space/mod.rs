@@ -1,0 +1,21 @@
+//! Worlds in space: the same way through as in the plane.
+//!
+//! [`camera`] is what a caller says beside the rest of a [`crate::Frame`] → `rest` how a body is smooth before it
+//! moves → `faces` what of it is bare → [`skin`] its smooth surface now; `boxes` its elements → `rounded`
+//! and `room` everything rigid → [`geometry`] all of them → `gpu` draws them.
+
+mod boxes;
+pub mod camera;
+mod faces;
+pub mod geometry;
+mod gpu;
+mod rest;
+mod room;
+mod rounded;
+pub mod skin;
+mod slots;
+
+pub use camera::Camera;
+pub use geometry::Geometry;
+pub use gpu::Renderer;
+pub use skin::Skin;

@@ -1,0 +1,200 @@
+//! How the stairs of a voxel shape in space are smoothed, once, before it moves.
+//!
+//! As in the plane: every point of the surface gets an offset, in voxels and in the frame of the
+//! body at rest, and a deformed body carries the offsets along.
+
+use fuwafuwa::dim::{add, corner};
+use fuwafuwa::sharing::{Groups, Sharing};
+use fuwafuwa::vector::{length, minus, plus, scaled};
+use fuwafuwa::view::face_corners;
+use fuwafuwa::{Dim, Dim3, Point, Vector, VoxelGrid};
+
+/// The variance of the smoothing [voxels²] as a share of the root of the number of faces of the
+/// surface. The widest terraces of a ball, where it is flat, grow like that.
+const REACH: f32 = 0.45;
+/// What a round adds to the variance of a flat surface [voxels²]: half of the way to the mean of four
+/// neighbours, of which two are a voxel away along each axis.
+const VARIANCE: f32 = 0.25;
+/// Rounds at most, so that the largest bodies are ready in a moment.
+const MOST_ROUNDS: usize = 200;
+/// A point is not moved by more [voxels], so that a nose of a few voxels stays a nose.
+const FARTHEST: f32 = 0.8;
+
+/// The offsets of a voxel shape.
+#[derive(Clone, Debug, Default)]
+pub struct Rest {
+    /// By lattice point: the first of its entries in `points`, or none.
+    first: Vec<u32>,
+    /// Lattice point by lattice point.
+    points: Vec<RestPoint>,
+    /// The grid they belong to.
+    grid: Option<VoxelGrid<Dim3>>,
+}
+
+/// What the voxels of a group around a lattice point share on the surface.
+#[derive(Copy, Clone, Debug)]
+struct RestPoint {
+    at: Point,
+    /// The voxels, as a mask of octants.
+    group: u8,
+    /// [voxels]
+    offset: Vector,
+}
+
+const NONE: u32 = u32::MAX;
+
+impl Rest {
+    /// Finds the offsets of a grid.
+    pub fn new(grid: &VoxelGrid<Dim3>) -> Self {
+        let sharing = Sharing::new(grid);
+        let mut rest = Self {
+            first: vec![NONE; sharing.point_count()],
+            points: Vec::new(),
+            grid: Some(grid.clone()),
+        };
+        for at in sharing.points() {
+            let groups = sharing.groups(at);
+            if groups == Groups::NONE || groups == Groups::joined(Dim3::ALL_CORNERS) {
+                continue;
+            }
+            rest.first[sharing.index(at)] = rest.points.len() as u32;
+            rest.points.extend(groups.iter().map(|group| RestPoint {
+                at,
+                group,
+                offset: [0.0; 3],
+            }));
+        }
+        let (neighbours, face_count) = rest.neighbours(grid);
+        let places: Vec<Vector> = rest.points.iter().map(|point| place(point.at)).collect();
+        let variance = REACH * (face_count as f32).sqrt();
+        let rounds = ((variance / VARIANCE) as usize).min(MOST_ROUNDS);
+        let smooth = smoothed(&places, &neighbours, rounds);
+        for (point, (&to, &from)) in rest.points.iter_mut().zip(smooth.iter().zip(&places)) {
+            point.offset = limited(minus(to, from));
+        }
+        rest
+    }
+
+    /// Whether these are the offsets of a grid.
+    pub fn fits(&self, grid: &VoxelGrid<Dim3>) -> bool {
+        self.grid.as_ref() == Some(grid)
+    }
+
+    /// The offset [voxels] of a point of the original surface, as the voxel in an octant of it has
+    /// it; none inside.
+    pub fn offset(&self, at: Point, octant: usize) -> Option<Vector> {
+        let found = self.find(at, octant)?;
+        Some(self.points[found as usize].offset)
+    }
+
+    fn find(&self, at: Point, octant: usize) -> Option<u32> {
+        let size = self.grid.as_ref()?.size().map(|side| side + 1);
+        let index = (at[2] * size[1] + at[1]) * size[0] + at[0];
+        let first = *self.first.get(index as usize)?;
+        let rest = self.points.get(first as usize..)?;
+        let own = rest.iter().take(8).take_while(|point| point.at == at);
+        let place = own
+            .map(|point| point.group)
+            .position(|group| group >> octant & 1 == 1);
+        Some(first + place? as u32)
+    }
+
+    /// The neighbours of each point along the edges of bare faces, and how many faces there are.
+    fn neighbours(&self, grid: &VoxelGrid<Dim3>) -> (Vec<Vec<u32>>, usize) {
+        let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); self.points.len()];
+        let mut face_count = 0;
+        for voxel in grid.voxels().filter(|&voxel| grid.is_solid(voxel)) {
+            for face in 0..6 {
+                let mut beyond = voxel;
+                beyond[face / 2] += 2 * (face % 2) as i32 - 1;
+                if grid.is_solid(beyond) {
+                    continue;
+                }
+                face_count += 1;
+                let ring = face_corners::<Dim3>(face)
+                    .map(|vertex| self.find(add(voxel, corner(vertex)), 7 - vertex));
+                for k in 0..4 {
+                    let (Some(a), Some(b)) = (ring[k], ring[(k + 1) % 4]) else {
+                        continue;
+                    };
+                    for (one, other) in [(a, b), (b, a)] {
+                        let near = &mut neighbours[one as usize];
+                        if !near.contains(&other) {
+                            near.push(other);
+                        }
+                    }
+                }
+            }
+        }
+        (neighbours, face_count)
+    }
+}
+
+fn place(at: Point) -> Vector {
+    at.map(|k| k as f32)
+}
+
+/// A surface without its stairs: 3 S − 3 S² + S³ of it, S being `rounds` of blur. What is much
+/// longer than the blur reaches does not shrink, as it would with S alone [Taubin 1995].
+fn smoothed(places: &[Vector], neighbours: &[Vec<u32>], rounds: usize) -> Vec<Vector> {
+    let blurred = |places: &[Vector]| {
+        let mut now = places.to_vec();
+        let mut next = now.clone();
+        for _ in 0..rounds {
+            for (to, (from, near)) in next.iter_mut().zip(now.iter().zip(neighbours)) {
+                let sum = near
+                    .iter()
+                    .fold([0.0; 3], |sum, &k| plus(sum, now[k as usize]));
+                let share = 0.5 / near.len().max(1) as f32;
+                *to = plus(scaled(*from, 0.5), scaled(sum, share));
+            }
+            std::mem::swap(&mut now, &mut next);
+        }
+        now
+    };
+    let once = blurred(places);
+    let twice = blurred(&once);
+    let thrice = blurred(&twice);
+    let sum = |k: usize| plus(scaled(minus(once[k], twice[k]), 3.0), thrice[k]);
+    (0..places.len()).map(sum).collect()
+}
+
+fn limited(offset: Vector) -> Vector {
+    match length(offset) {
+        length if length > FARTHEST => scaled(offset, FARTHEST / length),
+        _ => offset,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ball_is_round() {
+        for n in [12, 32] {
+            let grid = VoxelGrid::<Dim3>::ball(n, 1.0).unwrap();
+            let rest = Rest::new(&grid);
+            let half = 0.5 * n as f32;
+            let round = (grid.solid_count() as f32 * 0.75 / std::f32::consts::PI).cbrt();
+            for point in &rest.points {
+                let at = plus(place(point.at), point.offset);
+                let radius = length(minus(at, [half; 3]));
+                assert!(
+                    (radius - round).abs() < 0.35,
+                    "n = {n}: {radius}, not {round}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn voxels_that_meet_along_an_edge_stay_apart() {
+        let grid =
+            VoxelGrid::<Dim3>::from_fn([2, 2, 1], 1.0, |[x, y, _]| u8::from(x == y)).unwrap();
+        let rest = Rest::new(&grid);
+        assert_eq!(rest.points.len(), 16);
+        assert_ne!(rest.find([1, 1, 1], 0), rest.find([1, 1, 1], 3));
+        assert_eq!(rest.find([1, 1, 1], 1), None);
+    }
+}
