@@ -180,19 +180,6 @@ impl Bot {
     /// it is small enough; then gathers what is needed.
     fn shave<D: Dim>(&mut self, sight: &Sight) -> Vector {
         self.gathers |= sight.share < self.aim;
-            eprintln!(
-                "gathers {} aim {:.3} share {:.3} waited {} skips {} piece {:.2?} stroke {:.2?} hand {:.2?} goal {:.2?}",
-                self.gathers,
-                self.aim,
-                sight.share,
-                self.waited,
-                self.skips,
-                sight.piece,
-                self.stroke,
-                sight.hand,
-                sight.goal
-            );
-        }
         // What is stuck in front of the mouth has to be smaller still.
         if self.gathers && self.waited > PATIENCE && !sight.piece.fits {
             (self.gathers, self.aim) = (false, SMALL_ENOUGH * sight.share);
