@@ -59,17 +59,25 @@ pub const NAMED: [(&str, &str); 10] = [
 ];
 
 /// Those in space, in the order in which they are offered.
-pub const NAMED_3D: [(&str, &str); 1] = [("classic-3d", include_str!("../levels/classic-3d.toml"))];
+pub const NAMED_3D: [(&str, &str); 4] = [
+    ("classic-3d", include_str!("../levels/classic-3d.toml")),
+    ("hoop", include_str!("../levels/hoop.toml")),
+    ("pudding", include_str!("../levels/pudding.toml")),
+    ("sandbox-3d", include_str!("../levels/sandbox-3d.toml")),
+];
 
-/// Pictures that those levels are made from.
-const FILES: [(&str, &[u8]); 1] = [("cat.png", include_bytes!("../levels/cat.png"))];
+/// Pictures and models that those levels are made from.
+const FILES: [(&str, &[u8]); 2] = [
+    ("cat.png", include_bytes!("../levels/cat.png")),
+    ("pudding.vox", include_bytes!("../levels/pudding.vox")),
+];
 
-/// The level that a picture is put into, in place of its body.
-const FRAME: &str = "classic";
+/// The levels that a picture and a model are put into, in place of the body.
+const FRAMES: [(&str, &str); 2] = [("png", "classic"), ("vox", "classic-3d")];
 
 impl Level {
-    /// The level of a name, or in a file: a scene with a table `[game]` (.toml), or a picture (.png)
-    /// whose silhouette becomes the body.
+    /// The level of a name, or in a file: a scene with a table `[game]` (.toml), a picture (.png) whose
+    /// silhouette becomes the body, or a model of MagicaVoxel (.vox) that becomes one.
     ///
     /// # Errors
     /// [`LevelError`] says what is wrong, and in which line.
@@ -87,18 +95,25 @@ impl Level {
             let (id, known) = (id.into(), known.join(", "));
             return Err(LevelError::Unknown { id, known });
         }
-        match path.extension().and_then(|ending| ending.to_str()) {
-            Some(ending) if ending.eq_ignore_ascii_case("png") => Self::of_picture(path),
-            _ => Self::of(id, Scene::open(id, &[])?),
+        let ending = path.extension().and_then(|ending| ending.to_str());
+        let ending = ending.unwrap_or_default().to_ascii_lowercase();
+        match FRAMES.iter().find(|(made_from, _)| *made_from == ending) {
+            Some((_, frame)) => Self::framed(frame, path),
+            None => Self::of(id, Scene::open(id, &[])?),
         }
     }
 
-    /// The usual level with a body cut out of a picture.
-    fn of_picture(path: &Path) -> Result<Self, LevelError> {
-        let mut level = Self::open(FRAME)?;
+    /// A usual level with a body that is made from a file.
+    fn framed(frame: &str, path: &Path) -> Result<Self, LevelError> {
+        let mut level = Self::open(frame)?;
         level.id = path.display().to_string();
         if let Some(body) = level.scene.body.first_mut() {
             (body.shape, body.file) = (None, Some(path.into()));
+            if level.scene.dim == 3 {
+                // Whatever the colours of a model are, it is soft.
+                let all = (1..=u8::MAX).map(|index| (index.to_string(), 1));
+                body.colours = all.collect();
+            }
         }
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         level.game.name.en = name.chars().take(60).collect();
