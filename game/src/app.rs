@@ -172,7 +172,8 @@ impl App {
         if game.screen != Screen::Play || is_on_button {
             game.devices.pointer = None;
         } else if let (Some(view), Some(at), true) = (game.view, pointer, points) {
-            game.devices.pointer = Some(view.in_world(at));
+            let height = game.session.round().hands()[0].goal()[1];
+            game.devices.pointer = Some(view.in_world(at, height));
         }
         game.devices.keys = keys.into_iter().collect();
         let mut taken = Vec::new();

@@ -21,6 +21,16 @@ pub fn contact(hand: &Manipulator) -> Vector {
     [0, 1, 2].map(mean)
 }
 
+/// What of a force [N] a stick feels: to the right, and away from the player. In space that is along the floor, as seen by a
+/// camera that went around to the right by so much [rad].
+pub fn on_stick([x, y, z]: Vector, turn: Option<f32>) -> [f32; 2] {
+    let Some(turn) = turn else {
+        return [x, y];
+    };
+    let (sin, cos) = turn.sin_cos();
+    [cos * x - sin * z, -sin * x - cos * z]
+}
+
 /// How strongly each player feels what tore in the last tick, 0 to 1: whoever's hand is nearest.
 pub fn tears(round: &AnyRound) -> [f32; PLAYERS] {
     let mut counts = [0u32; PLAYERS];

@@ -58,15 +58,12 @@ impl Game {
     fn state(&self, id: DeviceId) -> Option<State> {
         let player = (0..PLAYERS).find(|&player| self.players.held(player) == Some(id))?;
         let hands = self.session.round().hands();
-        let [x, y, _] = felt::contact(hands.get(player)?);
+        let contact = felt::on_stick(felt::contact(hands.get(player)?), self.turn());
         let manner = match self.settings.stick_places {
             true => Manner::Places,
             false => Manner::Steers,
         };
-        Some(State {
-            contact: [x, y],
-            manner,
-        })
+        Some(State { contact, manner })
     }
 
     /// Why nobody feels anything now, if so.

@@ -66,6 +66,7 @@ impl Game {
             sensitivity: self.settings.sensitivity,
             stick_places: self.settings.stick_places,
             arena: self.session.round().level().arena(),
+            turn: self.turn(),
         };
         let still = self.settings.reduced_motion;
         // In menus the same keys and sticks move the focus; what is won is not torn any more.
@@ -111,6 +112,7 @@ impl Game {
         );
         if is_heard {
             devices.pointer = None;
+            devices.lift = 0.0;
         }
         for (player, size) in tears
             .into_iter()

@@ -6,9 +6,9 @@ use super::feelings::Feeling;
 use super::{Effects, Maps, Mood, Theme, draw_face, glow, hint};
 use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait, RenderState};
 use egui::{Color32, PaintCallbackInfo, Painter, Pos2, Stroke, Ui, vec2};
-use fuwafuwa::Dim2;
+use fuwafuwa::{Dim, Dim2, Dim3};
 use fuwafuwa_render::frame::ElementColour;
-use fuwafuwa_render::{Ages, Basket, Camera, Frame, Particle, Renderer};
+use fuwafuwa_render::{Ages, Basket, Camera, Frame, Particle, Renderer, space};
 use std::sync::{Arc, Mutex, PoisonError};
 use tamaire_play::{AnyRound, Level, Round};
 
@@ -48,6 +48,8 @@ pub enum Hint {
 pub struct Stage {
     state: RenderState,
     renderer: Arc<Mutex<Renderer>>,
+    /// None until the first round in space.
+    space: Option<Arc<Mutex<space::Renderer>>>,
     ages: Ages,
     /// The level of the round that `ages` follows, and how far it had come [ticks].
     followed: Option<(Arc<Level>, u64)>,
@@ -71,6 +73,21 @@ impl CallbackTrait for Paint {
     }
 }
 
+/// The same in space.
+struct PaintSpace(Arc<Mutex<space::Renderer>>);
+
+impl CallbackTrait for PaintSpace {
+    fn paint(
+        &self,
+        _: PaintCallbackInfo,
+        pass: &mut wgpu::RenderPass<'static>,
+        _: &CallbackResources,
+    ) {
+        let renderer = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        renderer.paint(pass);
+    }
+}
+
 impl Stage {
     /// A stage in the window whose GPU this is.
     pub fn new(state: &RenderState) -> Self {
@@ -78,6 +95,7 @@ impl Stage {
         Self {
             state: state.clone(),
             renderer: Arc::new(Mutex::new(renderer)),
+            space: None,
             ages: Ages::default(),
             followed: None,
             maps: Maps::default(),
@@ -95,8 +113,47 @@ impl Stage {
     pub fn draw(&mut self, ui: &Ui, round: &AnyRound, look: &Look) {
         match round {
             AnyRound::Plane(round) => self.draw_plane(ui, round, look),
-            AnyRound::Space(_) => {}
+            AnyRound::Space(round) => self.draw_space(ui, round, look),
         }
+    }
+
+    fn draw_space(&mut self, ui: &Ui, round: &Round<Dim3>, look: &Look) {
+        let Some(camera) = look.view.space else {
+            return;
+        };
+        let scale = ui.ctx().pixels_per_point();
+        let size = (look.view.rect.size() * scale).max(vec2(1.0, 1.0));
+        let size = [size.x.round() as u32, size.y.round() as u32];
+        self.follow_ages(round, look);
+        let specks = particles(look);
+        let frame = Frame {
+            camera,
+            theme: &look.theme.world,
+            look: shown(look, &self.ages),
+            basket: basket(round),
+            particles: &specks,
+            seconds: if look.still { 0.0 } else { look.time },
+        };
+        let RenderState {
+            device,
+            queue,
+            target_format,
+            ..
+        } = &self.state;
+        let new = || Arc::new(Mutex::new(space::Renderer::new(device, *target_format)));
+        let shared = self.space.get_or_insert_with(new);
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut renderer = shared.lock().unwrap_or_else(PoisonError::into_inner);
+        renderer.prepare(device, queue, &mut encoder, round.world(), &frame, size);
+        queue.submit([encoder.finish()]);
+        drop(renderer);
+        let paint = PaintSpace(shared.clone());
+        let painter = ui.painter();
+        painter.add(Callback::new_paint_callback(look.view.rect, paint));
+        if look.elements.is_none() {
+            draw_faces(painter, round, look);
+        }
+        look.effects.confetti.draw(painter, &look.view.flat());
     }
 
     fn draw_plane(&mut self, ui: &Ui, round: &Round<Dim2>, look: &Look) {
@@ -104,22 +161,12 @@ impl Stage {
         let scale = ui.ctx().pixels_per_point();
         let size = (view.rect.size() * scale).max(vec2(1.0, 1.0));
         let size = [size.x.round() as u32, size.y.round() as u32];
-        self.forget_ages_of_another(round);
-        self.ages
-            .follow(round.world(), (look.time - self.time).max(0.0));
-        self.time = look.time;
+        self.follow_ages(round, look);
         let specks = particles(look);
         let frame = Frame {
             camera: camera(view),
             theme: &look.theme.world,
-            look: match look.elements {
-                None => fuwafuwa_render::Look::Skin,
-                Some(colour) => fuwafuwa_render::Look::Elements {
-                    colour,
-                    ages: &self.ages.seconds,
-                    nodes: false,
-                },
-            },
+            look: shown(look, &self.ages),
             basket: basket(round),
             particles: &specks,
             seconds: if look.still { 0.0 } else { look.time },
@@ -144,7 +191,7 @@ impl Stage {
     }
 
     /// A round that starts anew has new elements: none of them was remodelled.
-    fn forget_ages_of_another(&mut self, round: &Round<Dim2>) {
+    fn follow_ages<D: Dim>(&mut self, round: &Round<D>, look: &Look) {
         let ticks = round.world().ticks();
         let goes_on = self
             .followed
@@ -154,6 +201,21 @@ impl Stage {
             self.ages = Ages::default();
         }
         self.followed = Some((round.level().clone(), ticks));
+        let seconds = (look.time - self.time).max(0.0);
+        self.ages.follow(round.world(), seconds);
+        self.time = look.time;
+    }
+}
+
+/// What of the bodies is shown.
+fn shown<'a>(look: &Look, ages: &'a Ages) -> fuwafuwa_render::Look<'a> {
+    match look.elements {
+        None => fuwafuwa_render::Look::Skin,
+        Some(colour) => fuwafuwa_render::Look::Elements {
+            colour,
+            ages: &ages.seconds,
+            nodes: false,
+        },
     }
 }
 
@@ -168,7 +230,7 @@ pub(super) fn camera(view: &View) -> Camera {
 }
 
 /// The basket of a round, as full as it is.
-pub(super) fn basket(round: &Round<Dim2>) -> Option<Basket> {
+pub(super) fn basket<D: Dim>(round: &Round<D>) -> Option<Basket> {
     let fill = (round.progress().inside / round.level().game().share).clamp(0.0, 1.0);
     round.basket().map(|&region| Basket { region, fill })
 }
@@ -189,7 +251,7 @@ fn particles(look: &Look) -> Vec<Particle> {
     specks.collect()
 }
 
-fn draw_faces(painter: &Painter, round: &Round<Dim2>, look: &Look) {
+fn draw_faces<D: Dim>(painter: &Painter, round: &Round<D>, look: &Look) {
     let view = &look.view;
     let bodies = round.world().bodies();
     // Before the first tick nobody has felt anything.
@@ -229,8 +291,12 @@ pub(super) fn place(feeling: &Feeling, view: &View, still: bool) -> Place {
     } else {
         start
     };
-    let size = (1.0 + start) * feeling.size * view.scale;
-    let [x, y] = feeling.right;
+    let size = (1.0 + start) * feeling.size * view.scale_at(feeling.at);
+    // In space it looks at the camera.
+    let [x, y] = match view.space {
+        None => feeling.right,
+        Some(_) => [1.0, 0.0],
+    };
     Place {
         at: view.on_screen(feeling.at),
         right: size * vec2(x, -y),

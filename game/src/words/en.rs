@@ -139,6 +139,10 @@ pub(super) const WORDS: Words = Words {
         Action::Slow => "Slow motion",
         Action::Step => "Single step",
         Action::Join => "Second player",
+        Action::Raise => "Upwards (3D)",
+        Action::Lower => "Downwards (3D)",
+        Action::TurnLeft => "Look from the left (3D)",
+        Action::TurnRight => "Look from the right (3D)",
         Action::CutForces => "Forces off",
     },
     on: "On",
@@ -151,5 +155,4 @@ pub(super) const WORDS: Words = Words {
     not_written: "This could not be written:",
     level_error: |error| error.to_string(),
     replay_error: |error| error.to_string(),
-    only_flat: "levels in space (dim = 3) cannot be played yet",
 };

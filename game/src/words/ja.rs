@@ -136,6 +136,10 @@ pub(super) const WORDS: Words = Words {
         Action::Slow => "スロー",
         Action::Step => "コマおくり",
         Action::Join => "ふたりで",
+        Action::Raise => "上げる（3D）",
+        Action::Lower => "下げる（3D）",
+        Action::TurnLeft => "左から見る（3D）",
+        Action::TurnRight => "右から見る（3D）",
         Action::CutForces => "手ごたえを切る",
     },
     on: "オン",
@@ -148,7 +152,6 @@ pub(super) const WORDS: Words = Words {
     not_written: "書きこめませんでした：",
     level_error,
     replay_error,
-    only_flat: "立体のステージ（dim = 3）は まだあそべません。",
 };
 
 /// What went wrong; details, which name fields and lines of files, stay as they are.

@@ -116,5 +116,4 @@ pub struct Words {
     pub not_written: &'static str,
     pub level_error: fn(&LevelError) -> String,
     pub replay_error: fn(&ReplayError) -> String,
-    pub only_flat: &'static str,
 }
