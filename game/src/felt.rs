@@ -31,7 +31,7 @@ pub fn on_stick([x, y, z]: Vector, turn: Option<f32>) -> [f32; 2] {
     [cos * x - sin * z, -sin * x - cos * z]
 }
 
-/// How strongly each player feels what tore in the last tick, 0 to 1: whoever's hand is nearest.
+/// How strongly each player feels what tore in the last tick, 0 to 1: whoever's hand is nearest of those that touch something.
 pub fn tears(round: &AnyRound) -> [f32; PLAYERS] {
     let mut counts = [0u32; PLAYERS];
     for event in round.events() {
@@ -43,6 +43,7 @@ pub fn tears(round: &AnyRound) -> [f32; PLAYERS] {
             square(0) + square(1) + square(2)
         };
         let hands = round.hands().iter().take(PLAYERS).enumerate();
+        let hands = hands.filter(|(_, hand)| contact(hand) != [0.0; 3]);
         let nearest = hands.min_by(|(_, a), (_, b)| away(a).total_cmp(&away(b)));
         if let Some((player, _)) = nearest {
             counts[player] += 1;

@@ -54,7 +54,8 @@ pub struct Options {
     /// Write a replay of the round (.tamaire)
     #[arg(long, requires = "headless", value_name = "FILE", conflicts_with = "replay", value_parser = replay_path)]
     pub save: Option<PathBuf>,
-    /// Write what would be felt (.csv): a row for each substep and for each update of a stick and a pad
+    /// Write what would be felt (.csv): a row for each substep, and for each update of a stick that points at the hand's
+    /// goal and of a pad
     #[arg(long, requires = "headless", value_name = "FILE", value_parser = table_path)]
     pub force_log: Option<PathBuf>,
     /// Tell how it went as JSON
@@ -146,7 +147,6 @@ fn try_bot(options: &Options) -> Result<String, Trouble> {
     let (_, kind) = named.expect("the parser lets no other through");
     let most = (options.seconds * RATE) as u64;
     let played = of_bot(level, Bot::new(*kind, options.seed), most, &mut log);
-    finish(log, options)?;
     if let Some(path) = &options.save {
         write(path, played.round.replay().text().as_bytes())?;
     }
@@ -154,7 +154,9 @@ fn try_bot(options: &Options) -> Result<String, Trouble> {
         bot: options.bot.clone(),
         seed: options.seed,
     };
-    tell(&played, by, options)
+    let told = tell(&played, by, options)?;
+    finish(log, options)?;
+    Ok(told)
 }
 
 /// Runs a replay.
@@ -174,12 +176,13 @@ fn check(path: &Path, options: &Options) -> Result<String, Trouble> {
     let replay = Files::replay(path).map_err(refused)?;
     let mut log = force_log(options)?;
     let played = of_replay(Arc::new(replay), &mut log).map_err(refused)?;
-    finish(log, options)?;
     let by = report::Player::Replay {
         replay: path.display().to_string(),
         genuine: true,
     };
-    tell(&played, by, options)
+    let told = tell(&played, by, options)?;
+    finish(log, options)?;
+    Ok(told)
 }
 
 fn tell(played: &Played, by: report::Player, options: &Options) -> Result<String, Trouble> {

@@ -87,7 +87,10 @@ impl Settings {
         fit(&mut self.effects, 0.0, 1.0, usual.effects);
         fit(&mut self.music, 0.0, 1.0, usual.music);
         fit(&mut self.interface, 0.0, 1.0, usual.interface);
-        fit(&mut self.haptics, 0.0, 1.0, usual.haptics);
+        fit(&mut self.haptics, 0.0, 1.0, 0.0);
+        for calibration in self.calibrations.values_mut() {
+            *calibration = calibration.bounded();
+        }
         fit(&mut self.speed, 0.5, 1.0, usual.speed);
         fit(&mut self.sensitivity, 0.3, 3.0, usual.sensitivity);
         fit(&mut self.text_size, 0.8, 1.6, usual.text_size);
@@ -115,5 +118,30 @@ impl Settings {
             music: self.music,
             interface: self.interface,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_measured_is_kept_and_nonsense_is_not_felt() {
+        let text = "haptics = nan\n[calibrations.stick]\nswap = true\ngain = [nan, 7.0]\n";
+        let settings = toml::from_str::<Settings>(text).unwrap().in_range();
+        let wanted = Calibration {
+            swap: true,
+            gain: [0.0, 1.0],
+            ..Calibration::USUAL
+        };
+        assert_eq!(settings.calibrations["stick"], wanted);
+        assert_eq!(settings.force("stick"), None, "no number is no force");
+        let settings = Settings {
+            haptics: 0.5,
+            ..settings
+        };
+        assert_eq!(settings.force("stick").unwrap().calibration, wanted);
+        let text = toml::to_string(&settings).unwrap();
+        assert_eq!(toml::from_str::<Settings>(&text).unwrap(), settings);
     }
 }

@@ -5,7 +5,7 @@ use force_feedback::{Ability, Calibration, Output, Recording, Stop};
 use fuwafuwa::world::TICK;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
-use sticks::{About, Device, DeviceId, PadButton, Snapshot, Sticks};
+use sticks::{About, Device, DeviceId, Snapshot};
 use tamaire::game::trial::Trial;
 use tamaire::game::{Game, Screen};
 use tamaire::input::{Action, Seat};
@@ -71,8 +71,18 @@ impl Table {
         self.notes[stick].take().last().map(|played| played.output)
     }
 
+    /// Leans a stick slowly from the left to the right, across the body, again and again until it is pushed.
     fn until_pushed(&mut self, stick: usize) {
+        self.until_pushed_along(stick, |share| [0.8 * share - 0.6, 0.0]);
+    }
+
+    fn until_pushed_along(&mut self, stick: usize, way: fn(f32) -> [f32; 2]) {
+        let mut frame = 0;
         self.until("pushed", |table| {
+            frame += 1;
+            let [x, y] = way(frame as f32 / 60.0 % 1.0);
+            table.devices[stick].axes = vec![x, -y];
+            table.plug_in();
             table.told(stick).is_some_and(|output| !output.is_zero())
         });
     }
@@ -81,6 +91,23 @@ impl Table {
         self.until("let go", |table| {
             table.told(stick).is_some_and(|output| output.is_zero())
         });
+    }
+
+    /// Until the thread says that the first stick is let go.
+    fn until_at_rest(&mut self) {
+        self.until("let go", |table| {
+            let report = table.game.forces.report(table.devices[0].id);
+            report.is_some_and(|report| report.output.is_zero())
+        });
+    }
+
+    /// Waits without any further frame until the first stick is let go; how long that took.
+    fn zero_since(&self, start: Instant) -> Duration {
+        while !self.told(0).is_some_and(|output| output.is_zero()) {
+            assert!(start.elapsed() < PATIENCE, "never let go");
+            std::thread::yield_now();
+        }
+        start.elapsed()
     }
 
     /// For a while nothing is told to a stick.
@@ -101,8 +128,8 @@ impl Table {
     fn pushing() -> Self {
         let mut table = Self::with(1);
         table.game.start(0);
-        table.lean(0, 1.0);
         table.until_pushed(0);
+        assert_eq!(table.silent(0), None);
         table
     }
 }
@@ -120,13 +147,18 @@ fn a_stick_that_pushes_the_body_is_pushed_back() {
     let mut table = Table::with(1);
     table.game.start(0);
     table.hears_nothing(0);
-    table.lean(0, 1.0);
-    table.until("pushed to the left", |table| match table.told(0) {
-        Some(Output::Force([x, y])) => {
-            assert!((-0.9..=0.0).contains(&x) && y.abs() <= 0.9, "{x} {y}");
-            x < -0.05
+    // It points at a place: to the right of where it was it pushes, and is pushed back the further it goes.
+    let mut lean = -0.8;
+    table.until("pushed to the left", |table| {
+        lean += if lean < 0.2 { 0.01 } else { 0.0 };
+        table.lean(0, lean);
+        match table.told(0) {
+            Some(Output::Force([x, y])) => {
+                assert!((-0.9..=0.01).contains(&x) && y.abs() <= 0.9, "{x} {y}");
+                x < -0.03
+            }
+            _ => false,
         }
-        _ => false,
     });
 }
 
@@ -141,22 +173,34 @@ fn it_ends_with_a_pause_a_menu_a_new_round_and_another_window() {
         (|game| game.act(Action::Step, Seat::Keys), Stop::Paused),
     ];
     for (way, reason) in ways {
-        let mut table = Table::pushing();
-        way(&mut table.game);
-        table.game.pass(0.0);
-        assert_eq!(table.silent(0), Some(reason));
-        table.until_let_go(0);
+        check_quick(|| {
+            let mut table = Table::pushing();
+            let start = Instant::now();
+            way(&mut table.game);
+            table.game.pass(0.0);
+            assert_eq!(table.silent(0), Some(reason));
+            table.zero_since(start)
+        });
     }
+}
+
+/// What ends a force ends it within 20 ms; of several tries the quickest counts, for the others are the machine's.
+fn check_quick(mut once: impl FnMut() -> Duration) {
+    let most = Duration::from_millis(20);
+    let quick = (0..20).map(|_| once()).find(|time| *time <= most);
+    assert!(quick.is_some(), "never within {most:?}");
 }
 
 #[test]
 fn it_ends_with_a_win() {
-    let mut table = Table::pushing();
+    let mut table = Table::with(1);
+    table.game.start(0);
+    let mut pushed = false;
     let bot = tamaire_play::BotKind::NAMED[0].1;
     let mut bot = tamaire_play::Bot::new(bot, 1);
     table.until("won", |table| {
         // The bot plays with the stick, that points at places.
-        table.game.settings.stick_places = true;
+        pushed |= table.told(0).is_some_and(|output| !output.is_zero());
         let round = table.game.session.round();
         let [low, high] = round.level().arena();
         let goal = bot.frame(round).goal(0).expect("it plays");
@@ -171,8 +215,10 @@ fn it_ends_with_a_win() {
         table.plug_in();
         table.game.session.round().progress().outcome.is_some()
     });
+    assert!(pushed);
     assert_eq!(table.silent(0), Some(Stop::Won));
-    table.until_let_go(0);
+    table.until_at_rest();
+    table.hears_nothing(0);
 }
 
 #[test]
@@ -191,7 +237,7 @@ fn it_ends_when_the_stick_is_unplugged_and_the_round_waits() {
     // Plugged in again it has another id, and plays on.
     table.devices.push(stick(7));
     table.notes = vec![Recording::default()];
-    table.lean(0, 1.0);
+    table.plug_in();
     table.frame();
     table.game.go(Screen::Play);
     table.until_pushed(0);
@@ -236,7 +282,7 @@ fn at_strength_0_nothing_is_sent_and_nothing_taken_hold_of() {
     let mut table = Table::with(1);
     table.game.settings.haptics = 0.0;
     table.game.start(0);
-    table.lean(0, 1.0);
+    table.lean(0, 0.2);
     table.hears_nothing(0);
     assert_eq!(table.game.forces.report(table.devices[0].id), None);
     table.game.settings.haptics = 0.5;
@@ -252,14 +298,10 @@ fn each_player_feels_the_own_hand() {
     table.game.start(0);
     table.game.act(Action::Join, Seat::Stick(DeviceId(1)));
     // The second hand comes in far above the body, and stays there.
-    table.lean(0, 1.0);
     table.until_pushed(0);
     assert_eq!(table.told(1), None);
-    // And pushes into it from above while the first lets go.
-    table.lean(0, 0.0);
-    table.devices[1].axes = vec![0.6, 0.6];
-    table.plug_in();
-    table.until_pushed(1);
+    // And pushes into it from above.
+    table.until_pushed_along(1, |share| [-0.35, 0.9 - 0.8 * share]);
 }
 
 #[test]
@@ -268,10 +310,29 @@ fn a_stick_that_lies_on_the_table_is_left_alone() {
     table.game.devices.keys.insert(egui::Key::D);
     table.lean(0, 0.0);
     table.until("left alone", |table| table.silent(0) == Some(Stop::Idle));
-    table.until("let go", |table| {
-        let report = table.game.forces.report(DeviceId(0));
-        report.is_some_and(|report| report.output.is_zero())
+    table.until_at_rest();
+    table.hears_nothing(0);
+}
+
+#[test]
+fn a_pad_that_is_put_down_hums_no_more_though_its_hand_presses() {
+    let mut table = Table::with(1);
+    table.notes = vec![Recording::new(Ability::Rumble)];
+    table.game.start(0);
+    table.lean(0, 1.0);
+    // Until it has pushed the body against the far wall.
+    let mut hummed = false;
+    table.until("pushed", |table| {
+        hummed |= table.told(0).is_some_and(|output| !output.is_zero());
+        table.game.session.round().world().ticks() > 150
     });
+    assert!(hummed);
+    table.lean(0, 0.0);
+    table.until("left alone", |table| table.silent(0) == Some(Stop::Idle));
+    table.until_at_rest();
+    let hand = &table.game.session.round().world().manipulators()[0];
+    let [x, y, _] = tamaire::felt::contact(hand);
+    assert!(x.hypot(y) > 10.0, "{x} {y}");
     table.hears_nothing(0);
 }
 
@@ -309,6 +370,16 @@ fn a_stick_can_be_tried_and_measured() {
     table.until_let_go(0);
     assert!(table.game.trial.is_none());
 
+    // One that is measured is let go when nothing may be sent any more.
+    table.game.go(Screen::Forces(Box::new(Screen::Title)));
+    table.game.trial = Some(Trial::measure(DeviceId(0)));
+    table.frame();
+    table.game.settings.haptics = 0.0;
+    (0..2).for_each(|_| table.frame());
+    assert!(table.game.trial.is_none());
+    table.game.settings.haptics = 0.5;
+    table.frame();
+
     // This one is built in the wrong way round, and goes where it is pushed.
     table.game.go(Screen::Forces(Box::new(Screen::Title)));
     table.lean(0, 0.0);
@@ -320,7 +391,7 @@ fn a_stick_can_be_tried_and_measured() {
         }
         table.game.trial.is_none()
     });
-    let guid = &table.devices[0].about.guid;
+    let guid = &table.devices[0].about.guid.clone();
     let known = table.game.settings.calibrations.get(guid);
     let wanted = Calibration {
         swap: true,
@@ -334,6 +405,8 @@ fn a_stick_can_be_tried_and_measured() {
 #[test]
 #[cfg(feature = "haptic")]
 fn a_pad_made_of_nothing_is_played_felt_and_unplugged() {
+    use sticks::{PadButton, Sticks};
+
     let sticks = Sticks::open_for_puppets().expect("SDL starts");
     let pad = sticks.plug_in_pad("Pad").expect("a pad");
     let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::through(sticks));

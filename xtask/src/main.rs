@@ -1,12 +1,13 @@
 //! The chores of this repository, run as `cargo xtask <task>`. Plain std, so that it builds in a moment.
 
+mod kernel;
 mod packages;
 mod task;
 mod wasm;
 
 use packages::{IfMissing, Purpose, has_display};
 use std::env;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 use task::{Task, USAGE};
 
@@ -43,6 +44,7 @@ fn main() -> ExitCode {
             run_all(CHECK).and_then(|()| run_all(TEST))
         }
         Task::Wasm(if_missing) => wasm::run(if_missing),
+        Task::Kernel(if_missing) => kernel::run(if_missing),
         Task::Soak => run_all(SOAK),
         Task::Rapier => run_all(RAPIER),
     };
@@ -113,7 +115,13 @@ const CHECK: &[Step] = &[
         hint: "mend the warnings above; if cargo has no clippy, `rustup component add clippy`",
     },
     Step {
-        arguments: &["check", "--package", "tamaire", "--no-default-features"],
+        arguments: &[
+            "check",
+            "--package",
+            "tamaire",
+            "--no-default-features",
+            "--all-targets",
+        ],
         environment: &[],
         hint: "something needs force feedback, which may be left out",
     },
@@ -228,6 +236,18 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .parent()
         .expect("xtask lies one folder below the root of the workspace")
+}
+
+/// Where everything is built; below the root, unless it is absolute.
+fn target() -> PathBuf {
+    env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from)
+}
+
+/// What a program writes, if it runs and succeeds.
+fn output_of(program: &str, arguments: &[&str]) -> Option<String> {
+    let output = Command::new(program).args(arguments).output().ok()?;
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    output.status.success().then_some(text)
 }
 
 /// Whether the program runs at all.

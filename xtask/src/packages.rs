@@ -78,6 +78,31 @@ const PACKAGES: &[Package] = {
     ]
 };
 
+/// Something that this machine lacks, and the Debian package that has it.
+#[derive(Debug, PartialEq)]
+pub struct Lack {
+    what: String,
+    pub package: String,
+}
+
+impl Lack {
+    pub fn new(what: impl Into<String>, package: impl Into<String>) -> Lack {
+        Lack {
+            what: what.into(),
+            package: package.into(),
+        }
+    }
+}
+
+/// A line for each.
+pub fn list_lacks(lacks: &[Lack]) -> String {
+    let lines: Vec<String> = lacks
+        .iter()
+        .map(|lack| format!("- {} (Debian: {})", lack.what, lack.package))
+        .collect();
+    lines.join("\n")
+}
+
 /// Sees to it that the packages for these purposes are there, as far as that goes. What is missing
 /// then is said, and the task goes on: this list may be wrong for a machine.
 pub fn provide(purposes: &[Purpose], if_missing: IfMissing) {

@@ -12,6 +12,8 @@ tasks:
   wasm             the golden scenes on wasm32 under Node: the same bits as natively? And does the
                    game compile for a browser?
   wasm --install   the same; what is missing comes from Debian's packages
+  kernel           sticks and their motors against the force feedback of a real kernel, in QEMU
+  kernel --install the same; what is missing comes from Debian's or Ubuntu's packages
   soak             ten minutes of two hands that do anything, on every level
   rapier           whether crates/against_rapier, a workspace of its own, still compiles
   help             this text
@@ -19,8 +21,8 @@ tasks:
 On Debian and Ubuntu, `play`, `test` and `check` install the system packages that are missing, as
 root or through sudo, after asking if there is a terminal. With --no-install they only name them.
 
-exit status: 0 passed, 1 failed, 2 no such task, 3 this machine lacks what `wasm` needs; `play`
-hands on that of the game";
+exit status: 0 passed, 1 failed, 2 no such task, 3 this machine lacks what `wasm` or `kernel` needs;
+`play` hands on that of the game";
 
 #[derive(Debug, PartialEq)]
 pub enum Task {
@@ -29,6 +31,7 @@ pub enum Task {
     Test(IfMissing),
     Check(IfMissing),
     Wasm(IfMissing),
+    Kernel(IfMissing),
     Soak,
     Rapier,
     Help,
@@ -59,6 +62,8 @@ impl Task {
             ["check", "--no-install"] => Task::Check(IfMissing::Say),
             ["wasm"] => Task::Wasm(IfMissing::Say),
             ["wasm", "--install"] => Task::Wasm(IfMissing::Install),
+            ["kernel"] => Task::Kernel(IfMissing::Say),
+            ["kernel", "--install"] => Task::Kernel(IfMissing::Install),
             ["soak"] => Task::Soak,
             ["rapier"] => Task::Rapier,
             ["help" | "--help" | "-h"] => Task::Help,
@@ -95,6 +100,8 @@ mod tests {
         check("test --no-install", Ok(Task::Test(IfMissing::Say)));
         check("wasm", Ok(Task::Wasm(IfMissing::Say)));
         check("wasm --install", Ok(Task::Wasm(IfMissing::Install)));
+        check("kernel", Ok(Task::Kernel(IfMissing::Say)));
+        check("kernel --install", Ok(Task::Kernel(IfMissing::Install)));
         check("--help", Ok(Task::Help));
         check("", Err("no task given"));
         check("chekc", Err("there is no task `chekc`"));

@@ -5,8 +5,8 @@
 //! it has not been told to, or cannot reach its server, Debian's packages do: a compiler, the
 //! sources of its standard library, which cargo then builds too, and a linker.
 
-use crate::packages::{IfMissing, apt_get, install_arguments};
-use crate::{CANNOT, Failure, answers, cargo, execute, root};
+use crate::packages::{IfMissing, Lack, apt_get, install_arguments, list_lacks};
+use crate::{CANNOT, Failure, answers, cargo, execute, output_of, root, target};
 use std::env;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -50,22 +50,6 @@ enum Compiler {
     Ready,
     /// Debian's, with this linker.
     Debian { linker: String },
-}
-
-/// What this machine lacks, and the Debian package that has it.
-#[derive(Debug, PartialEq)]
-struct Lack {
-    what: String,
-    package: String,
-}
-
-impl Lack {
-    fn new(what: impl Into<String>, package: impl Into<String>) -> Lack {
-        Lack {
-            what: what.into(),
-            package: package.into(),
-        }
-    }
 }
 
 /// The compiler to use, or all that is missing.
@@ -157,9 +141,7 @@ fn build(compiler: &Compiler) -> Result<PathBuf, Failure> {
 
 /// Where wasm32 is built: beside the native build.
 fn folder() -> PathBuf {
-    env::var_os("CARGO_TARGET_DIR")
-        .map_or_else(|| PathBuf::from("target"), PathBuf::from)
-        .join("wasm")
+    target().join("wasm")
 }
 
 /// A call of cargo that builds for wasm32 with this compiler.
@@ -185,18 +167,7 @@ fn cargo_for_wasm(compiler: &Compiler, words: &[&str]) -> Command {
     command
 }
 
-/// What a program writes, if it runs and succeeds.
-fn output_of(program: &str, arguments: &[&str]) -> Option<String> {
-    let output = Command::new(program).args(arguments).output().ok()?;
-    let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    output.status.success().then_some(text)
-}
-
 fn cannot(lacks: &[Lack], if_missing: IfMissing) -> Failure {
-    let lines: Vec<String> = lacks
-        .iter()
-        .map(|lack| format!("- {} (Debian: {})", lack.what, lack.package))
-        .collect();
     let advice = match if_missing {
         IfMissing::Say => "On Debian, `cargo xtask wasm --install` installs that.",
         IfMissing::Install => "What Debian's packages offer here is not enough, see above.",
@@ -205,7 +176,7 @@ fn cannot(lacks: &[Lack], if_missing: IfMissing) -> Failure {
         message: format!(
             "the golden scenes were NOT run on wasm32:\n{}\n{advice}\n\
              Elsewhere: `rustup target add {TARGET}`, and Node on the path.",
-            lines.join("\n")
+            list_lacks(lacks)
         ),
         code: CANNOT,
     }

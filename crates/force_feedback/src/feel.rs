@@ -1,6 +1,8 @@
 //! All of it for one device, a step at a time.
 
-use crate::{Ability, Chain, Coupling, Give, Mail, Output, Settings, State, Stop, Watchdog};
+use crate::{
+    Ability, Chain, Coupling, Give, Mail, OLDEST, Output, Settings, State, Stop, Watchdog,
+};
 use std::time::Duration;
 
 /// Contact forces are not believed to be larger than this along an axis [N].
@@ -47,10 +49,16 @@ impl Feel {
             Err(stop) => return self.rest(ability, stop),
         };
         let settings = &settings.bounded();
-        let duration = self
+        let mut duration = self
             .before
-            .map_or(0.0, |before| now.saturating_sub(before).as_secs_f32());
+            .map_or(Duration::ZERO, |before| now.saturating_sub(before));
+        if duration > OLDEST {
+            // The thread was held up, as in a process that was stopped. Its hand has long been let go, and is elsewhere.
+            *self = Self::default();
+            duration = Duration::ZERO;
+        }
         self.before = Some(now);
+        let duration = duration.as_secs_f32();
         let newtons = match (sane(state.contact, MOST), sane(aim, 1.0)) {
             (Some(contact), Some(aim)) if ability == Ability::Force => {
                 let state = State { contact, ..state };

@@ -25,6 +25,7 @@ pub struct Settings {
 /// How the axes of a device's motors lie to those of its stick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default))]
 pub struct Calibration {
     /// The motor that is called x pushes along y, and the other way round.
     pub swap: bool,
@@ -65,25 +66,21 @@ impl Settings {
 
     /// The same within all bounds. What is no number at all becomes what is felt least.
     pub fn bounded(self) -> Self {
-        let within = |value: f32, range: RangeInclusive<f32>, otherwise: f32| {
-            let value = if value.is_nan() { otherwise } else { value };
-            value.clamp(*range.start(), *range.end())
-        };
         Self {
             strength: within(self.strength, Self::SHARE, 0.0),
             full: within(self.full, Self::FULL, *Self::FULL.end()),
             stiffness: within(self.stiffness, Self::STIFFNESS, 0.0),
             slew: within(self.slew, Self::SLEW, *Self::SLEW.start()),
             clamp: within(self.clamp, Self::SHARE, 0.0),
-            calibration: Calibration {
-                gain: self
-                    .calibration
-                    .gain
-                    .map(|gain| within(gain, Self::SHARE, 0.0)),
-                ..self.calibration
-            },
+            calibration: self.calibration.bounded(),
         }
     }
+}
+
+/// A value within its bounds, or this if it is no number.
+fn within(value: f32, range: RangeInclusive<f32>, otherwise: f32) -> f32 {
+    let value = if value.is_nan() { otherwise } else { value };
+    value.clamp(*range.start(), *range.end())
 }
 
 impl Calibration {
@@ -93,6 +90,12 @@ impl Calibration {
         invert: [false; 2],
         gain: [1.0; 2],
     };
+
+    /// The same with gains within their bounds.
+    pub fn bounded(self) -> Self {
+        let gain = self.gain.map(|gain| within(gain, Settings::SHARE, 0.0));
+        Self { gain, ..self }
+    }
 
     /// How a device is built in whose stick moved by `moves[0]` when the motor x pushed and by `moves[1]` when the motor y
     /// did. None if that is not clear: somebody held it too firmly, or nothing pushed.

@@ -181,11 +181,13 @@ impl Line {
         self.post(|post| post.tear = post.tear.max(size));
     }
 
-    /// Stops this device until the next state is told.
+    /// Stops this device until the next state is told. To say it again costs next to nothing.
     pub fn stop(&self, why: Stop) {
         let mail = self.shared.mail(Err(why));
-        self.post(|post| post.mail = mail);
-        self.shared.hurry(self.shared.desk());
+        let before = self.post(|post| std::mem::replace(&mut post.mail, mail));
+        if before.wish != mail.wish {
+            self.shared.hurry(self.shared.desk());
+        }
     }
 
     /// Goes on with other settings.

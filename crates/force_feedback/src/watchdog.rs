@@ -1,6 +1,7 @@
 //! Why there is no force.
 
 use crate::State;
+use std::fmt;
 use std::time::Duration;
 
 /// Mail that is older counts for nothing. Two updates at the slowest rate below the 100 ms that it must never outlast.
@@ -31,6 +32,24 @@ pub enum Stop {
     Emergency,
     /// The thread that plays has ended.
     Ended,
+}
+
+impl fmt::Display for Stop {
+    fn fmt(&self, to: &mut fmt::Formatter) -> fmt::Result {
+        to.write_str(match self {
+            Self::Unheard => "unheard",
+            Self::Idle => "idle",
+            Self::Paused => "paused",
+            Self::FocusLost => "focus lost",
+            Self::Menu => "menu",
+            Self::Won => "won",
+            Self::Reset => "reset",
+            Self::Unplugged => "unplugged",
+            Self::Stale => "stale",
+            Self::Emergency => "emergency",
+            Self::Ended => "ended",
+        })
+    }
 }
 
 /// The latest that the game said about one device, and when, on a clock that both sides share.

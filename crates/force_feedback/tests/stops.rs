@@ -66,6 +66,22 @@ impl Simulated {
 }
 
 #[test]
+fn a_thread_that_was_held_up_begins_gently() {
+    let mut simulated = Simulated::pushed(250);
+    simulated.now += 1500 * MS;
+    // The simulation was held up too, and wakes first: nothing is stale.
+    simulated.say(Ok(PUSH));
+    for _ in 0..5 {
+        let felt = simulated.step();
+        assert_eq!(felt.silent, None);
+        let Output::Force([x, _]) = felt.output else {
+            panic!("{felt:?}");
+        };
+        assert!(x.abs() < 0.01, "{felt:?}");
+    }
+}
+
+#[test]
 fn each_reason_ends_it_in_the_next_step() {
     for rate in [*RATES.start(), 200, *RATES.end()] {
         for reason in REASONS {

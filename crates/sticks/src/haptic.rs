@@ -19,7 +19,8 @@ const START_AGAIN: Duration = Duration::from_millis(150);
 /// thread is the one that ends them. 0x346e is Moza; what is known of its bases is in PCSX2's pull requests 11906, 11915.
 const ENDLESS: [u16; 1] = [0x346e];
 
-/// A device to be felt, for `force_feedback`; have one at a time of each. Dropping it lets go of the device. Forces overtake each other: only the
+/// A device to be felt, for `force_feedback`. Dropping it lets go of the device, unless it was taken hold of anew since; so
+/// have one at a time of each, but for the moment in which one follows another. Forces overtake each other: only the
 /// latest is on its way.
 pub struct Haptic {
     id: DeviceId,
@@ -30,13 +31,16 @@ pub struct Haptic {
 
 struct Slot {
     ability: Ability,
-    wish: Option<Output>,
+    /// What is on its way, and since when.
+    wish: Option<(Output, Instant)>,
 }
 
 /// What can be felt of a device, on the thread. It is taken hold of when it is first asked for.
 #[derive(Default)]
 pub struct Held<'sdl> {
     body: Option<Body<'sdl>>,
+    /// Of whoever took hold of it last.
+    holder: Weak<Mutex<Slot>>,
     /// When the last was told that did something.
     told: Option<Instant>,
     started: Option<Instant>,
@@ -66,6 +70,7 @@ impl Sticks {
             let sdl = hub.sdl;
             if let Some((open, held)) = hub.held(id) {
                 lock(&slot).ability = held.take_hold(sdl, open);
+                held.holder = Arc::downgrade(&slot);
             }
         });
         haptic
@@ -92,14 +97,17 @@ impl Sink for Haptic {
     }
 
     fn play(&mut self, output: Output) -> Result<(), Gone> {
-        let is_on_its_way = lock(&self.slot).wish.replace(output).is_some();
+        let wish = (output, Instant::now());
+        let is_on_its_way = lock(&self.slot).wish.replace(wish).is_some();
         if is_on_its_way {
             return Ok(());
         }
         let (id, slot) = (self.id, self.slot.clone());
         self.order(move |hub| {
             let wish = lock(&slot).wish.take();
-            if let (Some(output), Some((open, held))) = (wish, hub.held(id)) {
+            // A process that was stopped for a while finds one on its way that nobody means any more.
+            let fresh = wish.filter(|(_, since)| since.elapsed() < LENGTH);
+            if let (Some((output, _)), Some((open, held))) = (fresh, hub.held(id)) {
                 held.play(open, output);
             }
         })
@@ -109,11 +117,14 @@ impl Sink for Haptic {
 
 impl Drop for Haptic {
     fn drop(&mut self) {
-        let id = self.id;
+        let (id, slot) = (self.id, self.slot.clone());
         // If the thread has ended, the device was let go.
         let _ = self.order(move |hub| {
             if let Some((open, held)) = hub.held(id) {
-                held.let_go(open);
+                held.let_rest(open);
+                if held.holder.as_ptr() == Arc::as_ptr(&slot) {
+                    *held = Held::default();
+                }
             }
         });
     }
@@ -172,11 +183,6 @@ impl<'sdl> Held<'sdl> {
             _ => Ability::Force,
         };
         self.play(open, Output::zero(ability));
-    }
-
-    fn let_go(&mut self, open: &Open<'sdl>) {
-        self.let_rest(open);
-        *self = Self::default();
     }
 }
 

@@ -399,6 +399,49 @@ mod felt {
     }
 
     #[test]
+    fn a_device_that_is_taken_over_can_still_be_felt() {
+        let sticks = open();
+        let pad = sticks.plug_in_pad("Pad").expect("SDL takes it");
+        let old = sticks.haptic(pad.id());
+        // As a line that is replaced: the new one comes first, since the old one is dropped on another thread.
+        let mut new = sticks.haptic(pad.id());
+        drop(old);
+        let hum = Output::Rumble {
+            low: 0.5,
+            high: 1.0,
+        };
+        until("it can rumble", || new.ability() == Ability::Rumble);
+        until("it rumbles", || {
+            assert!(new.play(hum).is_ok());
+            pad.rumble() == [32768, 65534]
+        });
+    }
+
+    #[test]
+    fn what_was_on_its_way_for_too_long_is_not_played() {
+        let sticks = open();
+        let pad = sticks.plug_in_pad("Pad").expect("SDL takes it");
+        let mut haptic = sticks.haptic(pad.id());
+        until("it can rumble", || haptic.ability() == Ability::Rumble);
+        let orders = sticks.owner.orders().upgrade().expect("it runs");
+        // As in a process that is stopped.
+        orders
+            .send(Box::new(|_| thread::sleep(LENGTH)))
+            .expect("it runs");
+        let hum = Output::Rumble {
+            low: 0.5,
+            high: 1.0,
+        };
+        assert!(haptic.play(hum).is_ok());
+        let (tell, told) = std::sync::mpsc::channel();
+        orders
+            .send(Box::new(move |_| tell.send(()).expect("the test waits")))
+            .expect("it runs");
+        told.recv().expect("the thread runs");
+        assert_eq!(pad.rumble(), [0, 0]);
+    }
+
+    #[test]
     fn what_pushes_is_not_told_to_shake() {
         let sticks = open();
         let stick = sticks

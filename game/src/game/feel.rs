@@ -3,9 +3,12 @@
 use super::trial::{Outcome, Trial};
 use super::{Game, Screen};
 use crate::felt;
-use force_feedback::{Manner, State, Stop};
+use force_feedback::{Ability, Calibration, Manner, State, Stop};
 use sticks::DeviceId;
 use tamaire_play::PLAYERS;
+
+/// A device that was not used for so long is not felt [s].
+const RESTED: f32 = 1.5;
 
 impl Game {
     /// Tells devices what there is to feel, and those that feel nothing why.
@@ -18,6 +21,12 @@ impl Game {
                 let tried = trial.as_ref().and_then(|trial| trial.settings(device.id));
                 Some(tried.unwrap_or(usual))
             });
+        let sticks = self.devices.sticks.devices.iter();
+        let pushing = sticks.map(|device| device.id).filter(|&id| {
+            let report = self.forces.report(id);
+            report.is_some_and(|report| report.ability == Ability::Force)
+        });
+        self.devices.pushing = pushing.collect();
         let silence = self.silence();
         self.forces.tell(|id| match (trial, silence) {
             (Some(trial), _) => trial.state(id).ok_or(Stop::Menu),
@@ -33,7 +42,8 @@ impl Game {
         let Some(trial) = &mut self.trial else {
             return;
         };
-        let outcome = match self.is_away || self.forces.is_cut() {
+        let is_held = self.forces.report(trial.device).is_some();
+        let outcome = match self.is_away || !is_held || self.forces.is_cut() {
             true => Outcome::Gone,
             false => trial.pass(&self.devices.sticks, seconds),
         };
@@ -43,9 +53,12 @@ impl Game {
         let device = self.devices.sticks.device(trial.device);
         self.trial = None;
         match (outcome, device) {
-            (Outcome::Known(Some(calibration)), Some(device)) => {
-                let model = device.about.guid.clone();
-                self.settings.calibrations.insert(model, calibration);
+            (Outcome::Known(Some(found)), Some(device)) => {
+                let known = self.settings.calibrations.entry(device.about.guid.clone());
+                let known = known.or_default();
+                // Gains are not measured.
+                let gain = known.gain;
+                *known = Calibration { gain, ..found };
                 self.keep_settings();
                 self.notify(self.words().measured.to_string());
             }
@@ -59,7 +72,12 @@ impl Game {
         let player = (0..PLAYERS).find(|&player| self.players.held(player) == Some(id))?;
         let hands = self.session.round().hands();
         let contact = felt::on_stick(felt::contact(hands.get(player)?), self.turn());
-        let manner = match self.settings.stick_places {
+        let pushes_back = self.devices.pushing.contains(&id);
+        // What was put down hums no more, though the hand still presses. A stick that pushes back may be held still.
+        if !pushes_back && self.players.rested(player) > RESTED {
+            return None;
+        }
+        let manner = match self.settings.stick_places || pushes_back {
             true => Manner::Places,
             false => Manner::Steers,
         };

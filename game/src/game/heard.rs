@@ -1,7 +1,6 @@
 //! What is heard: of a tick, and for as long as it lasts.
 
 use super::{Game, Screen};
-use crate::felt;
 use fuwafuwa::{Dim, Event, Vector, With};
 use tamaire_play::rules::CRUMB;
 use tamaire_play::{AnyRound, Round};
@@ -17,8 +16,11 @@ pub(super) fn soundscape(game: &Game) -> Soundscape {
     let hold = round.level().game().hold.max(0.1);
     let mut presses = [Press::default(); 2];
     for (press, hand) in presses.iter_mut().zip(round.hands()) {
+        let all = hand.reactions().iter();
+        let force = all.map(|reaction| length(reaction.contact));
+        let count = hand.reactions().len().max(1) as f32;
         *press = Press {
-            force: length(felt::contact(hand)),
+            force: force.sum::<f32>() / count,
             slip: length(hand.velocity()),
             x: across(arena, hand.position()[0]),
         };

@@ -19,7 +19,8 @@ const COLUMNS: &str = "seconds,row,player,\
     contact_x_N,contact_y_N,contact_z_N,coupling_x_N,coupling_y_N,coupling_z_N,\
     aim_x,aim_y,felt_x_N,felt_y_N,stick_x,stick_y,pad_slow,pad_fast,silent";
 
-/// A table that grows tick by tick. Sticks in it point at the goals of the hands.
+/// A table that grows tick by tick: the substeps of a tick, then the updates from its end to that of the next. Sticks in it
+/// point at the goals of the hands, as those do that push back.
 pub struct ForceLog {
     file: BufWriter<File>,
     /// Each player's stick and pad.
@@ -132,7 +133,7 @@ impl ForceLog {
         };
         let ([u, v], [felt_x, felt_y]) = (aim, stick.newtons);
         let ((right, up), (slow, fast)) = (pair(stick.output), pair(pad.output));
-        let silent = stick.silent.map_or(String::new(), |why| format!("{why:?}"));
+        let silent = stick.silent.map_or(String::new(), |why| why.to_string());
         writeln!(
             self.file,
             "{seconds:.6},device,{player},{x},{y},{z},,,,\

@@ -54,7 +54,7 @@ impl Default for Bindings {
             (Action::Lower, vec![Key::Z, Key::PageDown]),
             (Action::TurnLeft, vec![Key::OpenBracket]),
             (Action::TurnRight, vec![Key::CloseBracket]),
-            (Action::CutForces, vec![Key::X, Key::F12]),
+            (Action::CutForces, vec![Key::F12, Key::X]),
         ];
         let pad = |button| PadKey::of(Control::Pad(button));
         let stick = |index| PadKey::of(Control::Button(index));
@@ -77,10 +77,8 @@ impl Default for Bindings {
             (Action::Lower, vec![stick(10)]),
             (Action::TurnLeft, vec![stick(11)]),
             (Action::TurnRight, vec![stick(12)]),
-            (
-                Action::CutForces,
-                vec![pad(PadButton::RightStick), stick(8)],
-            ),
+            // On a pad a child would press it by accident, and a pad does nothing worse than hum.
+            (Action::CutForces, vec![stick(8)]),
         ];
         Self {
             keys: keys.into(),
@@ -105,11 +103,13 @@ impl Bindings {
         let keys = self.keys.get(&action).into_iter().flatten();
         let buttons = self.buttons.get(&action).into_iter().flatten();
         [
-            keys.map(|&key| name_of(key)).collect::<Vec<_>>().join(" "),
+            keys.map(|&key| name_of(key))
+                .collect::<Vec<_>>()
+                .join(" / "),
             buttons
                 .map(|button| button.0.as_str())
                 .collect::<Vec<_>>()
-                .join(" "),
+                .join(" / "),
         ]
     }
 
@@ -131,6 +131,11 @@ impl Bindings {
     /// The same with the usual keys and buttons for actions that have none.
     pub fn complete(mut self) -> Self {
         let usual = Self::default();
+        // There must be a key for this one, whatever it meant before.
+        complete(&mut self.keys, &usual.keys, Action::CutForces);
+        if self.keys[&Action::CutForces].is_empty() {
+            self.bind_key(Action::CutForces, usual.keys[&Action::CutForces][0]);
+        }
         for action in Action::ALL {
             complete(&mut self.keys, &usual.keys, action);
             complete(&mut self.buttons, &usual.buttons, action);
@@ -222,6 +227,19 @@ mod tests {
         assert_eq!(bindings.of_key(Key::P), Some(Action::Retry));
         assert_eq!(bindings.keys[&Action::Pause], [Key::Escape]);
         assert_eq!(bindings.buttons, Bindings::default().buttons);
+    }
+
+    #[test]
+    fn there_is_always_a_key_that_cuts_forces() {
+        let text = "[keys]\nretry = [\"F12\"]\npause = [\"X\"]\n";
+        let bindings = toml::from_str::<Bindings>(text).unwrap().complete();
+        assert_eq!(bindings.of_key(Key::F12), Some(Action::CutForces));
+        assert_eq!(bindings.of_key(Key::X), Some(Action::Pause));
+        assert!(
+            Action::ALL
+                .iter()
+                .all(|action| !bindings.keys[action].is_empty())
+        );
     }
 
     #[test]

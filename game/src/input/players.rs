@@ -11,6 +11,8 @@ use tamaire_play::{InputFrame, PLAYERS};
 /// A stick that leans less than this does nothing, and one that leans more than `RIM` leans fully.
 const DEAD: f32 = 0.15;
 const RIM: f32 = 0.95;
+/// A stick that moves by less than this does not move.
+const NOISE: f32 = 0.01;
 /// How fast a key or a stick that leans fully moves the goal at the usual sensitivity [m/s].
 const PACE: f32 = 2.0;
 /// How fast it rises in space [m/s].
@@ -38,6 +40,8 @@ pub struct Devices {
     pub lift: f32,
     /// Sticks and pads.
     pub sticks: Snapshot,
+    /// Those of them that push back. They have no spring to the middle, so they point at places.
+    pub pushing: BTreeSet<DeviceId>,
 }
 
 /// Who plays, and where they want their hands to be.
@@ -50,8 +54,9 @@ pub struct Players {
     /// How sticks leaned in the last tick. One that points at a place does so when it moves; while
     /// it is still, be it at rest, mouse and keys have their say.
     leans: BTreeMap<DeviceId, [f32; 2]>,
-    /// With what each moved the hand last.
+    /// With what each moved the hand last, and how long ago [s].
     used: [Option<Seat>; PLAYERS],
+    rested: [f32; PLAYERS],
 }
 
 /// How the devices of a player are taken.
@@ -116,6 +121,11 @@ impl Players {
         }
     }
 
+    /// For how long a player has left the hand alone [s].
+    pub fn rested(&self, player: usize) -> f32 {
+        self.rested[player]
+    }
+
     /// A device asks to join, or to leave again.
     pub fn join(&mut self, seat: Seat) {
         self.second = match self.second {
@@ -130,9 +140,10 @@ impl Players {
 
     /// A new round: everybody wants to be where the hand is.
     pub fn start(&mut self) {
+        // A stick that leans from before means nothing until it moves.
         *self = Self {
             second: self.second,
-            used: self.used,
+            leans: std::mem::take(&mut self.leans),
             ..Self::default()
         };
     }
@@ -151,6 +162,7 @@ impl Players {
             && devices.sticks.device(id).is_none()
         {
             self.second = None;
+            self.used[1] = None;
         }
         let is_here = |id: &DeviceId| devices.sticks.device(*id).is_some();
         self.leans.retain(|id, _| is_here(id));
@@ -181,6 +193,7 @@ impl Players {
         here: Vector,
         seconds: f32,
     ) {
+        self.rested[player] += seconds;
         let holds = |seat: Seat| match player {
             0 => self.second != Some(seat),
             _ => self.second == Some(seat),
@@ -200,10 +213,15 @@ impl Players {
         let all = devices.sticks.devices.iter();
         for device in all.filter(|device| holds(Seat::Stick(device.id))) {
             let stick = sticks::radial_dead_zone(device.aim(), DEAD, RIM);
-            let before = self.leans.insert(device.id, stick).unwrap_or_default();
-            if !manner.stick_places {
+            let before = self.leans.entry(device.id).or_default();
+            let moved = (Vec2::from(stick) - Vec2::from(*before)).length() > NOISE;
+            if moved || stick == [0.0; 2] {
+                *before = stick;
+            }
+            let pushes_back = devices.pushing.contains(&device.id);
+            if !manner.stick_places && !pushes_back {
                 lean += Vec2::from(stick);
-            } else if stick != before {
+            } else if moved || self.used[player] == Some(Seat::Stick(device.id)) {
                 place = Some(manner.place_of(stick, here));
             }
             let held: Vec<Action> = device
@@ -216,12 +234,11 @@ impl Players {
             let hat = direction(means);
             lean += hat;
             lift += rise;
-            let is_used = hat != Vec2::ZERO
-                || rise != 0.0
-                || stick != before
-                || (stick != [0.0; 2] && !manner.stick_places);
-            if is_used {
+            // One that pushes back stays where it is put, in a hand or not.
+            let leans = stick != [0.0; 2] && !pushes_back;
+            if moved || leans || hat != Vec2::ZERO || rise != 0.0 {
                 self.used[player] = Some(Seat::Stick(device.id));
+                self.rested[player] = 0.0;
             }
         }
         if holds(Seat::Pointer) && (devices.pointer.is_some() || devices.lift != 0.0) {

@@ -12,7 +12,7 @@ const RATE: u32 = 250;
 #[derive(Default)]
 pub struct Forces {
     lines: BTreeMap<DeviceId, Line>,
-    /// None until the first device comes.
+    /// None while there is no device.
     force: Option<Force>,
     is_cut: bool,
 }
@@ -31,6 +31,9 @@ impl Forces {
             .filter_map(|device| Some((device.id, settings(device)?)))
             .collect();
         self.lines.retain(|id, _| wanted.contains_key(id));
+        if wanted.is_empty() {
+            self.force = None;
+        }
         for (id, settings) in wanted {
             if let Some(line) = self.lines.get(&id) {
                 line.set(settings);
@@ -58,9 +61,7 @@ impl Forces {
         for (&id, line) in &self.lines {
             match wish(id) {
                 Ok(state) => line.feel(state),
-                // Once is enough: it lasts.
-                Err(why) if line.report().silent != Some(why) => line.stop(why),
-                Err(_) => {}
+                Err(why) => line.stop(why),
             }
         }
     }

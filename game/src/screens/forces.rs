@@ -7,7 +7,7 @@ use crate::game::{Game, Screen};
 use crate::look::Theme;
 use crate::words::Words;
 use egui::{Color32, Painter, Pos2, Rect, RichText, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
-use force_feedback::{Ability, Output, Report};
+use force_feedback::{Ability, Calibration, Output, Report};
 use sticks::Device;
 use tamaire_sound::Menu;
 
@@ -148,8 +148,10 @@ fn draw_stick(
 fn draw_report(ui: &mut Ui, theme: &Theme, said: &Words, device: &Device, report: Option<Report>) {
     let rows = device.axes.len().div_ceil(2) as f32;
     let width = 330.0;
+    let a_row = (width / LIGHTS) as usize;
+    let lights = device.controls().count().div_ceil(a_row) as f32;
     let (place, _) = ui.allocate_exact_size(
-        vec2(width, 2.0 * ROW + 30.0 + 12.0 * rows + LIGHTS),
+        vec2(width, 2.0 * ROW + 30.0 + 12.0 * rows + LIGHTS * lights),
         Sense::hover(),
     );
     let painter = ui.painter();
@@ -201,10 +203,8 @@ fn draw_report(ui: &mut Ui, theme: &Theme, said: &Words, device: &Device, report
     }
     at.y += 12.0 * rows + LIGHT;
     for (number, (_, button)) in device.controls().enumerate() {
-        let middle = at + vec2(LIGHT + LIGHTS * number as f32, LIGHT);
-        if middle.x > place.right() {
-            break;
-        }
+        let corner = vec2((number % a_row) as f32, (number / a_row) as f32);
+        let middle = at + vec2(LIGHT, LIGHT) + LIGHTS * corner;
         let fill = if button.down {
             theme.accent
         } else {
@@ -272,7 +272,17 @@ fn show_acts(ui: &mut Ui, theme: &Theme, game: &mut Game, device: &Device, repor
             game.trial = Some(Trial::measure(device.id));
         }
         let known = game.settings.calibrations.get(&device.about.guid);
-        let text = (said.built)(&known.copied().unwrap_or_default());
+        let known = known.copied().unwrap_or_default();
+        let usual = Calibration {
+            gain: known.gain,
+            ..Calibration::USUAL
+        };
+        let text = (said.built)(&known);
+        if known != usual && button(ui, theme, said.as_usual, size, Weight::Other).clicked() {
+            let model = device.about.guid.clone();
+            game.settings.calibrations.insert(model, usual);
+            game.keep_settings();
+        }
         ui.label(RichText::new(text).size(16.0).color(theme.faint));
     }
     ui.label(RichText::new(text).size(17.0).color(theme.ink));

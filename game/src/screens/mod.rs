@@ -49,7 +49,12 @@ fn notices(game: &Game, ui: &Ui) {
     let font = FontId::proportional(18.0 * scale);
     let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("notices"));
     let painter = ui.ctx().layer_painter(layer);
-    for (text, left) in &game.notices {
+    // Over a round it stands in the row of what is different from usual.
+    let is_cut = game.forces.is_cut() && game.screen != Screen::Play;
+    let lasting = is_cut.then(|| (game.words().cut_now.to_string(), 1.0));
+    let passing = game.notices.iter().cloned();
+    let is_new = |notice: &(String, f32)| !is_cut || notice.0 != game.words().cut_now;
+    for (text, left) in lasting.into_iter().chain(passing.filter(is_new)) {
         let strength = left.min(1.0);
         let ink = Color32::WHITE.gamma_multiply(strength);
         let width = screen.width() - 80.0;

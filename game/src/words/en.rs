@@ -64,7 +64,7 @@ pub(super) const WORDS: Words = Words {
     music: "Music",
     interface: "Menus",
     haptics: "Force",
-    forces: "Forces",
+    forces: "Sticks and pads",
     try_forces: "Sticks and pads…",
     no_devices: "No stick or pad is plugged in.",
     ability: |ability| match ability {
@@ -72,7 +72,7 @@ pub(super) const WORDS: Words = Words {
         Ability::Rumble => "It can rumble",
         Ability::Nothing => "It cannot be felt",
     },
-    forces_off: "Force is 0: nothing is sent",
+    forces_off: "Force is at 0: nothing is sent",
     silent: |why| match why {
         Stop::Unheard | Stop::Idle => "Nothing: nobody plays with it",
         Stop::Paused => "Nothing: the game is paused",
@@ -86,16 +86,16 @@ pub(super) const WORDS: Words = Words {
         Stop::Ended => "Nothing: force feedback broke down",
     },
     motors: ["Slow motor", "Fast motor"],
-    gains: ["Gain ←→", "Gain ↑↓"],
+    gains: ["Strength ←→", "Strength ↑↓"],
     try_it: "Try it",
     enough: "Enough",
-    push_it: "Push the stick: it pushes back, and tears at its rim.",
-    measure: "Measure",
-    hands_off: "Let go of the stick!",
-    measured: "Measured.",
-    not_measured: "That was not clear. Let go of the stick while it is measured.",
+    push_it: "Push the stick: it pushes back, and gives way at its edge.",
+    measure: "Measure its motors",
+    hands_off: "Put the stick upright and let go. It will move by itself.",
+    measured: "Now it is known which way its motors push.",
+    not_measured: "That was not clear. Put the stick upright and let go while it is measured.",
     built: |built| match (built.swap, built.invert) {
-        (false, [false, false]) => "Built in as usual".into(),
+        (false, [false, false]) => "They push as usual".into(),
         (swap, [x, y]) => {
             let parts = [
                 (swap, "swapped"),
@@ -107,13 +107,16 @@ pub(super) const WORDS: Words = Words {
                 .filter(|part| part.0)
                 .map(|part| part.1)
                 .collect();
-            format!("Motors: {}", parts.join(", "))
+            format!("They are {}", parts.join(", "))
         }
     },
+    as_usual: "As usual",
     forces_cut: "Forces off",
     cut_now: "All forces are off. Switch them on again in the settings, under Sticks and pads.",
     cut_hint: |[keys, buttons]| {
-        format!("To switch all forces off at once, press {keys} or button {buttons}.")
+        format!(
+            "To switch all forces off at once, press {keys} on the keyboard, or button {buttons}."
+        )
     },
     restore: "Switch forces on again",
     speed: "Game speed",

@@ -65,7 +65,7 @@ pub(super) const WORDS: Words = Words {
     music: "音楽",
     interface: "メニュー音",
     haptics: "手ごたえ",
-    forces: "手ごたえ",
+    forces: "スティックとパッド",
     try_forces: "スティックとパッド…",
     no_devices: "スティックもパッドも つながっていません。",
     ability: |ability| match ability {
@@ -90,11 +90,11 @@ pub(super) const WORDS: Words = Words {
     gains: ["強さ ←→", "強さ ↑↓"],
     try_it: "ためす",
     enough: "おわり",
-    push_it: "スティックをおすと おしかえし、はしまで行くと ちぎれます。",
-    measure: "はかる",
-    hands_off: "スティックから手をはなしてね！",
-    measured: "はかりました。",
-    not_measured: "うまくはかれませんでした。はかるあいだは 手をはなしてね。",
+    push_it: "スティックをたおすと おしかえし、はしまで行くと ふっと軽くなります。",
+    measure: "モーターの向きをはかる",
+    hands_off: "まっすぐ立てて 手をはなしてね。かってに動きます。",
+    measured: "モーターの向きが わかりました。",
+    not_measured: "うまくはかれませんでした。まっすぐ立てて、はかるあいだは 手をはなしてね。",
     built: |built| match (built.swap, built.invert) {
         (false, [false, false]) => "モーターの向き：ふつう".into(),
         (swap, [x, y]) => {
@@ -107,10 +107,11 @@ pub(super) const WORDS: Words = Words {
             format!("モーターの向き：{}", parts.join("・"))
         }
     },
+    as_usual: "ふつうにもどす",
     forces_cut: "手ごたえ オフ",
     cut_now: "手ごたえを切りました。せっていの「スティックとパッド」で もどせます。",
     cut_hint: |[keys, buttons]| {
-        format!("{keys} か、ボタン {buttons} をおすと、手ごたえが すぐ切れます。")
+        format!("キーボードの {keys} か、ボタン {buttons} をおすと、手ごたえが すぐ切れます。")
     },
     restore: "手ごたえをもどす",
     speed: "はやさ",

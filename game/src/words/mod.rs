@@ -89,6 +89,7 @@ pub struct Words {
     pub measured: &'static str,
     pub not_measured: &'static str,
     pub built: fn(&Calibration) -> String,
+    pub as_usual: &'static str,
     pub forces_cut: &'static str,
     pub cut_now: &'static str,
     pub cut_hint: fn(&[String; 2]) -> String,

@@ -265,6 +265,8 @@ fn a_pad_is_tried_and_its_stick_moves_nothing_else_meanwhile() {
     assert!(game(&mut table.window).trial.is_none());
 
     // Off at once, on every screen; and on again where it says so.
+    let bindings = &mut game(&mut table.window).settings.bindings;
+    bindings.bind_button(Action::CutForces, sticks::Control::Pad(RightStick));
     table.tap(RightStick);
     assert!(game(&mut table.window).forces.is_cut());
     table.tap(Up);

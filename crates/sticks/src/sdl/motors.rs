@@ -9,10 +9,9 @@ use sdl3_sys::assert::{
 };
 use sdl3_sys::haptic::{
     SDL_CloseHaptic, SDL_CreateHapticEffect, SDL_GetHapticFeatures, SDL_GetNumHapticAxes,
-    SDL_HAPTIC_AUTOCENTER, SDL_HAPTIC_CARTESIAN, SDL_HAPTIC_CONSTANT, SDL_HAPTIC_INFINITY,
-    SDL_Haptic, SDL_HapticConstant, SDL_HapticDirection, SDL_HapticEffect, SDL_HapticEffectID,
-    SDL_HapticEffectType, SDL_OpenHapticFromJoystick, SDL_RunHapticEffect, SDL_SetHapticAutocenter,
-    SDL_UpdateHapticEffect,
+    SDL_HAPTIC_CARTESIAN, SDL_HAPTIC_CONSTANT, SDL_HAPTIC_INFINITY, SDL_Haptic, SDL_HapticConstant,
+    SDL_HapticDirection, SDL_HapticEffect, SDL_HapticEffectID, SDL_HapticEffectType,
+    SDL_OpenHapticFromJoystick, SDL_RunHapticEffect, SDL_UpdateHapticEffect,
 };
 use sdl3_sys::init::{SDL_INIT_HAPTIC, SDL_InitSubSystem};
 use sdl3_sys::joystick::{
@@ -62,7 +61,8 @@ impl Sdl {
         if !self.feels {
             return None;
         }
-        // SAFETY: see the module; what is no haptic device gives null. SDL closes in `drop` what it opens here.
+        // SAFETY: see the module; what is no haptic device gives null. SDL closes in `drop` what it opens here. The spring
+        // that pulls some sticks to the middle goes off with this, and the gain goes up.
         let haptic = unsafe { SDL_OpenHapticFromJoystick(open.joystick.as_ptr()) };
         let mut motors = Motors {
             haptic: NonNull::new(haptic)?,
@@ -72,10 +72,6 @@ impl Sdl {
         };
         if !motors.has(SDL_HAPTIC_CONSTANT) || motors.axis_count() < 2 {
             return None;
-        }
-        if motors.has(SDL_HAPTIC_AUTOCENTER) {
-            // SAFETY: see the module; it was opened above.
-            unsafe { SDL_SetHapticAutocenter(haptic, 0) };
         }
         for axis in 0..2 {
             // SAFETY: as above; SDL copies the effect.

@@ -1,0 +1,182 @@
+//! What a hand feels of a device that was told this, as a device of the kernel plays it, and what must always hold.
+
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
+
+use force_feedback::{LENGTH, Settings};
+
+use crate::uinput::{Effect, Told, What};
+
+const TO_THE_RIGHT: u16 = 0xc000;
+const AWAY: u16 = 0x8000;
+/// What goes on is started again this often.
+const START_AGAIN: Duration = Duration::from_millis(150);
+/// The time by which one thing may be told later than another on a slow machine.
+const LATE: Duration = Duration::from_millis(30);
+
+/// Such that the bounds are met soon, and are seen in spite of `LATE`.
+pub fn settings() -> Settings {
+    Settings {
+        slew: *Settings::SLEW.start(),
+        clamp: 0.35,
+        strength: 1.0,
+        ..Settings::default()
+    }
+}
+
+#[derive(Default)]
+struct Hand(BTreeMap<i16, Motor>);
+
+struct Motor {
+    effect: Effect,
+    started: Option<Instant>,
+}
+
+impl Hand {
+    fn feel(&mut self, told: &Told) {
+        match told.what {
+            What::Upload(effect) => {
+                let motor = self.0.entry(effect.id).or_insert(Motor {
+                    effect,
+                    started: None,
+                });
+                motor.effect = effect;
+            }
+            What::Play { id, times } => {
+                let motor = self.0.get_mut(&id).expect("only what is there is played");
+                motor.started = (times > 0).then_some(told.at);
+            }
+            What::Erase { id } => {
+                self.0.remove(&id).expect("only what is there is erased");
+            }
+            What::Autocentre(_) | What::Gain(_) => {}
+        }
+    }
+
+    /// x to the right, y away from the player [full forces].
+    fn force(&self, at: Instant) -> [f32; 2] {
+        let mut force = [0.0; 2];
+        for motor in self.0.values().filter(|motor| motor.plays(at)) {
+            let level = f32::from(motor.effect.level) / 32767.0;
+            match motor.effect.direction {
+                TO_THE_RIGHT => force[0] += level,
+                AWAY => force[1] += level,
+                other => panic!("nobody asked for the direction {other:#x}"),
+            }
+        }
+        force
+    }
+}
+
+impl Motor {
+    fn plays(&self, at: Instant) -> bool {
+        let Effect { length, .. } = self.effect;
+        self.started
+            .is_some_and(|started| length.is_zero() || at - started < length)
+    }
+}
+
+/// What is felt at a time, which may be yet to come, of a device that is told no more than this.
+pub fn force_at(told: &[Told], at: Instant) -> [f32; 2] {
+    let mut hand = Hand::default();
+    for told in told.iter().take_while(|told| told.at <= at) {
+        hand.feel(told);
+    }
+    hand.force(at)
+}
+
+/// What was felt right after each of these.
+pub fn forces(told: &[Told]) -> Vec<[f32; 2]> {
+    let mut hand = Hand::default();
+    let force = |told: &Told| {
+        hand.feel(told);
+        hand.force(told.at)
+    };
+    told.iter().map(force).collect()
+}
+
+/// Since when the device was told to do nothing. None while it still is to do something, or if it never was.
+pub fn quiet_since(told: &[Told]) -> Option<Instant> {
+    let last_loud = forces(told).iter().rposition(|force| *force != [0.0; 2])?;
+    told.get(last_loud + 1).map(|told| told.at)
+}
+
+/// What must hold for whatever one line tells a device: no spring to the middle; two effects that end by themselves and
+/// keep their directions; they are started again in time and no more often than that; levels that keep their bounds.
+pub fn check(told: &[Told]) {
+    let centred = told
+        .iter()
+        .position(|told| told.what == What::Autocentre(0));
+    let first = told
+        .iter()
+        .position(|told| matches!(told.what, What::Upload(_)));
+    assert!(
+        centred < first && centred.is_some(),
+        "autocentre goes off first"
+    );
+
+    let mut motors: BTreeMap<i16, Vec<Told>> = BTreeMap::new();
+    for told in told {
+        match told.what {
+            What::Upload(Effect { id, .. }) | What::Play { id, .. } | What::Erase { id } => {
+                motors.entry(id).or_default().push(*told);
+            }
+            What::Autocentre(strength) => assert_eq!(strength, 0),
+            What::Gain(_) => {}
+        }
+    }
+    let directions: Vec<u16> = motors.values().map(|told| check_motor(told)).collect();
+    assert_eq!(directions, [TO_THE_RIGHT, AWAY]);
+}
+
+/// Of what one effect was told. Returns its direction.
+fn check_motor(told: &[Told]) -> u16 {
+    let effects: Vec<(Instant, Effect)> = told
+        .iter()
+        .filter_map(|told| match told.what {
+            What::Upload(effect) => Some((told.at, effect)),
+            _ => None,
+        })
+        .collect();
+    let settings = settings();
+    let direction = effects[0].1.direction;
+    for (_, effect) in &effects {
+        assert_eq!(effect.direction, direction);
+        assert_eq!((effect.length, effect.delay), (LENGTH, Duration::ZERO));
+    }
+    let levels: Vec<(Instant, f32)> = effects
+        .iter()
+        .map(|(at, effect)| (*at, f32::from(effect.level) / 32767.0))
+        .collect();
+    for many in levels.windows(5) {
+        // What stays the same is not told: the first of these may have lasted until the next began.
+        let (from, before, (at, to)) = (many[0].1, many[1].0, many[4]);
+        let most = settings.slew * (at - before + LATE).as_secs_f32();
+        // To stop is not to slew.
+        let is_slow = to == 0.0 || (to - from).abs() <= most;
+        assert!(is_slow, "from {from} to {to} in {:?}", at - before);
+        assert!(to.abs() <= settings.clamp + 1e-4, "{to}");
+    }
+
+    let mut starts: Vec<Instant> = Vec::new();
+    let mut rested = true;
+    for told in told {
+        match told.what {
+            What::Upload(effect) => rested |= effect.level == 0,
+            What::Play { times, .. } => {
+                assert_eq!(times, 1);
+                if let Some(before) = starts.last() {
+                    assert!(rested || told.at - *before < LENGTH, "a push was cut short");
+                }
+                rested = false;
+                starts.push(told.at);
+            }
+            _ => {}
+        }
+    }
+    for four in starts.windows(4) {
+        let time = four[3] - four[0] + LATE;
+        assert!(time >= 3 * START_AGAIN, "started four times in {time:?}");
+    }
+    direction
+}
