@@ -36,8 +36,9 @@ use sdl3_sys::gamepad::{
 };
 use sdl3_sys::guid::SDL_GUIDToString;
 use sdl3_sys::hints::{
-    SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, SDL_HINT_JOYSTICK_HIDAPI_LG4FF,
-    SDL_HINT_NO_SIGNAL_HANDLERS, SDL_HINT_OVERRIDE, SDL_SetHintWithPriority,
+    SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, SDL_HINT_JOYSTICK_HIDAPI,
+    SDL_HINT_JOYSTICK_HIDAPI_LG4FF, SDL_HINT_NO_SIGNAL_HANDLERS, SDL_HINT_OVERRIDE,
+    SDL_SetHintWithPriority,
 };
 use sdl3_sys::init::{SDL_INIT_GAMEPAD, SDL_Init, SDL_Quit};
 use sdl3_sys::joystick::{
@@ -129,7 +130,8 @@ impl Sdl {
         };
         // SAFETY: see the module; the hints are constants that end in a zero. SDL has no window, so it would never think
         // itself in the background, but drivers ask for it. Signals belong to the program. Wheels of Logitech go through the
-        // kernel: SDL 3.4 reads the wrong structure where it compares a haptic device of its own driver with another.
+        // kernel: SDL 3.4 reads the wrong structure where it compares a haptic device of its own driver with another. On
+        // Linux all do: the kernel ends what a program left behind that was killed, and SDL's own drivers cannot.
         let started = unsafe {
             SDL_SetHintWithPriority(
                 SDL_HINT_NO_SIGNAL_HANDLERS,
@@ -146,6 +148,9 @@ impl Sdl {
                 c"0".as_ptr(),
                 SDL_HINT_OVERRIDE,
             );
+            if cfg!(target_os = "linux") {
+                SDL_SetHintWithPriority(SDL_HINT_JOYSTICK_HIDAPI, c"0".as_ptr(), SDL_HINT_OVERRIDE);
+            }
             SDL_Init(SDL_INIT_GAMEPAD)
         };
         if !started {
