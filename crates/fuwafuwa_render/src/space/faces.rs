@@ -20,7 +20,7 @@ pub const NONE: u32 = u32::MAX;
 const ALL_FACES: u8 = 0b11_1111;
 /// How far points inside the body are moved off the lattice at most, along each axis [voxels]: more
 /// looks rougher, and lets faces turn over.
-const ROUGHNESS: f32 = 0.3;
+const ROUGHNESS: f32 = 0.45;
 
 /// The bare faces of a body and all that hangs on them.
 #[derive(Clone, Debug, Default)]
@@ -79,6 +79,14 @@ pub struct SkinPoint {
     /// Its vertices on the original surface and inside.
     vertices: [u32; 2],
     is_dirty: bool,
+}
+
+impl SkinPoint {
+    /// Its vertex on the original surface, or inside.
+    pub fn vertex(&self, ground: Ground) -> Option<u32> {
+        let vertex = self.vertices[usize::from(ground == Ground::Torn)];
+        (vertex != NONE).then_some(vertex)
+    }
 }
 
 /// What a point lies on.
@@ -184,6 +192,12 @@ impl Faces {
         self.indices.resize(6 * self.faces.all.len(), 0);
         new.iter().for_each(|&face| self.triangulate(face));
         any
+    }
+
+    /// The point of a node of the surface.
+    pub fn point_of(&self, node: u32) -> Option<u32> {
+        let place = self.of_node.get(node as usize)?;
+        (*place != NONE).then_some(*place)
     }
 
     /// Which elements differ from what they were, and what they are now.

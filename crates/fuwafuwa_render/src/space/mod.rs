@@ -4,6 +4,7 @@
 //! moves → `faces` what of it is bare → [`skin`] its smooth surface now; `boxes` its elements → `rounded`
 //! and `room` everything rigid → [`geometry`] all of them → `gpu` draws them.
 
+pub mod anchor;
 mod boxes;
 pub mod camera;
 mod faces;
@@ -15,6 +16,7 @@ mod rounded;
 pub mod skin;
 mod slots;
 
+pub use anchor::{SkinAnchor, Spot};
 pub use camera::Camera;
 pub use geometry::Geometry;
 pub use gpu::Renderer;

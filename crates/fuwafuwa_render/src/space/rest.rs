@@ -80,6 +80,12 @@ impl Rest {
         self.grid.as_ref() == Some(grid)
     }
 
+    /// The points of the original surface, each with the octant of one of its voxels.
+    pub fn spots(&self) -> impl Iterator<Item = (Point, usize)> + '_ {
+        let points = self.points.iter();
+        points.map(|point| (point.at, point.group.trailing_zeros() as usize))
+    }
+
     /// The offset [voxels] of a point of the original surface, as the voxel in an octant of it has
     /// it; none inside.
     pub fn offset(&self, at: Point, octant: usize) -> Option<Vector> {

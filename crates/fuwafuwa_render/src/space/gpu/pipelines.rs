@@ -43,7 +43,11 @@ impl Pipelines {
             multisampled: false,
         };
         let compare = BindingType::Sampler(SamplerBindingType::Comparison);
-        let shadow_layout = layout(device, "shadow", &[entry(0, depth), entry(1, compare)]);
+        let shadow_layout = layout(
+            device,
+            "shadow",
+            &[entry(0, depth), entry(1, depth), entry(2, compare)],
+        );
         let window_layout = layout(device, "window", &[texture(0), sampler(1)]);
         let skin = wgsl!(
             "space.wgsl",
