@@ -149,11 +149,22 @@ fn hand(in: RoundedCorner) -> @location(0) vec4f {
     return shown(lit * mix(0.80, 1.0, 0.5 + 0.5 * normal.y), 1.0);
 }
 
+fn rough_normal(in: RoundedCorner) -> vec3f {
+    return normalize(normalize(in.normal) + 0.35 * rough3(2.6 * in.own_normal + 5.3 * in.number));
+}
+
 @fragment
 fn crumb(in: RoundedCorner) -> @location(0) vec4f {
-    let facing = normalize(in.normal);
-    let normal = normalize(facing + 0.35 * rough3(2.6 * in.own_normal + 5.3 * in.number));
-    return shown(flesh(to_linear(in.colour.rgb), 0.6, 0.0, in.at, normal, facing), in.colour.a);
+    let colour = flesh(to_linear(in.colour.rgb), 0.6, 0.0, in.at, rough_normal(in), normalize(in.normal));
+    return shown(colour, 1.0);
+}
+
+@fragment
+fn dust(in: RoundedCorner) -> @location(0) vec4f {
+    let normal = rough_normal(in);
+    let wrapped = clamp(dot(normal, normalize(LIGHT)) * 0.5 + 0.5, 0.0, 1.0);
+    let colour = to_linear(in.colour.rgb) * mix(0.75, 1.1, wrapped);
+    return shown(colour, in.colour.a);
 }
 
 @fragment

@@ -18,9 +18,6 @@ use fuwafuwa::{Body, Dim3, Point, Vector};
 pub const NONE: u32 = u32::MAX;
 /// The faces of a voxel that hangs together with nothing.
 const ALL_FACES: u8 = 0b11_1111;
-/// How far points inside the body are moved off the lattice at most, along each axis [voxels]: more
-/// looks rougher, and lets faces turn over.
-const ROUGHNESS: f32 = 0.45;
 
 /// The bare faces of a body and all that hangs on them.
 #[derive(Clone, Debug, Default)]
@@ -335,7 +332,7 @@ impl Faces {
             near[ground].add(face.points[(k + 3) % 4]);
             // The offset is carried by the voxel that it leads into, or away from least.
             let vertex = face_corners::<Dim3>(face.side.into())[k];
-            let offset = offset(rest, at, 7 - vertex);
+            let offset = rest.offset(at, 7 - vertex);
             let inwards = corner(vertex).map(|end| 1.0 - 2.0 * end as f32);
             let towards = (0..3)
                 .map(|axis| (inwards[axis] * offset[axis]).min(0.0))
@@ -421,23 +418,4 @@ impl Near {
             .for_each(|&point| both.add(point));
         both
     }
-}
-
-/// How far a point is moved [voxels], as the voxel in an octant of it sees it: the same on both lips
-/// of a crack.
-fn offset(rest: &Rest, at: Point, octant: usize) -> Vector {
-    let rough = || [0, 1, 2].map(|axis| ROUGHNESS * (2.0 * grain(at, axis) - 1.0));
-    rest.offset(at, octant).unwrap_or_else(rough)
-}
-
-/// A number that a lattice point keeps for each axis, 0 to 1.
-fn grain(at: Point, axis: u32) -> f32 {
-    let [x, y, z] = at.map(|k| k as u32);
-    let mixed =
-        x.wrapping_mul(0x9e37_79b1) ^ y.wrapping_mul(0x85eb_ca77) ^ z.wrapping_mul(0xc2b2_ae3d);
-    let mixed = (mixed ^ mixed >> 15)
-        .wrapping_add(axis.wrapping_mul(0x27d4_eb2f))
-        .wrapping_mul(0x2c1b_3c6d);
-    let mixed = (mixed ^ mixed >> 13).wrapping_mul(0x297a_2d39);
-    (mixed >> 16) as f32 / 65535.0
 }

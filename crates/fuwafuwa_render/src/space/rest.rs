@@ -20,6 +20,10 @@ const MOST_ROUNDS: usize = 200;
 /// A point is not moved by more [voxels], so that a nose of a few voxels stays a nose.
 const FARTHEST: f32 = 0.8;
 
+/// How far points inside the body are moved off the lattice at most, along each axis [voxels]: more
+/// looks rougher, and lets faces turn over.
+const ROUGHNESS: f32 = 0.45;
+
 /// The offsets of a voxel shape.
 #[derive(Clone, Debug, Default)]
 pub struct Rest {
@@ -86,11 +90,13 @@ impl Rest {
         points.map(|point| (point.at, point.group.trailing_zeros() as usize))
     }
 
-    /// The offset [voxels] of a point of the original surface, as the voxel in an octant of it has
-    /// it; none inside.
-    pub fn offset(&self, at: Point, octant: usize) -> Option<Vector> {
-        let found = self.find(at, octant)?;
-        Some(self.points[found as usize].offset)
+    /// How far a point is moved [voxels], as the voxel in an octant of it sees it: on the original
+    /// surface so that stairs go, inside so that it is rough. It is the same on both lips of a crack.
+    pub fn offset(&self, at: Point, octant: usize) -> Vector {
+        match self.find(at, octant) {
+            Some(found) => self.points[found as usize].offset,
+            None => [0, 1, 2].map(|axis| ROUGHNESS * (2.0 * grain(at, axis) - 1.0)),
+        }
     }
 
     fn find(&self, at: Point, octant: usize) -> Option<u32> {
@@ -170,6 +176,18 @@ fn limited(offset: Vector) -> Vector {
         length if length > FARTHEST => scaled(offset, FARTHEST / length),
         _ => offset,
     }
+}
+
+/// A number that a lattice point keeps for each axis, 0 to 1.
+fn grain(at: Point, axis: u32) -> f32 {
+    let [x, y, z] = at.map(|k| k as u32);
+    let mixed =
+        x.wrapping_mul(0x9e37_79b1) ^ y.wrapping_mul(0x85eb_ca77) ^ z.wrapping_mul(0xc2b2_ae3d);
+    let mixed = (mixed ^ mixed >> 15)
+        .wrapping_add(axis.wrapping_mul(0x27d4_eb2f))
+        .wrapping_mul(0x2c1b_3c6d);
+    let mixed = (mixed ^ mixed >> 13).wrapping_mul(0x297a_2d39);
+    (mixed >> 16) as f32 / 65535.0
 }
 
 #[cfg(test)]

@@ -124,7 +124,7 @@ impl Pipelines {
             bar: balls(("plain_corner", "bar"), &solid),
             hand: balls(("plain_corner", "hand"), &solid),
             crumb: balls(("rough_corner", "crumb"), &solid),
-            dust: balls(("rough_corner", "crumb"), &clear),
+            dust: balls(("rough_corner", "dust"), &clear),
             line: balls(("plain_corner", "line"), &clear),
             glow: balls(("plain_corner", "glow"), &both_sides),
             skin_shadow: drawn(&skin, ("skin_corner", ""), &skins, &dark),
