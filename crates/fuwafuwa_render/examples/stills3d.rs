@@ -1,5 +1,6 @@
 //! Draws bodies in space, squeezed, torn and crumbled by hands, at several moments into PNG files:
-//! `cargo run --release -p fuwafuwa_render --example stills3d -- FOLDER [PART OF A NAME …]`.
+//! `cargo run --release -p fuwafuwa_render --example stills3d -- FOLDER [PART OF A NAME …]`; with
+//! `WGPU_BACKEND=gl` by OpenGL ES, which is next to what browsers have.
 
 use fuwafuwa::{Dim3, World};
 use fuwafuwa_render::frame::ElementColour;
@@ -45,15 +46,17 @@ half_space = { normal = [0.0, 0.0, 1.0], point = [0.0, 0.0, -1.1] }
 half_space = { normal = [0.0, 0.0, -1.0], point = [0.0, 0.0, 1.1] }
 
 [[obstacle]]
-capsule = { from = [0.45, 0.4, -0.42], to = [1.3, 0.4, -0.42], radius = 0.05 }
+box = { centre = [0.87, 0.25, -0.46], half = [0.48, 0.25, 0.05] }
 [[obstacle]]
-capsule = { from = [0.45, 0.4, 0.42], to = [1.3, 0.4, 0.42], radius = 0.05 }
+box = { centre = [0.87, 0.25, 0.46], half = [0.48, 0.25, 0.05] }
 [[obstacle]]
-box = { centre = [1.35, 0.3, 0.0], half = [0.05, 0.3, 0.47] }
+capsule = { from = [1.35, 0.1, -0.5], to = [1.35, 0.1, 0.5], radius = 0.06 }
+[[obstacle]]
+capsule = { from = [1.35, 0.5, -0.5], to = [1.35, 0.5, 0.5], radius = 0.06 }
 
 [game]
 name = { en = "Room" }
-basket = { centre = [0.88, 0.38, 0.0], half = [0.42, 0.38, 0.37] }
+basket = { centre = [0.84, 0.36, 0.0], half = [0.44, 0.36, 0.40] }
 
 [[hand]]
 radius = 0.12
@@ -97,7 +100,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = arguments.next().ok_or("expected a folder to write to")?;
     let chosen: Vec<String> = arguments.collect();
     std::fs::create_dir_all(&folder)?;
-    let instance = wgpu::Instance::default();
+    let instance =
+        wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
     let adapter = pollster::block_on(instance.request_adapter(&Default::default()))?;
     println!("{}", adapter.get_info().name);
     let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {

@@ -149,6 +149,13 @@ fn hand(in: RoundedCorner) -> @location(0) vec4f {
     return shown(lit * mix(0.80, 1.0, 0.5 + 0.5 * normal.y), 1.0);
 }
 
+// A hand behind something: one still sees where it is.
+@fragment
+fn hidden_hand(in: RoundedCorner) -> @location(0) vec4f {
+    let away = 1.0 - abs(dot(normalize(in.normal), towards_eye(in.at)));
+    return shown(to_linear(in.colour.rgb), 0.10 + 0.55 * smoothstep(0.55, 0.95, away));
+}
+
 fn rough_normal(in: RoundedCorner) -> vec3f {
     return normalize(normalize(in.normal) + 0.35 * rough3(2.6 * in.own_normal + 5.3 * in.number));
 }

@@ -6,9 +6,9 @@
 //! crack, where the original surface meets the inside, has two vertices in the same place: one
 //! with the normal and the colour of each.
 
-use super::rest::Rest;
-use super::slots::Slots;
-use crate::theme::{Colour, bytes};
+use super::pool::Pool;
+use super::rest::{Rest, Tint};
+use crate::theme::{Colour, among, bytes, mix};
 use fuwafuwa::dim::corner;
 use fuwafuwa::vector::{plus, scaled};
 use fuwafuwa::view::face_corners;
@@ -27,11 +27,11 @@ pub struct Faces {
     /// By node: its point, or none.
     of_node: Vec<u32>,
     /// Faces; those that are gone have no points.
-    pub faces: Slots<Face>,
+    pub faces: Pool<Face>,
     /// Points; those that are gone have no node.
-    pub points: Slots<SkinPoint>,
+    pub points: Pool<SkinPoint>,
     /// What is drawn at the points.
-    pub vertices: Slots<Corner>,
+    pub vertices: Pool<Corner>,
     /// Two triangles of vertices for each face; those that are gone are of no area.
     pub indices: Vec<u32>,
     /// The elements that are crumbs: they have points and faces no more.
@@ -325,13 +325,21 @@ impl Faces {
             let ground = usize::from(face.is_fresh);
             counts[ground] += 1;
             let form = &self.forms[face.element as usize];
-            let material = usize::from(body.grid().material(form.at)).max(1) - 1;
-            let colour = self.palette[material % self.palette.len().max(1)];
-            colours[ground] = plus(colours[ground], colour);
+            let vertex = face_corners::<Dim3>(face.side.into())[k];
+            let tint = rest.tint(at, 7 - vertex).filter(|_| ground == 0);
+            colours[ground] = plus(
+                colours[ground],
+                match tint {
+                    Some(Tint {
+                        materials: [first, second],
+                        share,
+                    }) => mix(self.colour(first), self.colour(second), share),
+                    None => self.colour(body.grid().material(form.at)),
+                },
+            );
             near[ground].add(face.points[(k + 1) % 4]);
             near[ground].add(face.points[(k + 3) % 4]);
             // The offset is carried by the voxel that it leads into, or away from least.
-            let vertex = face_corners::<Dim3>(face.side.into())[k];
             let offset = rest.offset(at, 7 - vertex);
             let inwards = corner(vertex).map(|end| 1.0 - 2.0 * end as f32);
             let towards = (0..3)
@@ -373,6 +381,10 @@ impl Faces {
             }
         }
         self.points[place] = point;
+    }
+
+    fn colour(&self, material: u8) -> Colour {
+        among(&self.palette, usize::from(material.max(1)) - 1)
     }
 
     fn triangulate(&mut self, place: u32) {

@@ -301,8 +301,9 @@ impl Renderer {
         pass.set_vertex_buffer(1, self.rounded.all());
         for (pipeline, mesh, instances) in [
             (&pipelines.bar, &self.fine, &geometry.bars),
-            (&pipelines.hand, &self.fine, &geometry.hands),
             (&pipelines.crumb, &self.coarse, &geometry.crumbs),
+            (&pipelines.hidden_hand, &self.fine, &geometry.hands),
+            (&pipelines.hand, &self.fine, &geometry.hands),
             (&pipelines.glow, &self.fine, &geometry.basket),
             (&pipelines.line, &self.coarse, &geometry.lines),
             (&pipelines.dust, &self.coarse, &geometry.dust),
