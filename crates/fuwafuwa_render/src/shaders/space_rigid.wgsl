@@ -22,9 +22,9 @@ fn room(in: RoomCorner) -> @location(0) vec4f {
         let grid = abs(fract(in.at.xz / 0.125) - 0.5) * 0.125;
         let pixel = clamp(fwidth(in.at.x) + fwidth(in.at.z), 1e-5, 0.05);
         let dots = 1.0 - smoothstep(0.006 - pixel, 0.006 + pixel, length(grid));
-        light *= 1.0 - 0.09 * dots * clamp(0.008 / pixel, 0.0, 1.0);
+        light *= 1.0 - 0.22 * dots * clamp(0.008 / pixel, 0.0, 1.0);
     } else {
-        light = mix(light, to_linear(globals.frame.rgb), 0.16) * mix(0.88, 1.0, 0.5 + 0.5 * dot(normal, normalize(LIGHT)));
+        light = mix(light, to_linear(globals.frame.rgb), 0.10) * mix(0.92, 1.0, 0.5 + 0.5 * dot(normal, normalize(LIGHT)));
     }
     // Corners of the room are a little darker.
     for (var k = 0; k < i32(globals.tune.y); k++) {
@@ -35,9 +35,13 @@ fn room(in: RoomCorner) -> @location(0) vec4f {
     }
     let facing = smoothstep(-0.1, 0.25, dot(normal, normalize(LIGHT)));
     let open = mix(1.0, open_to_light(in.at, normal), facing);
-    light *= mix(vec3f(0.56, 0.54, 0.66), vec3f(1.0), open);
-    light = under_hands(light, in.at);
-    return shown(mix(light, background(in.clip.xy), smoothstep(0.7, 1.7, away)), 1.0);
+    light *= mix(vec3f(0.62, 0.60, 0.72), vec3f(1.0), open);
+    light *= mix(vec3f(0.66, 0.60, 0.66), vec3f(1.0), open_to_sky(in.at, normal));
+    light = under_hands(light, in.at, normal);
+    // What is far off, and walls high up, are one with the background.
+    let above = (in.at.y - globals.look.y) / globals.look.w;
+    let gone = max(smoothstep(0.7, 1.7, away), select(smoothstep(0.04, 0.32, above), 0.0, is_floor));
+    return shown(mix(light, background(in.clip.xy), gone), 1.0);
 }
 
 @vertex
@@ -103,7 +107,7 @@ fn towards_eye(at: vec3f) -> vec3f {
 fn in_light(colour: vec3f, at: vec3f, normal: vec3f) -> vec3f {
     let facing = smoothstep(-0.1, 0.25, dot(normal, normalize(LIGHT)));
     let open = mix(1.0, open_to_light(at, normal), facing);
-    return colour * mix(vec3f(0.55, 0.53, 0.62), vec3f(1.0), open) * from_around(normal);
+    return colour * mix(vec3f(0.55, 0.53, 0.62), vec3f(1.0), open) * from_around(at, normal);
 }
 
 @fragment
@@ -122,7 +126,7 @@ fn bar(in: RoundedCorner) -> @location(0) vec4f {
         + noise3(wood * vec3f(9.0, 150.0, 150.0)) * 0.35;
     let base = to_linear(in.colour.rgb) * mix(0.82, 1.12, rings);
     let lit = lacquered(base, normal, towards_eye(in.at), 0.35);
-    return shown(under_hands(in_light(lit, in.at, normal), in.at), 1.0);
+    return shown(under_hands(in_light(lit, in.at, normal), in.at, normal), 1.0);
 }
 
 @fragment
@@ -142,16 +146,32 @@ fn hand(in: RoundedCorner) -> @location(0) vec4f {
     }
     let base = mix(to_linear(in.colour.rgb), vec3f(0.94, 0.95, 0.97), 0.9 * pattern);
     let lit = lacquered(base, normal, towards_eye(in.at), 0.9);
-    return shown(lit * from_around(normal), 1.0);
+    return shown(lit * mix(0.80, 1.0, 0.5 + 0.5 * normal.y), 1.0);
+}
+
+// A hand behind something: one still sees where it is.
+@fragment
+fn hidden_hand(in: RoundedCorner) -> @location(0) vec4f {
+    let away = 1.0 - abs(dot(normalize(in.normal), towards_eye(in.at)));
+    return shown(to_linear(in.colour.rgb), 0.10 + 0.55 * smoothstep(0.55, 0.95, away));
+}
+
+fn rough_normal(in: RoundedCorner) -> vec3f {
+    return normalize(normalize(in.normal) + 0.35 * rough3(2.6 * in.own_normal + 5.3 * in.number));
 }
 
 @fragment
 fn crumb(in: RoundedCorner) -> @location(0) vec4f {
-    let bumps = rough3(2.6 * in.own_normal + 5.3 * in.number);
-    let normal = normalize(normalize(in.normal) + 0.35 * bumps);
+    let colour = flesh(to_linear(in.colour.rgb), 0.6, 0.0, in.at, rough_normal(in), normalize(in.normal));
+    return shown(colour, 1.0);
+}
+
+@fragment
+fn dust(in: RoundedCorner) -> @location(0) vec4f {
+    let normal = rough_normal(in);
     let wrapped = clamp(dot(normal, normalize(LIGHT)) * 0.5 + 0.5, 0.0, 1.0);
-    let colour = to_linear(in.colour.rgb) * mix(vec3f(0.52, 0.46, 0.50), vec3f(1.1), wrapped);
-    return shown(under_hands(in_light(colour, in.at, normal), in.at), in.colour.a);
+    let colour = to_linear(in.colour.rgb) * mix(0.75, 1.1, wrapped);
+    return shown(colour, in.colour.a);
 }
 
 @fragment
@@ -163,7 +183,7 @@ fn line(in: RoundedCorner) -> @location(0) vec4f {
 }
 
 @fragment
-fn glow(in: RoundedCorner) -> @location(0) vec4f {
+fn glow(in: RoundedCorner, @builtin(front_facing) is_front: bool) -> @location(0) vec4f {
     let beyond = in.reach - abs(in.own);
     // On a side of a box one of these is 0; the next one leads to the nearest edge, along the last.
     let least = min(beyond.x, min(beyond.y, beyond.z));
@@ -179,7 +199,8 @@ fn glow(in: RoundedCorner) -> @location(0) vec4f {
     }
     let dash = abs(fract(along / 0.07 - 0.25 * globals.tune.x) - 0.5);
     let border = (1.0 - smoothstep(0.008, 0.012, edge)) * (1.0 - smoothstep(0.28, 0.32, dash));
-    let alpha = strength * (0.5 + 1.7 * exp(-edge / 0.06));
+    // The near sides are clear, so that one looks in.
+    let alpha = strength * (select(0.6, 0.0, is_front) + 1.5 * exp(-edge / 0.05));
     let colour = to_linear(in.colour.rgb);
     return shown(mix(mix(vec3f(1.0, 0.96, 0.85), colour, 0.7), 0.72 * colour, border), max(alpha, 0.85 * border));
 }

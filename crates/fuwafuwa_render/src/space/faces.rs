@@ -6,9 +6,9 @@
 //! crack, where the original surface meets the inside, has two vertices in the same place: one
 //! with the normal and the colour of each.
 
-use super::rest::Rest;
-use super::slots::Slots;
-use crate::theme::{Colour, bytes};
+use super::pool::Pool;
+use super::rest::{Rest, Tint};
+use crate::theme::{Colour, among, bytes, mix};
 use fuwafuwa::dim::corner;
 use fuwafuwa::vector::{plus, scaled};
 use fuwafuwa::view::face_corners;
@@ -18,9 +18,6 @@ use fuwafuwa::{Body, Dim3, Point, Vector};
 pub const NONE: u32 = u32::MAX;
 /// The faces of a voxel that hangs together with nothing.
 const ALL_FACES: u8 = 0b11_1111;
-/// How far points inside the body are moved off the lattice at most, along each axis [voxels]: more
-/// looks rougher, and lets faces turn over.
-const ROUGHNESS: f32 = 0.3;
 
 /// The bare faces of a body and all that hangs on them.
 #[derive(Clone, Debug, Default)]
@@ -30,11 +27,11 @@ pub struct Faces {
     /// By node: its point, or none.
     of_node: Vec<u32>,
     /// Faces; those that are gone have no points.
-    pub faces: Slots<Face>,
+    pub faces: Pool<Face>,
     /// Points; those that are gone have no node.
-    pub points: Slots<SkinPoint>,
+    pub points: Pool<SkinPoint>,
     /// What is drawn at the points.
-    pub vertices: Slots<Corner>,
+    pub vertices: Pool<Corner>,
     /// Two triangles of vertices for each face; those that are gone are of no area.
     pub indices: Vec<u32>,
     /// The elements that are crumbs: they have points and faces no more.
@@ -79,6 +76,14 @@ pub struct SkinPoint {
     /// Its vertices on the original surface and inside.
     vertices: [u32; 2],
     is_dirty: bool,
+}
+
+impl SkinPoint {
+    /// Its vertex on the original surface, or inside.
+    pub fn vertex(&self, ground: Ground) -> Option<u32> {
+        let vertex = self.vertices[usize::from(ground == Ground::Torn)];
+        (vertex != NONE).then_some(vertex)
+    }
 }
 
 /// What a point lies on.
@@ -184,6 +189,12 @@ impl Faces {
         self.indices.resize(6 * self.faces.all.len(), 0);
         new.iter().for_each(|&face| self.triangulate(face));
         any
+    }
+
+    /// The point of a node of the surface.
+    pub fn point_of(&self, node: u32) -> Option<u32> {
+        let place = self.of_node.get(node as usize)?;
+        (*place != NONE).then_some(*place)
     }
 
     /// Which elements differ from what they were, and what they are now.
@@ -314,14 +325,22 @@ impl Faces {
             let ground = usize::from(face.is_fresh);
             counts[ground] += 1;
             let form = &self.forms[face.element as usize];
-            let material = usize::from(body.grid().material(form.at)).max(1) - 1;
-            let colour = self.palette[material % self.palette.len().max(1)];
-            colours[ground] = plus(colours[ground], colour);
+            let vertex = face_corners::<Dim3>(face.side.into())[k];
+            let tint = rest.tint(at, 7 - vertex).filter(|_| ground == 0);
+            colours[ground] = plus(
+                colours[ground],
+                match tint {
+                    Some(Tint {
+                        materials: [first, second],
+                        share,
+                    }) => mix(self.colour(first), self.colour(second), share),
+                    None => self.colour(body.grid().material(form.at)),
+                },
+            );
             near[ground].add(face.points[(k + 1) % 4]);
             near[ground].add(face.points[(k + 3) % 4]);
             // The offset is carried by the voxel that it leads into, or away from least.
-            let vertex = face_corners::<Dim3>(face.side.into())[k];
-            let offset = offset(rest, at, 7 - vertex);
+            let offset = rest.offset(at, 7 - vertex);
             let inwards = corner(vertex).map(|end| 1.0 - 2.0 * end as f32);
             let towards = (0..3)
                 .map(|axis| (inwards[axis] * offset[axis]).min(0.0))
@@ -362,6 +381,10 @@ impl Faces {
             }
         }
         self.points[place] = point;
+    }
+
+    fn colour(&self, material: u8) -> Colour {
+        among(&self.palette, usize::from(material.max(1)) - 1)
     }
 
     fn triangulate(&mut self, place: u32) {
@@ -407,23 +430,4 @@ impl Near {
             .for_each(|&point| both.add(point));
         both
     }
-}
-
-/// How far a point is moved [voxels], as the voxel in an octant of it sees it: the same on both lips
-/// of a crack.
-fn offset(rest: &Rest, at: Point, octant: usize) -> Vector {
-    let rough = || [0, 1, 2].map(|axis| ROUGHNESS * (2.0 * grain(at, axis) - 1.0));
-    rest.offset(at, octant).unwrap_or_else(rough)
-}
-
-/// A number that a lattice point keeps for each axis, 0 to 1.
-fn grain(at: Point, axis: u32) -> f32 {
-    let [x, y, z] = at.map(|k| k as u32);
-    let mixed =
-        x.wrapping_mul(0x9e37_79b1) ^ y.wrapping_mul(0x85eb_ca77) ^ z.wrapping_mul(0xc2b2_ae3d);
-    let mixed = (mixed ^ mixed >> 15)
-        .wrapping_add(axis.wrapping_mul(0x27d4_eb2f))
-        .wrapping_mul(0x2c1b_3c6d);
-    let mixed = (mixed ^ mixed >> 13).wrapping_mul(0x297a_2d39);
-    (mixed >> 16) as f32 / 65535.0
 }

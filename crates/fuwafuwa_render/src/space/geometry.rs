@@ -7,7 +7,6 @@ use super::rounded::RoundedInstance;
 use super::skin::Skin;
 use crate::frame::{Frame, Look};
 use crate::rigid::MOST_WALLS;
-use crate::theme::mix;
 use fuwafuwa::vector::{minus, plus, scaled, three};
 use fuwafuwa::{Body, Dim3, Shape, Vector, World};
 use std::ops::Range;
@@ -146,7 +145,7 @@ fn crumb(body: &Body<Dim3>, id: u32, frame: &Frame<'_, Camera>) -> Option<Rounde
     let (low, high) = (sum([0, 1, 2, 3]), sum([4, 5, 6, 7]));
     let along = |low: [usize; 4], high: [usize; 4]| scaled(minus(sum(high), sum(low)), 0.25);
     let material = body.grid().material(element.cell.at);
-    let [red, green, blue] = mix(frame.theme.material(material), frame.theme.fresh, 0.45);
+    let [red, green, blue] = frame.theme.material(material);
     Some(RoundedInstance {
         centre: scaled(plus(low, high), 0.125),
         radius: CRUMB,

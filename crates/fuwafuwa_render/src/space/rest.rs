@@ -3,7 +3,7 @@
 //! As in the plane: every point of the surface gets an offset, in voxels and in the frame of the
 //! body at rest, and a deformed body carries the offsets along.
 
-use fuwafuwa::dim::{add, corner};
+use fuwafuwa::dim::{add, corner, voxel_around};
 use fuwafuwa::sharing::{Groups, Sharing};
 use fuwafuwa::vector::{length, minus, plus, scaled};
 use fuwafuwa::view::face_corners;
@@ -19,6 +19,12 @@ const VARIANCE: f32 = 0.25;
 const MOST_ROUNDS: usize = 200;
 /// A point is not moved by more [voxels], so that a nose of a few voxels stays a nose.
 const FARTHEST: f32 = 0.8;
+
+/// Rounds in which the materials of neighbours are mixed: more make dots of few voxels pale.
+const TINT_ROUNDS: usize = 2;
+/// How far points inside the body are moved off the lattice at most, along each axis [voxels]: more
+/// looks rougher, and lets faces turn over.
+const ROUGHNESS: f32 = 0.45;
 
 /// The offsets of a voxel shape.
 #[derive(Clone, Debug, Default)]
@@ -39,6 +45,16 @@ struct RestPoint {
     group: u8,
     /// [voxels]
     offset: Vector,
+    tint: Tint,
+}
+
+/// The materials of the surface around a point, smoothed too, so that the border of two has no stairs.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct Tint {
+    /// The number of the one that there is most of, and of the next.
+    pub materials: [u8; 2],
+    /// How much the next one shows, 0 to 0.5.
+    pub share: f32,
 }
 
 const NONE: u32 = u32::MAX;
@@ -62,6 +78,7 @@ impl Rest {
                 at,
                 group,
                 offset: [0.0; 3],
+                tint: Tint::default(),
             }));
         }
         let (neighbours, face_count) = rest.neighbours(grid);
@@ -72,6 +89,7 @@ impl Rest {
         for (point, (&to, &from)) in rest.points.iter_mut().zip(smooth.iter().zip(&places)) {
             point.offset = limited(minus(to, from));
         }
+        rest.find_tints(grid, &neighbours);
         rest
     }
 
@@ -80,11 +98,25 @@ impl Rest {
         self.grid.as_ref() == Some(grid)
     }
 
-    /// The offset [voxels] of a point of the original surface, as the voxel in an octant of it has
-    /// it; none inside.
-    pub fn offset(&self, at: Point, octant: usize) -> Option<Vector> {
+    /// The points of the original surface, each with the octant of one of its voxels.
+    pub fn spots(&self) -> impl Iterator<Item = (Point, usize)> + '_ {
+        let points = self.points.iter();
+        points.map(|point| (point.at, point.group.trailing_zeros() as usize))
+    }
+
+    /// How far a point is moved [voxels], as the voxel in an octant of it sees it: on the original
+    /// surface so that stairs go, inside so that it is rough. It is the same on both lips of a crack.
+    pub fn offset(&self, at: Point, octant: usize) -> Vector {
+        match self.find(at, octant) {
+            Some(found) => self.points[found as usize].offset,
+            None => [0, 1, 2].map(|axis| ROUGHNESS * (2.0 * grain(at, axis) - 1.0)),
+        }
+    }
+
+    /// The materials of a point of the original surface; none inside.
+    pub fn tint(&self, at: Point, octant: usize) -> Option<Tint> {
         let found = self.find(at, octant)?;
-        Some(self.points[found as usize].offset)
+        Some(self.points[found as usize].tint)
     }
 
     fn find(&self, at: Point, octant: usize) -> Option<u32> {
@@ -97,6 +129,53 @@ impl Rest {
             .map(|point| point.group)
             .position(|group| group >> octant & 1 == 1);
         Some(first + place? as u32)
+    }
+
+    fn find_tints(&mut self, grid: &VoxelGrid<Dim3>, neighbours: &[Vec<u32>]) {
+        let mut shares = vec![0.0f32; self.points.len()];
+        // The shares of the two that there is most of at each point.
+        let mut most = vec![[0.0f32; 2]; self.points.len()];
+        for material in 1..=grid
+            .voxels()
+            .map(|voxel| grid.material(voxel))
+            .max()
+            .unwrap_or(0)
+        {
+            for (share, point) in shares.iter_mut().zip(&self.points) {
+                let octants = (0..8).filter(|octant| point.group >> octant & 1 == 1);
+                let voxels = octants.map(|octant| voxel_around::<Dim3>(point.at, octant));
+                let own = voxels
+                    .filter(|&voxel| grid.material(voxel) == material)
+                    .count();
+                *share = own as f32 / point.group.count_ones() as f32;
+            }
+            if shares.iter().all(|&share| share == 0.0) {
+                continue;
+            }
+            for _ in 0..TINT_ROUNDS {
+                let mean = |near: &Vec<u32>| {
+                    let sum: f32 = near.iter().map(|&k| shares[k as usize]).sum();
+                    sum / near.len().max(1) as f32
+                };
+                let means: Vec<f32> = neighbours.iter().map(mean).collect();
+                for (share, mean) in shares.iter_mut().zip(means) {
+                    *share = 0.5 * (*share + mean);
+                }
+            }
+            for (point, (most, &share)) in self.points.iter_mut().zip(most.iter_mut().zip(&shares))
+            {
+                let materials = &mut point.tint.materials;
+                if share > most[0] {
+                    (most[1], materials[1]) = (most[0], materials[0]);
+                    (most[0], materials[0]) = (share, material);
+                } else if share > most[1] {
+                    (most[1], materials[1]) = (share, material);
+                }
+            }
+        }
+        for (point, [first, second]) in self.points.iter_mut().zip(most) {
+            point.tint.share = second / (first + second).max(1e-6);
+        }
     }
 
     /// The neighbours of each point along the edges of bare faces, and how many faces there are.
@@ -166,6 +245,18 @@ fn limited(offset: Vector) -> Vector {
     }
 }
 
+/// A number that a lattice point keeps for each axis, 0 to 1.
+fn grain(at: Point, axis: u32) -> f32 {
+    let [x, y, z] = at.map(|k| k as u32);
+    let mixed =
+        x.wrapping_mul(0x9e37_79b1) ^ y.wrapping_mul(0x85eb_ca77) ^ z.wrapping_mul(0xc2b2_ae3d);
+    let mixed = (mixed ^ mixed >> 15)
+        .wrapping_add(axis.wrapping_mul(0x27d4_eb2f))
+        .wrapping_mul(0x2c1b_3c6d);
+    let mixed = (mixed ^ mixed >> 13).wrapping_mul(0x297a_2d39);
+    (mixed >> 16) as f32 / 65535.0
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -186,6 +277,23 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn the_border_of_two_materials_is_mixed_and_narrow() {
+        let half = |[x, ..]: Point| 1 + u8::from(x >= 5);
+        let grid = VoxelGrid::<Dim3>::from_fn([10, 4, 4], 1.0, half).unwrap();
+        let rest = Rest::new(&grid);
+        let tint = |x: i32| rest.tint([x, 4, 2], 0).unwrap();
+        assert_eq!((tint(2).materials[0], tint(2).share), (1, 0.0));
+        assert_eq!((tint(8).materials[0], tint(8).share), (2, 0.0));
+        assert!((tint(5).share - 0.5).abs() < 0.01, "{:?}", tint(5));
+        let beside = tint(4);
+        assert!(
+            beside.materials == [1, 2] && beside.share < 0.35,
+            "{beside:?}"
+        );
+        assert_eq!(rest.tint([5, 2, 2], 0), None);
     }
 
     #[test]

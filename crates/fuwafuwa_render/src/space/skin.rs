@@ -8,8 +8,8 @@ use super::faces::{Faces, Ground, NONE, SkinPoint};
 use super::rest::Rest;
 use crate::theme::Colour;
 use bytemuck::{Pod, Zeroable};
-use fuwafuwa::vector::{cross, dot, minus, plus, scaled, three};
-use fuwafuwa::{Body, Dim3};
+use fuwafuwa::vector::{cross, dot, length, minus, plus, scaled, three};
+use fuwafuwa::{Body, Dim3, Vector};
 
 /// By how much of the way to the mean of its neighbours a point goes in each round: on the original
 /// surface, at the mouth of a crack, inside. Rounds that go away from it give back the size that the
@@ -78,6 +78,25 @@ impl Skin {
     /// The elements that are a piece each: they are no part of the surface.
     pub fn crumbs(&self) -> &[u32] {
         &self.faces.crumbs
+    }
+
+    pub(super) fn rest(&self) -> &Rest {
+        &self.rest
+    }
+
+    pub(super) fn faces(&self) -> &Faces {
+        &self.faces
+    }
+
+    /// Where a point is [m].
+    pub(super) fn position_of(&self, point: u32) -> Vector {
+        three(self.places[point as usize])
+    }
+
+    /// Outwards at a vertex, of length 1.
+    pub(super) fn normal_of(&self, vertex: u32) -> Vector {
+        let normal = self.normals[vertex as usize];
+        scaled(normal, 1.0 / length(normal).max(1e-20))
     }
 
     /// Puts all points where their voxels carry them.
@@ -164,14 +183,7 @@ impl Skin {
 /// stretches it. Behind that ‖F − R‖, to first order.
 #[inline]
 fn carried(point: &SkinPoint, node: [f32; 4], positions: &[[f32; 4]], size: f32) -> [f32; 4] {
-    let corners = point.voxel.map(|id| positions[id as usize]);
-    let edge = |axis: usize| {
-        let side = 1 << axis;
-        let low = [0, 1, 2, 3].map(|k| (k & (side - 1)) | (k & !(side - 1)) << 1);
-        let ends = low.map(|k| minus(corners[k + side], corners[k]));
-        scaled(plus(plus(ends[0], ends[1]), plus(ends[2], ends[3])), 0.25)
-    };
-    let edges = [edge(0), edge(1), edge(2)];
+    let edges = edges(&point.voxel, positions);
     let moved = edges.iter().zip(point.offset);
     let mut place = moved.fold(node, |place, (&edge, by)| plus(place, scaled(edge, by)));
     let over = 1.0 / (size * size);
@@ -182,11 +194,21 @@ fn carried(point: &SkinPoint, node: [f32; 4], positions: &[[f32; 4]], size: f32)
     place
 }
 
+/// The mean edges of a voxel along its axes [m].
+#[inline]
+pub(super) fn edges(voxel: &[u32; 8], positions: &[[f32; 4]]) -> [[f32; 4]; 3] {
+    let corners = voxel.map(|id| positions[id as usize]);
+    [1, 2, 4].map(|side| {
+        let low = [0, 1, 2, 3].map(|k| (k & (side - 1)) | (k & !(side - 1)) << 1);
+        let ends = low.map(|k| minus(corners[k + side], corners[k]));
+        scaled(plus(plus(ends[0], ends[1]), plus(ends[2], ends[3])), 0.25)
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::theme::Theme;
-    use fuwafuwa::vector::length;
     use fuwafuwa::{Blade, Material, Settings, VoxelGrid, World};
 
     fn ball(n: usize) -> World<Dim3> {

@@ -6,6 +6,7 @@ mod targets;
 use super::camera::{Camera, Matrix, product, seen_from};
 use super::geometry::Geometry;
 use super::rounded;
+use super::skin::Skin;
 use crate::frame::Frame;
 use crate::gpu::ImageError;
 use crate::gpu::buffer::{GrowingBuffer, drawable};
@@ -17,16 +18,18 @@ use fuwafuwa::vector::{cross, length, scaled};
 use fuwafuwa::{Dim3, Vector, World};
 use pipelines::Pipelines;
 use std::ops::Range;
-use targets::{SHADOW_SIDE, Shadow, Targets};
+use targets::{SHADOW_SIDES, Shadows, Targets};
 use wgpu::*;
 
 /// Where the light comes from; `LIGHT` in `space.wgsl` says the same.
 const LIGHT: Vector = [-0.42, 0.80, 0.45];
+/// The sky is above.
+const SKY: Vector = [0.0, 1.0, 0.0];
 /// Half of what the light shines on from side to side, in distances of the camera.
 const LIT: f32 = 0.55;
-/// Radius of the light as shadows see it, as a share of the shadow map: larger makes them softer, and
-/// grainy.
-const SOFTNESS: f32 = 0.009;
+/// How far shadows of the light and of the sky are blurred, as shares of their maps: more makes them
+/// softer, until single samples show as steps.
+const SOFTNESS: [f32; 2] = [0.012, 0.035];
 /// Hands that throw shadows; more have no place in the uniforms of a small device.
 const MOST_HANDS: usize = 4;
 /// How fine balls are that may be large, and small ones.
@@ -38,11 +41,11 @@ pub struct Renderer {
     format: TextureFormat,
     pipelines: Pipelines,
     targets: Targets,
-    shadow: Shadow,
+    shadows: Shadows,
     geometry: Geometry,
-    /// For the picture and for the shadow map.
-    uniforms: [Buffer; 2],
-    globals: [BindGroup; 2],
+    /// For the picture, then for both shadow maps.
+    uniforms: [Buffer; 3],
+    globals: [BindGroup; 3],
     /// Vertices and triangles of each body.
     skins: Vec<[GrowingBuffer; 2]>,
     boxes: [GrowingBuffer; 2],
@@ -58,10 +61,12 @@ pub struct Renderer {
 struct Globals {
     to_clip: Matrix,
     to_light: Matrix,
+    to_sky: Matrix,
     eye: [f32; 4],
     look: [f32; 4],
     tune: [f32; 4],
     size: [f32; 4],
+    soft: [f32; 4],
     floor_middle: [f32; 4],
     floor_rim: [f32; 4],
     frame: [f32; 4],
@@ -76,7 +81,7 @@ impl Renderer {
     /// has them; no depth and no multisampling.
     pub fn new(device: &Device, target_format: TextureFormat) -> Self {
         let pipelines = Pipelines::new(device, target_format);
-        let uniforms = [0, 1].map(|_| {
+        let uniforms = [0, 1, 2].map(|_| {
             device.create_buffer(&BufferDescriptor {
                 label: Some("globals"),
                 size: size_of::<Globals>() as u64,
@@ -91,7 +96,7 @@ impl Renderer {
         Self {
             format: target_format,
             targets: Targets::new(device, &pipelines, [1, 1]),
-            shadow: Shadow::new(device, &pipelines),
+            shadows: Shadows::new(device, &pipelines),
             geometry: Geometry::default(),
             uniforms,
             globals,
@@ -132,6 +137,11 @@ impl Renderer {
         pass.set_bind_group(0, &self.globals[0], &[]);
         pass.set_bind_group(1, &self.targets.shown, &[]);
         pass.draw(0..3, 0..1);
+    }
+
+    /// The skin of a body, by its place in the world, as of the last picture that showed skins.
+    pub fn skin(&self, body: usize) -> Option<&Skin> {
+        self.geometry.skins.get(body)
     }
 
     /// Draws a world into an image, as [`crate::Renderer::render_to_image`] does in the plane.
@@ -196,7 +206,8 @@ impl Renderer {
     fn tell(&self, queue: &Queue, frame: &Frame<'_, Camera>) {
         let (camera, theme, size) = (&frame.camera, frame.theme, self.targets.size);
         let half = LIT * camera.distance;
-        let to_light = from_light(camera.target, half);
+        let [to_light, to_sky] = [LIGHT, SKY].map(|light| seen_by(light, camera.target, half));
+        let texels = SHADOW_SIDES.map(|side| 2.0 * half / side as f32);
         let four = |[x, y, z]: [f32; 3], w: f32| [x, y, z, w];
         let mut walls = [[0.0; 4]; MOST_WALLS];
         walls[..self.geometry.walls.len()].copy_from_slice(&self.geometry.walls);
@@ -211,6 +222,7 @@ impl Renderer {
         let mut globals = Globals {
             to_clip: camera.to_clip(size),
             to_light,
+            to_sky,
             eye: four(camera.eye(), 0.0),
             look: four(camera.target, camera.distance),
             tune: [
@@ -219,12 +231,8 @@ impl Renderer {
                 0.0,
                 hand_count,
             ],
-            size: [
-                size[0] as f32,
-                size[1] as f32,
-                2.0 * half / SHADOW_SIDE as f32,
-                SOFTNESS,
-            ],
+            size: [size[0] as f32, size[1] as f32, 0.0, 0.0],
+            soft: [texels[0], SOFTNESS[0], texels[1], SOFTNESS[1]],
             floor_middle: four(theme.floor[0], 1.0),
             floor_rim: four(theme.floor[1], 1.0),
             frame: four(theme.frame, 1.0),
@@ -233,28 +241,34 @@ impl Renderer {
             hand_colours,
             walls,
         };
-        queue.write_buffer(&self.uniforms[0], 0, bytemuck::bytes_of(&globals));
-        globals.to_clip = to_light;
-        queue.write_buffer(&self.uniforms[1], 0, bytemuck::bytes_of(&globals));
+        for (to_clip, buffer) in [globals.to_clip, to_light, to_sky]
+            .iter()
+            .zip(&self.uniforms)
+        {
+            globals.to_clip = *to_clip;
+            queue.write_buffer(buffer, 0, bytemuck::bytes_of(&globals));
+        }
     }
 
     fn draw_shadows(&self, encoder: &mut CommandEncoder) {
-        let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
-            label: Some("shadows"),
-            depth_stencil_attachment: Some(depth_attachment(&self.shadow.map, StoreOp::Store)),
-            ..RenderPassDescriptor::default()
-        });
-        let (pipelines, geometry) = (&self.pipelines, &self.geometry);
-        pass.set_bind_group(0, &self.globals[1], &[]);
-        pass.set_pipeline(&pipelines.skin_shadow);
-        self.draw_skins(&mut pass);
-        pass.set_pipeline(&pipelines.element_shadow);
-        draw_mesh(&mut pass, &self.boxes, 0..1);
-        pass.set_vertex_buffer(1, self.rounded.all());
-        pass.set_pipeline(&pipelines.bar_shadow);
-        draw_mesh(&mut pass, &self.fine, self.there(&geometry.bars));
-        pass.set_pipeline(&pipelines.crumb_shadow);
-        draw_mesh(&mut pass, &self.coarse, self.there(&geometry.crumbs));
+        for (map, globals) in self.shadows.maps.iter().zip(&self.globals[1..]) {
+            let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+                label: Some("shadows"),
+                depth_stencil_attachment: Some(depth_attachment(map, StoreOp::Store)),
+                ..RenderPassDescriptor::default()
+            });
+            let (pipelines, geometry) = (&self.pipelines, &self.geometry);
+            pass.set_bind_group(0, globals, &[]);
+            pass.set_pipeline(&pipelines.skin_shadow);
+            self.draw_skins(&mut pass);
+            pass.set_pipeline(&pipelines.element_shadow);
+            draw_mesh(&mut pass, &self.boxes, 0..1);
+            pass.set_vertex_buffer(1, self.rounded.all());
+            pass.set_pipeline(&pipelines.bar_shadow);
+            draw_mesh(&mut pass, &self.fine, self.there(&geometry.bars));
+            pass.set_pipeline(&pipelines.crumb_shadow);
+            draw_mesh(&mut pass, &self.coarse, self.there(&geometry.crumbs));
+        }
     }
 
     fn draw_picture(&self, encoder: &mut CommandEncoder) {
@@ -274,7 +288,7 @@ impl Renderer {
         });
         let (pipelines, geometry) = (&self.pipelines, &self.geometry);
         pass.set_bind_group(0, &self.globals[0], &[]);
-        pass.set_bind_group(1, &self.shadow.read, &[]);
+        pass.set_bind_group(1, &self.shadows.read, &[]);
         pass.set_pipeline(&pipelines.sky);
         pass.draw(0..3, 0..1);
         pass.set_pipeline(&pipelines.room);
@@ -287,8 +301,9 @@ impl Renderer {
         pass.set_vertex_buffer(1, self.rounded.all());
         for (pipeline, mesh, instances) in [
             (&pipelines.bar, &self.fine, &geometry.bars),
-            (&pipelines.hand, &self.fine, &geometry.hands),
             (&pipelines.crumb, &self.coarse, &geometry.crumbs),
+            (&pipelines.hidden_hand, &self.fine, &geometry.hands),
+            (&pipelines.hand, &self.fine, &geometry.hands),
             (&pipelines.glow, &self.fine, &geometry.basket),
             (&pipelines.line, &self.coarse, &geometry.lines),
             (&pipelines.dust, &self.coarse, &geometry.dust),
@@ -312,10 +327,11 @@ impl Renderer {
     }
 }
 
-/// From metres to the coordinates of the shadow map, which sees `half` [m] around a middle.
-fn from_light(middle: Vector, half: f32) -> Matrix {
-    let back = scaled(LIGHT, 1.0 / length(LIGHT));
-    let right = cross([0.0, 1.0, 0.0], back);
+/// From metres to the coordinates of a shadow map that sees `half` [m] around a middle, from where a
+/// light comes.
+fn seen_by(light: Vector, middle: Vector, half: f32) -> Matrix {
+    let back = scaled(light, 1.0 / length(light));
+    let right = cross([0.0, 0.0, -1.0], back);
     let right = scaled(right, 1.0 / length(right));
     let seen = seen_from(middle, [right, cross(back, right), back]);
     let over = 1.0 / half;

@@ -21,6 +21,7 @@ pub struct Pipelines {
     pub element: RenderPipeline,
     pub bar: RenderPipeline,
     pub hand: RenderPipeline,
+    pub hidden_hand: RenderPipeline,
     pub crumb: RenderPipeline,
     pub dust: RenderPipeline,
     pub line: RenderPipeline,
@@ -43,7 +44,11 @@ impl Pipelines {
             multisampled: false,
         };
         let compare = BindingType::Sampler(SamplerBindingType::Comparison);
-        let shadow_layout = layout(device, "shadow", &[entry(0, depth), entry(1, compare)]);
+        let shadow_layout = layout(
+            device,
+            "shadow",
+            &[entry(0, depth), entry(1, depth), entry(2, compare)],
+        );
         let window_layout = layout(device, "window", &[texture(0), sampler(1)]);
         let skin = wgsl!(
             "space.wgsl",
@@ -103,6 +108,13 @@ impl Pipelines {
             cull: None,
             ..clear.clone()
         };
+        let behind = Target {
+            depth: Some(DepthStencilState {
+                depth_compare: Some(CompareFunction::Greater),
+                ..depth_state(DEPTH_FORMAT, false)
+            }),
+            ..clear.clone()
+        };
         let window_entry = match target.is_srgb() {
             true => "linear_window",
             false => "window",
@@ -119,8 +131,9 @@ impl Pipelines {
             element: drawn(&skin, ("box_corner", "box_side"), &boxes, &solid),
             bar: balls(("plain_corner", "bar"), &solid),
             hand: balls(("plain_corner", "hand"), &solid),
+            hidden_hand: balls(("plain_corner", "hidden_hand"), &behind),
             crumb: balls(("rough_corner", "crumb"), &solid),
-            dust: balls(("rough_corner", "crumb"), &clear),
+            dust: balls(("rough_corner", "dust"), &clear),
             line: balls(("plain_corner", "line"), &clear),
             glow: balls(("plain_corner", "glow"), &both_sides),
             skin_shadow: drawn(&skin, ("skin_corner", ""), &skins, &dark),

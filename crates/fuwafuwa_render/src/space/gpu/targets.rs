@@ -11,8 +11,8 @@ pub const PICTURE_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 pub const DEPTH_FORMAT: TextureFormat = TextureFormat::Depth24Plus;
 /// How far from the light everything is.
 pub const SHADOW_FORMAT: TextureFormat = TextureFormat::Depth32Float;
-/// The side of the shadow map [px].
-pub const SHADOW_SIDE: u32 = 1024;
+/// The sides of what the light sees and of what the sky sees [px]: the latter is blurred far more.
+pub const SHADOW_SIDES: [u32; 2] = [512, 128];
 
 /// The images of a picture, and what is bound to put it into a window.
 pub struct Targets {
@@ -26,9 +26,9 @@ pub struct Targets {
     pub shown: BindGroup,
 }
 
-/// What the light sees, and what is bound to look into it.
-pub struct Shadow {
-    pub map: TextureView,
+/// What the light sees and what the sky sees, and what is bound to look into both.
+pub struct Shadows {
+    pub maps: [TextureView; 2],
     pub read: BindGroup,
 }
 
@@ -65,10 +65,10 @@ impl Targets {
     }
 }
 
-impl Shadow {
+impl Shadows {
     pub fn new(device: &Device, pipelines: &Pipelines) -> Self {
         let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
-        let map = image(device, [SHADOW_SIDE; 2], 1, SHADOW_FORMAT, usage);
+        let maps = SHADOW_SIDES.map(|side| image(device, [side; 2], 1, SHADOW_FORMAT, usage));
         let compare = device.create_sampler(&SamplerDescriptor {
             label: Some("shadow"),
             mag_filter: FilterMode::Linear,
@@ -77,12 +77,13 @@ impl Shadow {
             ..SamplerDescriptor::default()
         });
         let read = [
-            BindingResource::TextureView(&map),
+            BindingResource::TextureView(&maps[0]),
+            BindingResource::TextureView(&maps[1]),
             BindingResource::Sampler(&compare),
         ];
         Self {
             read: bind(device, &pipelines.shadow_layout, &read),
-            map,
+            maps,
         }
     }
 }

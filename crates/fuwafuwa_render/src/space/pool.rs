@@ -4,13 +4,13 @@ use std::ops::{Index, IndexMut};
 
 /// Things at places that they keep; a place that was given back is the next one to be taken.
 #[derive(Clone, Debug)]
-pub struct Slots<T> {
+pub struct Pool<T> {
     /// All places, taken or not.
     pub all: Vec<T>,
     free: Vec<u32>,
 }
 
-impl<T> Default for Slots<T> {
+impl<T> Default for Pool<T> {
     fn default() -> Self {
         Self {
             all: Vec::new(),
@@ -19,7 +19,7 @@ impl<T> Default for Slots<T> {
     }
 }
 
-impl<T> Slots<T> {
+impl<T> Pool<T> {
     /// Takes a place for something.
     pub fn take(&mut self, thing: T) -> u32 {
         match self.free.pop() {
@@ -41,7 +41,7 @@ impl<T> Slots<T> {
     }
 }
 
-impl<T> Index<u32> for Slots<T> {
+impl<T> Index<u32> for Pool<T> {
     type Output = T;
 
     fn index(&self, place: u32) -> &T {
@@ -49,7 +49,7 @@ impl<T> Index<u32> for Slots<T> {
     }
 }
 
-impl<T> IndexMut<u32> for Slots<T> {
+impl<T> IndexMut<u32> for Pool<T> {
     fn index_mut(&mut self, place: u32) -> &mut T {
         &mut self.all[place as usize]
     }
