@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-/// A crème caramel of 32 voxels across and 22 high: custard of colour 1 under caramel of colour 2.
+/// A crème caramel of 32 voxels across and 20 high: custard of colour 1 under caramel of colour 2.
 fn pudding() -> Vec<u8> {
     const ACROSS: u8 = 32;
-    const HIGH: u8 = 22;
+    const HIGH: u8 = 20;
     let mut voxels = Vec::new();
     for z in 0..HIGH {
         let height = (f32::from(z) + 0.5) / f32::from(HIGH);
@@ -16,7 +16,7 @@ fn pudding() -> Vec<u8> {
             let [a, b] = [x, y].map(|k| f32::from(k) + 0.5 - 0.5 * f32::from(ACROSS));
             let from_axis = (a * a + b * b).sqrt();
             // The caramel has run down a little at its rim.
-            let caramel = 0.78 - 0.1 * (from_axis / 12.0).powi(4).min(1.0);
+            let caramel = 0.84 - 0.12 * (from_axis / 12.0).powi(4).min(1.0);
             if from_axis < radius {
                 voxels.push([x, y, z, 1 + u8::from(height > caramel)]);
             }

@@ -83,10 +83,10 @@ impl Sight {
         let is_out = |view: &&PieceView| view.mass > CRUMB * mass && !basket.holds(view);
         let ways = map.ways_to(basket.front());
         let mut pieces: Vec<Piece> = (views.iter().filter(is_out).take(MOST))
-            .map(|view| Piece::of(view, &basket, &ways, off, hand.radius))
+            .map(|view| Piece::of::<D>(view, &basket, &ways, off, hand.radius))
             .collect();
         if pieces.is_empty() {
-            pieces.push(Piece::of(largest, &basket, &ways, off, hand.radius));
+            pieces.push(Piece::of::<D>(largest, &basket, &ways, off, hand.radius));
         }
         // Stays in order of mass otherwise.
         pieces.sort_by_key(|piece| clearance(piece.behind, obstacles) < 0.5 * hand.radius);
@@ -118,16 +118,29 @@ impl Sight {
 }
 
 impl Piece {
-    fn of(view: &PieceView, basket: &Basket, ways: &Ways, off: f32, hand: f32) -> Self {
+    fn of<D: Dim>(view: &PieceView, basket: &Basket, ways: &Ways, off: f32, hand: f32) -> Self {
         let centre = view.centre;
         let half = scaled(minus(view.high, view.low), 0.5);
         let (along, aside) = split(minus(centre, basket.mouth), basket.axis);
         let spare = basket.spare(half);
+        // In space what fits on one of the axes across needs to be moved along the other only: what
+        // lies on a floor is not lifted.
+        let fits =
+            |axis: usize| D::N == 3 && spare[axis].is_finite() && aside[axis].abs() < spare[axis];
+        let off_mouth = length([0, 1, 2].map(|axis| if fits(axis) { 0.0 } else { aside[axis] }));
+        let narrowest = spare.into_iter().fold(f32::INFINITY, f32::min);
         // Straight in, or first to a place in front of the mouth.
-        let target = match length(aside) > spare.max(off) {
+        let target = match off_mouth > narrowest.max(off) {
             true => ways.next(centre),
             false => plus(basket.mouth, scaled(basket.axis, along + 0.6)),
         };
+        let target = [0, 1, 2].map(|axis| {
+            if fits(axis) {
+                centre[axis]
+            } else {
+                target[axis]
+            }
+        });
         let way = unit(minus(target, centre));
         let reach = length([0, 1, 2].map(|k| way[k] * half[k])) + hand;
         Self {
@@ -135,7 +148,7 @@ impl Piece {
             way,
             reach,
             behind: minus(centre, scaled(way, 1.1 * reach)),
-            fits: spare > 0.0,
+            fits: narrowest > 0.0,
         }
     }
 }
@@ -152,10 +165,10 @@ impl Basket {
         Some(Self { axis, mouth, half })
     }
 
-    /// How much wider it is than something, half by half [m]; negative where it is too narrow.
-    fn spare(&self, half: Vector) -> f32 {
-        let spare = [0, 1, 2].map(|k| self.half[k] - half[k]);
-        spare.into_iter().fold(f32::INFINITY, f32::min)
+    /// How much wider it is on each axis than something, half by half [m]; negative where it is too
+    /// narrow.
+    fn spare(&self, half: Vector) -> Vector {
+        minus(self.half, half)
     }
 
     /// A place in front of its mouth [m].
@@ -168,7 +181,8 @@ impl Basket {
         let half = scaled(minus(piece.high, piece.low), 0.5);
         let middle = scaled(plus(piece.high, piece.low), 0.5);
         let (along, aside) = split(minus(middle, self.mouth), self.axis);
-        along > dot(half, self.axis).abs() && self.spare(aside.map(f32::abs)) > 0.0
+        along > dot(half, self.axis).abs()
+            && self.spare(aside.map(f32::abs)).iter().all(|&k| k > 0.0)
     }
 }
 
