@@ -1,7 +1,7 @@
 //! Where a round is played: a scene with a table `[game]`, in a text file that a person can write.
 
 use fuwafuwa::{Dim, Shape, World};
-use fuwafuwa_scenes::scene::{GameText, Scene, SceneError};
+use fuwafuwa_scenes::scene::{BodyText, GameText, Scene, SceneError};
 use std::path::Path;
 
 /// A level, checked: its world can be built.
@@ -39,10 +39,13 @@ pub enum LevelError {
     },
 }
 
-/// Most voxels in the grids of all bodies of a level together, solid or not: eight squares of 64. Even
-/// crumbled or diced into single voxels, they are there within seconds and move, if slowly, and one
-/// buffer of the GPU holds them.
+/// Most voxels in the grids of all bodies of a level together, solid or not: eight squares of 64, or a
+/// ball of 32. Even crumbled or diced into single voxels, they are there within seconds and move, if
+/// slowly, and one buffer of the GPU holds them.
 pub const MAX_VOXELS: usize = 1 << 15;
+/// The same in space where all bodies begin whole, and with large elements inside: a ball of 64. Of
+/// eight times as many voxels it has five times as many elements.
+pub const MAX_WHOLE_VOXELS: usize = 1 << 18;
 
 /// The levels in the plane that come along, in the order in which they are offered.
 pub const NAMED: [(&str, &str); 10] = [
@@ -110,9 +113,9 @@ impl Level {
         if let Some(body) = level.scene.body.first_mut() {
             (body.shape, body.file) = (None, Some(path.into()));
             if level.scene.dim == 3 {
-                // Whatever the colours of a model are, it is soft.
+                // A model has voxels of its own; whatever their colours are, it is soft.
                 let all = (1..=u8::MAX).map(|index| (index.to_string(), 1));
-                body.colours = all.collect();
+                (body.n, body.colours) = (None, all.collect());
             }
         }
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
@@ -195,7 +198,12 @@ impl Level {
 }
 
 fn check<D: Dim>(scene: &Scene) -> Result<(), SceneError> {
-    scene.build_within::<D>(MAX_VOXELS)?;
+    let is_fine = |body: &BodyText| body.crumbled || body.diced.is_some() || body.uniform;
+    let most = match D::N == 3 && !scene.body.iter().any(is_fine) {
+        true => MAX_WHOLE_VOXELS,
+        false => MAX_VOXELS,
+    };
+    scene.build_within::<D>(most)?;
     scene.basket::<D>().map(|_| ())
 }
 
@@ -210,15 +218,38 @@ mod tests {
         }
     }
 
+    /// What is said of a level with changes.
+    fn refusal(id: &str, text: &str, changes: &[&str]) -> Option<String> {
+        let changes: Vec<String> = changes.iter().map(|change| change.to_string()).collect();
+        let scene = Scene::read(id, text, &changes).unwrap();
+        Level::of(id, scene).err().map(|error| error.to_string())
+    }
+
     #[test]
     fn a_level_has_no_more_voxels_than_the_game_can_move() {
-        let (id, text) = NAMED[0];
-        let changes = ["body.n=182".to_string()];
-        let scene = Scene::read(id, text, &changes).unwrap();
-        let error = Level::of(id, scene).unwrap_err().to_string();
-        assert!(
-            error.contains("body 1, n: expected 32768 voxels at most"),
-            "{error}"
-        );
+        let [(id, flat), (id_3d, solid)] = [NAMED[0], NAMED_3D[0]];
+        let few = "body 1, n: expected 32768 voxels at most";
+        let many = "body 1, n: expected 262144 voxels at most";
+        for (id, text, changes, expected) in [
+            (id, flat, &["body.n=181"][..], None),
+            (id, flat, &["body.n=182"], Some(few)),
+            (id_3d, solid, &["body.n=64"], None),
+            (id_3d, solid, &["body.n=65"], Some(many)),
+            (
+                id_3d,
+                solid,
+                &["body.n=33", "body.crumbled=true"],
+                Some(few),
+            ),
+            (id_3d, solid, &["body.n=33", "body.diced=0.1"], Some(few)),
+            (id_3d, solid, &["body.n=33", "body.uniform=true"], Some(few)),
+        ] {
+            let found = refusal(id, text, changes);
+            let is_as_expected = match expected {
+                Some(expected) => found.as_ref().is_some_and(|text| text.contains(expected)),
+                None => found.is_none(),
+            };
+            assert!(is_as_expected, "{id}, {changes:?}: {found:?}");
+        }
     }
 }

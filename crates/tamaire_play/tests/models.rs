@@ -1,6 +1,7 @@
 //! The models among the levels are not drawn by hand: here is what they are.
 
 use std::path::PathBuf;
+use tamaire_play::Level;
 
 /// A crème caramel of 32 voxels across and 20 high: custard of colour 1 under caramel of colour 2.
 fn pudding() -> Vec<u8> {
@@ -68,4 +69,27 @@ fn the_pudding_is_what_is_said_here() {
 #[ignore = "writes the model"]
 fn write_the_pudding() {
     std::fs::write(place(), pudding()).unwrap();
+}
+
+#[test]
+fn a_model_of_any_colours_becomes_the_body_of_a_level() {
+    let level = Level::open(&place().to_string_lossy()).unwrap();
+    assert_eq!(level.game().name.en, "pudding");
+    assert_eq!(level.scene().dim, 3);
+    let level = level.scene().build::<fuwafuwa::Dim3>().unwrap();
+    assert!(level.bodies()[0].grid().solid_count() > 8000);
+
+    let folder = std::env::temp_dir().join(format!("tamaire-models-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = folder.join("wide.VOX");
+    let refused = |bytes: &[u8]| {
+        std::fs::write(&path, bytes).unwrap();
+        let error = Level::open(&path.to_string_lossy()).unwrap_err();
+        error.to_string()
+    };
+    let wide = refused(&model([65, 64, 64], &[[0, 0, 0, 79]], &[[0; 4]; 256]));
+    assert!(wide.contains("expected 262144 voxels at most"), "{wide}");
+    let torn = refused(&pudding()[..1000]);
+    assert!(torn.contains("wide.VOX"), "{torn}");
+    std::fs::remove_dir_all(folder).unwrap();
 }
