@@ -1,15 +1,16 @@
 //! How long the skin of a ball takes while a hand tears it:
-//! `cargo run --release -p fuwafuwa_render --example skin3d`.
+//! `cargo run --release -p fuwafuwa_render --example skin3d -- [body.n=64 …]`.
 
 use fuwafuwa::Dim3;
-use fuwafuwa_render::Theme;
-use fuwafuwa_render::space::Skin;
+use fuwafuwa_render::frame::ElementColour;
+use fuwafuwa_render::space::{Camera, Geometry, Skin};
+use fuwafuwa_render::{Frame, Look, Theme};
 use fuwafuwa_scenes::Scene;
 use std::error::Error;
 use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let scene = Scene::open("tear-3d", &[])?;
+    let scene = Scene::open("tear-3d", &std::env::args().skip(1).collect::<Vec<_>>())?;
     let mut world = scene.build::<Dim3>()?;
     let theme = Theme::candy();
     let mut skin = Skin::default();
@@ -42,5 +43,29 @@ fn main() -> Result<(), Box<dyn Error>> {
             );
         }
     }
+    let mut geometry = Geometry::default();
+    let frame = Frame {
+        camera: Camera {
+            cut: Some(([0.0, 0.0, 1.0], 0.5)),
+            ..Camera::fit(scene.view[0], scene.view[1], [1, 1])
+        },
+        theme: &theme,
+        look: Look::Elements {
+            colour: ElementColour::Strain,
+            ages: &[],
+            nodes: false,
+        },
+        basket: None,
+        particles: &[],
+        seconds: 0.0,
+    };
+    let times = (0..20).map(|_| {
+        let begin = Instant::now();
+        geometry.gather(&world, &frame);
+        1e3 * begin.elapsed().as_secs_f64()
+    });
+    let best = times.fold(f64::INFINITY, f64::min);
+    let count = geometry.vertex_count();
+    println!("elements behind a cut: {count} vertices, best {best:.2} ms");
     Ok(())
 }

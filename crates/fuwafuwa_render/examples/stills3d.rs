@@ -88,10 +88,59 @@ radius = 0.12
 path = [[0.0, 0.5, 1.2, 0.5], [0.8, 0.5, 0.13, 0.5], [1.2, 0.9, 0.13, 0.5], [1.6, 0.1, 0.13, 0.4], [2.5, 0.5, 1.0, 0.5]]
 "#;
 
+/// Shapes that are not round, dropped.
+const SHAPES: &str = r#"
+dim = 3
+gravity = [0.0, -3.0, 0.0]
+view = [[-0.9, 0.0, -0.6], [0.9, 0.7, 0.6]]
+
+[[material]]
+[[material]]
+[[material]]
+
+[[body]]
+shape = "box"
+n = 14
+width = 0.45
+at = [-0.85, 0.1, 0.0]
+[[body.part]]
+paint = 2
+box = { centre = [0.225, 0.225, 0.45], half = [0.08, 0.08, 0.05] }
+
+[[body]]
+shape = "heart"
+n = 24
+width = 0.6
+at = [-0.3, 0.1, -0.2]
+
+[[body]]
+shape = "empty"
+n = 24
+width = 0.6
+at = [0.4, 0.05, -0.3]
+[[body.part]]
+fill = 3
+ball = { centre = [0.3, 0.2, 0.3], radius = 0.18 }
+[[body.part]]
+fill = 3
+box = { centre = [0.3, 0.45, 0.3], half = [0.04, 0.13, 0.04] }
+[[body.part]]
+fill = 2
+box = { centre = [0.3, 0.3, 0.3], half = [0.26, 0.025, 0.05] }
+
+[[obstacle]]
+half_space = { normal = [0.0, 1.0, 0.0], point = [0.0, 0.0, 0.0] }
+
+[[hand]]
+radius = 0.1
+path = [[0.0, -0.6, 1.0, 0.3], [0.5, -0.6, 1.0, 0.3], [1.5, -0.6, 0.3, 0.3]]
+"#;
+
 /// What to draw: name, scene if it has none of that name, moments [ticks], and turns [rad].
-const TAKES: [(&str, &str, &[u64], f32); 3] = [
+const TAKES: [(&str, &str, &[u64], f32); 4] = [
     ("tear-3d", "", &[1, 50, 62, 70, 80, 90, 110, 130, 149], 0.5),
     ("room", ROOM, &[1, 60, 100, 140], 0.35),
+    ("shapes", SHAPES, &[1, 90], 0.3),
     ("crumble", CRUMBLE, &[40, 70, 100, 149], 0.2),
 ];
 

@@ -3,7 +3,7 @@
 //! As in the plane: every point of the surface gets an offset, in voxels and in the frame of the
 //! body at rest, and a deformed body carries the offsets along.
 
-use fuwafuwa::dim::{add, corner, voxel_around};
+use fuwafuwa::dim::{add, corner, points_in, voxel_around};
 use fuwafuwa::sharing::{Groups, Sharing};
 use fuwafuwa::vector::{length, minus, plus, scaled};
 use fuwafuwa::view::face_corners;
@@ -17,9 +17,13 @@ const REACH: f32 = 0.45;
 const VARIANCE: f32 = 0.25;
 /// Rounds at most, so that the largest bodies are ready in a moment.
 const MOST_ROUNDS: usize = 200;
-/// A point is not moved by more [voxels], so that a nose of a few voxels stays a nose.
-const FARTHEST: f32 = 0.8;
-
+/// A point is not moved by more [voxels] where the body is thin and where it is thick around it: so a
+/// nose of a few voxels stays a nose.
+const FARTHEST: [f32; 2] = [0.3, 0.8];
+/// What is thin and what is thick: the share of voxels that are solid around a point, out to `AROUND`.
+/// A flat surface has 0.5, an edge and a limb three voxels wide have 0.25.
+const SOLID: [f32; 2] = [0.22, 0.32];
+const AROUND: i32 = 3;
 /// Rounds in which the materials of neighbours are mixed: more make dots of few voxels pale.
 const TINT_ROUNDS: usize = 2;
 /// How far points inside the body are moved off the lattice at most, along each axis [voxels]: more
@@ -87,7 +91,7 @@ impl Rest {
         let rounds = ((variance / VARIANCE) as usize).min(MOST_ROUNDS);
         let smooth = smoothed(&places, &neighbours, rounds);
         for (point, (&to, &from)) in rest.points.iter_mut().zip(smooth.iter().zip(&places)) {
-            point.offset = limited(minus(to, from));
+            point.offset = limited(minus(to, from), farthest(grid, point.at));
         }
         rest.find_tints(grid, &neighbours);
         rest
@@ -174,7 +178,9 @@ impl Rest {
             }
         }
         for (point, [first, second]) in self.points.iter_mut().zip(most) {
-            point.tint.share = second / (first + second).max(1e-6);
+            // Most of the border is drawn together.
+            let close = (2.0 * second / (first + second).max(1e-6) - 0.25) / 0.75;
+            point.tint.share = 0.5 * close.max(0.0);
         }
     }
 
@@ -238,9 +244,21 @@ fn smoothed(places: &[Vector], neighbours: &[Vec<u32>], rounds: usize) -> Vec<Ve
     (0..places.len()).map(sum).collect()
 }
 
-fn limited(offset: Vector) -> Vector {
+/// How far a point may be moved [voxels].
+fn farthest(grid: &VoxelGrid<Dim3>, at: Point) -> f32 {
+    let low = at.map(|k| k - AROUND);
+    let high = at.map(|k| k + AROUND - 1);
+    let solid = points_in(low, high)
+        .filter(|&voxel| grid.is_solid(voxel))
+        .count();
+    let share = solid as f32 / (8 * AROUND * AROUND * AROUND) as f32;
+    let thick = ((share - SOLID[0]) / (SOLID[1] - SOLID[0])).clamp(0.0, 1.0);
+    FARTHEST[0] + (FARTHEST[1] - FARTHEST[0]) * thick
+}
+
+fn limited(offset: Vector, farthest: f32) -> Vector {
     match length(offset) {
-        length if length > FARTHEST => scaled(offset, FARTHEST / length),
+        length if length > farthest => scaled(offset, farthest / length),
         _ => offset,
     }
 }
