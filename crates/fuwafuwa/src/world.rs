@@ -22,7 +22,7 @@ pub const TICK: f32 = 1.0 / 60.0;
 /// Substeps in a tick at the least, where the settings allow as many: a force-feedback stick wants its
 /// force 960 times a second.
 pub const USUAL_SUBSTEPS: u32 = 16;
-/// The settings allow so many at the least: with fewer, contact would get soft.
+/// The settings allow so many at the least: with them a soft ball is squashed as it is with 16.
 pub const FEWEST_SUBSTEPS: u32 = 8;
 /// Cracks are looked for this many times in a tick: 240 times a second.
 const FRACTURE_ROUNDS: u32 = 4;

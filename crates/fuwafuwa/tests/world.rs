@@ -356,3 +356,34 @@ fn what_a_hand_feels_is_smooth() {
     check_smooth_reaction::<Dim2>(24);
     check_smooth_reaction::<Dim3>(12);
 }
+
+#[test]
+fn eight_substeps_squash_a_soft_ball_as_sixteen_do() {
+    let [eight, sixteen] = [8, 16].map(|most_substeps| {
+        let mut world = World::<Dim3>::new(Settings {
+            gravity: [0.0, -3.0, 0.0],
+            drag: 0.5,
+            most_substeps,
+        })
+        .unwrap();
+        let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+        world.add_obstacle(floor, 0.4).unwrap();
+        world.add_body(ball::<Dim3>(16, unbreakable()));
+        let hand = Manipulator::new([0.5, 1.2, 0.5], 0.2);
+        world.add_manipulator(hand).unwrap();
+        let mut lowest = 0.0_f32;
+        for tick in 0..90 {
+            let height = 1.2 - 0.01 * tick.min(60) as f32;
+            world.set_goal(0, [0.5, height, 0.5]);
+            assert_eq!(world.step().substeps, most_substeps);
+            lowest = lowest.min(world.bodies()[0].piece_views()[0].low[1]);
+        }
+        assert_eq!(world.bodies()[0].softening(), 1.0);
+        (world.manipulators()[0].position()[1], lowest)
+    });
+    assert!(
+        (eight.0 - sixteen.0).abs() < 0.002,
+        "the hand is stopped alike"
+    );
+    assert!(eight.1 > -0.006, "a tenth of a voxel into the floor");
+}
