@@ -4,6 +4,7 @@ use egui::{Pos2, Rect, Vec2, pos2, vec2};
 use fuwafuwa::Vector;
 use fuwafuwa::vector::{length, minus, plus, scaled};
 use fuwafuwa_render::space;
+use tamaire_play::Level;
 
 /// So much is seen around the arena [m]: room for the lean, so that nothing of the arena goes out of sight.
 const MARGIN: f32 = 0.1;
@@ -81,8 +82,15 @@ impl Camera {
         self.turn
     }
 
-    /// What it sees of an arena in space on a part of the screen that is to hold it.
-    pub fn view_of_space(&self, rect: Rect, arena: [Vector; 2]) -> View {
+    /// What it sees on a part of the screen that is to hold the arena of a level.
+    pub fn view(&self, rect: Rect, level: &Level) -> View {
+        match level.scene().dim {
+            2 => self.view_of_plane(rect, level.arena()),
+            _ => self.view_of_space(rect, level.arena()),
+        }
+    }
+
+    fn view_of_space(&self, rect: Rect, arena: [Vector; 2]) -> View {
         let fitted = space::Camera::fit(arena[0], arena[1], pixels(rect));
         let swing = self.shake * vec2(self.phase.sin(), (1.3 * self.phase).cos());
         let camera = space::Camera {
@@ -102,8 +110,7 @@ impl Camera {
         }
     }
 
-    /// What it sees on a part of the screen that is to hold the arena.
-    pub fn view(&self, rect: Rect, arena: [Vector; 2]) -> View {
+    fn view_of_plane(&self, rect: Rect, arena: [Vector; 2]) -> View {
         let size = vec2(arena[1][0] - arena[0][0], arena[1][1] - arena[0][1]);
         let size = size + Vec2::splat(2.0 * MARGIN);
         let scale = (rect.width() / size.x).min(rect.height() / size.y);
@@ -186,13 +193,13 @@ mod tests {
         let mut camera = Camera::default();
         camera.shake(0.01);
         camera.follow([1.0, 0.5, 0.0], arena, 0.05, false);
-        let view = camera.view(
+        let view = camera.view_of_plane(
             Rect::from_min_size(pos2(10.0, 20.0), vec2(800.0, 600.0)),
             arena,
         );
         let place = view.in_world(view.on_screen([0.7, -0.3, 0.0]), 0.0);
         assert!((place[0] - 0.7).abs() < 1e-4 && (place[1] + 0.3).abs() < 1e-4);
         camera.follow([1.0, 0.5, 0.0], arena, 0.05, true);
-        assert_eq!(camera.view(view.rect, arena).centre, [0.0, 0.0]);
+        assert_eq!(camera.view_of_plane(view.rect, arena).centre, [0.0, 0.0]);
     }
 }

@@ -4,16 +4,12 @@ use super::hud;
 use crate::game::{Game, Screen};
 use crate::look::{Hint, Look, Stage};
 use egui::{Response, Ui};
-use tamaire_play::AnyRound;
 
 /// Draws the world behind whatever screen.
 pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     let screen = ui.max_rect();
     let level = game.session.round().level();
-    let view = match game.session.round() {
-        AnyRound::Plane(_) => game.camera.view(screen, level.arena()),
-        AnyRound::Space(_) => game.camera.view_of_space(screen, level.arena()),
-    };
+    let view = game.camera.view(screen, level);
     game.view = Some(view);
     let theme = game.theme();
     // The first level shows the way until it has been won once.
