@@ -19,7 +19,7 @@ const RISE: f32 = 0.6;
 const LOWEST: f32 = 0.1;
 const HIGHEST: f32 = 1.5;
 /// Of the distance from which a whole arena in space is seen from all sides it keeps this: its corners are of no interest.
-const CLOSE: f32 = 0.78;
+const CLOSE: f32 = 0.66;
 const SWING: f32 = 60.0;
 
 /// Looks at the arena, leans towards the hand, and shakes when something tears.

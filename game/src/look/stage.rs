@@ -6,7 +6,8 @@ use super::feelings::Feeling;
 use super::{Effects, Maps, Mood, Theme, draw_face, glow, hint};
 use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait, RenderState};
 use egui::{Color32, PaintCallbackInfo, Painter, Pos2, Stroke, Ui, vec2};
-use fuwafuwa::{Dim, Dim2, Dim3};
+use fuwafuwa::vector::{dot, length};
+use fuwafuwa::{Dim, Dim2, Dim3, Vector};
 use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_render::{Ages, Basket, Camera, Frame, Particle, Renderer, space};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -29,6 +30,8 @@ pub struct Look<'a> {
     pub ghost: Option<&'a AnyRound>,
     /// Whether to show what the hand could do, until it moves.
     pub hint: Hint,
+    /// How the hand rises and the camera turns, in words.
+    pub how_in_space: &'static str,
     /// With reduced motion.
     pub still: bool,
 }
@@ -43,6 +46,9 @@ pub enum Hint {
     /// And what it could do.
     Way,
 }
+
+/// Lines of a round that was played before.
+const GHOST: Color32 = Color32::from_rgba_premultiplied(42, 38, 56, 120);
 
 /// Where rounds are drawn: a part of a window of egui's.
 pub struct Stage {
@@ -121,6 +127,10 @@ impl Stage {
         let Some(camera) = look.view.space else {
             return;
         };
+        let camera = space::Camera {
+            cut: look.elements.and_then(|_| cut(&camera, look)),
+            ..camera
+        };
         let scale = ui.ctx().pixels_per_point();
         let size = (look.view.rect.size() * scale).max(vec2(1.0, 1.0));
         let size = [size.x.round() as u32, size.y.round() as u32];
@@ -150,9 +160,13 @@ impl Stage {
         let paint = PaintSpace(shared.clone());
         let painter = ui.painter();
         painter.add(Callback::new_paint_callback(look.view.rect, paint));
+        if let Some(AnyRound::Space(ghost)) = look.ghost {
+            draw_ghost_of_space(painter, ghost, &look.view);
+        }
         if look.elements.is_none() {
             draw_faces(painter, round, look);
         }
+        hint::draw_in_space(painter, round, look);
         look.effects.confetti.draw(painter, &look.view.flat());
     }
 
@@ -205,6 +219,15 @@ impl Stage {
         self.ages.follow(round.world(), seconds);
         self.time = look.time;
     }
+}
+
+/// What of bodies in space is left out of the element view: what is in front of the middle of the first.
+fn cut(camera: &space::Camera, look: &Look) -> Option<(Vector, f32)> {
+    let [x, _, z] = camera.axes()[2];
+    let long = length([x, z]).max(1e-3);
+    let towards = [x / long, 0.0, z / long];
+    let middle = look.effects.feelings.first()?.at;
+    Some((towards, dot(towards, middle)))
 }
 
 /// What of the bodies is shown.
@@ -305,9 +328,30 @@ pub(super) fn place(feeling: &Feeling, view: &View, still: bool) -> Place {
     }
 }
 
+/// Rings around the pieces and hands of a round that was played before.
+fn draw_ghost_of_space(painter: &Painter, round: &Round<Dim3>, view: &View) {
+    let stroke = Stroke::new(2.5, GHOST);
+    let ring = |at, radius| {
+        painter.circle_stroke(view.on_screen(at), view.scale_at(at) * radius, stroke);
+    };
+    for body in round.world().bodies() {
+        let voxel = body.grid().voxel_size();
+        let density = body.materials()[0].density;
+        for piece in body.piece_views() {
+            let radius = (0.75 * piece.mass / density / std::f32::consts::PI).cbrt();
+            if radius > 2.0 * voxel {
+                ring(piece.centre, radius);
+            }
+        }
+    }
+    for hand in round.world().manipulators() {
+        ring(hand.position(), hand.radius);
+    }
+}
+
 /// The lines of a round that was played before.
 fn draw_ghost(painter: &Painter, round: &Round<Dim2>, view: &View) {
-    let stroke = Stroke::new(2.5, Color32::from_rgba_unmultiplied(90, 80, 120, 120));
+    let stroke = Stroke::new(2.5, GHOST);
     for body in round.world().bodies() {
         for outline in body.outlines() {
             let points = outline.points.iter().map(|&at| view.on_screen(at));

@@ -112,6 +112,7 @@ pub struct Words {
     pub no_sound: &'static str,
     pub no_sticks: &'static str,
     pub join_hint: &'static str,
+    pub how_in_space: &'static str,
     pub watching: &'static str,
     pub settings_kept: &'static str,
     pub not_written: &'static str,
