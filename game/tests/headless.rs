@@ -268,7 +268,7 @@ fn what_would_be_felt_is_written_down() {
     }
     assert!(updates.iter().any(|row| number(row, "pad_slow") > 0.1));
     let last = updates[updates.len() - 1];
-    assert_eq!((last[at("silent")], number(last, "stick_x")), ("Won", 0.0));
+    assert_eq!((last[at("silent")], number(last, "stick_x")), ("won", 0.0));
 
     check_refused("--headless --force-log forces.txt", 2, &[".csv"]);
     check_refused(
