@@ -226,7 +226,7 @@ impl Bot {
 
     /// The next goal on the way to a place around what is in the way, at a pace [m/s].
     fn go(&self, sight: &Sight, place: Vector, pace: f32) -> Vector {
-        straight(sight, sight.map.ways_to(place).next(sight.hand), pace)
+        straight(sight, sight.map.next(sight.hand, place), pace)
     }
 }
 

@@ -57,8 +57,18 @@ impl Map {
         around(self.size, cell, |next, _| self.costs[next] += cost);
     }
 
-    /// The cheapest ways to a place.
+    /// The cheapest ways to a place from everywhere.
     pub(super) fn ways_to(&self, to: Vector) -> Ways<'_> {
+        self.ways(to, None)
+    }
+
+    /// The next goal on the cheapest way from one place to another.
+    pub(super) fn next(&self, from: Vector, to: Vector) -> Vector {
+        self.ways(to, Some(self.cell(from))).next(from)
+    }
+
+    /// The cheapest ways to a place; where they lead from a single cell, only what is nearer is known.
+    fn ways(&self, to: Vector, from: Option<usize>) -> Ways<'_> {
         let mut costs = vec![u32::MAX; self.costs.len()];
         let goal = self.cell(to);
         costs[goal] = 0;
@@ -66,6 +76,9 @@ impl Map {
         while let Some((Reverse(cost), cell)) = open.pop() {
             if cost > costs[cell] {
                 continue;
+            }
+            if from == Some(cell) {
+                break;
             }
             around(self.size, cell, |next, distance| {
                 let step = 0.5 * (self.costs[cell] + self.costs[next]) * distance;

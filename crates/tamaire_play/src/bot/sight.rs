@@ -1,10 +1,11 @@
 //! What a bot sees: the basket, the piece that matters, and what is in the way.
 
-use super::map::{Map, Ways};
+use super::map::Map;
 use crate::Round;
 use fuwafuwa::vector::{dot, length, minus, plus, scaled};
 use fuwafuwa::world::Obstacle;
 use fuwafuwa::{Dim, PieceView, Shape, Vector};
+use std::cell::LazyCell;
 
 /// Pieces with less than this share of the mass are not worth the way.
 const CRUMB: f32 = 0.003;
@@ -81,12 +82,13 @@ impl Sight {
         views.sort_by(|a, b| b.mass.total_cmp(&a.mass));
         let largest = views.first()?;
         let is_out = |view: &&PieceView| view.mass > CRUMB * mass && !basket.holds(view);
-        let ways = map.ways_to(basket.front());
+        let ways = LazyCell::new(|| map.ways_to(basket.front()));
+        let ahead = |from: Vector| ways.next(from);
         let mut pieces: Vec<Piece> = (views.iter().filter(is_out).take(MOST))
-            .map(|view| Piece::of::<D>(view, &basket, &ways, off, hand.radius))
+            .map(|view| Piece::of::<D>(view, &basket, &ahead, off, hand.radius))
             .collect();
         if pieces.is_empty() {
-            pieces.push(Piece::of::<D>(largest, &basket, &ways, off, hand.radius));
+            pieces.push(Piece::of::<D>(largest, &basket, &ahead, off, hand.radius));
         }
         // Stays in order of mass otherwise.
         pieces.sort_by_key(|piece| clearance(piece.behind, obstacles) < 0.5 * hand.radius);
@@ -118,7 +120,14 @@ impl Sight {
 }
 
 impl Piece {
-    fn of<D: Dim>(view: &PieceView, basket: &Basket, ways: &Ways, off: f32, hand: f32) -> Self {
+    /// `ahead`: the next place on the way from one to the front of the basket.
+    fn of<D: Dim>(
+        view: &PieceView,
+        basket: &Basket,
+        ahead: impl Fn(Vector) -> Vector,
+        off: f32,
+        hand: f32,
+    ) -> Self {
         let centre = view.centre;
         let half = scaled(minus(view.high, view.low), 0.5);
         let (along, aside) = split(minus(centre, basket.mouth), basket.axis);
@@ -131,7 +140,7 @@ impl Piece {
         let narrowest = spare.into_iter().fold(f32::INFINITY, f32::min);
         // Straight in, or first to a place in front of the mouth.
         let target = match off_mouth > narrowest.max(off) {
-            true => ways.next(centre),
+            true => ahead(centre),
             false => plus(basket.mouth, scaled(basket.axis, along + 0.6)),
         };
         let target = [0, 1, 2].map(|axis| {
