@@ -62,3 +62,16 @@ pub fn silence(round: &AnyRound) -> Option<Stop> {
     }
     ((round.ticks() as f32) < BEGUN / TICK).then_some(Stop::Reset)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stick_feels_what_pushes_along_the_floor_as_the_camera_sees_it() {
+        assert_eq!(on_stick([1.0, 2.0, 3.0], None), [1.0, 2.0]);
+        assert_eq!(on_stick([1.0, 2.0, 3.0], Some(0.0)), [1.0, -3.0]);
+        let [right, away] = on_stick([1.0, 2.0, 3.0], Some(std::f32::consts::FRAC_PI_2));
+        assert!((right + 3.0).abs() < 1e-5 && (away + 1.0).abs() < 1e-5);
+    }
+}

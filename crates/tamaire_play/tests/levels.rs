@@ -49,8 +49,8 @@ fn played<D: Dim>(id: &str, ticks: usize) -> Replay {
     Replay::of(&round)
 }
 
-fn play<D: Dim>(replay: Replay) -> Result<(), ReplayError> {
-    let mut playback = Playback::<D>::new(Arc::new(replay))?;
+fn play(replay: Replay) -> Result<(), ReplayError> {
+    let mut playback = Playback::new(Arc::new(replay))?;
     while !playback.is_over() {
         playback.step()?;
     }
@@ -63,12 +63,12 @@ fn a_replay_goes_as_it_went_and_a_changed_one_is_found_out() {
     let text = replay.text();
     let read = Replay::read(&text).unwrap();
     assert_eq!(read, replay);
-    play::<Dim2>(read).unwrap();
+    play(read).unwrap();
 
     let changed = |from: &str, to: &str| {
         assert!(text.contains(from), "{from}");
         Replay::read(&text.replacen(from, to, 1))
-            .and_then(play::<Dim2>)
+            .and_then(play)
             .unwrap_err()
     };
     let hash = format!("\"{}\"", replay.hashes[1]);
@@ -92,18 +92,7 @@ fn a_replay_is_played_in_its_own_dimension() {
     let replay = played::<Dim3>("pudding", 70);
     let read = Replay::read(&replay.text()).unwrap();
     assert_eq!(read, replay);
-    play::<Dim3>(read.clone()).unwrap();
-    let other = play::<Dim2>(read).unwrap_err();
-    assert!(
-        matches!(
-            other,
-            ReplayError::Dimension {
-                found: 3,
-                expected: 2
-            }
-        ),
-        "{other}"
-    );
+    play(read).unwrap();
 }
 
 #[test]

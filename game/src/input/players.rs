@@ -415,6 +415,46 @@ mod tests {
     }
 
     #[test]
+    fn in_space_what_is_away_is_away_from_the_camera_and_the_hand_rises() {
+        let manner = Manner {
+            arena: [[-1.6, 0.0, -1.0], [1.6, 1.6, 1.0]],
+            turn: Some(std::f32::consts::FRAC_PI_2),
+            ..MANNER
+        };
+        let hands = [[0.0, 0.5, 0.0]];
+        let goal = |devices: &Devices| {
+            let bindings = Bindings::default();
+            let frame = Players::default().frame(devices, &bindings, &manner, &hands, TICK);
+            frame.goal(0).expect("a goal")
+        };
+        let check = |found: Vector, expected: Vector| {
+            let is_near = (0..3).all(|axis| (found[axis] - expected[axis]).abs() < 1e-3);
+            assert!(is_near, "{found:?}, expected {expected:?}");
+        };
+        let step = PACE * TICK;
+        // The camera went around to the right, so it looks to the left.
+        check(
+            goal(&with_sticks(vec![stick(1, [0.0, 1.0])])),
+            [-step, 0.5, 0.0],
+        );
+        check(
+            goal(&with_sticks(vec![stick(1, [1.0, 0.0])])),
+            [0.0, 0.5, -step],
+        );
+        let keys = Devices {
+            keys: [Key::Q].into(),
+            ..Devices::default()
+        };
+        check(goal(&keys), [0.0, 0.5 + RISE * TICK, 0.0]);
+        let wheel = Devices {
+            pointer: Some([0.3, 0.5, -0.2]),
+            lift: 5.0,
+            ..Devices::default()
+        };
+        check(goal(&wheel), [0.3, 1.6, -0.2]);
+    }
+
+    #[test]
     fn each_device_belongs_to_one_player() {
         let mut players = Players::default();
         let mut devices = with_sticks(vec![stick(1, [1.0, 0.0]), stick(2, [0.0; 2])]);

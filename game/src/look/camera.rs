@@ -202,4 +202,21 @@ mod tests {
         camera.follow([1.0, 0.5, 0.0], arena, 0.05, true);
         assert_eq!(camera.view_of_plane(view.rect, arena).centre, [0.0, 0.0]);
     }
+
+    #[test]
+    fn in_space_a_place_is_found_again_at_its_height() {
+        let arena = [[-1.6, 0.0, -1.0], [1.6, 1.6, 1.0]];
+        let mut camera = Camera::default();
+        camera.orbit(0.7, 9.0);
+        let rect = Rect::from_min_size(pos2(10.0, 20.0), vec2(800.0, 600.0));
+        for rise in [0.0, -0.6, -9.0] {
+            camera.orbit(0.0, rise);
+            let view = camera.view_of_space(rect, arena);
+            let at = [0.7, 0.4, -0.3];
+            let place = view.in_world(view.on_screen(at), at[1]);
+            assert!(length(minus(place, at)) < 1e-2, "{place:?}");
+        }
+        camera.face_front();
+        assert_eq!(camera.turn(), 0.0);
+    }
 }
