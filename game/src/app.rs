@@ -14,6 +14,12 @@ const FONT: &[u8] = include_bytes!("../fonts/MPLUSRounded1c-Bold.ttf");
 /// Each screen has room enough in a window of this many points.
 const ROOM: egui::Vec2 = egui::vec2(900.0, 640.0);
 
+/// In space: how far the wheel raises the hand [m/point], how far the mouse [rad/point] and how fast a key or a pad's right
+/// stick turns the camera [rad/s].
+const WHEEL: f32 = 0.002;
+const DRAG: f32 = 0.006;
+const TURN: f32 = 1.5;
+
 /// Keys that menus understand.
 const OF_MENUS: [Key; 8] = [
     Key::Escape,
@@ -172,7 +178,36 @@ impl App {
         if game.screen != Screen::Play || is_on_button {
             game.devices.pointer = None;
         } else if let (Some(view), Some(at), true) = (game.view, pointer, points) {
-            game.devices.pointer = Some(view.in_world(at));
+            let height = game.session.round().hands()[0].goal()[1];
+            game.devices.pointer = Some(view.in_world(at, height));
+        }
+        if game.screen == Screen::Play && game.turn().is_some() {
+            let (wheel, drag, seconds) = ctx.input(|input| {
+                let is_dragged = input.pointer.button_down(PointerButton::Secondary);
+                let drag = if is_dragged {
+                    input.pointer.delta()
+                } else {
+                    egui::Vec2::ZERO
+                };
+                (input.smooth_scroll_delta.y, drag, input.stable_dt.min(0.1))
+            });
+            game.devices.lift += WHEEL * wheel;
+            game.camera.orbit(-DRAG * drag.x, DRAG * drag.y);
+            let turns = |action| {
+                let by_key = keys
+                    .iter()
+                    .any(|&key| game.settings.bindings.of_key(key) == Some(action));
+                f32::from(u8::from(by_key))
+            };
+            let sticks = game.devices.sticks.devices.iter();
+            let pads: f32 = sticks.filter_map(|device| Some(device.pad?.right[0])).sum();
+            let pads = if pads.abs() > 0.3 {
+                pads.clamp(-1.0, 1.0)
+            } else {
+                0.0
+            };
+            let turn = turns(Action::TurnRight) - turns(Action::TurnLeft) + pads;
+            game.camera.orbit(TURN * turn * seconds, 0.0);
         }
         game.devices.keys = keys.into_iter().collect();
         let mut taken = Vec::new();

@@ -2,8 +2,8 @@
 
 use force_feedback::Stop;
 use fuwafuwa::world::TICK;
-use fuwafuwa::{Dim, Event, Manipulator, Vector, World};
-use tamaire_play::{PLAYERS, Round};
+use fuwafuwa::{Event, Manipulator, Vector};
+use tamaire_play::{AnyRound, PLAYERS};
 
 /// A round has begun once it is so old [s]: until then hands are elsewhere.
 const BEGUN: f32 = 0.1;
@@ -21,10 +21,20 @@ pub fn contact(hand: &Manipulator) -> Vector {
     [0, 1, 2].map(mean)
 }
 
+/// What of a force [N] a stick feels: to the right, and away from the player. In space that is along the floor, as seen by a
+/// camera that went around to the right by so much [rad].
+pub fn on_stick([x, y, z]: Vector, turn: Option<f32>) -> [f32; 2] {
+    let Some(turn) = turn else {
+        return [x, y];
+    };
+    let (sin, cos) = turn.sin_cos();
+    [cos * x - sin * z, -sin * x - cos * z]
+}
+
 /// How strongly each player feels what tore in the last tick, 0 to 1: whoever's hand is nearest of those that touch something.
-pub fn tears<D: Dim>(world: &World<D>) -> [f32; PLAYERS] {
+pub fn tears(round: &AnyRound) -> [f32; PLAYERS] {
     let mut counts = [0u32; PLAYERS];
-    for event in world.events() {
+    for event in round.events() {
         let Event::Released { at, .. } = *event else {
             continue;
         };
@@ -32,7 +42,7 @@ pub fn tears<D: Dim>(world: &World<D>) -> [f32; PLAYERS] {
             let square = |axis: usize| (hand.position()[axis] - at[axis]).powi(2);
             square(0) + square(1) + square(2)
         };
-        let hands = world.manipulators().iter().take(PLAYERS).enumerate();
+        let hands = round.hands().iter().take(PLAYERS).enumerate();
         let hands = hands.filter(|(_, hand)| contact(hand) != [0.0; 3]);
         let nearest = hands.min_by(|(_, a), (_, b)| away(a).total_cmp(&away(b)));
         if let Some((player, _)) = nearest {
@@ -46,9 +56,22 @@ pub fn tears<D: Dim>(world: &World<D>) -> [f32; PLAYERS] {
 }
 
 /// Why nobody feels anything in a round that goes on, if so.
-pub fn silence<D: Dim>(round: &Round<D>) -> Option<Stop> {
+pub fn silence(round: &AnyRound) -> Option<Stop> {
     if round.progress().outcome.is_some() {
         return Some(Stop::Won);
     }
-    ((round.world().ticks() as f32) < BEGUN / TICK).then_some(Stop::Reset)
+    ((round.ticks() as f32) < BEGUN / TICK).then_some(Stop::Reset)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stick_feels_what_pushes_along_the_floor_as_the_camera_sees_it() {
+        assert_eq!(on_stick([1.0, 2.0, 3.0], None), [1.0, 2.0]);
+        assert_eq!(on_stick([1.0, 2.0, 3.0], Some(0.0)), [1.0, -3.0]);
+        let [right, away] = on_stick([1.0, 2.0, 3.0], Some(std::f32::consts::FRAC_PI_2));
+        assert!((right + 3.0).abs() < 1e-5 && (away + 1.0).abs() < 1e-5);
+    }
 }

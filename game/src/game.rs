@@ -18,8 +18,8 @@ use fuwafuwa::world::TICK;
 use fuwafuwa_render::frame::ElementColour;
 use std::path::Path;
 use std::sync::Arc;
-use tamaire_play::level::NAMED;
-use tamaire_play::{Level, Outcome, Playback, Replay, ReplayError};
+use tamaire_play::level::{NAMED, NAMED_3D};
+use tamaire_play::{AnyRound, Level, Outcome, Playback, Replay, ReplayError};
 use tamaire_sound::{Cue, Menu};
 use trial::Trial;
 
@@ -113,6 +113,7 @@ impl Game {
         let open = |(id, _): &(&str, &str)| Level::open(id);
         let levels = NAMED
             .iter()
+            .chain(&NAMED_3D)
             .map(open)
             .map(|level| Arc::new(level.expect("the tests open it")));
         let levels: Vec<Arc<Level>> = levels.collect();
@@ -235,6 +236,7 @@ impl Game {
         self.chosen = known.unwrap_or(self.chosen);
         self.players.start();
         self.effects = Effects::default();
+        self.camera.face_front();
         self.won = None;
         self.cheered = 0.0;
         self.go(Screen::Play);
@@ -269,10 +271,6 @@ impl Game {
     }
 
     fn offer(&mut self, level: Level) {
-        if level.scene().dim != 2 {
-            self.notify(format!("{}: {}", level.id, self.words().only_flat));
-            return;
-        }
         self.levels.retain(|known| known.id != level.id);
         self.levels.push(Arc::new(level));
         self.start(self.levels.len() - 1);
@@ -286,7 +284,7 @@ impl Game {
 
     /// Keeps the round as it was played so far.
     pub fn keep_replay(&mut self) {
-        match self.files.save_replay(&Replay::of(self.session.round())) {
+        match self.files.save_replay(&self.session.round().replay()) {
             Ok(path) => self.notify(format!("{} {}", self.words().saved, path.display())),
             Err(error) => self.report(Err(error)),
         }
@@ -336,6 +334,12 @@ impl Game {
             (Screen::Play, Action::Join) if self.takes_two() => self.players.join(seat),
             _ => {}
         }
+    }
+
+    /// In space by how much the camera went around to the right [rad].
+    pub fn turn(&self) -> Option<f32> {
+        let is_space = matches!(self.session.round(), AnyRound::Space(_));
+        is_space.then(|| self.camera.turn())
     }
 
     /// Whether a second player can come in.

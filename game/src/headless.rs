@@ -9,7 +9,6 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use film::Film;
 use force_log::ForceLog;
-use fuwafuwa::Dim2;
 use fuwafuwa_painter::PaintError;
 use report::{Refusal, Report};
 use std::io::{self, Write};
@@ -18,7 +17,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use tamaire_play::level::{LevelError, NAMED};
-use tamaire_play::{Bot, BotKind, Level, Playback, Replay, ReplayError, Round};
+use tamaire_play::{AnyRound, Bot, BotKind, Level, Playback, Replay, ReplayError};
 
 /// Exit status when a replay is refused.
 const REFUSED: u8 = 1;
@@ -80,8 +79,6 @@ impl Options {
 enum Trouble {
     #[error(transparent)]
     Level(#[from] LevelError),
-    #[error("{0}: this level is in space (dim = 3); tamaire plays in the plane (dim = 2)")]
-    Space(String),
     #[error("{}: {reason}", path.display())]
     Replay { path: PathBuf, reason: ReplayError },
     #[error("{}: {reason}", path.display())]
@@ -92,7 +89,7 @@ enum Trouble {
 
 /// A round that was played, and how long each tick took.
 struct Played {
-    round: Round<Dim2>,
+    round: AnyRound,
     times: Vec<Duration>,
 }
 
@@ -141,7 +138,7 @@ pub fn list() {
 
 /// Lets a bot play.
 fn try_bot(options: &Options) -> Result<String, Trouble> {
-    let level = plane(Level::open(&options.level)?)?;
+    let level = Arc::new(Level::open(&options.level)?);
     for path in options.film.iter().chain(&options.save) {
         can_be_written(path)?;
     }
@@ -151,7 +148,7 @@ fn try_bot(options: &Options) -> Result<String, Trouble> {
     let most = (options.seconds * RATE) as u64;
     let played = of_bot(level, Bot::new(*kind, options.seed), most, &mut log);
     if let Some(path) = &options.save {
-        write(path, Replay::of(&played.round).text().as_bytes())?;
+        write(path, played.round.replay().text().as_bytes())?;
     }
     let by = report::Player::Bot {
         bot: options.bot.clone(),
@@ -177,7 +174,6 @@ fn check(path: &Path, options: &Options) -> Result<String, Trouble> {
         reason,
     };
     let replay = Files::replay(path).map_err(refused)?;
-    plane(replay.level().map_err(refused)?)?;
     let mut log = force_log(options)?;
     let played = of_replay(Arc::new(replay), &mut log).map_err(refused)?;
     let by = report::Player::Replay {
@@ -201,18 +197,11 @@ fn tell(played: &Played, by: report::Player, options: &Options) -> Result<String
     })
 }
 
-fn plane(level: Level) -> Result<Arc<Level>, Trouble> {
-    match level.scene().dim {
-        2 => Ok(Arc::new(level)),
-        _ => Err(Trouble::Space(level.id)),
-    }
-}
-
 fn of_bot(level: Arc<Level>, mut bot: Bot, most_ticks: u64, log: &mut Option<ForceLog>) -> Played {
-    let mut round = Round::new(level);
+    let mut round = AnyRound::new(level);
     let mut times = Vec::new();
-    while round.progress().outcome.is_none() && round.world().ticks() < most_ticks {
-        let frame = bot.frame(&round);
+    while round.progress().outcome.is_none() && round.ticks() < most_ticks {
+        let frame = round.ask(&mut bot);
         let start = Instant::now();
         round.step(frame);
         times.push(start.elapsed());

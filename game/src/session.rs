@@ -1,9 +1,8 @@
 //! A round in time: played by people, tried by a bot, or watched again.
 
-use fuwafuwa::Dim2;
 use fuwafuwa::world::TICK;
 use std::sync::Arc;
-use tamaire_play::{InputFrame, Level, Playback, Replay, ReplayError, Round};
+use tamaire_play::{AnyRound, InputFrame, Level, Playback, Replay, ReplayError};
 
 /// After a long frame no more ticks than this are caught up on; the rest of the time is dropped.
 const MOST_TICKS: u32 = 4;
@@ -12,7 +11,7 @@ const MOST_TICKS: u32 = 4;
 pub struct Session {
     player: Player,
     /// The same level as somebody played it before, to race against.
-    ghost: Option<Playback<Dim2>>,
+    ghost: Option<Playback>,
     /// Time that has passed and was not played yet [s].
     owed: f32,
     /// Why a replay or a ghost was stopped.
@@ -22,14 +21,14 @@ pub struct Session {
 /// Who plays.
 enum Player {
     /// Whoever holds the devices.
-    People(Round<Dim2>),
-    Replay(Playback<Dim2>),
+    People(AnyRound),
+    Replay(Playback),
 }
 
 impl Session {
     /// A new round for people.
     pub fn of_people(level: Arc<Level>) -> Self {
-        Self::of(Player::People(Round::new(level)))
+        Self::of(Player::People(AnyRound::new(level)))
     }
 
     /// A round as it was played.
@@ -51,7 +50,7 @@ impl Session {
     }
 
     /// The same against somebody who played the level before.
-    pub fn against(mut self, ghost: Playback<Dim2>) -> Self {
+    pub fn against(mut self, ghost: Playback) -> Self {
         self.ghost = Some(ghost);
         self
     }
@@ -67,7 +66,7 @@ impl Session {
     }
 
     /// The round as it is now.
-    pub fn round(&self) -> &Round<Dim2> {
+    pub fn round(&self) -> &AnyRound {
         match &self.player {
             Player::People(round) => round,
             Player::Replay(playback) => playback.round(),
@@ -75,7 +74,7 @@ impl Session {
     }
 
     /// The round that is raced against.
-    pub fn ghost(&self) -> Option<&Round<Dim2>> {
+    pub fn ghost(&self) -> Option<&AnyRound> {
         self.ghost.as_ref().map(Playback::round)
     }
 
@@ -102,8 +101,8 @@ impl Session {
     pub fn advance(
         &mut self,
         seconds: f32,
-        mut wish: impl FnMut(&Round<Dim2>) -> InputFrame,
-        mut seen: impl FnMut(&Round<Dim2>),
+        mut wish: impl FnMut(&AnyRound) -> InputFrame,
+        mut seen: impl FnMut(&AnyRound),
     ) {
         self.owed += seconds;
         let mut ticks = 0;
@@ -119,7 +118,7 @@ impl Session {
         }
     }
 
-    fn tick(&mut self, wish: &mut impl FnMut(&Round<Dim2>) -> InputFrame) {
+    fn tick(&mut self, wish: &mut impl FnMut(&AnyRound) -> InputFrame) {
         match &mut self.player {
             Player::People(round) => {
                 let frame = wish(round);

@@ -203,7 +203,7 @@ fn it_ends_with_a_win() {
         pushed |= table.told(0).is_some_and(|output| !output.is_zero());
         let round = table.game.session.round();
         let [low, high] = round.level().arena();
-        let goal = bot.frame(round).goal(0).expect("it plays");
+        let goal = round.ask(&mut bot).goal(0).expect("it plays");
         let [x, y] = [0, 1].map(|axis| {
             let middle = 0.5 * (low[axis] + high[axis]);
             (goal[axis] - middle) / (0.5 * (high[axis] - low[axis]))
@@ -324,13 +324,13 @@ fn a_pad_that_is_put_down_hums_no_more_though_its_hand_presses() {
     let mut hummed = false;
     table.until("pushed", |table| {
         hummed |= table.told(0).is_some_and(|output| !output.is_zero());
-        table.game.session.round().world().ticks() > 150
+        table.game.session.round().ticks() > 150
     });
     assert!(hummed);
     table.lean(0, 0.0);
     table.until("left alone", |table| table.silent(0) == Some(Stop::Idle));
     table.until_at_rest();
-    let hand = &table.game.session.round().world().manipulators()[0];
+    let hand = &table.game.session.round().hands()[0];
     let [x, y, _] = tamaire::felt::contact(hand);
     assert!(x.hypot(y) > 10.0, "{x} {y}");
     table.hears_nothing(0);
@@ -345,7 +345,7 @@ fn a_pad_hums_when_it_pushes_and_rattles_when_it_tears() {
     let (mut hummed, mut rattled) = (false, false);
     table.until("torn", |table| {
         // To and fro, as hard as it goes.
-        let to_and_fro = table.game.session.round().world().ticks() / 20 % 3;
+        let to_and_fro = table.game.session.round().ticks() / 20 % 3;
         table.lean(0, if to_and_fro == 2 { -1.0 } else { 1.0 });
         for played in table.notes[0].take() {
             let Output::Rumble { low, high } = played.output else {

@@ -135,14 +135,32 @@ impl<D: Dim> Body<D> {
     /// All bare faces, by element.
     pub fn facets(&self) -> impl Iterator<Item = Facet> + '_ {
         self.mesh.elements().flat_map(move |(id, element)| {
-            let bare = match element.cell.level {
-                0 => self.bare[id as usize],
-                _ => 0,
-            };
+            let bare = self.bare_faces(id);
             (0..2 * D::N)
                 .filter(move |face| bare >> face & 1 == 1)
-                .map(move |face| self.facet(id, element, face / 2, face % 2))
+                .map(move |face| self.facet(id, element, face))
         })
+    }
+
+    /// Which faces of an element are bare, as a mask: bit 2 · axis + side. Only elements of level 0
+    /// have any. Who remembers this and the nodes of each element knows what a crack changed.
+    ///
+    /// # Panics
+    /// When the id was never used.
+    pub fn bare_faces(&self, element: u32) -> u8 {
+        match self.bare[element as usize] {
+            0 => 0,
+            bare => match self.mesh.element(element) {
+                Some(alive) if alive.cell.level == 0 => bare,
+                _ => 0,
+            },
+        }
+    }
+
+    /// Where all nodes are [m], by id, each with a 0 behind its coordinates; anything for ids that
+    /// are free.
+    pub fn positions(&self) -> &[[f32; 4]] {
+        &self.position
     }
 
     /// The closed lines around all pieces of a body in the plane; nothing in space.
@@ -181,7 +199,18 @@ impl<D: Dim> Body<D> {
 
     /// All elements, to be looked at.
     pub fn element_views(&self) -> impl Iterator<Item = ElementView> + '_ {
-        self.mesh.elements().map(|(id, element)| ElementView {
+        self.mesh
+            .elements()
+            .map(|(id, element)| self.view_of(id, element))
+    }
+
+    /// An element, to be looked at, if it is alive.
+    pub fn element_view(&self, id: u32) -> Option<ElementView> {
+        Some(self.view_of(id, self.mesh.element(id)?))
+    }
+
+    fn view_of(&self, id: u32, element: &Element) -> ElementView {
+        ElementView {
             id,
             level: element.cell.level,
             piece: self.pieces.of_element(id),
@@ -189,7 +218,7 @@ impl<D: Dim> Body<D> {
             children: element.children,
             strain: self.strain(id, element),
             slots: self.slot_positions(element),
-        })
+        }
     }
 
     /// ‖F − R‖ of an element: 0.1 is a stretch by a tenth.
@@ -265,32 +294,13 @@ impl<D: Dim> Body<D> {
         places.map(|place| place.unwrap_or(centre))
     }
 
-    fn facet(&self, id: u32, element: &Element, axis: usize, side: usize) -> Facet {
-        let ring: &[usize] = match D::N {
-            2 => &[0, 1],
-            _ => &[0, 1, 3, 2],
-        };
-        // The other axes, in an order that makes the ring turn around the outward normal.
-        let others = match D::N {
-            2 => [1 - axis, 2],
-            _ => [(axis + 1) % 3, (axis + 2) % 3],
-        };
-        let forwards = match D::N {
-            2 => (side == 1) == (axis == 0),
-            _ => side == 1,
-        };
+    fn facet(&self, id: u32, element: &Element, face: usize) -> Facet {
+        let ring = face_corners::<D>(face);
         let mut nodes = [u32::MAX; 4];
         let mut corners = [[0.0; 3]; 4];
-        for (place, &step) in ring.iter().enumerate() {
-            let place = if forwards {
-                place
-            } else {
-                ring.len() - 1 - place
-            };
-            let vertex = side << axis | (step & 1) << others[0] | (step >> 1) << others[1];
-            let node = element.nodes[vertex];
-            nodes[place] = node;
-            corners[place] = three(self.position[node as usize]);
+        for place in 0..D::CORNERS / 2 {
+            nodes[place] = element.nodes[ring[place]];
+            corners[place] = three(self.position[nodes[place] as usize]);
         }
         let normal = match D::N {
             2 => {
@@ -300,7 +310,7 @@ impl<D: Dim> Body<D> {
             _ => cross(minus(corners[2], corners[0]), minus(corners[3], corners[1])),
         };
         let mut beyond = element.cell.at;
-        beyond[axis] += 2 * side as i32 - 1;
+        beyond[face / 2] += 2 * (face % 2) as i32 - 1;
         Facet {
             nodes,
             corners,
@@ -323,6 +333,35 @@ impl ElementView {
         let place = |vertex: usize| self.slots[slot_index(at(vertex))];
         (0..D::CORNERS).map(place).collect()
     }
+}
+
+/// The corners of a cell around its face 2 · axis + side, in the order of [`Facet::nodes`]; the last
+/// two say nothing in 2D.
+pub fn face_corners<D: Dim>(face: usize) -> [usize; 4] {
+    let (axis, side) = (face / 2, face % 2);
+    let ring: &[usize] = match D::N {
+        2 => &[0, 1],
+        _ => &[0, 1, 3, 2],
+    };
+    // The other axes, in an order that makes the ring turn around the outward normal.
+    let others = match D::N {
+        2 => [1 - axis, 2],
+        _ => [(axis + 1) % 3, (axis + 2) % 3],
+    };
+    let forwards = match D::N {
+        2 => (side == 1) == (axis == 0),
+        _ => side == 1,
+    };
+    let mut corners = [0; 4];
+    for (place, &step) in ring.iter().enumerate() {
+        let place = if forwards {
+            place
+        } else {
+            ring.len() - 1 - place
+        };
+        corners[place] = side << axis | (step & 1) << others[0] | (step >> 1) << others[1];
+    }
+    corners
 }
 
 fn unit(v: Vector) -> Vector {

@@ -19,8 +19,11 @@ use std::fmt;
 
 /// Length of a tick [s].
 pub const TICK: f32 = 1.0 / 60.0;
-/// Substeps in a tick at the least: a force-feedback stick wants its force 960 times a second.
-pub const LEAST_SUBSTEPS: u32 = 16;
+/// Substeps in a tick at the least, where the settings allow as many: a force-feedback stick wants its
+/// force 960 times a second.
+pub const USUAL_SUBSTEPS: u32 = 16;
+/// The settings allow so many at the least: with them a soft ball is squashed as it is with 16.
+pub const FEWEST_SUBSTEPS: u32 = 8;
 /// Cracks are looked for this many times in a tick: 240 times a second.
 const FRACTURE_ROUNDS: u32 = 4;
 /// Swings are damped this many times in a tick: 240 times a second.
@@ -43,8 +46,8 @@ pub struct Settings {
     /// Share of its speed that everything loses to the air in a second [1/s]; 0 to 10. With no
     /// gravity and about 1, bodies float.
     pub drag: f32,
-    /// Substeps in a tick at most, 16 to 1024; 64 if speed matters. A body too stiff for so many is
-    /// softened until it is not, see [`Body::softening`].
+    /// Substeps in a tick at most, 8 to 1024; 64 if speed matters. A body too stiff for so many is
+    /// softened until it is not, see [`Body::softening`]. Fewer than 16 make large soft bodies cheap.
     pub most_substeps: u32,
 }
 
@@ -126,7 +129,7 @@ impl<D: Dim> World<D> {
     /// # Errors
     /// [`Refused::Setting`] when a setting is out of range.
     pub fn new(settings: Settings) -> Result<Self, Refused> {
-        let range = LEAST_SUBSTEPS..=1024;
+        let range = FEWEST_SUBSTEPS..=1024;
         let checks = [
             (
                 "gravity",
@@ -136,7 +139,7 @@ impl<D: Dim> World<D> {
             ("drag", "0 to 10", (0.0..=10.0).contains(&settings.drag)),
             (
                 "most_substeps",
-                "16 to 1024",
+                "8 to 1024",
                 range.contains(&settings.most_substeps),
             ),
         ];
@@ -187,12 +190,13 @@ impl<D: Dim> World<D> {
         report
     }
 
-    /// Substeps that the stiffest body asks for: at least 16, at most what the settings allow.
+    /// Substeps that the stiffest body asks for: at least 16 and at most what the settings allow.
     pub fn substeps(&self) -> u32 {
         let longest = self.bodies.iter().map(Body::longest_substep);
         let longest = longest.fold(f64::INFINITY, f64::min);
         let asked = (f64::from(TICK) / longest - 1e-6).ceil() as u32;
-        asked.clamp(LEAST_SUBSTEPS, self.settings.most_substeps)
+        let most = self.settings.most_substeps;
+        asked.clamp(USUAL_SUBSTEPS.min(most), most)
     }
 
     fn start_tick(&mut self) {

@@ -87,6 +87,47 @@ fn a_blade_cuts_in_two() {
 }
 
 #[test]
+fn what_a_cut_changed_is_told_by_bare_faces_and_nodes() {
+    let mut world = World::<Dim3>::new(WEIGHTLESS).unwrap();
+    world.add_body(ball(16, unbreakable()));
+    let forms = |world: &World<Dim3>| -> Vec<(u8, Vec<u32>)> {
+        let body = &world.bodies()[0];
+        let form = |id| {
+            let nodes = body.mesh().element(id).map(|element| element.nodes.clone());
+            (body.bare_faces(id), nodes.unwrap_or_default())
+        };
+        (0..body.mesh().element_capacity() as u32)
+            .map(form)
+            .collect()
+    };
+    let before = forms(&world);
+    let (from, across, along) = ([0.5, -0.2, -0.2], [0.0, 0.4, 0.0], [0.0, 0.0, 1.4]);
+    world.cut(
+        0,
+        &Blade {
+            from,
+            across,
+            along,
+        },
+    );
+    let (after, body) = (forms(&world), &world.bodies()[0]);
+    let told: u32 = after.iter().map(|(bare, _)| bare.count_ones()).sum();
+    assert_eq!(told as usize, body.facets().count());
+    for facet in body.facets() {
+        for (node, corner) in facet.nodes.iter().zip(facet.corners) {
+            assert_eq!(body.positions()[*node as usize][..3], corner);
+        }
+        let (old, new) = (
+            before.get(facet.element as usize),
+            &after[facet.element as usize],
+        );
+        let is_far = facet.corners[0][1] > 0.6;
+        assert!(!is_far || old == Some(new), "{facet:?}");
+        assert!(!facet.is_fresh || old != Some(new), "{facet:?}");
+    }
+}
+
+#[test]
 fn a_short_blade_leaves_a_slit() {
     let mut world = World::<Dim2>::new(WEIGHTLESS).unwrap();
     world.add_body(ball(24, unbreakable()));
@@ -314,4 +355,35 @@ fn check_smooth_reaction<D: Dim>(n: usize) {
 fn what_a_hand_feels_is_smooth() {
     check_smooth_reaction::<Dim2>(24);
     check_smooth_reaction::<Dim3>(12);
+}
+
+#[test]
+fn eight_substeps_squash_a_soft_ball_as_sixteen_do() {
+    let [eight, sixteen] = [8, 16].map(|most_substeps| {
+        let mut world = World::<Dim3>::new(Settings {
+            gravity: [0.0, -3.0, 0.0],
+            drag: 0.5,
+            most_substeps,
+        })
+        .unwrap();
+        let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+        world.add_obstacle(floor, 0.4).unwrap();
+        world.add_body(ball::<Dim3>(16, unbreakable()));
+        let hand = Manipulator::new([0.5, 1.2, 0.5], 0.2);
+        world.add_manipulator(hand).unwrap();
+        let mut lowest = 0.0_f32;
+        for tick in 0..90 {
+            let height = 1.2 - 0.01 * tick.min(60) as f32;
+            world.set_goal(0, [0.5, height, 0.5]);
+            assert_eq!(world.step().substeps, most_substeps);
+            lowest = lowest.min(world.bodies()[0].piece_views()[0].low[1]);
+        }
+        assert_eq!(world.bodies()[0].softening(), 1.0);
+        (world.manipulators()[0].position()[1], lowest)
+    });
+    assert!(
+        (eight.0 - sixteen.0).abs() < 0.002,
+        "the hand is stopped alike"
+    );
+    assert!(eight.1 > -0.006, "a tenth of a voxel into the floor");
 }

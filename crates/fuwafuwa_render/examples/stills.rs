@@ -99,7 +99,7 @@ fn crumbs(world: &World<Dim2>) -> Vec<Particle> {
     let around = (0..12).map(|k| {
         let angle = k as f32 * 2.4;
         let reach = anchor.scale * (1.15 + 0.02 * k as f32);
-        let [x, y] = anchor.position;
+        let [x, y, _] = anchor.position;
         Particle {
             at: [x + reach * angle.cos(), y + reach * angle.sin(), 0.0],
             radius: 0.006 + 0.001 * k as f32,

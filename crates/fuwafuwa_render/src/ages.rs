@@ -1,7 +1,7 @@
 //! How long ago each element was remodelled.
 
 use fuwafuwa::mesh::Element;
-use fuwafuwa::{Dim2, World};
+use fuwafuwa::{Dim, World};
 
 /// What an element is, as far as remodelling changes it.
 type Form = ([i32; 3], u8, u8);
@@ -16,7 +16,7 @@ pub struct Ages {
 
 impl Ages {
     /// Looks at a world `duration` [s] after it did last. At the first look all elements are old.
-    pub fn follow(&mut self, world: &World<Dim2>, duration: f32) {
+    pub fn follow<D: Dim>(&mut self, world: &World<D>, duration: f32) {
         let bodies = world.bodies();
         self.forms.truncate(bodies.len());
         self.seconds.truncate(bodies.len());
@@ -53,7 +53,7 @@ fn form(element: &Element) -> Form {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::{Blade, Body, Material, Settings, VoxelGrid};
+    use fuwafuwa::{Blade, Body, Dim2, Material, Settings, VoxelGrid};
 
     #[test]
     fn what_a_cut_remodels_is_young_and_grows_old() {

@@ -1,26 +1,27 @@
 //! A frame that follows a body, for a face to be painted in.
 
-use crate::plane::{Flat, flat, minus, plus, scaled};
-use fuwafuwa::{Body, Dim2};
+use crate::plane::{Flat, flat};
+use fuwafuwa::vector::{minus, plus, scaled};
+use fuwafuwa::{Body, Dim, Vector};
 
 /// A frame that follows the largest piece of a body.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Anchor {
     /// Its centre of mass [m].
-    pub position: Flat,
-    /// What is to the right in the body at rest, now; of length 1.
+    pub position: Vector,
+    /// What is to the right in the body at rest, now, as seen along z; of length 1.
     pub right: Flat,
     /// What is up in the body at rest, now; of length 1 and square to `right`.
     pub up: Flat,
-    /// Radius of a disc of its area at rest [m].
+    /// Radius of a disc of its area at rest, in space of a ball of its volume [m].
     pub scale: f32,
 }
 
 /// The frame of the largest piece of a body: it moves and turns with it, and does not shear.
 ///
 /// The turn is the one that leaves the least of the motion unexplained: the rotation part of
-/// Σ m (x − x̄)(r − r̄)ᵀ over its nodes, x where they are and r where they were at rest.
-pub fn anchor(body: &Body<Dim2>) -> Anchor {
+/// Σ m (x − x̄)(r − r̄)ᵀ over its nodes, x where they are and r where they were at rest; in space the one around z.
+pub fn anchor<D: Dim>(body: &Body<D>) -> Anchor {
     let (mesh, pieces) = (body.mesh(), body.pieces());
     let mut masses = vec![0.0f32; pieces.list.len()];
     for (id, _) in mesh.nodes() {
@@ -34,10 +35,10 @@ pub fn anchor(body: &Body<Dim2>) -> Anchor {
             .filter(|&(id, _)| pieces.of_node(id) as usize == largest);
         own.map(|(id, node)| {
             let (at, _, mass) = body.node_state(id);
-            (flat(at), [node.at[0] as f32, node.at[1] as f32], mass)
+            (at, node.at.map(|k| k as f32), mass)
         })
     };
-    let (mut position, mut origin) = ([0.0; 2], [0.0; 2]);
+    let (mut position, mut origin) = ([0.0; 3], [0.0; 3]);
     for (at, rest, mass) in states() {
         let share = mass / masses[largest];
         position = plus(position, scaled(at, share));
@@ -45,7 +46,7 @@ pub fn anchor(body: &Body<Dim2>) -> Anchor {
     }
     let (mut cos, mut sin) = (0.0, 0.0);
     for (at, rest, mass) in states() {
-        let (x, r) = (minus(at, position), minus(rest, origin));
+        let (x, r) = (flat(minus(at, position)), flat(minus(rest, origin)));
         cos += mass * (x[0] * r[0] + x[1] * r[1]);
         sin += mass * (x[1] * r[0] - x[0] * r[1]);
     }
@@ -60,14 +61,18 @@ pub fn anchor(body: &Body<Dim2>) -> Anchor {
         position,
         right,
         up: [-right[1], right[0]],
-        scale: body.grid().voxel_size() * (voxels / std::f32::consts::PI).sqrt(),
+        scale: body.grid().voxel_size()
+            * match D::N {
+                2 => (voxels / std::f32::consts::PI).sqrt(),
+                _ => (0.75 * voxels / std::f32::consts::PI).cbrt(),
+            },
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::{Blade, Material, Settings, VoxelGrid, World};
+    use fuwafuwa::{Blade, Dim2, Material, Settings, VoxelGrid, World};
 
     #[test]
     fn it_turns_with_the_largest_piece_and_ignores_its_squash() {

@@ -2,7 +2,7 @@
 
 use crate::frame::ElementColour;
 use crate::plane::{Flat, flat, minus, plus, scaled, unit};
-use crate::theme::{Theme, bytes, mix};
+use crate::theme::{Colour, Theme, bytes, mix};
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::dim::{add, corner, scale};
 use fuwafuwa::stencil::slot_index;
@@ -71,13 +71,7 @@ impl ElementMesh {
     ) {
         let views: Vec<ElementView> = body.element_views().collect();
         for view in &views {
-            let plain = match colour {
-                ElementColour::Level => theme.level(view.level),
-                ElementColour::Strain => theme.strain(view.strain),
-            };
-            let age = ages.get(view.id as usize).copied().unwrap_or(FLASH);
-            let flash = 0.65 * (1.0 - age / FLASH).clamp(0.0, 1.0);
-            self.add_fill(view, bytes(mix(plain, [1.0; 3], flash), 1.0));
+            self.add_fill(view, bytes(colour_of(view, theme, colour, ages), 1.0));
         }
         for view in &views {
             // The larger an element, the bolder: levels can be told apart without colours.
@@ -149,6 +143,17 @@ impl ElementMesh {
         }
         self.indices.extend([0, 1, 2, 0, 2, 3].map(|k| first + k));
     }
+}
+
+/// The colour of an element; for a moment after it was remodelled it flashes.
+pub fn colour_of(view: &ElementView, theme: &Theme, colour: ElementColour, ages: &[f32]) -> Colour {
+    let plain = match colour {
+        ElementColour::Level => theme.level(view.level),
+        ElementColour::Strain => theme.strain(view.strain),
+    };
+    let age = ages.get(view.id as usize).copied().unwrap_or(FLASH);
+    let flash = 0.65 * (1.0 - age / FLASH).clamp(0.0, 1.0);
+    mix(plain, [1.0; 3], flash)
 }
 
 /// The quads that an element fills [m], anticlockwise.

@@ -4,11 +4,11 @@ use crate::plane::{Flat, dot, flat, minus, plus, scaled};
 use crate::theme::Theme;
 use fuwafuwa::{Shape, Vector};
 
-/// Everything that a picture needs beside the world.
+/// Everything that a picture needs beside the world; for one in space, a camera in space.
 #[derive(Clone, Debug)]
-pub struct Frame<'a> {
+pub struct Frame<'a, C = Camera> {
     /// From where.
-    pub camera: Camera,
+    pub camera: C,
     /// In which colours.
     pub theme: &'a Theme,
     /// The skin, or what is inside.
@@ -46,7 +46,7 @@ pub enum Look<'a> {
         /// How long ago each element was remodelled [s], by body and element id: the young ones
         /// flash. [`crate::Ages`] keeps count. What is not listed is old.
         ages: &'a [Vec<f32>],
-        /// Whether nodes are dots.
+        /// Whether nodes are dots; in space they never are.
         nodes: bool,
     },
 }

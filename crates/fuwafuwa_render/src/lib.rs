@@ -9,6 +9,9 @@
 //! `geometry` all of them → `gpu` draws them. [`anchor`] and [`ages`] answer questions of those
 //! who paint on top.
 //!
+//! [`space`] is the same for worlds in space; it shares the themes, frames, buffers and stages, and has
+//! a camera, a skin and a renderer of its own, for a surface is no outline.
+//!
 //! It needs no more than WebGL2 has: [`wgpu::Limits::downlevel_webgl2_defaults`].
 #![deny(unsafe_code)]
 #![warn(missing_docs)]
@@ -25,6 +28,7 @@ mod rest;
 mod rigid;
 mod rings;
 mod skin;
+pub mod space;
 pub mod theme;
 
 pub use ages::Ages;

@@ -127,7 +127,8 @@ pub(crate) fn bytes(colour: Colour, alpha: f32) -> [u8; 4] {
     [red, green, blue, byte(alpha)]
 }
 
-fn among(colours: &[Colour], place: usize) -> Colour {
+/// One of some colours, which start over after the last.
+pub(crate) fn among(colours: &[Colour], place: usize) -> Colour {
     let some = colours.get(place % colours.len().max(1));
     some.copied().unwrap_or([0.5; 3])
 }

@@ -1,11 +1,14 @@
 //! Pictures, as any device draws them, Mesa's llvmpipe too. Without a device these tests say so and
 //! pass, unless the environment says CI=1.
 
+mod shared;
+
 use fuwafuwa::{
     Blade, Body, Dim, Dim2, Grading, Law, Manipulator, Material, Settings, Shape, VoxelGrid, World,
 };
 use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_render::{Basket, Camera, Colour, Frame, Look, Particle, Renderer, Theme};
+use shared::{device, device_with, difference, is_warm};
 use std::sync::LazyLock;
 use wgpu::TextureFormat;
 
@@ -16,30 +19,6 @@ static THEME: LazyLock<Theme> = LazyLock::new(Theme::candy);
 struct Picture {
     camera: Camera,
     pixels: Vec<u8>,
-}
-
-/// A device with what WebGL2 has and nothing more; none where there is no adapter.
-fn device() -> Option<(wgpu::Device, wgpu::Queue)> {
-    device_with(wgpu::Limits::downlevel_webgl2_defaults())
-}
-
-fn device_with(required_limits: wgpu::Limits) -> Option<(wgpu::Device, wgpu::Queue)> {
-    let instance = wgpu::Instance::default();
-    let adapter = pollster::block_on(instance.request_adapter(&Default::default()));
-    let Ok(adapter) = adapter else {
-        let is_ci = std::env::var("CI").is_ok_and(|value| value == "1" || value == "true");
-        assert!(
-            !is_ci,
-            "no graphics adapter; mesa-vulkan-drivers brings one"
-        );
-        eprintln!("skipped: no graphics adapter; mesa-vulkan-drivers brings one");
-        return None;
-    };
-    let descriptor = wgpu::DeviceDescriptor {
-        required_limits,
-        ..Default::default()
-    };
-    Some(pollster::block_on(adapter.request_device(&descriptor)).expect("a modest device"))
 }
 
 fn frame(camera: Camera, theme: &Theme) -> Frame<'_> {
@@ -110,14 +89,6 @@ fn disc() -> World<Dim2> {
     let grid = VoxelGrid::ball(64, 1.0).unwrap();
     world.add_body(Body::new(grid, &[Material::default()]).unwrap());
     world
-}
-
-fn is_warm([red, green, blue]: Colour) -> bool {
-    red > green + 0.15 && red > blue + 0.15
-}
-
-fn difference(a: Colour, b: Colour) -> f32 {
-    (0..3).map(|k| (a[k] - b[k]).abs()).fold(0.0, f32::max)
 }
 
 #[test]

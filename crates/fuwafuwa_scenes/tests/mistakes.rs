@@ -111,7 +111,7 @@ fn a_mistake_is_told_with_file_line_field_and_what_was_expected() {
         (
             "dim = 2",
             "dim = 2\nmost_substeps = 4",
-            ", line 2: most_substeps: expected 16 to 1024, found 4",
+            ", line 2: most_substeps: expected 8 to 1024, found 4",
         ),
         (
             "dim = 2",

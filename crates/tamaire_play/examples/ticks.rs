@@ -1,10 +1,10 @@
 //! What the ticks of a level cost, engine and rules apart.
 //!
-//! `cargo run --release -p tamaire_play --example ticks -- [LEVEL [SEEDS]]` lets two bots play for 40 s
+//! `cargo run --release -p tamaire_play --example ticks -- [LEVEL [SEEDS]]` lets three bots play for 40 s
 //! at most by the seeds 1 to SEEDS, each round three times, and prints milliseconds. A round is the
 //! same every time: the least of three times of a tick is what it costs, the rest is the machine.
 
-use fuwafuwa::{Dim2, StepReport, World};
+use fuwafuwa::{Dim, Dim2, Dim3, StepReport, World};
 use std::sync::Arc;
 use std::time::Instant;
 use tamaire_play::{Bot, BotKind, Level, Round};
@@ -24,15 +24,28 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let name = arguments.next().unwrap_or("classic".into());
     let seeds: u64 = arguments.next().map_or(Ok(5), |seeds| seeds.parse())?;
     let level = Arc::new(Level::open(&name)?);
+    match level.scene().dim {
+        2 => measure::<Dim2>(&level, seeds),
+        _ => measure::<Dim3>(&level, seeds),
+    }
+    Ok(())
+}
+
+fn measure<D: Dim>(level: &Arc<Level>, seeds: u64) {
     println!(
         "{:>12} {:>5} {:>6} | {:>6} {:>6} {:>6} | {:>6} {:>6} | worst tick",
         "bot, seed", "ticks", "pieces", "median", "99 %", "worst", "rules", "worst"
     );
-    for (bot, kind) in [("shave", BotKind::Shave), ("random", BotKind::Random)] {
+    let bots = [
+        ("squeeze", BotKind::Squeeze),
+        ("shave", BotKind::Shave),
+        ("random", BotKind::Random),
+    ];
+    for (bot, kind) in bots {
         for seed in 1..=seeds {
-            let (mut ticks, pieces) = play(&level, kind, seed);
+            let (mut ticks, pieces) = play::<D>(level, kind, seed);
             for _ in 1..RUNS {
-                let (again, _) = play(&level, kind, seed);
+                let (again, _) = play::<D>(level, kind, seed);
                 for (tick, again) in ticks.iter_mut().zip(again) {
                     assert_eq!(tick.report, again.report, "rounds repeat");
                     tick.engine = tick.engine.min(again.engine);
@@ -51,13 +64,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             );
         }
     }
-    Ok(())
 }
 
 /// A round, and in how many pieces it ends. A world of its own goes along with the round's: what a
 /// step of the round takes more than that of the world goes to the rules.
-fn play(level: &Arc<Level>, kind: BotKind, seed: u64) -> (Vec<Tick>, usize) {
-    let mut round = Round::<Dim2>::new(level.clone());
+fn play<D: Dim>(level: &Arc<Level>, kind: BotKind, seed: u64) -> (Vec<Tick>, usize) {
+    let mut round = Round::<D>::new(level.clone());
     let mut bot = Bot::new(kind, seed);
     let mut world = round.world().clone();
     let mut ticks = Vec::new();
@@ -79,10 +91,10 @@ fn play(level: &Arc<Level>, kind: BotKind, seed: u64) -> (Vec<Tick>, usize) {
 }
 
 /// Wants what the players of the round wanted in its last tick.
-fn follow(world: &mut World<Dim2>, round: &Round<Dim2>) {
+fn follow<D: Dim>(world: &mut World<D>, round: &Round<D>) {
     let hands = round.world().manipulators();
     for player in world.manipulators().len()..hands.len() {
-        let scene = round.level().scene().build::<Dim2>();
+        let scene = round.level().scene().build::<D>();
         let scene = scene.expect("the level was built once");
         let joins = world.add_manipulator(scene.manipulators()[player].clone());
         joins.expect("it is in the round");

@@ -17,6 +17,9 @@ const GENTLE: f32 = 0.7;
 const CAREFUL: f32 = 0.2;
 /// A bot that gets nowhere for so many ticks looks at another piece.
 const PATIENCE: u32 = 210;
+/// How far off the middle of a piece its strokes pass, in terms of its reach: in the plane, where a hand
+/// cuts off all that it passes, and in space, where it would only plough a furrow so far out.
+const GRAZING: [f32; 2] = [0.75, 0.55];
 /// The shaving bot gathers when the largest piece has this share of what it had.
 const SMALL_ENOUGH: f32 = 0.95;
 /// It presses for so many ticks when enough is in the basket, and lets go.
@@ -110,7 +113,7 @@ impl Bot {
                 None => InputFrame::default(),
             },
             BotKind::Shave => match self.look(round) {
-                Some(sight) => InputFrame::towards(self.shave(&sight)),
+                Some(sight) => InputFrame::towards(self.shave::<D>(&sight)),
                 None => InputFrame::default(),
             },
         }
@@ -175,7 +178,7 @@ impl Bot {
 
     /// Strokes past the middle of the largest piece, now on one side of it, now on the other, until
     /// it is small enough; then gathers what is needed.
-    fn shave(&mut self, sight: &Sight) -> Vector {
+    fn shave<D: Dim>(&mut self, sight: &Sight) -> Vector {
         self.gathers |= sight.share < self.aim;
         // What is stuck in front of the mouth has to be smaller still.
         if self.gathers && self.waited > PATIENCE && !sight.piece.fits {
@@ -184,16 +187,20 @@ impl Bot {
         if self.gathers {
             return self.push(sight);
         }
-        let Sight { axis, piece, .. } = sight;
+        let Sight {
+            axis,
+            across,
+            piece,
+            ..
+        } = sight;
         let reach = piece.reach;
         match self.stroke {
             Stroke::Rest => {
                 self.strokes += 1;
                 let is_even = self.strokes.is_multiple_of(2);
                 let side = if is_even { 1.0 } else { -1.0 };
-                let aside = [-axis[1] * side, axis[0] * side, 0.0];
-                let off = (0.75 + 0.04 * self.temper[1]) * reach;
-                let from = plus(scaled(*axis, -1.15 * reach), scaled(aside, off));
+                let off = (GRAZING[D::N - 2] + 0.04 * self.temper[1]) * reach;
+                let from = plus(scaled(*axis, -1.15 * reach), scaled(*across, side * off));
                 self.stroke = Stroke::Reach(from, 90);
                 sight.hand
             }
@@ -219,7 +226,7 @@ impl Bot {
 
     /// The next goal on the way to a place around what is in the way, at a pace [m/s].
     fn go(&self, sight: &Sight, place: Vector, pace: f32) -> Vector {
-        straight(sight, sight.map.ways_to(place).next(sight.hand), pace)
+        straight(sight, sight.map.next(sight.hand, place), pace)
     }
 }
 

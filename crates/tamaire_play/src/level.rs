@@ -1,7 +1,7 @@
 //! Where a round is played: a scene with a table `[game]`, in a text file that a person can write.
 
 use fuwafuwa::{Dim, Shape, World};
-use fuwafuwa_scenes::scene::{GameText, Scene, SceneError};
+use fuwafuwa_scenes::scene::{BodyText, GameText, Scene, SceneError};
 use std::path::Path;
 
 /// A level, checked: its world can be built.
@@ -39,12 +39,15 @@ pub enum LevelError {
     },
 }
 
-/// Most voxels in the grids of all bodies of a level together, solid or not: eight squares of 64. Even
-/// crumbled or diced into single voxels, they are there within seconds and move, if slowly, and one
-/// buffer of the GPU holds them.
+/// Most voxels in the grids of all bodies of a level together, solid or not: eight squares of 64, or a
+/// ball of 32. Even crumbled or diced into single voxels, they are there within seconds and move, if
+/// slowly, and one buffer of the GPU holds them.
 pub const MAX_VOXELS: usize = 1 << 15;
+/// The same in space where all bodies begin whole, and with large elements inside: a ball of 64. Of
+/// eight times as many voxels it has five times as many elements.
+pub const MAX_WHOLE_VOXELS: usize = 1 << 18;
 
-/// The levels that come along, in the order in which they are offered.
+/// The levels in the plane that come along, in the order in which they are offered.
 pub const NAMED: [(&str, &str); 10] = [
     ("classic", include_str!("../levels/classic.toml")),
     ("gravity", include_str!("../levels/gravity.toml")),
@@ -58,42 +61,62 @@ pub const NAMED: [(&str, &str); 10] = [
     ("sandbox", include_str!("../levels/sandbox.toml")),
 ];
 
-/// Pictures that those levels are made from.
-const FILES: [(&str, &[u8]); 1] = [("cat.png", include_bytes!("../levels/cat.png"))];
+/// Those in space, in the order in which they are offered.
+pub const NAMED_3D: [(&str, &str); 4] = [
+    ("classic-3d", include_str!("../levels/classic-3d.toml")),
+    ("hoop", include_str!("../levels/hoop.toml")),
+    ("pudding", include_str!("../levels/pudding.toml")),
+    ("sandbox-3d", include_str!("../levels/sandbox-3d.toml")),
+];
 
-/// The level that a picture is put into, in place of its body.
-const FRAME: &str = "classic";
+/// Pictures and models that those levels are made from.
+const FILES: [(&str, &[u8]); 2] = [
+    ("cat.png", include_bytes!("../levels/cat.png")),
+    ("pudding.vox", include_bytes!("../levels/pudding.vox")),
+];
+
+/// The levels that a picture and a model are put into, in place of the body.
+const FRAMES: [(&str, &str); 2] = [("png", "classic"), ("vox", "classic-3d")];
 
 impl Level {
-    /// The level of a name, or in a file: a scene with a table `[game]` (.toml), or a picture (.png)
-    /// whose silhouette becomes the body.
+    /// The level of a name, or in a file: a scene with a table `[game]` (.toml), a picture (.png) whose
+    /// silhouette becomes the body, or a model of MagicaVoxel (.vox) that becomes one.
     ///
     /// # Errors
     /// [`LevelError`] says what is wrong, and in which line.
     pub fn open(id: &str) -> Result<Self, LevelError> {
-        if let Some((_, text)) = NAMED.iter().find(|(known, _)| *known == id) {
+        let mut named = NAMED.iter().chain(&NAMED_3D);
+        if let Some((_, text)) = named.find(|(known, _)| *known == id) {
             let mut scene = Scene::read(id, text, &[])?;
             scene.embed_files(&FILES)?;
             return Self::of(id, scene);
         }
         let path = Path::new(id);
         if !path.exists() {
-            let known: Vec<&str> = NAMED.iter().map(|(known, _)| *known).collect();
+            let named = NAMED.iter().chain(&NAMED_3D);
+            let known: Vec<&str> = named.map(|(known, _)| *known).collect();
             let (id, known) = (id.into(), known.join(", "));
             return Err(LevelError::Unknown { id, known });
         }
-        match path.extension().and_then(|ending| ending.to_str()) {
-            Some(ending) if ending.eq_ignore_ascii_case("png") => Self::of_picture(path),
-            _ => Self::of(id, Scene::open(id, &[])?),
+        let ending = path.extension().and_then(|ending| ending.to_str());
+        let ending = ending.unwrap_or_default().to_ascii_lowercase();
+        match FRAMES.iter().find(|(made_from, _)| *made_from == ending) {
+            Some((_, frame)) => Self::framed(frame, path),
+            None => Self::of(id, Scene::open(id, &[])?),
         }
     }
 
-    /// The usual level with a body cut out of a picture.
-    fn of_picture(path: &Path) -> Result<Self, LevelError> {
-        let mut level = Self::open(FRAME)?;
+    /// A usual level with a body that is made from a file.
+    fn framed(frame: &str, path: &Path) -> Result<Self, LevelError> {
+        let mut level = Self::open(frame)?;
         level.id = path.display().to_string();
         if let Some(body) = level.scene.body.first_mut() {
             (body.shape, body.file) = (None, Some(path.into()));
+            if level.scene.dim == 3 {
+                // A model has voxels of its own; whatever their colours are, it is soft.
+                let all = (1..=u8::MAX).map(|index| (index.to_string(), 1));
+                (body.n, body.colours) = (None, all.collect());
+            }
         }
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         level.game.name.en = name.chars().take(60).collect();
@@ -175,7 +198,12 @@ impl Level {
 }
 
 fn check<D: Dim>(scene: &Scene) -> Result<(), SceneError> {
-    scene.build_within::<D>(MAX_VOXELS)?;
+    let is_fine = |body: &BodyText| body.crumbled || body.diced.is_some() || body.uniform;
+    let most = match D::N == 3 && !scene.body.iter().any(is_fine) {
+        true => MAX_WHOLE_VOXELS,
+        false => MAX_VOXELS,
+    };
+    scene.build_within::<D>(most)?;
     scene.basket::<D>().map(|_| ())
 }
 
@@ -185,20 +213,43 @@ mod tests {
 
     #[test]
     fn all_that_come_along_can_be_opened() {
-        for (id, _) in NAMED {
+        for (id, _) in NAMED.iter().chain(&NAMED_3D) {
             assert!(Level::open(id).is_ok(), "{id}");
         }
     }
 
+    /// What is said of a level with changes.
+    fn refusal(id: &str, text: &str, changes: &[&str]) -> Option<String> {
+        let changes: Vec<String> = changes.iter().map(|change| change.to_string()).collect();
+        let scene = Scene::read(id, text, &changes).unwrap();
+        Level::of(id, scene).err().map(|error| error.to_string())
+    }
+
     #[test]
     fn a_level_has_no_more_voxels_than_the_game_can_move() {
-        let (id, text) = NAMED[0];
-        let changes = ["body.n=182".to_string()];
-        let scene = Scene::read(id, text, &changes).unwrap();
-        let error = Level::of(id, scene).unwrap_err().to_string();
-        assert!(
-            error.contains("body 1, n: expected 32768 voxels at most"),
-            "{error}"
-        );
+        let [(id, flat), (id_3d, solid)] = [NAMED[0], NAMED_3D[0]];
+        let few = "body 1, n: expected 32768 voxels at most";
+        let many = "body 1, n: expected 262144 voxels at most";
+        for (id, text, changes, expected) in [
+            (id, flat, &["body.n=181"][..], None),
+            (id, flat, &["body.n=182"], Some(few)),
+            (id_3d, solid, &["body.n=64"], None),
+            (id_3d, solid, &["body.n=65"], Some(many)),
+            (
+                id_3d,
+                solid,
+                &["body.n=33", "body.crumbled=true"],
+                Some(few),
+            ),
+            (id_3d, solid, &["body.n=33", "body.diced=0.1"], Some(few)),
+            (id_3d, solid, &["body.n=33", "body.uniform=true"], Some(few)),
+        ] {
+            let found = refusal(id, text, changes);
+            let is_as_expected = match expected {
+                Some(expected) => found.as_ref().is_some_and(|text| text.contains(expected)),
+                None => found.is_none(),
+            };
+            assert!(is_as_expected, "{id}, {changes:?}: {found:?}");
+        }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! The way through, each module using only those above it:
 //! [`input`] what players do in a tick → [`level`] where they do it → [`rules`] what counts as won, and how
-//! → [`round`] one go at a level → [`replay`] the same again → [`bot`] players that are programs.
+//! → [`round`] one go at a level → [`any`] the same, whatever its dimension → [`replay`] the same again → [`bot`] players that are programs.
 //!
 //! A window, a bot and a replay play alike: they hand one [`InputFrame`] a tick to [`Round::step`]
 //! and look at what came of it.
@@ -11,6 +11,7 @@
 #![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
 #![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
 
+pub mod any;
 pub mod bot;
 pub mod input;
 pub mod level;
@@ -18,6 +19,7 @@ pub mod replay;
 pub mod round;
 pub mod rules;
 
+pub use any::AnyRound;
 pub use bot::{Bot, BotKind};
 pub use fuwafuwa_scenes::scene::{RouteText as Route, WishText as Wish, Words};
 pub use input::{InputFrame, PLAYERS};

@@ -2,7 +2,7 @@
 
 use crate::level::LevelError;
 use crate::round::MAX_TICKS;
-use crate::{InputFrame, Level, Outcome, Round};
+use crate::{AnyRound, InputFrame, Level, Outcome, Round};
 use fuwafuwa::Dim;
 use fuwafuwa_scenes::Scene;
 use serde::{Deserialize, Serialize};
@@ -52,14 +52,6 @@ pub enum ReplayError {
     /// Its level is not the one that was played.
     #[error("the level in this replay was changed")]
     LevelChanged,
-    /// Its level has another dimension than what is to play it.
-    #[error("this replay is of a level with dim = {found}, expected {expected}")]
-    Dimension {
-        /// Its dimension.
-        found: u8,
-        /// The dimension that can be played here.
-        expected: usize,
-    },
     /// It does not lead to what it says.
     #[error("this replay was changed: it goes another way at second {second}")]
     Differs {
@@ -176,24 +168,19 @@ fn stem(id: &str) -> String {
 
 /// A replay that is being played.
 #[derive(Clone, Debug)]
-pub struct Playback<D: Dim> {
+pub struct Playback {
     replay: Arc<Replay>,
-    round: Round<D>,
+    round: AnyRound,
     tick: usize,
 }
 
-impl<D: Dim> Playback<D> {
+impl Playback {
     /// A replay from its start.
     ///
     /// # Errors
-    /// [`ReplayError`] when its level is broken or another one, or of another dimension.
+    /// [`ReplayError`] when its level is broken or another one.
     pub fn new(replay: Arc<Replay>) -> Result<Self, ReplayError> {
-        let level = replay.level()?;
-        let (found, expected) = (level.scene().dim, D::N);
-        if usize::from(found) != expected {
-            return Err(ReplayError::Dimension { found, expected });
-        }
-        let round = Round::new(Arc::new(level));
+        let round = AnyRound::new(Arc::new(replay.level()?));
         let tick = 0;
         Ok(Self {
             replay,
@@ -206,13 +193,13 @@ impl<D: Dim> Playback<D> {
     pub fn again(&self) -> Self {
         Self {
             replay: self.replay.clone(),
-            round: Round::new(self.round.level().clone()),
+            round: AnyRound::new(self.round.level().clone()),
             tick: 0,
         }
     }
 
     /// The round as it is now.
-    pub fn round(&self) -> &Round<D> {
+    pub fn round(&self) -> &AnyRound {
         &self.round
     }
 
@@ -233,7 +220,7 @@ impl<D: Dim> Playback<D> {
             return Ok(());
         }
         if self.tick.is_multiple_of(60) || self.is_over() {
-            let found = format!("{:016x}", self.round.world().hash());
+            let found = format!("{:016x}", self.round.hash());
             if self.replay.hashes.get(marks(self.tick) - 1) != Some(&found) {
                 let second = self.tick / 60;
                 return Err(ReplayError::Differs { second });

@@ -1,16 +1,17 @@
 //! The bots play through the same input as a person: what they can do is possible.
 
-use fuwafuwa::Dim2;
+use fuwafuwa::{Dim, Dim2, Dim3};
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 use std::thread;
-use tamaire_play::level::NAMED;
+use tamaire_play::level::{NAMED, NAMED_3D};
 use tamaire_play::{Bot, BotKind, Level, Outcome, Round, Route};
 
 /// Nobody should take longer than a minute.
 const MINUTE: usize = 60 * 60;
 
 /// The bot that wins a level as it is meant, and how.
-const WINNERS: [(&str, BotKind, Route); 9] = [
+const WINNERS: [(&str, BotKind, Route); 12] = [
     ("classic", BotKind::Squeeze, Route::Squeeze),
     ("gravity", BotKind::Squeeze, Route::Squeeze),
     ("neck", BotKind::Squeeze, Route::Squeeze),
@@ -20,29 +21,29 @@ const WINNERS: [(&str, BotKind, Route); 9] = [
     ("cat", BotKind::Squeeze, Route::Squeeze),
     ("rubber", BotKind::Squeeze, Route::Squeeze),
     ("biscuit", BotKind::Shave, Route::Shave),
+    ("classic-3d", BotKind::Squeeze, Route::Squeeze),
+    ("hoop", BotKind::Squeeze, Route::Squeeze),
+    ("pudding", BotKind::Squeeze, Route::Squeeze),
 ];
 
 /// How a bot's rounds of a level end, by seed, a round a thread.
-fn outcomes(id: &str, kind: BotKind, seeds: u64, ticks: usize) -> Vec<Option<Outcome>> {
+fn outcomes(
+    id: &str,
+    kind: BotKind,
+    seeds: RangeInclusive<u64>,
+    ticks: usize,
+) -> Vec<Option<Outcome>> {
     let level = Arc::new(Level::open(id).unwrap());
-    let play = |seed| {
-        let mut round = Round::<Dim2>::new(level.clone());
-        let mut bot = Bot::new(kind, seed);
-        for _ in 0..ticks {
-            let frame = bot.frame(&round);
-            let report = round.step(frame);
-            assert_eq!(report.quarantined, 0, "{id}, {kind:?}, seed {seed}");
-            if round.progress().outcome.is_some() {
-                break;
-            }
-        }
-        round.progress().outcome
+    let play = match level.scene().dim {
+        2 => outcome::<Dim2>,
+        _ => outcome::<Dim3>,
     };
     thread::scope(|scope| {
-        let play = &play;
-        let threads: Vec<_> = (1..=seeds)
-            .map(|seed| scope.spawn(move || play(seed)))
-            .collect();
+        let start = |seed| {
+            let level = level.clone();
+            scope.spawn(move || play(level, kind, seed, ticks))
+        };
+        let threads: Vec<_> = seeds.map(start).collect();
         threads
             .into_iter()
             .map(|thread| thread.join().unwrap())
@@ -50,9 +51,25 @@ fn outcomes(id: &str, kind: BotKind, seeds: u64, ticks: usize) -> Vec<Option<Out
     })
 }
 
+fn outcome<D: Dim>(level: Arc<Level>, kind: BotKind, seed: u64, ticks: usize) -> Option<Outcome> {
+    let mut round = Round::<D>::new(level);
+    let mut bot = Bot::new(kind, seed);
+    for _ in 0..ticks {
+        let frame = bot.frame(&round);
+        let report = round.step(frame);
+        let id = &round.level().id;
+        assert_eq!(report.quarantined, 0, "{id}, {kind:?}, seed {seed}");
+        if round.progress().outcome.is_some() {
+            break;
+        }
+    }
+    round.progress().outcome
+}
+
 /// That a bot wins all rounds of a level by a route.
-fn wins(id: &str, kind: BotKind, route: Route, seeds: u64) {
-    for (outcome, seed) in outcomes(id, kind, seeds, MINUTE).into_iter().zip(1..) {
+fn wins(id: &str, kind: BotKind, route: Route, seeds: RangeInclusive<u64>) {
+    let outcomes = outcomes(id, kind, seeds.clone(), MINUTE);
+    for (outcome, seed) in outcomes.into_iter().zip(seeds) {
         let found = outcome.map(|outcome| outcome.route);
         assert_eq!(
             found,
@@ -64,31 +81,45 @@ fn wins(id: &str, kind: BotKind, route: Route, seeds: u64) {
 
 #[test]
 fn squeezing_wins_twenty_of_twenty() {
-    wins("classic", BotKind::Squeeze, Route::Squeeze, 20);
+    wins("classic", BotKind::Squeeze, Route::Squeeze, 1..=20);
 }
 
 #[test]
 fn shaving_wins_twenty_of_twenty() {
-    wins("classic", BotKind::Shave, Route::Shave, 20);
+    wins("classic", BotKind::Shave, Route::Shave, 1..=20);
+}
+
+#[test]
+fn both_ways_win_in_space() {
+    wins("classic-3d", BotKind::Squeeze, Route::Squeeze, 2..=3);
+    wins("classic-3d", BotKind::Shave, Route::Shave, 1..=2);
+}
+
+#[test]
+#[ignore = "takes minutes: cargo test --release -p tamaire_play --test bots -- --ignored"]
+fn both_ways_win_twenty_of_twenty_in_space() {
+    wins("classic-3d", BotKind::Squeeze, Route::Squeeze, 1..=20);
+    wins("classic-3d", BotKind::Shave, Route::Shave, 1..=20);
 }
 
 #[test]
 fn every_level_with_a_basket_can_be_won_as_it_is_meant() {
-    for (id, _) in NAMED {
+    for (id, _) in NAMED.iter().chain(&NAMED_3D) {
         let has_basket = Level::open(id).unwrap().game().basket.is_some();
-        let is_listed = WINNERS.iter().any(|(known, ..)| *known == id);
+        let is_listed = WINNERS.iter().any(|(known, ..)| known == id);
         assert_eq!(has_basket, is_listed, "{id}");
     }
     for (id, kind, route) in WINNERS {
-        wins(id, kind, route, 2);
+        let is_flat = NAMED.iter().any(|(known, _)| *known == id);
+        wins(id, kind, route, if is_flat { 1..=2 } else { 1..=1 });
     }
 }
 
 #[test]
 fn who_does_nothing_never_wins_and_who_does_anything_rarely() {
     for (id, ..) in WINNERS {
-        assert_eq!(outcomes(id, BotKind::Idle, 1, 600), [None], "{id}");
+        assert_eq!(outcomes(id, BotKind::Idle, 1..=1, 600), [None], "{id}");
     }
-    let won = outcomes("classic", BotKind::Random, 4, 1200);
+    let won = outcomes("classic", BotKind::Random, 1..=4, 1200);
     assert!(won.iter().flatten().count() <= 1, "{won:?}");
 }

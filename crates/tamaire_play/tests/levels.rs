@@ -1,40 +1,47 @@
 //! Every level that comes along, and levels and replays that are broken.
 
-use fuwafuwa::Dim2;
+use fuwafuwa::{Dim, Dim2, Dim3};
 use std::sync::Arc;
-use tamaire_play::level::NAMED;
+use tamaire_play::level::{NAMED, NAMED_3D};
 use tamaire_play::{Bot, BotKind, InputFrame, Level, Playback, Replay, ReplayError, Round};
 
 #[test]
 fn nothing_tears_by_itself_and_everything_stays_in_the_room() {
     for (id, _) in NAMED {
-        let level = Arc::new(Level::open(id).unwrap());
-        let mut still = Round::<Dim2>::new(level.clone());
-        let mut wild = Round::<Dim2>::new(level.clone());
-        let mut bot = Bot::new(BotKind::Random, 7);
-        for _ in 0..180 {
-            let report = still.step(InputFrame::default());
-            assert_eq!(report.released, 0, "{id}");
-            let frame = bot.frame(&wild);
-            assert_eq!(wild.step(frame).quarantined, 0, "{id}");
-        }
-        assert!(still.progress().outcome.is_none(), "{id}");
-        let [low, high] = level.arena();
-        for body in wild.world().bodies() {
-            for piece in body.piece_views() {
-                let inside =
-                    |axis: usize| piece.centre[axis] > low[axis] && piece.centre[axis] < high[axis];
-                assert!(inside(0) && inside(1), "{id}: {piece:?}");
-            }
+        stays_whole_and_in_the_room::<Dim2>(id, 180);
+    }
+    for (id, _) in NAMED_3D {
+        stays_whole_and_in_the_room::<Dim3>(id, 120);
+    }
+}
+
+fn stays_whole_and_in_the_room<D: Dim>(id: &str, ticks: usize) {
+    let level = Arc::new(Level::open(id).unwrap());
+    let mut still = Round::<D>::new(level.clone());
+    let mut wild = Round::<D>::new(level.clone());
+    let mut bot = Bot::new(BotKind::Random, 7);
+    for _ in 0..ticks {
+        let report = still.step(InputFrame::default());
+        assert_eq!(report.released, 0, "{id}");
+        let frame = bot.frame(&wild);
+        assert_eq!(wild.step(frame).quarantined, 0, "{id}");
+    }
+    assert!(still.progress().outcome.is_none(), "{id}");
+    let [low, high] = level.arena();
+    for body in wild.world().bodies() {
+        for piece in body.piece_views() {
+            let mut inside = (0..D::N)
+                .map(|axis| piece.centre[axis] > low[axis] && piece.centre[axis] < high[axis]);
+            assert!(inside.all(|inside| inside), "{id}: {piece:?}");
         }
     }
 }
 
-/// A round of two seconds with both hands.
-fn played() -> Replay {
-    let mut round = Round::<Dim2>::new(Arc::new(Level::open("classic").unwrap()));
+/// So many ticks of a round with both hands.
+fn played<D: Dim>(id: &str, ticks: usize) -> Replay {
+    let mut round = Round::<D>::new(Arc::new(Level::open(id).unwrap()));
     let mut bot = Bot::new(BotKind::Random, 3);
-    for _ in 0..130 {
+    for _ in 0..ticks {
         let frame = bot.frame(&round);
         round.step(frame);
     }
@@ -43,7 +50,7 @@ fn played() -> Replay {
 }
 
 fn play(replay: Replay) -> Result<(), ReplayError> {
-    let mut playback = Playback::<Dim2>::new(Arc::new(replay))?;
+    let mut playback = Playback::new(Arc::new(replay))?;
     while !playback.is_over() {
         playback.step()?;
     }
@@ -52,7 +59,7 @@ fn play(replay: Replay) -> Result<(), ReplayError> {
 
 #[test]
 fn a_replay_goes_as_it_went_and_a_changed_one_is_found_out() {
-    let replay = played();
+    let replay = played::<Dim2>("classic", 130);
     let text = replay.text();
     let read = Replay::read(&text).unwrap();
     assert_eq!(read, replay);
@@ -78,6 +85,14 @@ fn a_replay_goes_as_it_went_and_a_changed_one_is_found_out() {
     let level = changed("drag = 1.0", "drag = 0.5");
     assert!(matches!(level, ReplayError::LevelChanged), "{level}");
     assert!(matches!(Replay::read("hello"), Err(ReplayError::Text(_))));
+}
+
+#[test]
+fn a_replay_is_played_in_its_own_dimension() {
+    let replay = played::<Dim3>("pudding", 70);
+    let read = Replay::read(&replay.text()).unwrap();
+    assert_eq!(read, replay);
+    play(read).unwrap();
 }
 
 #[test]

@@ -1,12 +1,12 @@
 //! Ten minutes with two hands that do anything, on every level. It takes minutes of many cores:
 //! `cargo xtask soak`.
 
-use fuwafuwa::Dim2;
+use fuwafuwa::{Dim, Dim2, Dim3};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::sync::Arc;
 use std::thread;
-use tamaire_play::level::NAMED;
+use tamaire_play::level::{NAMED, NAMED_3D};
 use tamaire_play::{Bot, BotKind, InputFrame, Level, Round};
 
 const MINUTE: usize = 60 * 60;
@@ -48,14 +48,14 @@ unsafe impl GlobalAlloc for Counting {
 static ALLOCATOR: Counting = Counting;
 
 /// Plays a level, looks at it every second, and says what it held after each minute [bytes].
-fn play(id: &str) -> Vec<usize> {
+fn play<D: Dim>(id: &str) -> Vec<usize> {
     let level = Arc::new(Level::open(id).unwrap());
     let [low, high] = level.arena();
     // A crumb between a hand and a wall is pressed flat, and a hair into the wall.
     let is_in = |at: [f32; 3]| {
-        (0..2).all(|axis| at[axis] > low[axis] - MARGIN && at[axis] < high[axis] + MARGIN)
+        (0..D::N).all(|axis| at[axis] > low[axis] - MARGIN && at[axis] < high[axis] + MARGIN)
     };
-    let mut round = Round::<Dim2>::new(level);
+    let mut round = Round::<D>::new(level);
     let mut bot = Bot::new(BotKind::Random, 7);
     let mut held = Vec::new();
     for tick in 1..=MINUTES * MINUTE {
@@ -80,12 +80,11 @@ fn play(id: &str) -> Vec<usize> {
     held
 }
 
-#[test]
-#[ignore = "takes minutes"]
-fn ten_minutes_of_anything_on_every_level() {
+/// Plays some levels at once, a thread each.
+fn soak(levels: &'static [(&str, &str)], play: fn(&str) -> Vec<usize>) {
     thread::scope(|scope| {
         let start = |(id, _): &'static (&str, &str)| (id, scope.spawn(move || play(id)));
-        let threads: Vec<_> = NAMED.iter().map(start).collect();
+        let threads: Vec<_> = levels.iter().map(start).collect();
         for (id, thread) in threads {
             let held = thread.join().unwrap();
             // By then what can be ground is ground; tables double now and then.
@@ -95,4 +94,16 @@ fn ten_minutes_of_anything_on_every_level() {
             assert!(late.iter().all(|&held| held < most), "{id}: {held:?}");
         }
     });
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn ten_minutes_of_anything_on_every_level() {
+    soak(&NAMED, play::<Dim2>);
+}
+
+#[test]
+#[ignore = "takes an hour"]
+fn ten_minutes_of_anything_on_every_level_in_space() {
+    soak(&NAMED_3D, play::<Dim3>);
 }

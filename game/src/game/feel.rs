@@ -70,8 +70,8 @@ impl Game {
     /// What the player who holds a device feels.
     fn state(&self, id: DeviceId) -> Option<State> {
         let player = (0..PLAYERS).find(|&player| self.players.held(player) == Some(id))?;
-        let hands = self.session.round().world().manipulators();
-        let [x, y, _] = felt::contact(hands.get(player)?);
+        let hands = self.session.round().hands();
+        let contact = felt::on_stick(felt::contact(hands.get(player)?), self.turn());
         let pushes_back = self.devices.pushing.contains(&id);
         // What was put down hums no more, though the hand still presses. A stick that pushes back may be held still.
         if !pushes_back && self.players.rested(player) > RESTED {
@@ -81,10 +81,7 @@ impl Game {
             true => Manner::Places,
             false => Manner::Steers,
         };
-        Some(State {
-            contact: [x, y],
-            manner,
-        })
+        Some(State { contact, manner })
     }
 
     /// Why nobody feels anything now, if so.

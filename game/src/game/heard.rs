@@ -1,9 +1,9 @@
 //! What is heard: of a tick, and for as long as it lasts.
 
 use super::{Game, Screen};
-use fuwafuwa::{Dim2, Event, Vector, With};
-use tamaire_play::Round;
+use fuwafuwa::{Dim, Event, Vector, With};
 use tamaire_play::rules::CRUMB;
+use tamaire_play::{AnyRound, Round};
 use tamaire_sound::{Cue, Hush, Press, Soundscape};
 
 /// What is slower than this is heard no more when it lands [m/s].
@@ -15,7 +15,7 @@ pub(super) fn soundscape(game: &Game) -> Soundscape {
     let arena = round.level().arena();
     let hold = round.level().game().hold.max(0.1);
     let mut presses = [Press::default(); 2];
-    for (press, hand) in presses.iter_mut().zip(round.world().manipulators()) {
+    for (press, hand) in presses.iter_mut().zip(round.hands()) {
         let all = hand.reactions().iter();
         let force = all.map(|reaction| length(reaction.contact));
         let count = hand.reactions().len().max(1) as f32;
@@ -39,7 +39,14 @@ pub(super) fn soundscape(game: &Game) -> Soundscape {
 }
 
 /// What there is to hear of a tick.
-pub(super) fn cues(round: &Round<Dim2>) -> Vec<Cue> {
+pub(super) fn cues(round: &AnyRound) -> Vec<Cue> {
+    match round {
+        AnyRound::Plane(round) => cues_of(round),
+        AnyRound::Space(round) => cues_of(round),
+    }
+}
+
+fn cues_of<D: Dim>(round: &Round<D>) -> Vec<Cue> {
     let arena = round.level().arena();
     let bodies = round.world().bodies();
     // The masses of the pieces of each body, looked up once they are asked for [kg].

@@ -54,7 +54,7 @@ impl Game {
             }
         }
         let arena = self.session.round().level().arena();
-        let hand = self.session.round().world().manipulators()[0].position();
+        let hand = self.session.round().hands()[0].position();
         self.camera
             .follow(hand, arena, seconds, self.settings.reduced_motion);
         self.sound
@@ -66,6 +66,7 @@ impl Game {
             sensitivity: self.settings.sensitivity,
             stick_places: self.settings.stick_places,
             arena: self.session.round().level().arena(),
+            turn: self.turn(),
         };
         let still = self.settings.reduced_motion;
         // In menus the same keys and sticks move the focus; what is won is not torn any more.
@@ -93,7 +94,7 @@ impl Game {
                 }
                 // Who comes in only now begins where the level says.
                 let mut hands = round.level().scene().goals(0);
-                for (goal, hand) in hands.iter_mut().zip(round.world().manipulators()) {
+                for (goal, hand) in hands.iter_mut().zip(round.hands()) {
                     *goal = hand.goal();
                 }
                 let tick = fuwafuwa::world::TICK;
@@ -101,7 +102,7 @@ impl Game {
             },
             |round| {
                 effects.see(round, camera, still);
-                for (player, size) in felt::tears(round.world()).into_iter().enumerate() {
+                for (player, size) in felt::tears(round).into_iter().enumerate() {
                     tears[player] = size.max(tears[player]);
                 }
                 for cue in heard::cues(round) {
@@ -111,6 +112,7 @@ impl Game {
         );
         if is_heard {
             devices.pointer = None;
+            devices.lift = 0.0;
         }
         for (player, size) in tears
             .into_iter()

@@ -5,12 +5,15 @@
 
 use super::report::by_route;
 use crate::look::{Camera, Effects, Mood};
-use fuwafuwa::Dim2;
+use fuwafuwa::vector::{plus, scaled};
 use fuwafuwa::world::TICK;
+use fuwafuwa::{Dim2, Dim3};
 use fuwafuwa_painter::soft::{self, Extras};
+use fuwafuwa_painter::solid::{Camera as SolidCamera, Solid};
+use fuwafuwa_painter::stage;
 use fuwafuwa_painter::{Face, PaintError, Painter, Pixmap, Role, film};
 use std::path::Path;
-use tamaire_play::Round;
+use tamaire_play::{AnyRound, Round};
 
 /// Moments in a strip, and how many stand side by side.
 const MOMENTS: usize = 12;
@@ -43,7 +46,7 @@ impl Film {
     }
 
     /// The film of a round, as the bytes of its file.
-    pub fn shoot(&self, played: &Round<Dim2>) -> Result<Vec<u8>, PaintError> {
+    pub fn shoot(&self, played: &AnyRound) -> Result<Vec<u8>, PaintError> {
         let ticks = played.frames().len();
         match self {
             Self::Strip => {
@@ -78,12 +81,12 @@ fn moments_at(ticks: usize, gaps: usize) -> impl Iterator<Item = usize> {
 
 /// Plays a round again for some ticks; those that are to be shown are.
 fn pass(
-    played: &Round<Dim2>,
+    played: &AnyRound,
     ticks: usize,
     is_shown: impl Fn(usize) -> bool,
     mut show: impl FnMut(Pixmap, usize) -> Result<(), PaintError>,
 ) -> Result<(), PaintError> {
-    let mut round = Round::new(played.level().clone());
+    let mut round = AnyRound::new(played.level().clone());
     let mut effects = Effects::default();
     for tick in 0..=ticks {
         if tick > 0 {
@@ -100,7 +103,17 @@ fn pass(
 }
 
 /// A picture of a round as it is now, and whether that is how it stays.
-fn moment(round: &Round<Dim2>, effects: &Effects, is_last: bool) -> Result<Pixmap, PaintError> {
+fn moment(round: &AnyRound, effects: &Effects, is_last: bool) -> Result<Pixmap, PaintError> {
+    let mut painter = match round {
+        AnyRound::Plane(round) => plane(round, effects),
+        AnyRound::Space(round) => space(round)?,
+    };
+    painter.caption(&caption(round, is_last));
+    painter.pixels()
+}
+
+/// As the game shows it.
+fn plane(round: &Round<Dim2>, effects: &Effects) -> Painter {
     let [low, high] = round.level().arena();
     let view = [low.map(|k| k - WALL), high.map(|k| k + WALL)];
     let (mut painter, frame) = Painter::for_view(view, WIDTH);
@@ -127,11 +140,27 @@ fn moment(round: &Round<Dim2>, effects: &Effects, is_last: bool) -> Result<Pixma
         let radius = speck.radius * speck.strength() * frame.unit;
         painter.dot(frame.spot(speck.at), radius, Role::Crumb);
     }
-    painter.caption(&caption(round, is_last));
-    painter.pixels()
+    painter
 }
 
-fn caption(round: &Round<Dim2>, is_last: bool) -> String {
+/// From above and the front, as the game shows it at first.
+fn space(round: &Round<Dim3>) -> Result<Painter, PaintError> {
+    let [low, high] = round.level().arena();
+    let middle = [0, 1, 2].map(|axis| 0.5 * (low[axis] + high[axis]));
+    let across = high[0] - low[0];
+    let mut solid = Solid::new(SolidCamera {
+        eye: plus(middle, scaled([0.0, 1.1, 1.5], across)),
+        target: middle,
+        across: 1.1 * across,
+    });
+    stage::space(&mut solid, round.world(), stage::space_skin);
+    let high = WIDTH * 5 / 8;
+    let mut painter = Painter::new(WIDTH, high);
+    painter.image([0.0; 2], solid.pixels(WIDTH, high)?);
+    Ok(painter)
+}
+
+fn caption(round: &AnyRound, is_last: bool) -> String {
     let progress = round.progress();
     let seconds = round.frames().len() as f32 * TICK;
     match (progress.outcome, progress.pieces) {

@@ -3,13 +3,13 @@
 use crate::felt;
 use crate::settings::Settings;
 use force_feedback::{Ability, Feel, Mail, Manner, Output, State, Watchdog};
+use fuwafuwa::Vector;
 use fuwafuwa::world::TICK;
-use fuwafuwa::{Dim, Vector};
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 use std::time::Duration;
-use tamaire_play::{PLAYERS, Round};
+use tamaire_play::{AnyRound, PLAYERS};
 
 /// From one update of a device to the next [s].
 const PERIOD: f64 = 0.004;
@@ -48,7 +48,7 @@ impl ForceLog {
     }
 
     /// Adds the last tick of a round, and the updates from its end to that of the next.
-    pub fn note<D: Dim>(&mut self, round: &Round<D>) {
+    pub fn note(&mut self, round: &AnyRound) {
         if self.written.is_ok() {
             self.written = self.write(round);
         }
@@ -60,10 +60,10 @@ impl ForceLog {
         self.file.flush()
     }
 
-    fn write<D: Dim>(&mut self, round: &Round<D>) -> io::Result<()> {
-        let hands = round.world().manipulators();
+    fn write(&mut self, round: &AnyRound) -> io::Result<()> {
+        let hands = round.hands();
         let tick = f64::from(TICK);
-        let end = round.world().ticks() as f64 * tick;
+        let end = round.ticks() as f64 * tick;
         let count = hands.iter().map(|hand| hand.reactions().len()).max();
         let count = count.unwrap_or(0);
         for substep in 0..count {
@@ -78,7 +78,7 @@ impl ForceLog {
                 writeln!(self.file, "{row}")?;
             }
         }
-        let tears = felt::tears(round.world());
+        let tears = felt::tears(round);
         for (feels, size) in self.feels.iter_mut().zip(tears) {
             feels.iter_mut().for_each(|feel| feel.tear(size));
         }
@@ -98,14 +98,14 @@ impl ForceLog {
     }
 
     /// One update of one player's devices, `seconds` after the start, when the game said something last at `end`.
-    fn update<D: Dim>(
+    fn update(
         &mut self,
-        round: &Round<D>,
+        round: &AnyRound,
         player: usize,
         seconds: f64,
         end: f64,
     ) -> io::Result<()> {
-        let hand = &round.world().manipulators()[player];
+        let hand = &round.hands()[player];
         let [x, y, z] = felt::contact(hand);
         let state = State {
             contact: [x, y],

@@ -84,7 +84,7 @@ impl Report {
             needed: level.game().share,
             pieces: progress.pieces,
             wishes: level.game().wish.iter().map(fulfilled).collect(),
-            hash: format!("{:016x}", round.world().hash()),
+            hash: format!("{:016x}", round.hash()),
             median_tick_ms: milliseconds(times.get(times.len() / 2)),
             worst_tick_ms: milliseconds(times.last()),
         }

@@ -50,6 +50,10 @@ impl Default for Bindings {
             (Action::Slow, vec![Key::F]),
             (Action::Step, vec![Key::Period]),
             (Action::Join, vec![Key::J]),
+            (Action::Raise, vec![Key::Q, Key::PageUp]),
+            (Action::Lower, vec![Key::Z, Key::PageDown]),
+            (Action::TurnLeft, vec![Key::OpenBracket]),
+            (Action::TurnRight, vec![Key::CloseBracket]),
             (Action::CutForces, vec![Key::F12, Key::X]),
         ];
         let pad = |button| PadKey::of(Control::Pad(button));
@@ -69,6 +73,10 @@ impl Default for Bindings {
             (Action::Slow, vec![pad(PadButton::RightShoulder), stick(5)]),
             (Action::Step, vec![pad(PadButton::LeftShoulder), stick(6)]),
             (Action::Join, vec![pad(PadButton::Back), stick(7)]),
+            (Action::Raise, vec![stick(9)]),
+            (Action::Lower, vec![stick(10)]),
+            (Action::TurnLeft, vec![stick(11)]),
+            (Action::TurnRight, vec![stick(12)]),
             // On a pad a child would press it by accident, and a pad does nothing worse than hum.
             (Action::CutForces, vec![stick(8)]),
         ];

@@ -32,13 +32,21 @@ pub enum Action {
     Step,
     /// A second player comes in on this device, or leaves.
     Join,
+    /// In space the hand upwards, off the floor.
+    Raise,
+    /// In space the hand downwards.
+    Lower,
+    /// In space the camera around to the left.
+    TurnLeft,
+    /// In space the camera around to the right.
+    TurnRight,
     /// An end to all that sticks and pads do to hands.
     CutForces,
 }
 
 impl Action {
     /// All of them, in the order in which settings list them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 15] = [
         Self::Up,
         Self::Down,
         Self::Left,
@@ -49,6 +57,10 @@ impl Action {
         Self::Slow,
         Self::Step,
         Self::Join,
+        Self::Raise,
+        Self::Lower,
+        Self::TurnLeft,
+        Self::TurnRight,
         Self::CutForces,
     ];
 }

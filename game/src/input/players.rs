@@ -3,8 +3,9 @@
 use super::{Action, Bindings};
 use egui::{Key, Vec2};
 use fuwafuwa::Vector;
+use fuwafuwa::vector::plus;
 use std::collections::{BTreeMap, BTreeSet};
-use sticks::{DeviceId, Snapshot};
+use sticks::{Device, DeviceId, Snapshot};
 use tamaire_play::{InputFrame, PLAYERS};
 
 /// A stick that leans less than this does nothing, and one that leans more than `RIM` leans fully.
@@ -14,6 +15,8 @@ const RIM: f32 = 0.95;
 const NOISE: f32 = 0.01;
 /// How fast a key or a stick that leans fully moves the goal at the usual sensitivity [m/s].
 const PACE: f32 = 2.0;
+/// How fast it rises in space [m/s].
+const RISE: f32 = 1.2;
 
 /// A place at the table: what a player holds.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -33,6 +36,8 @@ pub struct Devices {
     pub pointer: Option<Vector>,
     /// Keys that are held.
     pub keys: BTreeSet<Key>,
+    /// How far the wheel was turned, for the hand to rise in space [m].
+    pub lift: f32,
     /// Sticks and pads.
     pub sticks: Snapshot,
     /// Those of them that push back. They have no spring to the middle, so they point at places.
@@ -63,6 +68,43 @@ pub struct Manner {
     pub stick_places: bool,
     /// Low and high corner of where goals may be [m].
     pub arena: [Vector; 2],
+    /// In space by how much the camera went around to the right [rad]: what is away from the player goes along the floor,
+    /// away from the camera.
+    pub turn: Option<f32>,
+}
+
+impl Manner {
+    /// Which way in the world it is when somebody leans: to the right, and away.
+    fn along(&self, lean: Vec2) -> Vector {
+        let Some(turn) = self.turn else {
+            return [lean.x, lean.y, 0.0];
+        };
+        let (sin, cos) = turn.sin_cos();
+        [
+            cos * lean.x - sin * lean.y,
+            0.0,
+            -sin * lean.x - cos * lean.y,
+        ]
+    }
+
+    /// The nearest place in the arena.
+    fn within(&self, place: Vector) -> Vector {
+        let [low, high] = self.arena;
+        [0, 1, 2].map(|axis: usize| place[axis].clamp(low[axis], high[axis]))
+    }
+
+    /// The place in the arena at which a stick points, as high as another [m].
+    fn place_of(&self, stick: [f32; 2], here: Vector) -> Vector {
+        let [low, high] = self.arena;
+        let way = self.along(Vec2::from(stick));
+        let mut place = [0, 1, 2].map(|axis: usize| {
+            0.5 * (low[axis] + high[axis]) + 0.5 * way[axis] * (high[axis] - low[axis])
+        });
+        if self.turn.is_some() {
+            place[1] = here[1];
+        }
+        place
+    }
 }
 
 impl Players {
@@ -156,15 +198,17 @@ impl Players {
             0 => self.second != Some(seat),
             _ => self.second == Some(seat),
         };
-        let mut lean = Vec2::ZERO;
+        let (mut lean, mut lift, mut wheel) = (Vec2::ZERO, 0.0, 0.0);
         let mut place = None;
         if holds(Seat::Keys) {
             let means = |action| move |&key| bindings.of_key(key) == Some(action);
-            let keys = direction(|action| devices.keys.iter().any(means(action)));
-            if keys != Vec2::ZERO {
+            let held = |action| devices.keys.iter().any(means(action));
+            let (keys, rise) = (direction(held), opposed(held, Action::Raise, Action::Lower));
+            if keys != Vec2::ZERO || rise != 0.0 {
                 self.used[player] = Some(Seat::Keys);
             }
             lean += keys;
+            lift += rise;
         }
         let all = devices.sticks.devices.iter();
         for device in all.filter(|device| holds(Seat::Stick(device.id))) {
@@ -178,24 +222,28 @@ impl Players {
             if !manner.stick_places && !pushes_back {
                 lean += Vec2::from(stick);
             } else if moved || self.used[player] == Some(Seat::Stick(device.id)) {
-                place = Some(place_of(stick, manner));
+                place = Some(manner.place_of(stick, here));
             }
             let held: Vec<Action> = device
                 .controls()
                 .filter(|(_, button)| button.down)
                 .filter_map(|(control, _)| bindings.of_button(control))
                 .collect();
-            let hat = direction(|action| held.contains(&action));
+            let means = |action| held.contains(&action);
+            let rise = opposed(means, Action::Raise, Action::Lower) + rise_of(device);
+            let hat = direction(means);
             lean += hat;
+            lift += rise;
             // One that pushes back stays where it is put, in a hand or not.
             let leans = stick != [0.0; 2] && !pushes_back;
-            if moved || leans || hat != Vec2::ZERO {
+            if moved || leans || hat != Vec2::ZERO || rise != 0.0 {
                 self.used[player] = Some(Seat::Stick(device.id));
                 self.rested[player] = 0.0;
             }
         }
-        if holds(Seat::Pointer) && devices.pointer.is_some() {
-            place = devices.pointer;
+        if holds(Seat::Pointer) && (devices.pointer.is_some() || devices.lift != 0.0) {
+            place = devices.pointer.or(place);
+            wheel = devices.lift;
             self.used[player] = Some(Seat::Pointer);
         }
         if let Some(place) = place {
@@ -204,33 +252,37 @@ impl Players {
         if lean != Vec2::ZERO {
             // From where the goal is now: what pushes in vain winds nothing up.
             let step = lean * (1.0 / lean.length().max(1.0)) * PACE * manner.sensitivity * seconds;
-            let [low, high] = manner.arena;
-            let mut goal = here;
-            goal[0] = (here[0] + step.x).clamp(low[0], high[0]);
-            goal[1] = (here[1] + step.y).clamp(low[1], high[1]);
-            self.goals[player] = Some(goal);
+            self.goals[player] = Some(manner.within(plus(here, manner.along(step))));
+        }
+        if manner.turn.is_some() && (lift != 0.0 || wheel != 0.0) {
+            let mut goal = self.goals[player].unwrap_or(here);
+            goal[1] = here[1] + wheel + lift.clamp(-1.0, 1.0) * RISE * manner.sensitivity * seconds;
+            self.goals[player] = Some(manner.within(goal));
         }
     }
 }
 
-/// The way in which the four ways that are held lead together.
-fn direction(held: impl Fn(Action) -> bool) -> Vec2 {
-    let axis = |more, less| f32::from(i8::from(held(more)) - i8::from(held(less)));
-    Vec2::new(
-        axis(Action::Right, Action::Left),
-        axis(Action::Up, Action::Down),
-    )
+/// How far the triggers of a pad are pulled, or its right stick leans, for the hand to rise.
+fn rise_of(device: &Device) -> f32 {
+    let Some(pad) = &device.pad else {
+        return 0.0;
+    };
+    let [_, up] = sticks::radial_dead_zone(pad.right, DEAD, RIM);
+    let [left, right] = pad.triggers;
+    up + right - left
 }
 
-/// The place in the arena at which a stick points.
-fn place_of(stick: [f32; 2], manner: &Manner) -> Vector {
-    let [low, high] = manner.arena;
-    let mut place = [0.0; 3];
-    for axis in 0..2 {
-        let middle = 0.5 * (low[axis] + high[axis]);
-        place[axis] = middle + 0.5 * stick[axis] * (high[axis] - low[axis]);
-    }
-    place
+/// 1, -1 or 0.
+fn opposed(held: impl Fn(Action) -> bool, more: Action, less: Action) -> f32 {
+    f32::from(i8::from(held(more)) - i8::from(held(less)))
+}
+
+/// The way in which the four ways that are held lead together.
+fn direction(held: impl Fn(Action) -> bool) -> Vec2 {
+    Vec2::new(
+        opposed(&held, Action::Right, Action::Left),
+        opposed(&held, Action::Up, Action::Down),
+    )
 }
 
 #[cfg(test)]
@@ -244,6 +296,7 @@ mod tests {
         sensitivity: 1.0,
         stick_places: false,
         arena: [[-1.6, -1.0, 0.0], [1.6, 1.0, 0.0]],
+        turn: None,
     };
     const PLACES: Manner = Manner {
         stick_places: true,
@@ -359,6 +412,46 @@ mod tests {
         assert_near(goal(&mut players, &devices, &PLACES), [0.0, -1.0]);
         devices.sticks.devices[1] = stick(2, [0.0; 2]);
         assert_near(goal(&mut players, &devices, &PLACES), [0.0, 0.0]);
+    }
+
+    #[test]
+    fn in_space_what_is_away_is_away_from_the_camera_and_the_hand_rises() {
+        let manner = Manner {
+            arena: [[-1.6, 0.0, -1.0], [1.6, 1.6, 1.0]],
+            turn: Some(std::f32::consts::FRAC_PI_2),
+            ..MANNER
+        };
+        let hands = [[0.0, 0.5, 0.0]];
+        let goal = |devices: &Devices| {
+            let bindings = Bindings::default();
+            let frame = Players::default().frame(devices, &bindings, &manner, &hands, TICK);
+            frame.goal(0).expect("a goal")
+        };
+        let check = |found: Vector, expected: Vector| {
+            let is_near = (0..3).all(|axis| (found[axis] - expected[axis]).abs() < 1e-3);
+            assert!(is_near, "{found:?}, expected {expected:?}");
+        };
+        let step = PACE * TICK;
+        // The camera went around to the right, so it looks to the left.
+        check(
+            goal(&with_sticks(vec![stick(1, [0.0, 1.0])])),
+            [-step, 0.5, 0.0],
+        );
+        check(
+            goal(&with_sticks(vec![stick(1, [1.0, 0.0])])),
+            [0.0, 0.5, -step],
+        );
+        let keys = Devices {
+            keys: [Key::Q].into(),
+            ..Devices::default()
+        };
+        check(goal(&keys), [0.0, 0.5 + RISE * TICK, 0.0]);
+        let wheel = Devices {
+            pointer: Some([0.3, 0.5, -0.2]),
+            lift: 5.0,
+            ..Devices::default()
+        };
+        check(goal(&wheel), [0.3, 1.6, -0.2]);
     }
 
     #[test]

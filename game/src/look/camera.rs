@@ -2,6 +2,9 @@
 
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
 use fuwafuwa::Vector;
+use fuwafuwa::vector::{length, minus, plus, scaled};
+use fuwafuwa_render::space;
+use tamaire_play::Level;
 
 /// So much is seen around the arena [m]: room for the lean, so that nothing of the arena goes out of sight.
 const MARGIN: f32 = 0.1;
@@ -11,6 +14,12 @@ const LEAN: f32 = 0.03;
 const PACE: f32 = 3.0;
 /// How fast a shake dies [1/s], and how fast it swings [rad/s].
 const CALM: f32 = 9.0;
+/// In space it begins so far up, and goes no lower and no higher [rad].
+const RISE: f32 = 0.6;
+const LOWEST: f32 = 0.1;
+const HIGHEST: f32 = 1.5;
+/// Of the distance from which a whole arena in space is seen from all sides it keeps this: its corners are of no interest.
+const CLOSE: f32 = 0.66;
 const SWING: f32 = 60.0;
 
 /// Looks at the arena, leans towards the hand, and shakes when something tears.
@@ -20,6 +29,9 @@ pub struct Camera {
     /// How far it swings [m], and where in the swing it is [rad].
     shake: f32,
     phase: f32,
+    /// In space by how much it went around to the right, and up from where it began [rad].
+    turn: f32,
+    rise: f32,
 }
 
 /// The camera on a part of the screen.
@@ -29,15 +41,17 @@ pub struct View {
     pub rect: Rect,
     /// What is in its middle [m].
     pub centre: [f32; 2],
-    /// Points on the screen for each metre.
+    /// Points on the screen for each metre, in space in the middle of the arena.
     pub scale: f32,
+    /// The camera of a level in space.
+    pub space: Option<space::Camera>,
 }
 
 impl Camera {
     /// Lets `seconds` pass while the hand is at a place [m]; `still` = with reduced motion.
     pub fn follow(&mut self, hand: Vector, arena: [Vector; 2], seconds: f32, still: bool) {
         if still {
-            *self = Self::default();
+            (self.lean, self.shake) = (Vec2::ZERO, 0.0);
             return;
         }
         let middle = |axis: usize| 0.5 * (arena[0][axis] + arena[1][axis]);
@@ -52,8 +66,51 @@ impl Camera {
         self.shake = (self.shake + by).min(0.02);
     }
 
-    /// What it sees on a part of the screen that is to hold the arena.
-    pub fn view(&self, rect: Rect, arena: [Vector; 2]) -> View {
+    /// In space it goes around what it looks at, to the right and up [rad].
+    pub fn orbit(&mut self, right: f32, up: f32) {
+        self.turn += right;
+        self.rise = (self.rise + up).clamp(LOWEST - RISE, HIGHEST - RISE);
+    }
+
+    /// In space it goes back to where it began.
+    pub fn face_front(&mut self) {
+        (self.turn, self.rise) = (0.0, 0.0);
+    }
+
+    /// By how much it went around to the right [rad].
+    pub fn turn(&self) -> f32 {
+        self.turn
+    }
+
+    /// What it sees on a part of the screen that is to hold the arena of a level.
+    pub fn view(&self, rect: Rect, level: &Level) -> View {
+        match level.scene().dim {
+            2 => self.view_of_plane(rect, level.arena()),
+            _ => self.view_of_space(rect, level.arena()),
+        }
+    }
+
+    fn view_of_space(&self, rect: Rect, arena: [Vector; 2]) -> View {
+        let fitted = space::Camera::fit(arena[0], arena[1], pixels(rect));
+        let swing = self.shake * vec2(self.phase.sin(), (1.3 * self.phase).cos());
+        let camera = space::Camera {
+            target: plus(fitted.target, [self.lean.x, self.lean.y, 0.0]),
+            distance: CLOSE * fitted.distance,
+            turn: self.turn,
+            rise: RISE + self.rise,
+            shake: [swing.x, swing.y, 0.0],
+            ..fitted
+        };
+        let [x, y, _] = camera.target;
+        View {
+            rect,
+            centre: [x, y],
+            scale: 0.5 * rect.height() / ((0.5 * camera.field).tan() * camera.distance),
+            space: Some(camera),
+        }
+    }
+
+    fn view_of_plane(&self, rect: Rect, arena: [Vector; 2]) -> View {
         let size = vec2(arena[1][0] - arena[0][0], arena[1][1] - arena[0][1]);
         let size = size + Vec2::splat(2.0 * MARGIN);
         let scale = (rect.width() / size.x).min(rect.height() / size.y);
@@ -65,13 +122,26 @@ impl Camera {
             rect,
             centre,
             scale,
+            space: None,
         }
     }
+}
+
+/// The size of a part of the screen, as cameras take it.
+fn pixels(rect: Rect) -> [u32; 2] {
+    [rect.width().max(1.0) as u32, rect.height().max(1.0) as u32]
 }
 
 impl View {
     /// Where a place of the world [m] is on the screen.
     pub fn on_screen(&self, at: Vector) -> Pos2 {
+        if let Some(camera) = &self.space {
+            // What is behind the camera is nowhere on it.
+            let [x, y] = camera
+                .to_pixel(at, pixels(self.rect))
+                .unwrap_or([-1.0e5; 2]);
+            return self.rect.min + vec2(x, y);
+        }
         let middle = self.rect.center();
         pos2(
             middle.x + self.scale * (at[0] - self.centre[0]),
@@ -79,10 +149,32 @@ impl View {
         )
     }
 
-    /// Which place of the world [m] is seen at a point of the screen.
-    pub fn in_world(&self, at: Pos2) -> Vector {
+    /// Which place of the world [m] is seen at a point of the screen; in space, at this height [m].
+    pub fn in_world(&self, at: Pos2, height: f32) -> Vector {
+        if let Some(camera) = &self.space {
+            let point = at - self.rect.min;
+            let (eye, towards) = camera.ray([point.x, point.y], pixels(self.rect));
+            // Above the horizon it is as far away as can be.
+            let reach = (eye[1] - height) / (-towards[1]).max(1e-3);
+            return plus(eye, scaled(towards, reach));
+        }
         let way = (at - self.rect.center()) / self.scale;
         [self.centre[0] + way.x, self.centre[1] - way.y, 0.0]
+    }
+
+    /// Points on the screen for each metre at a place [m].
+    pub fn scale_at(&self, at: Vector) -> f32 {
+        let Some(camera) = &self.space else {
+            return self.scale;
+        };
+        let away = length(minus(at, camera.eye())).max(1e-3);
+        self.scale * camera.distance / away
+    }
+
+    /// The same as if the middle of the arena were a plane that is seen from the front.
+    pub fn flat(&self) -> Self {
+        let space = None;
+        Self { space, ..*self }
     }
 
     /// Height of what is seen [m].
@@ -101,13 +193,30 @@ mod tests {
         let mut camera = Camera::default();
         camera.shake(0.01);
         camera.follow([1.0, 0.5, 0.0], arena, 0.05, false);
-        let view = camera.view(
+        let view = camera.view_of_plane(
             Rect::from_min_size(pos2(10.0, 20.0), vec2(800.0, 600.0)),
             arena,
         );
-        let place = view.in_world(view.on_screen([0.7, -0.3, 0.0]));
+        let place = view.in_world(view.on_screen([0.7, -0.3, 0.0]), 0.0);
         assert!((place[0] - 0.7).abs() < 1e-4 && (place[1] + 0.3).abs() < 1e-4);
         camera.follow([1.0, 0.5, 0.0], arena, 0.05, true);
-        assert_eq!(camera.view(view.rect, arena).centre, [0.0, 0.0]);
+        assert_eq!(camera.view_of_plane(view.rect, arena).centre, [0.0, 0.0]);
+    }
+
+    #[test]
+    fn in_space_a_place_is_found_again_at_its_height() {
+        let arena = [[-1.6, 0.0, -1.0], [1.6, 1.6, 1.0]];
+        let mut camera = Camera::default();
+        camera.orbit(0.7, 9.0);
+        let rect = Rect::from_min_size(pos2(10.0, 20.0), vec2(800.0, 600.0));
+        for rise in [0.0, -0.6, -9.0] {
+            camera.orbit(0.0, rise);
+            let view = camera.view_of_space(rect, arena);
+            let at = [0.7, 0.4, -0.3];
+            let place = view.in_world(view.on_screen(at), at[1]);
+            assert!(length(minus(place, at)) < 1e-2, "{place:?}");
+        }
+        camera.face_front();
+        assert_eq!(camera.turn(), 0.0);
     }
 }

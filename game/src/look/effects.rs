@@ -3,8 +3,9 @@
 use super::Camera;
 use super::confetti::Confetti;
 use super::feelings::{Fate, Feeling};
-use fuwafuwa::{Body, Dim2, Event, Vector, With};
-use tamaire_play::Round;
+use fuwafuwa::vector::{length, minus};
+use fuwafuwa::{Body, Dim, Event, Vector, With};
+use tamaire_play::{AnyRound, Round};
 
 /// Most particles at once.
 const MOST: usize = 400;
@@ -65,6 +66,8 @@ pub struct Effects {
     /// What pulls dust down, and how far [m/s², m].
     gravity: Vector,
     room: [Vector; 2],
+    /// In how many directions it flies: 2 in the plane.
+    axes: usize,
     random: fastrand::Rng,
 }
 
@@ -82,6 +85,7 @@ impl Default for Effects {
             tick: 0,
             gravity: [0.0; 3],
             room: [[-1.0e9; 3], [1.0e9; 3]],
+            axes: 2,
             random: fastrand::Rng::with_seed(1),
         }
     }
@@ -89,7 +93,14 @@ impl Default for Effects {
 
 impl Effects {
     /// Looks at what happened in a tick; `still` = with reduced motion.
-    pub fn see(&mut self, round: &Round<Dim2>, camera: &mut Camera, still: bool) {
+    pub fn see(&mut self, round: &AnyRound, camera: &mut Camera, still: bool) {
+        match round {
+            AnyRound::Plane(round) => self.look_at(round, camera, still),
+            AnyRound::Space(round) => self.look_at(round, camera, still),
+        }
+    }
+
+    fn look_at<D: Dim>(&mut self, round: &Round<D>, camera: &mut Camera, still: bool) {
         let world = round.world();
         if world.ticks() <= self.tick || self.feelings.len() != world.bodies().len() {
             // Another round.
@@ -97,6 +108,7 @@ impl Effects {
                 feelings: world.bodies().iter().map(Feeling::of).collect(),
                 gravity: round.level().scene().gravity,
                 room: round.level().arena(),
+                axes: D::N,
                 ..Self::default()
             };
         }
@@ -150,7 +162,7 @@ impl Effects {
         for speck in &mut self.specks {
             speck.left -= seconds;
             let slower = (1.0 - DRAG * seconds).max(0.0);
-            for axis in 0..2 {
+            for axis in 0..self.axes {
                 speck.velocity[axis] *= slower;
                 speck.velocity[axis] += self.gravity[axis] * seconds;
                 speck.at[axis] += speck.velocity[axis] * seconds;
@@ -170,14 +182,13 @@ impl Effects {
         self.hint += (wish - self.hint).clamp(-step, step);
     }
 
-    fn watch_hand(&mut self, round: &Round<Dim2>) {
+    fn watch_hand<D: Dim>(&mut self, round: &Round<D>) {
         let hand = round.world().manipulators()[0].position();
         let start = *self.start.get_or_insert(hand);
-        let away = [0, 1].map(|axis| hand[axis] - start[axis]);
-        self.has_moved |= away[0] * away[0] + away[1] * away[1] > MOVED * MOVED;
+        self.has_moved |= length(minus(hand, start)) > MOVED;
     }
 
-    fn celebrate(&mut self, round: &Round<Dim2>, still: bool) {
+    fn celebrate<D: Dim>(&mut self, round: &Round<D>, still: bool) {
         if round.progress().outcome.is_none() || self.has_won {
             return;
         }
@@ -192,9 +203,10 @@ impl Effects {
             self.specks.swap_remove(0);
         }
         let mut any = |low: f32, high: f32| low + (high - low) * self.random.f32();
+        let depth = if self.axes == 3 { any(-0.9, 0.9) } else { 0.0 };
         let speck = Speck {
             at,
-            velocity: [any(-0.9, 0.9), any(-0.9, 0.9), 0.0],
+            velocity: [any(-0.9, 0.9), any(-0.9, 0.9), depth],
             left: any(1.5, 5.0),
             radius: any(0.004, 0.012),
             material,
@@ -205,11 +217,13 @@ impl Effects {
 }
 
 /// The material of a body at a place [m]: that of the nearest node.
-fn material_at(body: &Body<Dim2>, at: Vector) -> u8 {
+fn material_at<D: Dim>(body: &Body<D>, at: Vector) -> u8 {
     let mesh = body.mesh();
     let square = |id: u32| {
         let place = body.node_state(id).0;
-        (place[0] - at[0]).powi(2) + (place[1] - at[1]).powi(2)
+        (0..D::N)
+            .map(|axis| (place[axis] - at[axis]).powi(2))
+            .sum::<f32>()
     };
     let nearest = mesh
         .nodes()
@@ -227,14 +241,14 @@ mod tests {
     use std::sync::Arc;
     use tamaire_play::{InputFrame, Level};
 
-    fn round(level: &str) -> Round<Dim2> {
-        Round::new(Arc::new(Level::open(level).expect("it comes along")))
+    fn round(level: &str) -> AnyRound {
+        AnyRound::new(Arc::new(Level::open(level).expect("it comes along")))
     }
 
     #[test]
     fn the_hint_fades_when_the_hand_moves_and_comes_back_in_a_new_round() {
         let (mut effects, mut camera) = (Effects::default(), Camera::default());
-        let mut play = |round: &mut Round<Dim2>, effects: &mut Effects, frame, ticks: usize| {
+        let mut play = |round: &mut AnyRound, effects: &mut Effects, frame, ticks: usize| {
             for _ in 0..ticks {
                 round.step(frame);
                 effects.see(round, &mut camera, false);
@@ -275,9 +289,11 @@ mod tests {
 
     #[test]
     fn dust_is_made_of_what_was_torn() {
-        let round = round("twins");
+        let AnyRound::Plane(round) = round("twins") else {
+            panic!("it is in the plane")
+        };
         let bodies = round.world().bodies();
-        let middle = |body: &Body<Dim2>| body.piece_views()[0].centre;
+        let middle = |body: &Body<_>| body.piece_views()[0].centre;
         assert_eq!(material_at(&bodies[0], middle(&bodies[0])), 1);
         assert_eq!(material_at(&bodies[1], middle(&bodies[1])), 2);
     }

@@ -1,8 +1,9 @@
 //! How a body feels, and where on it that is seen.
 
 use super::Mood;
+use fuwafuwa::vector::{length, minus, plus, scaled};
 use fuwafuwa::world::TICK;
-use fuwafuwa::{Body, Dim2, Vector};
+use fuwafuwa::{Body, Dim, Vector};
 use fuwafuwa_render::anchor;
 
 /// How long a body is shocked after a tear [s]; one that goes on tearing winces then.
@@ -15,6 +16,8 @@ const HURTS: [f32; 2] = [0.065, 0.045];
 const LOOK: u64 = 5;
 /// A face keeps its seat unless another is better by so many voxels.
 const LAZY: f32 = 2.0;
+/// So many distances are worked out to find a seat.
+const MOST_LOOKS: usize = 4_000_000;
 /// A smaller face is not to be read [m].
 const LEAST: f32 = 0.03;
 /// How fast a face goes to a new seat, takes another size, turns [1/s].
@@ -31,13 +34,13 @@ pub struct Feeling {
     pub age: f32,
     /// Middle of its face [m].
     pub at: Vector,
-    /// What is to the right in the face; of length 1.
+    /// What is to the right in the face, as seen along z; of length 1.
     pub right: [f32; 2],
     /// Half of the face's width [m], nearly; 0 when the body is dust.
     pub size: f32,
     seat: Option<Seat>,
     /// From the seat to where the face still is [m].
-    behind: [f32; 2],
+    behind: Vector,
     strain: f32,
     shock: f32,
     /// Time since it last tore [s].
@@ -69,7 +72,7 @@ pub struct Fate {
 
 impl Feeling {
     /// How a body feels before anything happens to it.
-    pub fn of(body: &Body<Dim2>) -> Self {
+    pub fn of<D: Dim>(body: &Body<D>) -> Self {
         let mut feeling = Self {
             mood: Mood::Calm,
             age: 9.0,
@@ -77,7 +80,7 @@ impl Feeling {
             right: [1.0, 0.0],
             size: 0.0,
             seat: None,
-            behind: [0.0; 2],
+            behind: [0.0; 3],
             strain: 0.0,
             shock: 0.0,
             whole: CALMED,
@@ -87,7 +90,7 @@ impl Feeling {
     }
 
     /// Lets a tick pass.
-    pub fn see(&mut self, body: &Body<Dim2>, fate: Fate) {
+    pub fn see<D: Dim>(&mut self, body: &Body<D>, fate: Fate) {
         if fate.tick.is_multiple_of(LOOK) {
             self.strain = strain(body);
         }
@@ -125,7 +128,7 @@ impl Feeling {
     }
 
     /// Follows the seat.
-    fn sit(&mut self, body: &Body<Dim2>, seconds: f32) {
+    fn sit<D: Dim>(&mut self, body: &Body<D>, seconds: f32) {
         if self.seat.is_none() {
             self.choose_seat(body);
         }
@@ -138,7 +141,7 @@ impl Feeling {
         };
         let at = body.node_state(seat.node).0;
         self.behind = self.behind.map(|k| towards(k, 0.0, GLIDE));
-        self.at = [at[0] + self.behind[0], at[1] + self.behind[1], 0.0];
+        self.at = plus(at, self.behind);
         let turned = [0, 1].map(|axis| towards(self.right[axis], frame.right[axis], TURN));
         let long = length(turned);
         self.right = match long > 0.1 {
@@ -152,20 +155,20 @@ impl Feeling {
     }
 
     /// Looks for a better seat; the face goes there from where it is.
-    fn choose_seat(&mut self, body: &Body<Dim2>) {
+    fn choose_seat<D: Dim>(&mut self, body: &Body<D>) {
         let before = self.seat.filter(|&seat| is_there(body, seat));
         let after = best_seat(body, before.map(|seat| seat.node));
         if let (Some(old), Some(new)) = (self.seat, after)
             && old.node != new.node
         {
             let at = body.node_state(new.node).0;
-            self.behind = [self.at[0] - at[0], self.at[1] - at[1]];
+            self.behind = minus(self.at, at);
         }
         self.seat = after;
     }
 }
 
-fn is_there(body: &Body<Dim2>, seat: Seat) -> bool {
+fn is_there<D: Dim>(body: &Body<D>, seat: Seat) -> bool {
     let mesh = body.mesh();
     (seat.node as usize) < mesh.node_capacity()
         && mesh.is_alive(seat.node)
@@ -173,7 +176,7 @@ fn is_there(body: &Body<Dim2>, seat: Seat) -> bool {
 }
 
 /// The piece with the most nodes' mass.
-fn largest_piece(body: &Body<Dim2>) -> u32 {
+fn largest_piece<D: Dim>(body: &Body<D>) -> u32 {
     let mut masses = vec![0.0f32; body.pieces().list.len()];
     for (id, _) in body.mesh().nodes() {
         masses[body.pieces().of_node(id) as usize] += body.node_state(id).2;
@@ -185,7 +188,7 @@ fn largest_piece(body: &Body<Dim2>) -> u32 {
 
 /// The node of the largest piece that is deepest inside and near the middle; the one that is taken
 /// now unless another is clearly better.
-fn best_seat(body: &Body<Dim2>, now: Option<u32>) -> Option<Seat> {
+fn best_seat<D: Dim>(body: &Body<D>, now: Option<u32>) -> Option<Seat> {
     let (mesh, pieces) = (body.mesh(), body.pieces());
     let piece = largest_piece(body);
     let own = || mesh.nodes().filter(|&(id, _)| pieces.of_node(id) == piece);
@@ -194,17 +197,19 @@ fn best_seat(body: &Body<Dim2>, now: Option<u32>) -> Option<Seat> {
         .filter(|facet| facet.piece == piece)
         .map(|facet| mesh.node(facet.nodes[0]).at)
         .collect();
-    let (mut sum, mut count) = ([0.0f32; 2], 0.0f32);
+    let (mut sum, mut count) = ([0.0f32; 3], 0.0f32);
     for (id, node) in own() {
         let mass = body.node_state(id).2;
-        sum = [0, 1].map(|axis| sum[axis] + mass * node.at[axis] as f32);
+        sum = plus(sum, scaled(node.at.map(|k| k as f32), mass));
         count += mass;
     }
     let middle = sum.map(|k| k / count.max(1e-9));
     let mut best: Option<(f32, Seat)> = None;
-    for (id, node) in own() {
+    // In space there are too many to look at all of them.
+    let stride = 1 + own().count() * skin.len() / MOST_LOOKS;
+    for (id, node) in own().step_by(stride) {
         let rest = node.at;
-        let away = [0, 1].map(|axis| rest[axis] as f32 - middle[axis]);
+        let away = minus(rest.map(|k| k as f32), middle);
         let lazy = if now == Some(id) { LAZY } else { 0.0 };
         // In doubt upright: a ring wears its face at its top.
         let bonus = lazy - 0.3 * length(away) + 0.05 * away[1];
@@ -212,7 +217,7 @@ fn best_seat(body: &Body<Dim2>, now: Option<u32>) -> Option<Seat> {
         let enough = best.map_or(0.0, |(score, _)| (score - bonus).max(0.0));
         let mut depth = f32::MAX;
         for at in &skin {
-            depth = depth.min(length([0, 1].map(|axis| (at[axis] - rest[axis]) as f32)));
+            depth = depth.min(length([0, 1, 2].map(|axis| (at[axis] - rest[axis]) as f32)));
             if depth < enough {
                 break;
             }
@@ -225,19 +230,15 @@ fn best_seat(body: &Body<Dim2>, now: Option<u32>) -> Option<Seat> {
     best.map(|(_, seat)| seat)
 }
 
-fn length([x, y]: [f32; 2]) -> f32 {
-    (x * x + y * y).sqrt()
-}
-
 /// The mean strain of the largest piece, by volume.
-fn strain(body: &Body<Dim2>) -> f32 {
+fn strain<D: Dim>(body: &Body<D>) -> f32 {
     let piece = largest_piece(body);
     let (mut sum, mut volume) = (0.0, 0.0);
     for element in body
         .element_views()
         .filter(|element| element.piece == piece)
     {
-        let share = 4.0f32.powi(i32::from(element.level));
+        let share = (D::CORNERS as f32).powi(i32::from(element.level));
         sum += share * element.strain;
         volume += share;
     }
@@ -247,7 +248,7 @@ fn strain(body: &Body<Dim2>) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::{Blade, Material, Settings, VoxelGrid, World};
+    use fuwafuwa::{Blade, Dim2, Material, Settings, VoxelGrid, World};
 
     fn alone(grid: VoxelGrid<Dim2>) -> World<Dim2> {
         let mut world = World::new(Settings::default()).expect("usual");

@@ -123,6 +123,7 @@ mod tests {
             rect,
             centre: [0.0; 2],
             scale: 50.0,
+            space: None,
         };
         let line = |share| along_box(&view, [0.0; 3], [1.0, 0.5, 0.0], share);
         assert_eq!(line(1.0).first(), line(1.0).last());

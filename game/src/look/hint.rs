@@ -3,8 +3,8 @@
 
 use super::stage::Hint;
 use super::{Look, View};
-use egui::{Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
-use fuwafuwa::{Dim2, Vector};
+use egui::{Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
+use fuwafuwa::{Dim, Dim2, Dim3, Manipulator, Vector};
 use tamaire_play::Round;
 
 /// How long it takes from the hand to the basket [s].
@@ -12,20 +12,45 @@ const ROUND_TRIP: f32 = 3.2;
 
 /// Draws it.
 pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &Look) {
-    let strength = look.effects.hint;
-    let Some(hand) = round.world().manipulators().first() else {
-        return;
-    };
-    if look.hint == Hint::None || strength == 0.0 {
-        return;
-    }
-    let at = look.view.on_screen(hand.position());
-    let radius = hand.radius * look.view.scale;
-    let tone = look.theme.hand(0);
-    draw_ring(painter, at, radius, tone.gamma_multiply(strength), look);
-    if look.hint == Hint::Way {
+    if let Some(hand) = hand_to_show(painter, round, look)
+        && look.hint == Hint::Way
+    {
         draw_way(painter, round, hand.position(), hand.radius, look);
     }
+}
+
+/// In space it is said in words how the hand rises and the camera turns.
+pub(super) fn draw_in_space(painter: &Painter, round: &Round<Dim3>, look: &Look) {
+    if hand_to_show(painter, round, look).is_none() {
+        return;
+    }
+    let strength = look.effects.hint;
+    let rect = look.view.rect;
+    let font = FontId::proportional(20.0);
+    let galley = painter.layout_no_wrap(look.how_in_space.into(), font, Color32::PLACEHOLDER);
+    let at = rect.center_bottom() - vec2(0.5 * galley.size().x, 44.0);
+    let card = Rect::from_min_size(at, galley.size()).expand2(vec2(16.0, 8.0));
+    let (paper, ink) = (look.theme.card, look.theme.ink);
+    painter.rect_filled(card, 16.0, paper.gamma_multiply(0.8 * strength));
+    painter.galley(at, galley, ink.gamma_multiply(strength));
+}
+
+/// The first hand, with a ring around it, until it has moved.
+fn hand_to_show<'a, D: Dim>(
+    painter: &Painter,
+    round: &'a Round<D>,
+    look: &Look,
+) -> Option<&'a Manipulator> {
+    let strength = look.effects.hint;
+    let hand = round.world().manipulators().first()?;
+    if look.hint == Hint::None || strength == 0.0 {
+        return None;
+    }
+    let at = look.view.on_screen(hand.position());
+    let radius = hand.radius * look.view.scale_at(hand.position());
+    let tone = look.theme.hand(0);
+    draw_ring(painter, at, radius, tone.gamma_multiply(strength), look);
+    Some(hand)
 }
 
 /// A ring that opens around the hand.

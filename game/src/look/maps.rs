@@ -5,12 +5,14 @@ use super::stage::{basket, camera, place};
 use super::{Camera, Mood, Theme, View, draw_face};
 use eframe::egui_wgpu::RenderState;
 use egui::{Color32, Painter, Rect, TextureId, pos2};
-use fuwafuwa_render::{Frame, Look, Renderer};
+use fuwafuwa::Dim;
+use fuwafuwa_render::{Frame, Look, Renderer, space};
 use std::sync::Arc;
-use tamaire_play::{Level, Round};
-use wgpu::{FilterMode, TextureFormat, TextureUsages};
+use tamaire_play::{AnyRound, Level, Round};
+use wgpu::{CommandEncoder, FilterMode, TextureFormat, TextureUsages, TextureView};
 
-/// Pixels of a picture.
+/// Colours and pixels of a picture.
+const FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 const SIZE: [u32; 2] = [480, 320];
 
 /// Little pictures of levels.
@@ -19,6 +21,7 @@ pub struct Maps {
     pictures: Vec<Picture>,
     theme: Option<Theme>,
     renderer: Option<Renderer>,
+    space: Option<space::Renderer>,
 }
 
 struct Picture {
@@ -55,9 +58,7 @@ impl Maps {
             pictures.any(|picture| Arc::ptr_eq(&picture.level, level))
         };
         if let Some(level) = levels.iter().find(|level| !is_known(level)) {
-            let new = || Renderer::new(&state.device, TextureFormat::Rgba8Unorm);
-            let renderer = self.renderer.get_or_insert_with(new);
-            let picture = Picture::of(state, renderer, level, theme);
+            let picture = self.picture(state, level, theme);
             self.pictures.push(picture);
         }
     }
@@ -71,12 +72,10 @@ impl Maps {
             stays
         });
     }
-}
 
-impl Picture {
-    fn of(state: &RenderState, renderer: &mut Renderer, level: &Arc<Level>, theme: &Theme) -> Self {
+    /// The picture of a level.
+    fn picture(&mut self, state: &RenderState, level: &Arc<Level>, theme: &Theme) -> Picture {
         let RenderState { device, queue, .. } = state;
-        let round = Round::new(level.clone());
         let texture = device.create_texture(&wgpu::TextureDescriptor {
             label: Some("map"),
             size: wgpu::Extent3d {
@@ -87,48 +86,78 @@ impl Picture {
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
-            format: TextureFormat::Rgba8Unorm,
+            format: FORMAT,
             usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
             view_formats: &[],
         });
         let target = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let rect = Rect::from_min_max(pos2(0.0, 0.0), pos2(SIZE[0] as f32, SIZE[1] as f32));
-        let frame = Frame {
-            camera: camera(&view(rect, level)),
-            theme: &theme.world,
-            look: Look::Skin,
-            basket: basket(&round),
-            particles: &[],
-            seconds: 0.0,
-        };
+        let view = view(rect, level);
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        renderer.prepare(device, queue, &mut encoder, round.world(), &frame, SIZE);
-        let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("map"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &target,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                    store: wgpu::StoreOp::Store,
-                },
-            })],
-            ..wgpu::RenderPassDescriptor::default()
-        });
-        let mut pass = pass.forget_lifetime();
-        renderer.paint(&mut pass);
-        drop(pass);
+        let feelings = match AnyRound::new(level.clone()) {
+            AnyRound::Plane(round) => {
+                let renderer = self
+                    .renderer
+                    .get_or_insert_with(|| Renderer::new(device, FORMAT));
+                let frame = still(camera(&view), theme, &round);
+                renderer.prepare(device, queue, &mut encoder, round.world(), &frame, SIZE);
+                renderer.paint(&mut pass(&mut encoder, &target));
+                feelings(&round)
+            }
+            AnyRound::Space(round) => {
+                let new = || space::Renderer::new(device, FORMAT);
+                let renderer = self.space.get_or_insert_with(new);
+                let camera = view.space.expect("the view of a level in space has it");
+                let frame = still(camera, theme, &round);
+                renderer.prepare(device, queue, &mut encoder, round.world(), &frame, SIZE);
+                renderer.paint(&mut pass(&mut encoder, &target));
+                feelings(&round)
+            }
+        };
         queue.submit([encoder.finish()]);
         let mut textures = state.renderer.write();
-        Self {
+        Picture {
             level: level.clone(),
             texture: textures.register_native_texture(device, &target, FilterMode::Linear),
-            feelings: round.world().bodies().iter().map(Feeling::of).collect(),
+            feelings,
         }
     }
 }
 
+/// How a round looks before it begins.
+fn still<'a, D: Dim, C>(camera: C, theme: &'a Theme, round: &Round<D>) -> Frame<'a, C> {
+    Frame {
+        camera,
+        theme: &theme.world,
+        look: Look::Skin,
+        basket: basket(round),
+        particles: &[],
+        seconds: 0.0,
+    }
+}
+
+fn feelings<D: Dim>(round: &Round<D>) -> Vec<Feeling> {
+    round.world().bodies().iter().map(Feeling::of).collect()
+}
+
+/// A pass that fills a picture.
+fn pass(encoder: &mut CommandEncoder, target: &TextureView) -> wgpu::RenderPass<'static> {
+    let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("map"),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: target,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                store: wgpu::StoreOp::Store,
+            },
+        })],
+        ..wgpu::RenderPassDescriptor::default()
+    });
+    pass.forget_lifetime()
+}
+
 fn view(rect: Rect, level: &Level) -> View {
-    Camera::default().view(rect, level.arena())
+    Camera::default().view(rect, level)
 }

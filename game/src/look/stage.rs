@@ -6,11 +6,12 @@ use super::feelings::Feeling;
 use super::{Effects, Maps, Mood, Theme, draw_face, glow, hint};
 use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait, RenderState};
 use egui::{Color32, PaintCallbackInfo, Painter, Pos2, Stroke, Ui, vec2};
-use fuwafuwa::Dim2;
+use fuwafuwa::vector::{dot, length};
+use fuwafuwa::{Dim, Dim2, Dim3, Vector};
 use fuwafuwa_render::frame::ElementColour;
-use fuwafuwa_render::{Ages, Basket, Camera, Frame, Particle, Renderer};
+use fuwafuwa_render::{Ages, Basket, Camera, Frame, Particle, Renderer, space};
 use std::sync::{Arc, Mutex, PoisonError};
-use tamaire_play::{Level, Round};
+use tamaire_play::{AnyRound, Level, Round};
 
 /// How to show a round.
 #[derive(Copy, Clone, Debug)]
@@ -26,9 +27,11 @@ pub struct Look<'a> {
     /// Seconds since the game began, for blinking.
     pub time: f32,
     /// The same level as somebody played it before.
-    pub ghost: Option<&'a Round<Dim2>>,
+    pub ghost: Option<&'a AnyRound>,
     /// Whether to show what the hand could do, until it moves.
     pub hint: Hint,
+    /// How the hand rises and the camera turns, in words.
+    pub how_in_space: &'static str,
     /// With reduced motion.
     pub still: bool,
 }
@@ -44,10 +47,15 @@ pub enum Hint {
     Way,
 }
 
+/// Lines of a round that was played before.
+const GHOST: Color32 = Color32::from_rgba_premultiplied(42, 38, 56, 120);
+
 /// Where rounds are drawn: a part of a window of egui's.
 pub struct Stage {
     state: RenderState,
     renderer: Arc<Mutex<Renderer>>,
+    /// None until the first round in space.
+    space: Option<Arc<Mutex<space::Renderer>>>,
     ages: Ages,
     /// The level of the round that `ages` follows, and how far it had come [ticks].
     followed: Option<(Arc<Level>, u64)>,
@@ -71,6 +79,21 @@ impl CallbackTrait for Paint {
     }
 }
 
+/// The same in space.
+struct PaintSpace(Arc<Mutex<space::Renderer>>);
+
+impl CallbackTrait for PaintSpace {
+    fn paint(
+        &self,
+        _: PaintCallbackInfo,
+        pass: &mut wgpu::RenderPass<'static>,
+        _: &CallbackResources,
+    ) {
+        let renderer = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        renderer.paint(pass);
+    }
+}
+
 impl Stage {
     /// A stage in the window whose GPU this is.
     pub fn new(state: &RenderState) -> Self {
@@ -78,6 +101,7 @@ impl Stage {
         Self {
             state: state.clone(),
             renderer: Arc::new(Mutex::new(renderer)),
+            space: None,
             ages: Ages::default(),
             followed: None,
             maps: Maps::default(),
@@ -92,27 +116,71 @@ impl Stage {
     }
 
     /// Draws a round.
-    pub fn draw(&mut self, ui: &Ui, round: &Round<Dim2>, look: &Look) {
+    pub fn draw(&mut self, ui: &Ui, round: &AnyRound, look: &Look) {
+        match round {
+            AnyRound::Plane(round) => self.draw_plane(ui, round, look),
+            AnyRound::Space(round) => self.draw_space(ui, round, look),
+        }
+    }
+
+    fn draw_space(&mut self, ui: &Ui, round: &Round<Dim3>, look: &Look) {
+        let Some(camera) = look.view.space else {
+            return;
+        };
+        let camera = space::Camera {
+            cut: look.elements.and_then(|_| cut(&camera, look)),
+            ..camera
+        };
+        let scale = ui.ctx().pixels_per_point();
+        let size = (look.view.rect.size() * scale).max(vec2(1.0, 1.0));
+        let size = [size.x.round() as u32, size.y.round() as u32];
+        self.follow_ages(round, look);
+        let specks = particles(look);
+        let frame = Frame {
+            camera,
+            theme: &look.theme.world,
+            look: shown(look, &self.ages),
+            basket: basket(round),
+            particles: &specks,
+            seconds: if look.still { 0.0 } else { look.time },
+        };
+        let RenderState {
+            device,
+            queue,
+            target_format,
+            ..
+        } = &self.state;
+        let new = || Arc::new(Mutex::new(space::Renderer::new(device, *target_format)));
+        let shared = self.space.get_or_insert_with(new);
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut renderer = shared.lock().unwrap_or_else(PoisonError::into_inner);
+        renderer.prepare(device, queue, &mut encoder, round.world(), &frame, size);
+        queue.submit([encoder.finish()]);
+        drop(renderer);
+        let paint = PaintSpace(shared.clone());
+        let painter = ui.painter();
+        painter.add(Callback::new_paint_callback(look.view.rect, paint));
+        if let Some(AnyRound::Space(ghost)) = look.ghost {
+            draw_ghost_of_space(painter, ghost, &look.view);
+        }
+        if look.elements.is_none() {
+            draw_faces(painter, round, look);
+        }
+        hint::draw_in_space(painter, round, look);
+        look.effects.confetti.draw(painter, &look.view.flat());
+    }
+
+    fn draw_plane(&mut self, ui: &Ui, round: &Round<Dim2>, look: &Look) {
         let view = &look.view;
         let scale = ui.ctx().pixels_per_point();
         let size = (view.rect.size() * scale).max(vec2(1.0, 1.0));
         let size = [size.x.round() as u32, size.y.round() as u32];
-        self.forget_ages_of_another(round);
-        self.ages
-            .follow(round.world(), (look.time - self.time).max(0.0));
-        self.time = look.time;
+        self.follow_ages(round, look);
         let specks = particles(look);
         let frame = Frame {
             camera: camera(view),
             theme: &look.theme.world,
-            look: match look.elements {
-                None => fuwafuwa_render::Look::Skin,
-                Some(colour) => fuwafuwa_render::Look::Elements {
-                    colour,
-                    ages: &self.ages.seconds,
-                    nodes: false,
-                },
-            },
+            look: shown(look, &self.ages),
             basket: basket(round),
             particles: &specks,
             seconds: if look.still { 0.0 } else { look.time },
@@ -126,7 +194,7 @@ impl Stage {
         let painter = ui.painter();
         painter.add(Callback::new_paint_callback(view.rect, paint));
         glow::draw(painter, round, look);
-        if let Some(ghost) = look.ghost {
+        if let Some(AnyRound::Plane(ghost)) = look.ghost {
             draw_ghost(painter, ghost, view);
         }
         if look.elements.is_none() {
@@ -137,7 +205,7 @@ impl Stage {
     }
 
     /// A round that starts anew has new elements: none of them was remodelled.
-    fn forget_ages_of_another(&mut self, round: &Round<Dim2>) {
+    fn follow_ages<D: Dim>(&mut self, round: &Round<D>, look: &Look) {
         let ticks = round.world().ticks();
         let goes_on = self
             .followed
@@ -147,6 +215,30 @@ impl Stage {
             self.ages = Ages::default();
         }
         self.followed = Some((round.level().clone(), ticks));
+        let seconds = (look.time - self.time).max(0.0);
+        self.ages.follow(round.world(), seconds);
+        self.time = look.time;
+    }
+}
+
+/// What of bodies in space is left out of the element view: what is in front of the middle of the first.
+fn cut(camera: &space::Camera, look: &Look) -> Option<(Vector, f32)> {
+    let [x, _, z] = camera.axes()[2];
+    let long = length([x, z]).max(1e-3);
+    let towards = [x / long, 0.0, z / long];
+    let middle = look.effects.feelings.first()?.at;
+    Some((towards, dot(towards, middle)))
+}
+
+/// What of the bodies is shown.
+fn shown<'a>(look: &Look, ages: &'a Ages) -> fuwafuwa_render::Look<'a> {
+    match look.elements {
+        None => fuwafuwa_render::Look::Skin,
+        Some(colour) => fuwafuwa_render::Look::Elements {
+            colour,
+            ages: &ages.seconds,
+            nodes: false,
+        },
     }
 }
 
@@ -161,7 +253,7 @@ pub(super) fn camera(view: &View) -> Camera {
 }
 
 /// The basket of a round, as full as it is.
-pub(super) fn basket(round: &Round<Dim2>) -> Option<Basket> {
+pub(super) fn basket<D: Dim>(round: &Round<D>) -> Option<Basket> {
     let fill = (round.progress().inside / round.level().game().share).clamp(0.0, 1.0);
     round.basket().map(|&region| Basket { region, fill })
 }
@@ -182,7 +274,7 @@ fn particles(look: &Look) -> Vec<Particle> {
     specks.collect()
 }
 
-fn draw_faces(painter: &Painter, round: &Round<Dim2>, look: &Look) {
+fn draw_faces<D: Dim>(painter: &Painter, round: &Round<D>, look: &Look) {
     let view = &look.view;
     let bodies = round.world().bodies();
     // Before the first tick nobody has felt anything.
@@ -222,8 +314,12 @@ pub(super) fn place(feeling: &Feeling, view: &View, still: bool) -> Place {
     } else {
         start
     };
-    let size = (1.0 + start) * feeling.size * view.scale;
-    let [x, y] = feeling.right;
+    let size = (1.0 + start) * feeling.size * view.scale_at(feeling.at);
+    // In space it looks at the camera.
+    let [x, y] = match view.space {
+        None => feeling.right,
+        Some(_) => [1.0, 0.0],
+    };
     Place {
         at: view.on_screen(feeling.at),
         right: size * vec2(x, -y),
@@ -232,9 +328,30 @@ pub(super) fn place(feeling: &Feeling, view: &View, still: bool) -> Place {
     }
 }
 
+/// Rings around the pieces and hands of a round that was played before.
+fn draw_ghost_of_space(painter: &Painter, round: &Round<Dim3>, view: &View) {
+    let stroke = Stroke::new(2.5, GHOST);
+    let ring = |at, radius| {
+        painter.circle_stroke(view.on_screen(at), view.scale_at(at) * radius, stroke);
+    };
+    for body in round.world().bodies() {
+        let voxel = body.grid().voxel_size();
+        let density = body.materials()[0].density;
+        for piece in body.piece_views() {
+            let radius = (0.75 * piece.mass / density / std::f32::consts::PI).cbrt();
+            if radius > 2.0 * voxel {
+                ring(piece.centre, radius);
+            }
+        }
+    }
+    for hand in round.world().manipulators() {
+        ring(hand.position(), hand.radius);
+    }
+}
+
 /// The lines of a round that was played before.
 fn draw_ghost(painter: &Painter, round: &Round<Dim2>, view: &View) {
-    let stroke = Stroke::new(2.5, Color32::from_rgba_unmultiplied(90, 80, 120, 120));
+    let stroke = Stroke::new(2.5, GHOST);
     for body in round.world().bodies() {
         for outline in body.outlines() {
             let points = outline.points.iter().map(|&at| view.on_screen(at));

@@ -9,7 +9,7 @@ use egui::{Response, Ui};
 pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     let screen = ui.max_rect();
     let level = game.session.round().level();
-    let view = game.camera.view(screen, level.arena());
+    let view = game.camera.view(screen, level);
     game.view = Some(view);
     let theme = game.theme();
     // The first level shows the way until it has been won once.
@@ -34,6 +34,7 @@ pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
         time: game.time,
         ghost: game.session.ghost(),
         hint,
+        how_in_space: game.words().how_in_space,
         still: game.settings.reduced_motion,
     };
     stage.draw(ui, game.session.round(), &look);

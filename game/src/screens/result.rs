@@ -7,7 +7,7 @@ use crate::look::Theme;
 use crate::words::Words;
 use egui::{Align, Layout, Role, Sense, Ui, Vec2, WidgetInfo, pos2, vec2};
 use std::sync::Arc;
-use tamaire_play::{Level, Outcome, Replay, Route, Wish};
+use tamaire_play::{Level, Outcome, Route, Wish};
 use tamaire_sound::Menu;
 
 /// Width of the card [points].
@@ -157,7 +157,7 @@ fn next(game: &mut Game) {
 }
 
 fn race(game: &mut Game) {
-    let last = Arc::new(Replay::of(game.session.round()));
+    let last = Arc::new(game.session.round().replay());
     if let Err(error) = game.race(last) {
         game.notify((game.words().replay_error)(&error));
     }

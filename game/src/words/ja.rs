@@ -137,6 +137,10 @@ pub(super) const WORDS: Words = Words {
         Action::Slow => "スロー",
         Action::Step => "コマおくり",
         Action::Join => "ふたりで",
+        Action::Raise => "上げる（3D）",
+        Action::Lower => "下げる（3D）",
+        Action::TurnLeft => "左から見る（3D）",
+        Action::TurnRight => "右から見る（3D）",
         Action::CutForces => "手ごたえを切る",
     },
     on: "オン",
@@ -144,12 +148,12 @@ pub(super) const WORDS: Words = Words {
     no_sound: "音の出る機器がありません。",
     no_sticks: "スティックやパッドは使えません。",
     join_hint: "ふたりで",
+    how_in_space: "上げ下げ：ホイール、Q Z、トリガー。見まわす：右ボタンを引く、[ ]、右スティック。",
     watching: "リプレイ",
     settings_kept: "のこしたものが読めませんでした。もとのファイル：",
     not_written: "書きこめませんでした：",
     level_error,
     replay_error,
-    only_flat: "立体のステージ（dim = 3）は まだあそべません。",
 };
 
 /// What went wrong; details, which name fields and lines of files, stay as they are.
@@ -173,9 +177,6 @@ fn replay_error(error: &ReplayError) -> String {
         }
         ReplayError::Level(level) => level_error(level),
         ReplayError::LevelChanged => "このリプレイのステージは、書きかえられています。".into(),
-        ReplayError::Dimension { found, .. } => {
-            format!("立体のリプレイ（dim = {found}）は、まだ見られません。")
-        }
         ReplayError::Differs { second } => {
             format!("このリプレイは書きかえられています。{second}秒から ちがいます。")
         }

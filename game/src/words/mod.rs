@@ -112,10 +112,10 @@ pub struct Words {
     pub no_sound: &'static str,
     pub no_sticks: &'static str,
     pub join_hint: &'static str,
+    pub how_in_space: &'static str,
     pub watching: &'static str,
     pub settings_kept: &'static str,
     pub not_written: &'static str,
     pub level_error: fn(&LevelError) -> String,
     pub replay_error: fn(&ReplayError) -> String,
-    pub only_flat: &'static str,
 }

@@ -231,7 +231,7 @@ fn mouse_and_keys_are_two_players() {
     assert_eq!(game(&mut window).players.second(), Some(Seat::Keys));
     frames(&mut window, 2);
     let hands = |window: &Window| {
-        let hands = window.state().game.session.round().world().manipulators();
+        let hands = window.state().game.session.round().hands();
         hands.iter().map(|hand| hand.goal()).collect::<Vec<_>>()
     };
     let before = hands(&window);

@@ -93,7 +93,7 @@ fn a_pad_alone_goes_everywhere() {
 
     let hand = |table: &mut Table| {
         let round = game(&mut table.window).session.round();
-        round.world().manipulators()[0].goal()
+        round.hands()[0].goal()
     };
     let before = hand(&mut table);
     table.devices[0].pad.as_mut().unwrap().left = [0.0, 1.0];
@@ -200,7 +200,7 @@ fn a_second_player_joins_leaves_and_is_unplugged() {
     assert_eq!(second(&mut table), Some(Seat::Stick(DeviceId(2))));
     let hands = |table: &mut Table| {
         let round = game(&mut table.window).session.round();
-        let hands = round.world().manipulators();
+        let hands = round.hands();
         hands.iter().map(|hand| hand.goal()).collect::<Vec<_>>()
     };
     let before = hands(&mut table);

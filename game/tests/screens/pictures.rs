@@ -98,6 +98,23 @@ fn a_round() {
 }
 
 #[test]
+fn a_round_in_space() {
+    let mut window = open(Files::nowhere(), SMALLER, 1.0);
+    let mut levels = game(&mut window).levels.iter();
+    let classic = levels.position(|level| level.id == "classic-3d");
+    game(&mut window).start(classic.expect("it comes along"));
+    drive(game(&mut window), BotKind::Squeeze, |game| {
+        game.session.round().frames().len() < 120
+    });
+    frames(&mut window, 1);
+    picture(&mut window, "space");
+    game(&mut window).elements = Some(fuwafuwa_render::frame::ElementColour::Level);
+    game(&mut window).camera.orbit(0.5, 0.1);
+    frames(&mut window, 1);
+    picture(&mut window, "space_elements");
+}
+
+#[test]
 fn a_tear() {
     let mut window = open(Files::nowhere(), SMALLER, 1.0);
     game(&mut window).start(0);

@@ -95,7 +95,7 @@ pub fn drive(game: &mut Game, kind: BotKind, goes_on: impl Fn(&Game) -> bool) {
             game.session.round().frames().len() < 60 * 60,
             "a minute, and no end"
         );
-        game.devices.pointer = bot.frame(game.session.round()).goal(0);
+        game.devices.pointer = game.session.round().ask(&mut bot).goal(0);
         game.pass(TICK);
     }
     game.devices.pointer = None;

@@ -67,88 +67,110 @@ impl Renderer {
         frame: &Frame<'_>,
         size: [u32; 2],
     ) -> Result<Vec<u8>, ImageError> {
-        let plain = self.format.remove_srgb_suffix();
-        if !matches!(plain, TextureFormat::Rgba8Unorm | TextureFormat::Bgra8Unorm) {
-            return Err(ImageError::Format(self.format));
-        }
-        let size = size.map(|side| side.max(1));
-        let row = (4 * u64::from(size[0])).next_multiple_of(COPY_BYTES_PER_ROW_ALIGNMENT.into());
-        let length = row * u64::from(size[1]);
-        let limits = device.limits();
-        let (side, bytes) = (limits.max_texture_dimension_2d, limits.max_buffer_size);
-        if size[0].max(size[1]) > side || length > bytes {
-            return Err(ImageError::Size { size, side, bytes });
-        }
-        let extent = Extent3d {
-            width: size[0],
-            height: size[1],
-            depth_or_array_layers: 1,
-        };
-        let texture = device.create_texture(&TextureDescriptor {
-            label: Some("image"),
-            size: extent,
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: TextureDimension::D2,
-            format: self.format,
-            usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
-        let view = texture.create_view(&TextureViewDescriptor::default());
-        let buffer = device.create_buffer(&BufferDescriptor {
-            label: Some("image"),
-            size: length,
-            usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
-        let mut encoder = device.create_command_encoder(&CommandEncoderDescriptor::default());
-        self.prepare(device, queue, &mut encoder, world, frame, size);
-        let pass = encoder.begin_render_pass(&RenderPassDescriptor {
-            label: Some("image"),
-            color_attachments: &[Some(RenderPassColorAttachment {
-                view: &view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: Operations {
-                    load: LoadOp::Clear(Color::TRANSPARENT),
-                    store: StoreOp::Store,
-                },
-            })],
-            ..RenderPassDescriptor::default()
-        });
-        let mut pass = pass.forget_lifetime();
-        self.paint(&mut pass);
-        drop(pass);
-        let into = TexelCopyBufferInfo {
-            buffer: &buffer,
-            layout: TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(row as u32),
-                rows_per_image: None,
-            },
-        };
-        encoder.copy_texture_to_buffer(texture.as_image_copy(), into, extent);
-        queue.submit([encoder.finish()]);
-
-        let (sender, receiver) = std::sync::mpsc::channel();
-        buffer.map_async(MapMode::Read, .., move |result| {
-            // Nobody listens any more when waiting failed.
-            let _ = sender.send(result);
-        });
-        device
-            .poll(PollType::wait_indefinitely())
-            .map_err(ImageError::Poll)?;
-        let mapped = receiver.recv().expect("a finished device calls back");
-        mapped.map_err(ImageError::Map)?;
-        let bytes = buffer.get_mapped_range(..).map_err(ImageError::Range)?;
-        let rows = bytes.chunks(row as usize);
-        let mut image: Vec<u8> = rows
-            .flat_map(|row| &row[..4 * size[0] as usize])
-            .copied()
-            .collect();
-        if plain == TextureFormat::Bgra8Unorm {
-            image.chunks_exact_mut(4).for_each(|pixel| pixel.swap(0, 2));
-        }
-        Ok(image)
+        let target = (self.format, size);
+        image(device, queue, target, |step| match step {
+            Step::Before(encoder) => self.prepare(device, queue, encoder, world, frame, size),
+            Step::Inside(pass) => self.paint(pass),
+        })
     }
+}
+
+/// What there is to draw an image into: first what is drawn apart, then the image itself.
+pub enum Step<'a> {
+    /// Before the pass of the image.
+    Before(&'a mut CommandEncoder),
+    /// The pass of the image.
+    Inside(&'a mut RenderPass<'static>),
+}
+
+/// An image of a format and a size in pixels, as `draw` draws it in two steps.
+pub fn image(
+    device: &Device,
+    queue: &Queue,
+    (format, size): (TextureFormat, [u32; 2]),
+    mut draw: impl FnMut(Step<'_>),
+) -> Result<Vec<u8>, ImageError> {
+    let plain = format.remove_srgb_suffix();
+    if !matches!(plain, TextureFormat::Rgba8Unorm | TextureFormat::Bgra8Unorm) {
+        return Err(ImageError::Format(format));
+    }
+    let size = size.map(|side| side.max(1));
+    let row = (4 * u64::from(size[0])).next_multiple_of(COPY_BYTES_PER_ROW_ALIGNMENT.into());
+    let length = row * u64::from(size[1]);
+    let limits = device.limits();
+    let (side, bytes) = (limits.max_texture_dimension_2d, limits.max_buffer_size);
+    if size[0].max(size[1]) > side || length > bytes {
+        return Err(ImageError::Size { size, side, bytes });
+    }
+    let extent = Extent3d {
+        width: size[0],
+        height: size[1],
+        depth_or_array_layers: 1,
+    };
+    let texture = device.create_texture(&TextureDescriptor {
+        label: Some("image"),
+        size: extent,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: TextureDimension::D2,
+        format,
+        usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC,
+        view_formats: &[],
+    });
+    let view = texture.create_view(&TextureViewDescriptor::default());
+    let buffer = device.create_buffer(&BufferDescriptor {
+        label: Some("image"),
+        size: length,
+        usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = device.create_command_encoder(&CommandEncoderDescriptor::default());
+    draw(Step::Before(&mut encoder));
+    let pass = encoder.begin_render_pass(&RenderPassDescriptor {
+        label: Some("image"),
+        color_attachments: &[Some(RenderPassColorAttachment {
+            view: &view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: Operations {
+                load: LoadOp::Clear(Color::TRANSPARENT),
+                store: StoreOp::Store,
+            },
+        })],
+        ..RenderPassDescriptor::default()
+    });
+    let mut pass = pass.forget_lifetime();
+    draw(Step::Inside(&mut pass));
+    drop(pass);
+    let into = TexelCopyBufferInfo {
+        buffer: &buffer,
+        layout: TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(row as u32),
+            rows_per_image: None,
+        },
+    };
+    encoder.copy_texture_to_buffer(texture.as_image_copy(), into, extent);
+    queue.submit([encoder.finish()]);
+
+    let (sender, receiver) = std::sync::mpsc::channel();
+    buffer.map_async(MapMode::Read, .., move |result| {
+        // Nobody listens any more when waiting failed.
+        let _ = sender.send(result);
+    });
+    device
+        .poll(PollType::wait_indefinitely())
+        .map_err(ImageError::Poll)?;
+    let mapped = receiver.recv().expect("a finished device calls back");
+    mapped.map_err(ImageError::Map)?;
+    let bytes = buffer.get_mapped_range(..).map_err(ImageError::Range)?;
+    let rows = bytes.chunks(row as usize);
+    let mut image: Vec<u8> = rows
+        .flat_map(|row| &row[..4 * size[0] as usize])
+        .copied()
+        .collect();
+    if plain == TextureFormat::Bgra8Unorm {
+        image.chunks_exact_mut(4).for_each(|pixel| pixel.swap(0, 2));
+    }
+    Ok(image)
 }

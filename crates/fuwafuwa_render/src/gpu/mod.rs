@@ -1,9 +1,10 @@
 //! Vertices on the GPU: passes of their own, then the window's.
 
-mod buffer;
-mod image;
+pub(crate) mod buffer;
+pub(crate) mod image;
 mod pipelines;
-mod targets;
+pub(crate) mod stage;
+pub(crate) mod targets;
 
 pub use image::ImageError;
 

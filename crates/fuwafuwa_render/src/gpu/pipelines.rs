@@ -1,5 +1,8 @@
 //! What the GPU is to do with each kind of vertex.
 
+use super::stage::{
+    InMemory, OVER, SAMPLES, Stage, Target, layout, module, sampler, texture, uniform, wgsl,
+};
 use crate::elements::ElementVertex;
 use crate::rigid::{DotInstance, RigidInstance};
 use crate::skin::SkinVertex;
@@ -11,14 +14,6 @@ pub const SKIN_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 pub const SOFT_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 /// What is wound around by a curve.
 pub const STENCIL_FORMAT: TextureFormat = TextureFormat::Depth24PlusStencil8;
-/// Samples of a pixel of the skin.
-pub const SAMPLES: u32 = 4;
-
-macro_rules! shader {
-    ($($file:literal),*) => {
-        concat!(include_str!("../shaders/globals.wgsl"), $(include_str!(concat!("../shaders/", $file))),*)
-    };
-}
 
 /// All of them, and what they are bound to.
 pub struct Pipelines {
@@ -49,8 +44,6 @@ pub struct Pipelines {
     pub particle: RenderPipeline,
 }
 
-/// Over what is there, colours being multiplied by their opacity.
-const OVER: BlendState = BlendState::PREMULTIPLIED_ALPHA_BLENDING;
 /// Over what is there, and only where something is.
 const ONTO: BlendState = BlendState {
     color: BlendComponent {
@@ -79,28 +72,21 @@ impl Pipelines {
             layout(device, "images", &images)
         };
         let (shape_layout, body_layout) = (images(4), images(6));
-        let module = |label, text: &'static str| {
-            device.create_shader_module(ShaderModuleDescriptor {
-                label: Some(label),
-                source: ShaderSource::Wgsl(text.into()),
-            })
-        };
-        let skin = module("skin", shader!("skin.wgsl"));
-        let blur = module("blur", shader!("blur.wgsl"));
-        let shape = module("shape", shader!("shape.wgsl"));
-        let body = module("body", shader!("light.wgsl", "body.wgsl"));
-        let rigid = module("rigid", shader!("light.wgsl", "rigid.wgsl"));
-        let stage = |extra: Option<&BindGroupLayout>, module, entries| Stage {
-            layout: device.create_pipeline_layout(&PipelineLayoutDescriptor {
-                label: None,
-                bind_group_layouts: &[Some(&globals_layout), extra]
-                    [..1 + usize::from(extra.is_some())],
-                immediate_size: 0,
-            }),
+        let skin = module(device, "skin", wgsl!("globals.wgsl", "skin.wgsl"));
+        let blur = module(device, "blur", wgsl!("globals.wgsl", "blur.wgsl"));
+        let shape = module(device, "shape", wgsl!("globals.wgsl", "shape.wgsl"));
+        let body = module(
             device,
-            module,
-            entries,
-        };
+            "body",
+            wgsl!("globals.wgsl", "light.wgsl", "body.wgsl"),
+        );
+        let rigid = module(
+            device,
+            "rigid",
+            wgsl!("globals.wgsl", "light.wgsl", "rigid.wgsl"),
+        );
+        let stage =
+            |extra, module, entries| Stage::new(device, &globals_layout, extra, module, entries);
         let plain = |front, back| stencil(CompareFunction::Always, front, back);
         let (keep, zero) = (StencilOperation::Keep, StencilOperation::Zero);
         let (more, less) = (
@@ -111,11 +97,11 @@ impl Pipelines {
         let skins = |entries, stencil, blend, mask| {
             stage(None, &skin, entries).build(&Target {
                 buffers: &[Some(SkinVertex::layout())],
-                topology: PrimitiveTopology::TriangleList,
-                formats: &[SKIN_FORMAT; 2],
-                stencil: Some(stencil),
+                depth: Some(stencil),
+                samples: SAMPLES,
                 blend: Some(blend),
                 mask,
+                ..Target::of(&[SKIN_FORMAT; 2])
             })
         };
         let (skin_entries, all, none) = (
@@ -124,28 +110,18 @@ impl Pipelines {
             ColorWrites::empty(),
         );
         let blurs = |layout, module, entry| {
-            stage(Some(layout), module, ("whole", entry)).build(&Target {
-                buffers: &[],
-                topology: PrimitiveTopology::TriangleList,
-                formats: &[SOFT_FORMAT; 2],
-                stencil: None,
-                blend: None,
-                mask: all,
-            })
+            stage(Some(layout), module, ("whole", entry)).build(&Target::of(&[SOFT_FORMAT; 2]))
         };
+        let formats = [target];
         let shown = Target {
-            buffers: &[],
-            topology: PrimitiveTopology::TriangleList,
-            formats: &[target],
-            stencil: None,
             blend: Some(OVER),
-            mask: all,
+            ..Target::of(&formats)
         };
         let shapes = |entries| {
             stage(None, &rigid, entries).build(&Target {
                 buffers: &[Some(RigidInstance::layout())],
                 topology: PrimitiveTopology::TriangleStrip,
-                ..shown
+                ..shown.clone()
             })
         };
         Self {
@@ -155,11 +131,10 @@ impl Pipelines {
             band: skins(skin_entries, plain(keep, keep), ONTO, all),
             element: stage(None, &skin, ("element_corner", "element")).build(&Target {
                 buffers: &[Some(ElementVertex::layout())],
-                topology: PrimitiveTopology::TriangleList,
-                formats: &[SKIN_FORMAT; 2],
-                stencil: Some(plain(keep, keep)),
+                depth: Some(plain(keep, keep)),
+                samples: SAMPLES,
                 blend: Some(OVER),
-                mask: all,
+                ..Target::of(&[SKIN_FORMAT; 2])
             }),
             shrink: blurs(&blur_layout, &blur, "shrink"),
             soften: blurs(&blur_layout, &blur, "soften"),
@@ -167,7 +142,7 @@ impl Pipelines {
             arena: stage(Some(&body_layout), &body, ("whole", "arena")).build(&shown),
             body: stage(Some(&body_layout), &body, ("bounding", "body")).build(&Target {
                 topology: PrimitiveTopology::TriangleStrip,
-                ..shown
+                ..shown.clone()
             }),
             shadow: shapes(("wide_corner", "shadow")),
             bar: shapes(("close_corner", "bar")),
@@ -177,7 +152,7 @@ impl Pipelines {
             particle: stage(None, &rigid, ("dot_corner", "particle")).build(&Target {
                 buffers: &[Some(DotInstance::layout())],
                 topology: PrimitiveTopology::TriangleStrip,
-                ..shown
+                ..shown.clone()
             }),
             globals_layout,
             blur_layout,
@@ -187,141 +162,29 @@ impl Pipelines {
     }
 }
 
-/// Shaders of a pipeline and what they are bound to.
-struct Stage<'a> {
-    device: &'a Device,
-    layout: PipelineLayout,
-    module: &'a ShaderModule,
-    entries: (&'a str, &'a str),
-}
-
-/// What a pipeline reads and writes.
-#[derive(Copy, Clone)]
-struct Target<'a> {
-    buffers: &'a [Option<VertexBufferLayout<'a>>],
-    topology: PrimitiveTopology,
-    formats: &'a [TextureFormat],
-    stencil: Option<Faces>,
-    blend: Option<BlendState>,
-    mask: ColorWrites,
-}
-
-/// For triangles that face us and for those that face away.
-type Faces = [StencilFaceState; 2];
-
-impl Stage<'_> {
-    fn build(&self, target: &Target<'_>) -> RenderPipeline {
-        let (vertex, fragment) = self.entries;
-        let targets = target.formats.iter().map(|&format| {
-            Some(ColorTargetState {
-                format,
-                blend: target.blend,
-                write_mask: target.mask,
-            })
-        });
-        let targets: Vec<Option<ColorTargetState>> = targets.collect();
-        let depth_stencil = target.stencil.map(|[front, back]| DepthStencilState {
-            format: STENCIL_FORMAT,
-            depth_write_enabled: Some(false),
-            depth_compare: Some(CompareFunction::Always),
-            stencil: StencilState {
-                front,
-                back,
-                read_mask: 0xff,
-                write_mask: 0xff,
-            },
-            bias: DepthBiasState::default(),
-        });
-        self.device
-            .create_render_pipeline(&RenderPipelineDescriptor {
-                label: Some(fragment),
-                layout: Some(&self.layout),
-                vertex: VertexState {
-                    module: self.module,
-                    entry_point: Some(vertex),
-                    compilation_options: PipelineCompilationOptions::default(),
-                    buffers: target.buffers,
-                },
-                primitive: PrimitiveState {
-                    topology: target.topology,
-                    ..PrimitiveState::default()
-                },
-                multisample: MultisampleState {
-                    count: if target.stencil.is_some() { SAMPLES } else { 1 },
-                    ..MultisampleState::default()
-                },
-                depth_stencil,
-                fragment: Some(FragmentState {
-                    module: self.module,
-                    entry_point: Some(fragment),
-                    compilation_options: PipelineCompilationOptions::default(),
-                    targets: &targets,
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
-    }
-}
-
 /// Passes where the stencil compares to 0; what happens to it where triangles face us, or away.
-fn stencil(compare: CompareFunction, front: StencilOperation, back: StencilOperation) -> Faces {
-    [front, back].map(|pass_op| StencilFaceState {
+fn stencil(
+    compare: CompareFunction,
+    front: StencilOperation,
+    back: StencilOperation,
+) -> DepthStencilState {
+    let [front, back] = [front, back].map(|pass_op| StencilFaceState {
         compare,
         fail_op: StencilOperation::Keep,
         depth_fail_op: StencilOperation::Keep,
         pass_op,
-    })
-}
-
-fn layout(device: &Device, label: &str, entries: &[BindGroupLayoutEntry]) -> BindGroupLayout {
-    device.create_bind_group_layout(&BindGroupLayoutDescriptor {
-        label: Some(label),
-        entries,
-    })
-}
-
-fn entry(binding: u32, ty: BindingType) -> BindGroupLayoutEntry {
-    BindGroupLayoutEntry {
-        binding,
-        visibility: ShaderStages::VERTEX_FRAGMENT,
-        ty,
-        count: None,
-    }
-}
-
-fn uniform(binding: u32) -> BindGroupLayoutEntry {
-    let ty = BindingType::Buffer {
-        ty: BufferBindingType::Uniform,
-        has_dynamic_offset: false,
-        min_binding_size: None,
-    };
-    entry(binding, ty)
-}
-
-fn texture(binding: u32) -> BindGroupLayoutEntry {
-    let ty = BindingType::Texture {
-        sample_type: TextureSampleType::Float { filterable: true },
-        view_dimension: TextureViewDimension::D2,
-        multisampled: false,
-    };
-    entry(binding, ty)
-}
-
-fn sampler(binding: u32) -> BindGroupLayoutEntry {
-    entry(binding, BindingType::Sampler(SamplerBindingType::Filtering))
-}
-
-/// How vertices lie in memory.
-trait InMemory: Sized {
-    const ATTRIBUTES: &'static [VertexAttribute];
-    const STEP: VertexStepMode;
-
-    fn layout() -> VertexBufferLayout<'static> {
-        VertexBufferLayout {
-            array_stride: size_of::<Self>() as u64,
-            step_mode: Self::STEP,
-            attributes: Self::ATTRIBUTES,
-        }
+    });
+    DepthStencilState {
+        format: STENCIL_FORMAT,
+        depth_write_enabled: Some(false),
+        depth_compare: Some(CompareFunction::Always),
+        stencil: StencilState {
+            front,
+            back,
+            read_mask: 0xff,
+            write_mask: 0xff,
+        },
+        bias: DepthBiasState::default(),
     }
 }
 

@@ -1,6 +1,7 @@
 //! The images that bodies are drawn into, apart from the window.
 
-use super::pipelines::{Pipelines, SAMPLES, SKIN_FORMAT, SOFT_FORMAT, STENCIL_FORMAT};
+use super::pipelines::{Pipelines, SKIN_FORMAT, SOFT_FORMAT, STENCIL_FORMAT};
+use super::stage::SAMPLES;
 use bytemuck::{Pod, Zeroable};
 use wgpu::*;
 
@@ -49,13 +50,7 @@ struct Blur {
 impl Targets {
     pub fn new(device: &Device, pipelines: &Pipelines, window: [u32; 2]) -> Self {
         let window = window.map(|side| side.max(1));
-        let [width, height] = window.map(|side| side as f32);
-        let longest = device.limits().max_texture_dimension_2d as f32 / width.max(height);
-        let shrunk = (MOST_PIXELS / (width * height))
-            .sqrt()
-            .min(longest)
-            .min(1.0);
-        let size = window.map(|side| ((side as f32 * shrunk) as u32).max(1));
+        let size = within(device, window);
         let (inside, readable) = (
             TextureUsages::RENDER_ATTACHMENT,
             TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
@@ -190,6 +185,15 @@ impl Targets {
             queue.write_buffer(&self.uniforms, k as u64 * STRIDE, bytemuck::bytes_of(step));
         }
     }
+}
+
+/// The size [px] of what is drawn apart for a window: not more than the device has, nor more than it
+/// can be asked for at every frame.
+pub fn within(device: &Device, window: [u32; 2]) -> [u32; 2] {
+    let [width, height] = window.map(|side| side as f32);
+    let longest = device.limits().max_texture_dimension_2d as f32 / width.max(height);
+    let shrunk = (MOST_PIXELS / (width * height)).sqrt().min(longest);
+    window.map(|side| ((side as f32 * shrunk.min(1.0)) as u32).max(1))
 }
 
 pub fn bind(

@@ -13,14 +13,15 @@ fn shown(light: vec3f, alpha: f32) -> vec4f {
     return vec4f(sqrt(soft) * alpha, alpha);
 }
 
-// A lacquered surface: soft light, a soft and a sharp reflection, a brighter rim.
-fn lacquered(base: vec3f, normal: vec3f, gloss: f32) -> vec3f {
+// A lacquered surface, as the eye sees it from a direction: soft light, a soft and a sharp reflection,
+// a brighter rim.
+fn lacquered(base: vec3f, normal: vec3f, eye: vec3f, gloss: f32) -> vec3f {
     let light = normalize(LIGHT);
-    let half_way = normalize(light + vec3f(0.0, 0.0, 1.0));
+    let half_way = normalize(light + eye);
     let wrapped = clamp(dot(normal, light) * 0.5 + 0.5, 0.0, 1.0);
     let towards = max(dot(normal, half_way), 0.0);
     let fourth = towards * towards * towards * towards;
-    let away = 1.0 - clamp(normal.z, 0.0, 1.0);
+    let away = 1.0 - clamp(dot(normal, eye), 0.0, 1.0);
     let rim = away * away * away;
     var light_out = base * mix(0.42, 1.12, wrapped * wrapped);
     light_out += vec3f(1.0, 0.98, 0.94) * gloss * (0.16 * fourth * fourth * fourth + 0.75 * smoothstep(0.965, 0.985, towards));

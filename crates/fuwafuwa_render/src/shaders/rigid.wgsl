@@ -87,7 +87,7 @@ fn bar(in: ShapeCorner) -> @location(0) vec4f {
     let rings = noise(vec2f(wood.x * 2.5, wood.y * 55.0 + 2.0 * noise(wood * vec2f(5.0, 9.0)))) * 0.65
         + noise(wood * vec2f(9.0, 190.0)) * 0.35;
     let base = to_linear(in.colour) * mix(0.80, 1.12, rings);
-    return shown(lacquered(base, normal, 0.55), alpha);
+    return shown(lacquered(base, normal, vec3f(0.0, 0.0, 1.0), 0.55), alpha);
 }
 
 @fragment
@@ -113,7 +113,7 @@ fn hand(in: ShapeCorner) -> @location(0) vec4f {
         pattern = 1.0 - smoothstep(0.2 - soft, 0.2 + soft, length(petal));
     }
     let base = mix(to_linear(in.colour), vec3f(0.94, 0.95, 0.97), 0.9 * pattern);
-    return shown(lacquered(base, normal, 1.0), alpha);
+    return shown(lacquered(base, normal, vec3f(0.0, 0.0, 1.0), 1.0), alpha);
 }
 
 // Dashes around the border of the region march slowly.

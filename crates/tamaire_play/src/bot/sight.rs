@@ -1,10 +1,11 @@
 //! What a bot sees: the basket, the piece that matters, and what is in the way.
 
-use super::map::{Map, Ways};
+use super::map::Map;
 use crate::Round;
 use fuwafuwa::vector::{dot, length, minus, plus, scaled};
 use fuwafuwa::world::Obstacle;
 use fuwafuwa::{Dim, PieceView, Shape, Vector};
+use std::cell::LazyCell;
 
 /// Pieces with less than this share of the mass are not worth the way.
 const CRUMB: f32 = 0.003;
@@ -18,6 +19,8 @@ const SOFT: f32 = 400.0;
 pub(super) struct Sight {
     /// Into the basket, of length 1.
     pub axis: Vector,
+    /// Along its mouth, of length 1; level where the mouth is not.
+    pub across: Vector,
     /// The piece that matters.
     pub piece: Piece,
     /// Share of all mass in the largest piece of all.
@@ -52,9 +55,10 @@ pub(super) struct Piece {
 struct Basket {
     /// Into it, of length 1.
     axis: Vector,
-    /// Middle of its mouth, and half of its width [m].
+    /// Middle of its mouth [m].
     mouth: Vector,
-    half_width: f32,
+    /// Half of its width on each axis across that counts [m]; else infinite.
+    half: Vector,
 }
 
 impl Sight {
@@ -63,9 +67,9 @@ impl Sight {
     pub(super) fn of<D: Dim>(round: &Round<D>, skips: usize, off: f32) -> Option<Self> {
         let (world, arena) = (round.world(), round.level().arena());
         let (region, obstacles) = (round.basket()?, world.obstacles());
-        let basket = Basket::of(region, obstacles)?;
+        let basket = Basket::of::<D>(region, obstacles)?;
         let hand = world.manipulators().first()?;
-        let mut map = Map::new(arena, |at| {
+        let mut map = Map::new::<D>(arena, |at| {
             match clearance(at, obstacles) < 0.9 * hand.radius {
                 true => RIGID,
                 false => 1.0,
@@ -78,12 +82,13 @@ impl Sight {
         views.sort_by(|a, b| b.mass.total_cmp(&a.mass));
         let largest = views.first()?;
         let is_out = |view: &&PieceView| view.mass > CRUMB * mass && !basket.holds(view);
-        let ways = map.ways_to(basket.front());
+        let ways = LazyCell::new(|| map.ways_to(basket.front()));
+        let ahead = |from: Vector| ways.next(from);
         let mut pieces: Vec<Piece> = (views.iter().filter(is_out).take(MOST))
-            .map(|view| Piece::of(view, &basket, &ways, off, hand.radius))
+            .map(|view| Piece::of::<D>(view, &basket, &ahead, off, hand.radius))
             .collect();
         if pieces.is_empty() {
-            pieces.push(Piece::of(largest, &basket, &ways, off, hand.radius));
+            pieces.push(Piece::of::<D>(largest, &basket, &ahead, off, hand.radius));
         }
         // Stays in order of mass otherwise.
         pieces.sort_by_key(|piece| clearance(piece.behind, obstacles) < 0.5 * hand.radius);
@@ -102,6 +107,7 @@ impl Sight {
         let out = minus(basket.mouth, scaled(basket.axis, 4.0));
         Some(Self {
             axis: basket.axis,
+            across: across::<D>(basket.axis),
             piece,
             share: largest.mass / mass,
             surplus: within - round.level().game().share,
@@ -114,16 +120,36 @@ impl Sight {
 }
 
 impl Piece {
-    fn of(view: &PieceView, basket: &Basket, ways: &Ways, off: f32, hand: f32) -> Self {
+    /// `ahead`: the next place on the way from one to the front of the basket.
+    fn of<D: Dim>(
+        view: &PieceView,
+        basket: &Basket,
+        ahead: impl Fn(Vector) -> Vector,
+        off: f32,
+        hand: f32,
+    ) -> Self {
         let centre = view.centre;
         let half = scaled(minus(view.high, view.low), 0.5);
         let (along, aside) = split(minus(centre, basket.mouth), basket.axis);
-        let spare = basket.half_width - dot(half, basket.across());
+        let spare = basket.spare(half);
+        // In space what fits on one of the axes across needs to be moved along the other only: what
+        // lies on a floor is not lifted.
+        let fits =
+            |axis: usize| D::N == 3 && spare[axis].is_finite() && aside[axis].abs() < spare[axis];
+        let off_mouth = length([0, 1, 2].map(|axis| if fits(axis) { 0.0 } else { aside[axis] }));
+        let narrowest = spare.into_iter().fold(f32::INFINITY, f32::min);
         // Straight in, or first to a place in front of the mouth.
-        let target = match length(aside) > spare.max(off) {
-            true => ways.next(centre),
+        let target = match off_mouth > narrowest.max(off) {
+            true => ahead(centre),
             false => plus(basket.mouth, scaled(basket.axis, along + 0.6)),
         };
+        let target = [0, 1, 2].map(|axis| {
+            if fits(axis) {
+                centre[axis]
+            } else {
+                target[axis]
+            }
+        });
         let way = unit(minus(target, centre));
         let reach = length([0, 1, 2].map(|k| way[k] * half[k])) + hand;
         Self {
@@ -131,30 +157,27 @@ impl Piece {
             way,
             reach,
             behind: minus(centre, scaled(way, 1.1 * reach)),
-            fits: spare > 0.0,
+            fits: narrowest > 0.0,
         }
     }
 }
 
 impl Basket {
-    fn of(region: &Shape, obstacles: &[Obstacle]) -> Option<Self> {
+    fn of<D: Dim>(region: &Shape, obstacles: &[Obstacle]) -> Option<Self> {
         let Shape::Box { centre, half } = *region else {
             return None;
         };
-        let axis = inwards(centre, half, obstacles);
+        let axis = inwards::<D>(centre, half, obstacles);
         let mouth = minus(centre, scaled(axis, dot(half, axis).abs()));
-        let mut basket = Self {
-            axis,
-            mouth,
-            half_width: 0.0,
-        };
-        basket.half_width = dot(half, basket.across());
-        Some(basket)
+        let is_across = |k: usize| k < D::N && axis[k] == 0.0;
+        let half = [0, 1, 2].map(|k| if is_across(k) { half[k] } else { f32::INFINITY });
+        Some(Self { axis, mouth, half })
     }
 
-    /// Along its mouth, of length 1.
-    fn across(&self) -> Vector {
-        [self.axis[1].abs(), self.axis[0].abs(), 0.0]
+    /// How much wider it is on each axis than something, half by half [m]; negative where it is too
+    /// narrow.
+    fn spare(&self, half: Vector) -> Vector {
+        minus(self.half, half)
     }
 
     /// A place in front of its mouth [m].
@@ -167,26 +190,36 @@ impl Basket {
         let half = scaled(minus(piece.high, piece.low), 0.5);
         let middle = scaled(plus(piece.high, piece.low), 0.5);
         let (along, aside) = split(minus(middle, self.mouth), self.axis);
-        along > dot(half, self.axis).abs() && length(aside) < self.half_width
+        along > dot(half, self.axis).abs()
+            && self.spare(aside.map(f32::abs)).iter().all(|&k| k > 0.0)
     }
 }
 
 /// The way into a basket: against the direction in which one sees farthest out of it.
-fn inwards(centre: Vector, half: Vector, obstacles: &[Obstacle]) -> Vector {
-    let ways = [
+fn inwards<D: Dim>(centre: Vector, half: Vector, obstacles: &[Obstacle]) -> Vector {
+    const WAYS: [Vector; 6] = [
         [1.0, 0.0, 0.0],
         [0.0, -1.0, 0.0],
         [-1.0, 0.0, 0.0],
         [0.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [0.0, 0.0, -1.0],
     ];
     let sees = |way: &Vector| {
         let place = |step: usize| minus(centre, scaled(*way, 0.05 * step as f32));
         let free = (0..100).take_while(|&step| clearance(place(step), obstacles) > 0.0);
         free.count() as f32 * 0.05 - dot(half, *way).abs()
     };
-    ways.into_iter()
-        .max_by(|a, b| sees(a).total_cmp(&sees(b)))
-        .expect("there are four")
+    let ways = WAYS.into_iter().take(2 * D::N);
+    ways.max_by(|a, b| sees(a).total_cmp(&sees(b)))
+        .expect("there are four at least")
+}
+
+/// A direction across an axis: from the first axis to the last that counts, and else to the first.
+fn across<D: Dim>(axis: Vector) -> Vector {
+    let mut across = [-axis[1] - axis[2], 0.0, 0.0];
+    across[D::N - 1] = axis[0];
+    across
 }
 
 /// How far the nearest obstacle is [m]; negative in it.

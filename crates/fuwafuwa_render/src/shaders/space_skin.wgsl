@@ -1,0 +1,60 @@
+// Skins and elements of bodies in space.
+struct SkinCorner {
+    @builtin(position) clip: vec4f,
+    @location(0) at: vec3f,
+    @location(1) rest: vec3f,
+    @location(2) normal: vec4f,
+    @location(3) colour: vec4f,
+}
+
+@vertex
+fn skin_corner(
+    @location(0) at: vec3f,
+    @location(1) rest: vec3f,
+    @location(2) normal: vec4f,
+    @location(3) colour: vec4f,
+) -> SkinCorner {
+    return SkinCorner(globals.to_clip * vec4f(at, 1.0), at, rest, normal, colour);
+}
+
+@fragment
+fn skin(in: SkinCorner) -> @location(0) vec4f {
+    let facing = normalize(in.normal.xyz);
+    let fresh = in.colour.a;
+    var normal = facing;
+    var base = to_linear(in.colour.rgb);
+    if fresh > 0.01 {
+        // Crumbly: bumps in two sizes that stay in their place.
+        let bumps = rough3(0.9 * in.rest) + 0.7 * rough3(2.3 * in.rest);
+        normal = normalize(facing + 0.30 * fresh * bumps);
+    }
+    return shown(flesh(base, fresh, in.normal.w, in.at, normal, facing), 1.0);
+}
+
+struct BoxCorner {
+    @builtin(position) clip: vec4f,
+    @location(0) at: vec3f,
+    @location(1) sides: vec4f,
+    @location(2) colour: vec4f,
+}
+
+@vertex
+fn box_corner(@location(0) at: vec3f, @location(1) sides: vec4f, @location(2) colour: vec4f) -> BoxCorner {
+    return BoxCorner(globals.to_clip * vec4f(at, 1.0), at, sides, colour);
+}
+
+@fragment
+fn box_side(in: BoxCorner) -> @location(0) vec4f {
+    let across = cross(dpdx(in.at), dpdy(in.at));
+    let eye = normalize(globals.eye.xyz - in.at);
+    let flat = normalize(across);
+    let normal = select(-flat, flat, dot(flat, eye) > 0.0);
+    let wrapped = clamp(dot(normal, normalize(LIGHT)) * 0.5 + 0.5, 0.0, 1.0);
+    let open = open_to_light(in.at, normal);
+    var colour = to_linear(in.colour.rgb);
+    colour *= mix(0.55, 1.1, min(wrapped, mix(0.4, 1.0, open))) * from_around(in.at, normal);
+    // Lines along the edges, a pixel and a half wide.
+    let lines = smoothstep(vec4f(0.0), 1.7 * fwidth(in.sides) + 0.015, in.sides);
+    colour *= mix(0.55, 1.0, min(min(lines.x, lines.y), min(lines.z, lines.w)));
+    return shown(under_hands(colour, in.at, normal), 1.0);
+}

@@ -1,0 +1,433 @@
+//! The bare faces of a body, the points where they meet and the vertices that are drawn there.
+//!
+//! Faces hang on elements, points on nodes. [`Faces::follow`] compares each element with what it
+//! was at the last look and takes down and puts up only what differs; so it needs to know nothing
+//! of cuts, and a body that was loaded or replaced is followed as well. A point at the mouth of a
+//! crack, where the original surface meets the inside, has two vertices in the same place: one
+//! with the normal and the colour of each.
+
+use super::pool::Pool;
+use super::rest::{Rest, Tint};
+use crate::theme::{Colour, among, bytes, mix};
+use fuwafuwa::dim::corner;
+use fuwafuwa::vector::{plus, scaled};
+use fuwafuwa::view::face_corners;
+use fuwafuwa::{Body, Dim3, Point, Vector};
+
+/// No place.
+pub const NONE: u32 = u32::MAX;
+/// The faces of a voxel that hangs together with nothing.
+const ALL_FACES: u8 = 0b11_1111;
+
+/// The bare faces of a body and all that hangs on them.
+#[derive(Clone, Debug, Default)]
+pub struct Faces {
+    /// By element: what was taken up of it.
+    forms: Vec<Form>,
+    /// By node: its point, or none.
+    of_node: Vec<u32>,
+    /// Faces; those that are gone have no points.
+    pub faces: Pool<Face>,
+    /// Points; those that are gone have no node.
+    pub points: Pool<SkinPoint>,
+    /// What is drawn at the points.
+    pub vertices: Pool<Corner>,
+    /// Two triangles of vertices for each face; those that are gone are of no area.
+    pub indices: Vec<u32>,
+    /// The elements that are crumbs: they have points and faces no more.
+    pub crumbs: Vec<u32>,
+    /// Points to look at again.
+    dirty: Vec<u32>,
+    palette: Vec<Colour>,
+}
+
+/// A bare face of a voxel.
+#[derive(Copy, Clone, Debug)]
+pub struct Face {
+    /// Its points, counterclockwise seen from outside.
+    pub points: [u32; 4],
+    /// Its vertices.
+    pub vertices: [u32; 4],
+    /// At each of its points: the next corner of a face there, as 4 · face + place, or none.
+    next: [u32; 4],
+    element: u32,
+    /// Which of the faces of the element: 2 · axis + side.
+    side: u8,
+    is_fresh: bool,
+}
+
+/// A node of the surface.
+#[derive(Copy, Clone, Debug)]
+pub struct SkinPoint {
+    /// Its node, or none.
+    pub node: u32,
+    /// The nodes of a voxel that it belongs to, and that carries its offset.
+    pub voxel: [u32; 8],
+    /// How far it is moved [voxels], in the frame of the voxel.
+    pub offset: Vector,
+    /// The points that it is smoothed with.
+    pub near: [u32; 6],
+    /// How many these are.
+    pub near_count: u8,
+    /// What it lies on.
+    pub ground: Ground,
+    /// The first corner of a face at it.
+    first: u32,
+    /// Its vertices on the original surface and inside.
+    vertices: [u32; 2],
+    is_dirty: bool,
+}
+
+impl SkinPoint {
+    /// Its vertex on the original surface, or inside.
+    pub fn vertex(&self, ground: Ground) -> Option<u32> {
+        let vertex = self.vertices[usize::from(ground == Ground::Torn)];
+        (vertex != NONE).then_some(vertex)
+    }
+}
+
+/// What a point lies on.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Ground {
+    /// The original surface.
+    Skin,
+    /// The mouth of a crack.
+    Mouth,
+    /// What was inside.
+    Torn,
+}
+
+/// What is drawn at a point, whatever its motion.
+#[derive(Copy, Clone, Debug)]
+pub struct Corner {
+    /// The point, or none.
+    pub point: u32,
+    /// Where it was [voxels].
+    pub rest: Vector,
+    /// Red, green, blue; in the last place 255 where it was inside.
+    pub colour: [u8; 4],
+}
+
+/// What of an element counts for its faces.
+#[derive(Copy, Clone, Debug, PartialEq)]
+struct Form {
+    bare: u8,
+    at: Point,
+    nodes: [u32; 8],
+    /// The places of its faces, or none.
+    faces: [u32; 6],
+}
+
+const NO_FORM: Form = Form {
+    bare: 0,
+    at: [0; 3],
+    nodes: [NONE; 8],
+    faces: [NONE; 6],
+};
+const NO_FACE: Face = Face {
+    points: [NONE; 4],
+    vertices: [0; 4],
+    next: [NONE; 4],
+    element: NONE,
+    side: 0,
+    is_fresh: false,
+};
+const NO_POINT: SkinPoint = SkinPoint {
+    node: NONE,
+    voxel: [NONE; 8],
+    offset: [0.0; 3],
+    near: [NONE; 6],
+    near_count: 0,
+    ground: Ground::Skin,
+    first: NONE,
+    vertices: [NONE; 2],
+    is_dirty: false,
+};
+const NO_CORNER: Corner = Corner {
+    point: NONE,
+    rest: [0.0; 3],
+    colour: [0; 4],
+};
+
+impl Faces {
+    /// Takes up what changed since the last look; `palette` has the colours of the materials, number
+    /// 1 first. Returns whether anything did.
+    pub fn follow(&mut self, body: &Body<Dim3>, rest: &Rest, palette: &[Colour]) -> bool {
+        let mesh = body.mesh();
+        let (elements, nodes) = (mesh.element_capacity(), mesh.node_capacity());
+        // Ids are never given up by a body: this is another one.
+        if elements < self.forms.len() || nodes < self.of_node.len() {
+            *self = Self::default();
+        }
+        self.forms.resize(elements, NO_FORM);
+        self.of_node.resize(nodes, NONE);
+        self.repaint(palette);
+        let stale = self.compare(body);
+        let any = !stale.is_empty() || !self.dirty.is_empty();
+        for &(id, _) in &stale {
+            for face in std::mem::replace(&mut self.forms[id as usize], NO_FORM).faces {
+                if face != NONE {
+                    self.take_down(face);
+                }
+            }
+        }
+        let mut new = Vec::new();
+        for &(id, form) in &stale {
+            self.forms[id as usize] = form;
+            if form.bare == ALL_FACES {
+                continue;
+            }
+            for side in (0..6u8).filter(|side| form.bare >> side & 1 == 1) {
+                let face = self.put_up(body, id, side);
+                self.forms[id as usize].faces[usize::from(side)] = face;
+                new.push(face);
+            }
+        }
+        for point in std::mem::take(&mut self.dirty) {
+            self.refresh(body, rest, point);
+        }
+        self.indices.resize(6 * self.faces.all.len(), 0);
+        new.iter().for_each(|&face| self.triangulate(face));
+        any
+    }
+
+    /// The point of a node of the surface.
+    pub fn point_of(&self, node: u32) -> Option<u32> {
+        let place = self.of_node.get(node as usize)?;
+        (*place != NONE).then_some(*place)
+    }
+
+    /// Which elements differ from what they were, and what they are now.
+    fn compare(&mut self, body: &Body<Dim3>) -> Vec<(u32, Form)> {
+        let mut stale = Vec::new();
+        self.crumbs.clear();
+        for (id, known) in self.forms.iter().enumerate() {
+            let bare = body.bare_faces(id as u32);
+            if bare | known.bare == 0 {
+                continue;
+            }
+            let id = id as u32;
+            let now = match body.mesh().element(id) {
+                Some(element) if bare != 0 => Form {
+                    bare,
+                    at: element.cell.at,
+                    nodes: std::array::from_fn(|vertex| element.nodes[vertex]),
+                    ..NO_FORM
+                },
+                _ => NO_FORM,
+            };
+            if bare == ALL_FACES {
+                self.crumbs.push(id);
+            }
+            if (now.bare, now.at, now.nodes) != (known.bare, known.at, known.nodes) {
+                stale.push((id, now));
+            }
+        }
+        stale
+    }
+
+    /// Looks at all points again when the colours have changed.
+    fn repaint(&mut self, palette: &[Colour]) {
+        if self.palette != palette {
+            self.palette = palette.to_vec();
+            for place in 0..self.points.all.len() as u32 {
+                if self.points[place].node != NONE {
+                    self.look_again(place);
+                }
+            }
+        }
+    }
+
+    fn look_again(&mut self, point: u32) {
+        let is_dirty = &mut self.points[point].is_dirty;
+        if !std::mem::replace(is_dirty, true) {
+            self.dirty.push(point);
+        }
+    }
+
+    fn put_up(&mut self, body: &Body<Dim3>, element: u32, side: u8) -> u32 {
+        let form = self.forms[element as usize];
+        let mut beyond = form.at;
+        beyond[usize::from(side / 2)] += 2 * i32::from(side % 2) - 1;
+        let place = self.faces.take(Face {
+            element,
+            side,
+            is_fresh: body.grid().is_solid(beyond),
+            ..NO_FACE
+        });
+        for (k, vertex) in face_corners::<Dim3>(side.into()).into_iter().enumerate() {
+            let node = form.nodes[vertex];
+            let mut point = self.of_node[node as usize];
+            if point == NONE {
+                point = self.points.take(SkinPoint { node, ..NO_POINT });
+                self.of_node[node as usize] = point;
+            }
+            let face = &mut self.faces[place];
+            face.points[k] = point;
+            face.next[k] = self.points[point].first;
+            self.points[point].first = 4 * place + k as u32;
+            self.look_again(point);
+        }
+        place
+    }
+
+    fn take_down(&mut self, place: u32) {
+        let face = self.faces[place];
+        for (k, &point) in face.points.iter().enumerate() {
+            let own = 4 * place + k as u32;
+            let mut at = self.points[point].first;
+            if at == own {
+                self.points[point].first = face.next[k];
+            } else {
+                while self.next(at) != own {
+                    at = self.next(at);
+                }
+                self.faces[at / 4].next[at as usize % 4] = face.next[k];
+            }
+            self.look_again(point);
+        }
+        self.faces.give_back(place, NO_FACE);
+        self.indices[6 * place as usize..][..6].fill(0);
+    }
+
+    fn next(&self, corner: u32) -> u32 {
+        self.faces[corner / 4].next[corner as usize % 4]
+    }
+
+    /// The corners of faces at a point.
+    fn corners(&self, point: u32) -> impl Iterator<Item = (Face, usize)> {
+        let mut at = self.points[point].first;
+        std::iter::from_fn(move || {
+            let found = (at != NONE).then(|| (self.faces[at / 4], at as usize % 4))?;
+            at = found.0.next[found.1];
+            Some(found)
+        })
+    }
+
+    /// Works out again what follows from the faces at a point.
+    fn refresh(&mut self, body: &Body<Dim3>, rest: &Rest, place: u32) {
+        let mut point = self.points[place];
+        point.is_dirty = false;
+        if point.first == NONE {
+            for vertex in point.vertices.into_iter().filter(|&vertex| vertex != NONE) {
+                self.vertices.give_back(vertex, NO_CORNER);
+            }
+            self.of_node[point.node as usize] = NONE;
+            self.points.give_back(place, NO_POINT);
+            return;
+        }
+        let at = body.mesh().node(point.node).at;
+        let mut colours = [[0.0; 3]; 2];
+        let mut counts = [0; 2];
+        let mut near = [Near::default(); 2];
+        let mut best = f32::MIN;
+        for (face, k) in self.corners(place) {
+            let ground = usize::from(face.is_fresh);
+            counts[ground] += 1;
+            let form = &self.forms[face.element as usize];
+            let vertex = face_corners::<Dim3>(face.side.into())[k];
+            let tint = rest.tint(at, 7 - vertex).filter(|_| ground == 0);
+            colours[ground] = plus(
+                colours[ground],
+                match tint {
+                    Some(Tint {
+                        materials: [first, second],
+                        share,
+                    }) => mix(self.colour(first), self.colour(second), share),
+                    None => self.colour(body.grid().material(form.at)),
+                },
+            );
+            near[ground].add(face.points[(k + 1) % 4]);
+            near[ground].add(face.points[(k + 3) % 4]);
+            // The offset is carried by the voxel that it leads into, or away from least.
+            let offset = rest.offset(at, 7 - vertex);
+            let inwards = corner(vertex).map(|end| 1.0 - 2.0 * end as f32);
+            let towards = (0..3)
+                .map(|axis| (inwards[axis] * offset[axis]).min(0.0))
+                .sum();
+            if towards > best {
+                (best, point.voxel, point.offset) = (towards, form.nodes, offset);
+            }
+        }
+        point.ground = match counts {
+            [_, 0] => Ground::Skin,
+            [0, _] => Ground::Torn,
+            _ => Ground::Mouth,
+        };
+        let joined = match point.ground {
+            Ground::Skin => near[0],
+            Ground::Torn => near[1],
+            Ground::Mouth => near[0].common(near[1]),
+        };
+        (point.near, point.near_count) = (joined.points, joined.count);
+        for ground in 0..2 {
+            let vertex = &mut point.vertices[ground];
+            let corner = Corner {
+                point: place,
+                rest: plus(at.map(|k| k as f32), point.offset),
+                colour: bytes(
+                    scaled(colours[ground], 1.0 / counts[ground].max(1) as f32),
+                    ground as f32,
+                ),
+            };
+            match (*vertex, counts[ground]) {
+                (NONE, 0) => {}
+                (NONE, _) => *vertex = self.vertices.take(corner),
+                (known, 0) => {
+                    self.vertices.give_back(known, NO_CORNER);
+                    *vertex = NONE;
+                }
+                (known, _) => self.vertices[known] = corner,
+            }
+        }
+        self.points[place] = point;
+    }
+
+    fn colour(&self, material: u8) -> Colour {
+        among(&self.palette, usize::from(material.max(1)) - 1)
+    }
+
+    fn triangulate(&mut self, place: u32) {
+        let face = &mut self.faces[place];
+        for k in 0..4 {
+            let vertices = self.points[face.points[k]].vertices;
+            face.vertices[k] = vertices[usize::from(face.is_fresh)];
+        }
+        let corners = [0, 1, 2, 0, 2, 3].map(|k| face.vertices[k]);
+        self.indices[6 * place as usize..][..6].copy_from_slice(&corners);
+    }
+}
+
+/// Points beside a point, each once; more than six meet only where sheets do.
+#[derive(Copy, Clone, Debug)]
+struct Near {
+    points: [u32; 6],
+    count: u8,
+}
+
+impl Default for Near {
+    fn default() -> Self {
+        Self {
+            points: [NONE; 6],
+            count: 0,
+        }
+    }
+}
+
+impl Near {
+    fn add(&mut self, point: u32) {
+        let count = usize::from(self.count);
+        if count < 6 && !self.points[..count].contains(&point) {
+            self.points[count] = point;
+            self.count += 1;
+        }
+    }
+
+    fn common(self, other: Self) -> Self {
+        let mut both = Self::default();
+        let own = self.points[..self.count.into()].iter();
+        own.filter(|point| other.points.contains(point))
+            .for_each(|&point| both.add(point));
+        both
+    }
+}

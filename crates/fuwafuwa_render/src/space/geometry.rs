@@ -1,0 +1,223 @@
+//! A world in space as vertices: all that is worked out before a GPU is asked.
+
+use super::boxes::Boxes;
+use super::camera::Camera;
+use super::room::{RoomVertex, add_planes, plane};
+use super::rounded::RoundedInstance;
+use super::skin::Skin;
+use crate::frame::{Frame, Look};
+use crate::rigid::MOST_WALLS;
+use fuwafuwa::vector::{minus, plus, scaled, three};
+use fuwafuwa::{Body, Dim3, Shape, Vector, World};
+use std::ops::Range;
+
+/// How far the floor goes, in distances of the camera.
+const REACH: f32 = 3.0;
+/// Radius of a crumb, in widths of its voxel: a little more than a ball of its volume has.
+const CRUMB: f32 = 0.62;
+/// Thickness of the line that hangs from a hand [m].
+const LINE: f32 = 0.004;
+
+/// A world in space as vertices, with the buffers to make them again and again.
+#[derive(Clone, Debug, Default)]
+pub struct Geometry {
+    pub(crate) skins: Vec<Skin>,
+    /// Which skins have other triangles than before.
+    pub(crate) renewed: Vec<bool>,
+    pub(crate) boxes: Boxes,
+    pub(crate) room: Vec<RoomVertex>,
+    /// Outward normal and offset of each half-space [m].
+    pub(crate) walls: Vec<[f32; 4]>,
+    /// Bars, hands, crumbs, dust, lines below hands, and the basket.
+    pub(crate) rounded: Vec<RoundedInstance>,
+    pub(crate) bars: Range<u32>,
+    pub(crate) hands: Range<u32>,
+    pub(crate) crumbs: Range<u32>,
+    pub(crate) dust: Range<u32>,
+    pub(crate) lines: Range<u32>,
+    pub(crate) basket: Range<u32>,
+}
+
+impl Geometry {
+    /// Works out the vertices of a world.
+    pub fn gather(&mut self, world: &World<Dim3>, frame: &Frame<'_, Camera>) {
+        self.gather_room(world, &frame.camera);
+        self.rounded.clear();
+        self.boxes.clear();
+        let theme = frame.theme;
+        let bars = world.obstacles().iter();
+        let bars = bars.filter_map(|bar| RoundedInstance::of(bar.shape, theme.bar, 0.0));
+        self.bars = append(&mut self.rounded, bars);
+        let hands = || world.manipulators().iter().enumerate();
+        let balls = hands().filter_map(|(player, hand)| {
+            RoundedInstance::of(hand.shape(), theme.hand(player), player as f32)
+        });
+        self.hands = append(&mut self.rounded, balls);
+        self.skins.resize_with(world.bodies().len(), Skin::default);
+        self.renewed.clear();
+        let first = self.rounded.len() as u32;
+        for (place, body) in world.bodies().iter().enumerate() {
+            match frame.look {
+                Look::Skin => {
+                    let skin = &mut self.skins[place];
+                    self.renewed.push(skin.follow(body, &theme.materials));
+                    let crumbs = skin.crumbs().iter();
+                    let crumbs = crumbs.filter_map(|&id| crumb(body, id, frame));
+                    append(&mut self.rounded, crumbs);
+                }
+                Look::Elements { colour, ages, .. } => {
+                    let ages = ages.get(place).map_or(&[][..], Vec::as_slice);
+                    let cut = frame.camera.cut;
+                    self.boxes.add(body, theme, colour, ages, cut);
+                }
+            }
+        }
+        self.crumbs = first..self.rounded.len() as u32;
+        let dust = frame.particles.iter().enumerate();
+        let dust = dust.map(|(place, particle)| RoundedInstance {
+            colour: particle.colour,
+            ..ball(particle.at, particle.radius, place as f32)
+        });
+        self.dust = append(&mut self.rounded, dust);
+        let lines = hands().filter_map(|(player, hand)| {
+            let below = self.ground_below(hand.position())?;
+            let (from, to, radius) = (hand.position(), below, LINE);
+            let line = Shape::Capsule { from, to, radius };
+            RoundedInstance::of(line, theme.hand(player), player as f32)
+        });
+        let lines: Vec<RoundedInstance> = lines.collect();
+        self.lines = append(&mut self.rounded, lines);
+        let basket = frame.basket.iter();
+        let basket = basket
+            .filter_map(|basket| RoundedInstance::of(basket.region, theme.basket, basket.fill));
+        self.basket = append(&mut self.rounded, basket);
+    }
+
+    /// How many vertices bodies have.
+    pub fn vertex_count(&self) -> usize {
+        let skins = self.skins.iter().map(|skin| skin.vertices().len());
+        skins.sum::<usize>() + self.boxes.vertices.len()
+    }
+
+    fn gather_room(&mut self, world: &World<Dim3>, camera: &Camera) {
+        self.walls.clear();
+        let shapes = world.obstacles().iter().map(|obstacle| &obstacle.shape);
+        self.walls.extend(shapes.filter_map(plane).take(MOST_WALLS));
+        self.room.clear();
+        let reach = REACH * camera.distance;
+        add_planes(&mut self.room, &self.walls, camera.target, reach);
+    }
+
+    /// Where a place falls to, if there is a floor [m].
+    fn ground_below(&self, at: Vector) -> Option<Vector> {
+        let floors = self.walls.iter().filter(|wall| wall[1] > 0.5);
+        let heights = floors.map(|[x, y, z, offset]| (offset - x * at[0] - z * at[2]) / y);
+        let height = heights.fold(f32::MIN, f32::max);
+        (f32::MIN < height && height < at[1]).then_some([at[0], height, at[2]])
+    }
+}
+
+/// Adds instances; returns where they are.
+fn append(
+    all: &mut Vec<RoundedInstance>,
+    more: impl IntoIterator<Item = RoundedInstance>,
+) -> Range<u32> {
+    let first = all.len() as u32;
+    all.extend(more);
+    first..all.len() as u32
+}
+
+fn ball(centre: Vector, radius: f32, number: f32) -> RoundedInstance {
+    RoundedInstance {
+        centre,
+        radius,
+        axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        number,
+        ..RoundedInstance::default()
+    }
+}
+
+/// A voxel that is a piece of its own: a ball that is squashed as it is.
+fn crumb(body: &Body<Dim3>, id: u32, frame: &Frame<'_, Camera>) -> Option<RoundedInstance> {
+    let element = body.mesh().element(id)?;
+    let place = |k: usize| three(body.positions()[element.nodes[k] as usize]);
+    let sum = |side: [usize; 4]| side.map(place).into_iter().fold([0.0; 3], plus);
+    let (low, high) = (sum([0, 1, 2, 3]), sum([4, 5, 6, 7]));
+    let along = |low: [usize; 4], high: [usize; 4]| scaled(minus(sum(high), sum(low)), 0.25);
+    let material = body.grid().material(element.cell.at);
+    let [red, green, blue] = frame.theme.material(material);
+    Some(RoundedInstance {
+        centre: scaled(plus(low, high), 0.125),
+        radius: CRUMB,
+        axes: [
+            along([0, 2, 4, 6], [1, 3, 5, 7]),
+            along([0, 1, 4, 5], [2, 3, 6, 7]),
+            along([0, 1, 2, 3], [4, 5, 6, 7]),
+        ],
+        half: [0.0; 3],
+        colour: [red, green, blue, 1.0],
+        number: id as f32,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Theme;
+    use fuwafuwa::{Manipulator, Material, Settings, VoxelGrid};
+
+    #[test]
+    fn everything_has_its_place() {
+        let mut world = World::<Dim3>::new(Settings::default()).unwrap();
+        let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0, -0.5, 0.0]);
+        world.add_obstacle(floor, 0.2).unwrap();
+        let (from, to, radius) = ([0.0; 3], [1.0, 0.0, 0.0], 0.1);
+        let bar = Shape::Capsule { from, to, radius };
+        world.add_obstacle(bar, 0.2).unwrap();
+        let hand = Manipulator::new([0.0, 3.0, 1.0], 0.2);
+        world.add_manipulator(hand).unwrap();
+        let grid = VoxelGrid::from_fn([5, 2, 2], 0.5, |[x, ..]| u8::from(x != 2)).unwrap();
+        world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+        let grid = VoxelGrid::from_fn([1, 1, 1], 0.5, |_| 1).unwrap();
+        world.add_body(
+            Body::new(grid, &[Material::default()])
+                .unwrap()
+                .moved([0.0, 2.0, 0.0]),
+        );
+        let theme = Theme::candy();
+        let mut frame = Frame {
+            camera: Camera::fit([-1.0; 3], [1.0; 3], [1, 1]),
+            theme: &theme,
+            look: Look::Skin,
+            basket: None,
+            particles: &[],
+            seconds: 0.0,
+        };
+        let mut geometry = Geometry::default();
+        for is_first in [true, false] {
+            geometry.gather(&world, &frame);
+            assert_eq!(geometry.renewed, [is_first; 2]);
+        }
+        assert_eq!(
+            (
+                geometry.bars.len(),
+                geometry.hands.len(),
+                geometry.crumbs.len()
+            ),
+            (1, 1, 1)
+        );
+        assert_eq!((geometry.room.len(), geometry.boxes.vertices.len()), (6, 0));
+        let crumb = geometry.rounded[geometry.crumbs.start as usize];
+        assert_eq!(crumb.centre, [0.25, 2.25, 0.25]);
+        assert_eq!(crumb.axes[1], [0.0, 0.5, 0.0]);
+        let line = geometry.rounded[geometry.lines.start as usize];
+        assert_eq!((line.centre, line.half[0]), ([0.0, 1.25, 1.0], 1.75));
+        frame.look = Look::Elements {
+            colour: crate::frame::ElementColour::Level,
+            ages: &[],
+            nodes: false,
+        };
+        geometry.gather(&world, &frame);
+        assert!(geometry.boxes.vertices.len() > 6 * 4 && geometry.crumbs.is_empty());
+    }
+}

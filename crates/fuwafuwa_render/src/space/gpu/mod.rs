@@ -1,0 +1,388 @@
+//! Vertices on the GPU: the shadow map, the picture, then the window's pass.
+
+mod pipelines;
+mod targets;
+
+use super::camera::{Camera, Matrix, product, seen_from};
+use super::geometry::Geometry;
+use super::rounded;
+use super::skin::Skin;
+use crate::frame::Frame;
+use crate::gpu::ImageError;
+use crate::gpu::buffer::{GrowingBuffer, drawable};
+use crate::gpu::image::{Step, image};
+use crate::gpu::targets::bind;
+use crate::rigid::MOST_WALLS;
+use bytemuck::{Pod, Zeroable};
+use fuwafuwa::vector::{cross, length, scaled};
+use fuwafuwa::{Dim3, Vector, World};
+use pipelines::Pipelines;
+use std::ops::Range;
+use targets::{SHADOW_SIDES, Shadows, Targets};
+use wgpu::*;
+
+/// Where the light comes from; `LIGHT` in `space.wgsl` says the same.
+const LIGHT: Vector = [-0.42, 0.80, 0.45];
+/// The sky is above.
+const SKY: Vector = [0.0, 1.0, 0.0];
+/// Half of what the light shines on from side to side, in distances of the camera.
+const LIT: f32 = 0.55;
+/// How far shadows of the light and of the sky are blurred, as shares of their maps: more makes them
+/// softer, until single samples show as steps.
+const SOFTNESS: [f32; 2] = [0.012, 0.035];
+/// Hands that throw shadows; more have no place in the uniforms of a small device.
+const MOST_HANDS: usize = 4;
+/// How fine balls are that may be large, and small ones.
+const FINE: usize = 12;
+const COARSE: usize = 3;
+
+/// Draws worlds in space.
+pub struct Renderer {
+    format: TextureFormat,
+    pipelines: Pipelines,
+    targets: Targets,
+    shadows: Shadows,
+    geometry: Geometry,
+    /// For the picture, then for both shadow maps.
+    uniforms: [Buffer; 3],
+    globals: [BindGroup; 3],
+    /// Vertices and triangles of each body.
+    skins: Vec<[GrowingBuffer; 2]>,
+    boxes: [GrowingBuffer; 2],
+    room: GrowingBuffer,
+    rounded: GrowingBuffer,
+    fine: [GrowingBuffer; 2],
+    coarse: [GrowingBuffer; 2],
+}
+
+/// What every shader knows; see `space.wgsl`.
+#[repr(C)]
+#[derive(Copy, Clone, Debug, Pod, Zeroable)]
+struct Globals {
+    to_clip: Matrix,
+    to_light: Matrix,
+    to_sky: Matrix,
+    eye: [f32; 4],
+    look: [f32; 4],
+    tune: [f32; 4],
+    size: [f32; 4],
+    soft: [f32; 4],
+    floor_middle: [f32; 4],
+    floor_rim: [f32; 4],
+    frame: [f32; 4],
+    fresh: [f32; 4],
+    hands: [[f32; 4]; MOST_HANDS],
+    hand_colours: [[f32; 4]; MOST_HANDS],
+    walls: [[f32; 4]; MOST_WALLS],
+}
+
+impl Renderer {
+    /// A renderer for passes with a single target of a format, best one without `Srgb`, as egui
+    /// has them; no depth and no multisampling.
+    pub fn new(device: &Device, target_format: TextureFormat) -> Self {
+        let pipelines = Pipelines::new(device, target_format);
+        let uniforms = [0, 1, 2].map(|_| {
+            device.create_buffer(&BufferDescriptor {
+                label: Some("globals"),
+                size: size_of::<Globals>() as u64,
+                usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        });
+        let globals = uniforms.each_ref().map(|buffer| {
+            let resource = buffer.as_entire_binding();
+            bind(device, &pipelines.globals_layout, &[resource])
+        });
+        Self {
+            format: target_format,
+            targets: Targets::new(device, &pipelines, [1, 1]),
+            shadows: Shadows::new(device, &pipelines),
+            geometry: Geometry::default(),
+            uniforms,
+            globals,
+            skins: Vec::new(),
+            boxes: mesh_buffers(device, "boxes"),
+            room: GrowingBuffer::new(device, "room", BufferUsages::VERTEX),
+            rounded: GrowingBuffer::new(device, "rounded", BufferUsages::VERTEX),
+            fine: mesh_buffers(device, "fine balls"),
+            coarse: mesh_buffers(device, "coarse balls"),
+            pipelines,
+        }
+    }
+
+    /// Makes a picture of a world ready for a target of `target_size` pixels: works out and
+    /// uploads its vertices, and draws it into an image of its own.
+    pub fn prepare(
+        &mut self,
+        device: &Device,
+        queue: &Queue,
+        encoder: &mut CommandEncoder,
+        world: &World<Dim3>,
+        frame: &Frame<'_, Camera>,
+        target_size: [u32; 2],
+    ) {
+        if self.targets.window != target_size.map(|side| side.max(1)) {
+            self.targets = Targets::new(device, &self.pipelines, target_size);
+        }
+        self.geometry.gather(world, frame);
+        self.upload(device, queue);
+        self.tell(queue, frame);
+        self.draw_shadows(encoder);
+        self.draw_picture(encoder);
+    }
+
+    /// Puts the picture that was made ready into a pass, filling its viewport.
+    pub fn paint(&self, pass: &mut RenderPass<'static>) {
+        pass.set_pipeline(&self.pipelines.window);
+        pass.set_bind_group(0, &self.globals[0], &[]);
+        pass.set_bind_group(1, &self.targets.shown, &[]);
+        pass.draw(0..3, 0..1);
+    }
+
+    /// The skin of a body, by its place in the world, as of the last picture that showed skins.
+    pub fn skin(&self, body: usize) -> Option<&Skin> {
+        self.geometry.skins.get(body)
+    }
+
+    /// Draws a world into an image, as [`crate::Renderer::render_to_image`] does in the plane.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn render_to_image(
+        &mut self,
+        device: &Device,
+        queue: &Queue,
+        world: &World<Dim3>,
+        frame: &Frame<'_, Camera>,
+        size: [u32; 2],
+    ) -> Result<Vec<u8>, ImageError> {
+        let target = (self.format, size);
+        image(device, queue, target, |step| match step {
+            Step::Before(encoder) => self.prepare(device, queue, encoder, world, frame, size),
+            Step::Inside(pass) => self.paint(pass),
+        })
+    }
+
+    fn upload(&mut self, device: &Device, queue: &Queue) {
+        let Geometry {
+            skins,
+            renewed,
+            boxes,
+            room,
+            rounded,
+            ..
+        } = &self.geometry;
+        self.skins.truncate(skins.len());
+        while self.skins.len() < skins.len() {
+            self.skins.push(mesh_buffers(device, "skin"));
+        }
+        for (place, is_new) in renewed.iter().enumerate() {
+            let (skin, [vertices, indices]) = (&skins[place], &mut self.skins[place]);
+            vertices.write(device, queue, skin.vertices());
+            // A body that is gone leaves its buffers to the next one.
+            if *is_new || indices.count() as usize != skin.indices().len() {
+                let there = drawable(skin.indices(), skin.vertices(), vertices.count());
+                indices.write(device, queue, there);
+            }
+        }
+        write_mesh(
+            device,
+            queue,
+            &mut self.boxes,
+            &boxes.vertices,
+            &boxes.indices,
+        );
+        self.room.write(device, queue, room);
+        self.rounded.write(device, queue, rounded);
+        for (buffers, fineness) in [(&mut self.fine, FINE), (&mut self.coarse, COARSE)] {
+            if buffers[0].count() == 0 {
+                let (vertices, indices) = rounded::mesh(fineness);
+                write_mesh(device, queue, buffers, &vertices, &indices);
+            }
+        }
+    }
+
+    /// Writes the uniforms.
+    fn tell(&self, queue: &Queue, frame: &Frame<'_, Camera>) {
+        let (camera, theme, size) = (&frame.camera, frame.theme, self.targets.size);
+        let half = LIT * camera.distance;
+        let [to_light, to_sky] = [LIGHT, SKY].map(|light| seen_by(light, camera.target, half));
+        let texels = SHADOW_SIDES.map(|side| 2.0 * half / side as f32);
+        let four = |[x, y, z]: [f32; 3], w: f32| [x, y, z, w];
+        let mut walls = [[0.0; 4]; MOST_WALLS];
+        walls[..self.geometry.walls.len()].copy_from_slice(&self.geometry.walls);
+        let (mut hands, mut hand_colours) = ([[0.0; 4]; MOST_HANDS], [[0.0; 4]; MOST_HANDS]);
+        let range = |range: &Range<u32>| range.start as usize..range.end as usize;
+        let balls = &self.geometry.rounded[range(&self.geometry.hands)];
+        for (place, ball) in balls.iter().take(MOST_HANDS).enumerate() {
+            hands[place] = four(ball.centre, ball.radius);
+            hand_colours[place] = ball.colour;
+        }
+        let hand_count = balls.len().min(MOST_HANDS) as f32;
+        let mut globals = Globals {
+            to_clip: camera.to_clip(size),
+            to_light,
+            to_sky,
+            eye: four(camera.eye(), 0.0),
+            look: four(camera.target, camera.distance),
+            tune: [
+                frame.seconds,
+                self.geometry.walls.len() as f32,
+                0.0,
+                hand_count,
+            ],
+            size: [size[0] as f32, size[1] as f32, 0.0, 0.0],
+            soft: [texels[0], SOFTNESS[0], texels[1], SOFTNESS[1]],
+            floor_middle: four(theme.floor[0], 1.0),
+            floor_rim: four(theme.floor[1], 1.0),
+            frame: four(theme.frame, 1.0),
+            fresh: four(theme.fresh, 1.0),
+            hands,
+            hand_colours,
+            walls,
+        };
+        for (to_clip, buffer) in [globals.to_clip, to_light, to_sky]
+            .iter()
+            .zip(&self.uniforms)
+        {
+            globals.to_clip = *to_clip;
+            queue.write_buffer(buffer, 0, bytemuck::bytes_of(&globals));
+        }
+    }
+
+    fn draw_shadows(&self, encoder: &mut CommandEncoder) {
+        for (map, globals) in self.shadows.maps.iter().zip(&self.globals[1..]) {
+            let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+                label: Some("shadows"),
+                depth_stencil_attachment: Some(depth_attachment(map, StoreOp::Store)),
+                ..RenderPassDescriptor::default()
+            });
+            let (pipelines, geometry) = (&self.pipelines, &self.geometry);
+            pass.set_bind_group(0, globals, &[]);
+            pass.set_pipeline(&pipelines.skin_shadow);
+            self.draw_skins(&mut pass);
+            pass.set_pipeline(&pipelines.element_shadow);
+            draw_mesh(&mut pass, &self.boxes, 0..1);
+            pass.set_vertex_buffer(1, self.rounded.all());
+            pass.set_pipeline(&pipelines.bar_shadow);
+            draw_mesh(&mut pass, &self.fine, self.there(&geometry.bars));
+            pass.set_pipeline(&pipelines.crumb_shadow);
+            draw_mesh(&mut pass, &self.coarse, self.there(&geometry.crumbs));
+        }
+    }
+
+    fn draw_picture(&self, encoder: &mut CommandEncoder) {
+        let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+            label: Some("space"),
+            color_attachments: &[Some(RenderPassColorAttachment {
+                view: &self.targets.rough,
+                depth_slice: None,
+                resolve_target: Some(&self.targets.picture),
+                ops: Operations {
+                    load: LoadOp::Clear(Color::TRANSPARENT),
+                    store: StoreOp::Discard,
+                },
+            })],
+            depth_stencil_attachment: Some(depth_attachment(&self.targets.depth, StoreOp::Discard)),
+            ..RenderPassDescriptor::default()
+        });
+        let (pipelines, geometry) = (&self.pipelines, &self.geometry);
+        pass.set_bind_group(0, &self.globals[0], &[]);
+        pass.set_bind_group(1, &self.shadows.read, &[]);
+        pass.set_pipeline(&pipelines.sky);
+        pass.draw(0..3, 0..1);
+        pass.set_pipeline(&pipelines.room);
+        pass.set_vertex_buffer(0, self.room.all());
+        pass.draw(0..self.room.count(), 0..1);
+        pass.set_pipeline(&pipelines.skin);
+        self.draw_skins(&mut pass);
+        pass.set_pipeline(&pipelines.element);
+        draw_mesh(&mut pass, &self.boxes, 0..1);
+        pass.set_vertex_buffer(1, self.rounded.all());
+        for (pipeline, mesh, instances) in [
+            (&pipelines.bar, &self.fine, &geometry.bars),
+            (&pipelines.crumb, &self.coarse, &geometry.crumbs),
+            (&pipelines.hidden_hand, &self.fine, &geometry.hands),
+            (&pipelines.hand, &self.fine, &geometry.hands),
+            (&pipelines.glow, &self.fine, &geometry.basket),
+            (&pipelines.line, &self.coarse, &geometry.lines),
+            (&pipelines.dust, &self.coarse, &geometry.dust),
+        ] {
+            pass.set_pipeline(pipeline);
+            draw_mesh(&mut pass, mesh, self.there(instances));
+        }
+    }
+
+    fn draw_skins(&self, pass: &mut RenderPass<'_>) {
+        // In the element view there are none.
+        for buffers in &self.skins[..self.geometry.renewed.len()] {
+            draw_mesh(pass, buffers, 0..1);
+        }
+    }
+
+    /// Instances, as far as the device has room for them.
+    fn there(&self, instances: &Range<u32>) -> Range<u32> {
+        let count = self.rounded.count();
+        instances.start.min(count)..instances.end.min(count)
+    }
+}
+
+/// From metres to the coordinates of a shadow map that sees `half` [m] around a middle, from where a
+/// light comes.
+fn seen_by(light: Vector, middle: Vector, half: f32) -> Matrix {
+    let back = scaled(light, 1.0 / length(light));
+    let right = cross([0.0, 0.0, -1.0], back);
+    let right = scaled(right, 1.0 / length(right));
+    let seen = seen_from(middle, [right, cross(back, right), back]);
+    let over = 1.0 / half;
+    // Things in front of what is lit throw shadows onto it as well.
+    let depth = -1.0 / (6.0 * half);
+    let flat = [
+        [over, 0.0, 0.0, 0.0],
+        [0.0, over, 0.0, 0.0],
+        [0.0, 0.0, depth, 0.0],
+        [0.0, 0.0, 0.5, 1.0],
+    ];
+    product(flat, seen)
+}
+
+fn mesh_buffers(device: &Device, label: &'static str) -> [GrowingBuffer; 2] {
+    [BufferUsages::VERTEX, BufferUsages::INDEX]
+        .map(|usage| GrowingBuffer::new(device, label, usage))
+}
+
+fn write_mesh<T: Pod>(
+    device: &Device,
+    queue: &Queue,
+    [vertices, indices]: &mut [GrowingBuffer; 2],
+    corners: &[T],
+    triangles: &[u32],
+) {
+    vertices.write(device, queue, corners);
+    let there = drawable(triangles, corners, vertices.count());
+    indices.write(device, queue, there);
+}
+
+fn draw_mesh(
+    pass: &mut RenderPass<'_>,
+    [vertices, indices]: &[GrowingBuffer; 2],
+    instances: Range<u32>,
+) {
+    if indices.count() == 0 || instances.is_empty() {
+        return;
+    }
+    pass.set_vertex_buffer(0, vertices.all());
+    pass.set_index_buffer(indices.all(), IndexFormat::Uint32);
+    pass.draw_indexed(0..indices.count(), 0, instances);
+}
+
+fn depth_attachment(view: &TextureView, store: StoreOp) -> RenderPassDepthStencilAttachment<'_> {
+    RenderPassDepthStencilAttachment {
+        view,
+        depth_ops: Some(Operations {
+            load: LoadOp::Clear(1.0),
+            store,
+        }),
+        stencil_ops: None,
+    }
+}

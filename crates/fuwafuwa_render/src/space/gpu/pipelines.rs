@@ -1,0 +1,192 @@
+//! What the GPU is to do with each kind of vertex of a world in space.
+
+use super::targets::{DEPTH_FORMAT, PICTURE_FORMAT, SHADOW_FORMAT};
+use crate::gpu::stage::{
+    InMemory, OVER, SAMPLES, Stage, Target, entry, layout, module, sampler, texture, uniform, wgsl,
+};
+use crate::space::boxes::BoxVertex;
+use crate::space::room::RoomVertex;
+use crate::space::rounded::{RoundedInstance, RoundedVertex};
+use crate::space::skin::SkinVertex;
+use wgpu::*;
+
+/// All of them, and what they are bound to.
+pub struct Pipelines {
+    pub globals_layout: BindGroupLayout,
+    pub shadow_layout: BindGroupLayout,
+    pub window_layout: BindGroupLayout,
+    pub sky: RenderPipeline,
+    pub room: RenderPipeline,
+    pub skin: RenderPipeline,
+    pub element: RenderPipeline,
+    pub bar: RenderPipeline,
+    pub hand: RenderPipeline,
+    pub hidden_hand: RenderPipeline,
+    pub crumb: RenderPipeline,
+    pub dust: RenderPipeline,
+    pub line: RenderPipeline,
+    pub glow: RenderPipeline,
+    /// What throws shadows, seen from the light.
+    pub skin_shadow: RenderPipeline,
+    pub element_shadow: RenderPipeline,
+    pub bar_shadow: RenderPipeline,
+    pub crumb_shadow: RenderPipeline,
+    /// The finished picture into a window.
+    pub window: RenderPipeline,
+}
+
+impl Pipelines {
+    pub fn new(device: &Device, target: TextureFormat) -> Self {
+        let globals_layout = layout(device, "globals", &[uniform(0)]);
+        let depth = BindingType::Texture {
+            sample_type: TextureSampleType::Depth,
+            view_dimension: TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let compare = BindingType::Sampler(SamplerBindingType::Comparison);
+        let shadow_layout = layout(
+            device,
+            "shadow",
+            &[entry(0, depth), entry(1, depth), entry(2, compare)],
+        );
+        let window_layout = layout(device, "window", &[texture(0), sampler(1)]);
+        let skin = wgsl!(
+            "space.wgsl",
+            "light.wgsl",
+            "space_light.wgsl",
+            "space_skin.wgsl"
+        );
+        let skin = module(device, "skin", skin);
+        let rigid = wgsl!(
+            "space.wgsl",
+            "light.wgsl",
+            "space_light.wgsl",
+            "space_rigid.wgsl"
+        );
+        let rigid = module(device, "rigid", rigid);
+        let window = module(device, "window", wgsl!("space.wgsl", "space_window.wgsl"));
+        let stage =
+            |extra, module, entries| Stage::new(device, &globals_layout, extra, module, entries);
+        let solid = Target {
+            depth: Some(depth_state(DEPTH_FORMAT, true)),
+            cull: Some(Face::Back),
+            samples: SAMPLES,
+            ..Target::of(&[PICTURE_FORMAT])
+        };
+        let clear = Target {
+            depth: Some(depth_state(DEPTH_FORMAT, false)),
+            blend: Some(OVER),
+            ..solid.clone()
+        };
+        let dark = Target {
+            depth: Some(DepthStencilState {
+                bias: DepthBiasState {
+                    constant: 2,
+                    slope_scale: 2.0,
+                    clamp: 0.0,
+                },
+                ..depth_state(SHADOW_FORMAT, true)
+            }),
+            ..Target::of(&[])
+        };
+        let drawn =
+            |module, entries, buffers: &[Option<VertexBufferLayout<'_>>], target: &Target<'_>| {
+                let shadow = (!target.formats.is_empty()).then_some(&shadow_layout);
+                stage(shadow, module, entries).build(&Target {
+                    buffers,
+                    ..target.clone()
+                })
+            };
+        let skins = [Some(SkinVertex::layout())];
+        let boxes = [Some(BoxVertex::layout())];
+        let rounded = [
+            Some(RoundedVertex::layout()),
+            Some(RoundedInstance::layout()),
+        ];
+        let balls = |entries, target| drawn(&rigid, entries, &rounded, target);
+        let both_sides = Target {
+            cull: None,
+            ..clear.clone()
+        };
+        let behind = Target {
+            depth: Some(DepthStencilState {
+                depth_compare: Some(CompareFunction::Greater),
+                ..depth_state(DEPTH_FORMAT, false)
+            }),
+            ..clear.clone()
+        };
+        let window_entry = match target.is_srgb() {
+            true => "linear_window",
+            false => "window",
+        };
+        Self {
+            sky: drawn(&rigid, ("sky_corner", "sky"), &[], &clear),
+            room: drawn(
+                &rigid,
+                ("room_corner", "room"),
+                &[Some(RoomVertex::layout())],
+                &solid,
+            ),
+            skin: drawn(&skin, ("skin_corner", "skin"), &skins, &solid),
+            element: drawn(&skin, ("box_corner", "box_side"), &boxes, &solid),
+            bar: balls(("plain_corner", "bar"), &solid),
+            hand: balls(("plain_corner", "hand"), &solid),
+            hidden_hand: balls(("plain_corner", "hidden_hand"), &behind),
+            crumb: balls(("rough_corner", "crumb"), &solid),
+            dust: balls(("rough_corner", "dust"), &clear),
+            line: balls(("plain_corner", "line"), &clear),
+            glow: balls(("plain_corner", "glow"), &both_sides),
+            skin_shadow: drawn(&skin, ("skin_corner", ""), &skins, &dark),
+            element_shadow: drawn(&skin, ("box_corner", ""), &boxes, &dark),
+            bar_shadow: balls(("plain_corner", ""), &dark),
+            crumb_shadow: balls(("rough_corner", ""), &dark),
+            window: stage(Some(&window_layout), &window, ("whole", window_entry))
+                .build(&Target::of(&[target])),
+            globals_layout,
+            shadow_layout,
+            window_layout,
+        }
+    }
+}
+
+fn depth_state(format: TextureFormat, is_written: bool) -> DepthStencilState {
+    DepthStencilState {
+        format,
+        depth_write_enabled: Some(is_written),
+        depth_compare: Some(CompareFunction::LessEqual),
+        stencil: StencilState::default(),
+        bias: DepthBiasState::default(),
+    }
+}
+
+impl InMemory for SkinVertex {
+    const ATTRIBUTES: &'static [VertexAttribute] =
+        &vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Snorm16x4, 3 => Unorm8x4];
+    const STEP: VertexStepMode = VertexStepMode::Vertex;
+}
+
+impl InMemory for BoxVertex {
+    const ATTRIBUTES: &'static [VertexAttribute] =
+        &vertex_attr_array![0 => Float32x3, 1 => Unorm8x4, 2 => Unorm8x4];
+    const STEP: VertexStepMode = VertexStepMode::Vertex;
+}
+
+impl InMemory for RoomVertex {
+    const ATTRIBUTES: &'static [VertexAttribute] =
+        &vertex_attr_array![0 => Float32x3, 1 => Float32x3];
+    const STEP: VertexStepMode = VertexStepMode::Vertex;
+}
+
+impl InMemory for RoundedVertex {
+    const ATTRIBUTES: &'static [VertexAttribute] =
+        &vertex_attr_array![0 => Float32x3, 1 => Float32x3];
+    const STEP: VertexStepMode = VertexStepMode::Vertex;
+}
+
+impl InMemory for RoundedInstance {
+    const ATTRIBUTES: &'static [VertexAttribute] = &vertex_attr_array![
+        2 => Float32x4, 3 => Float32x3, 4 => Float32x3, 5 => Float32x3,
+        6 => Float32x3, 7 => Float32x4, 8 => Float32
+    ];
+    const STEP: VertexStepMode = VertexStepMode::Instance;
+}

@@ -1,0 +1,113 @@
+//! The images that a world in space is drawn into, apart from the window.
+
+use super::pipelines::Pipelines;
+use crate::gpu::stage::SAMPLES;
+use crate::gpu::targets::{bind, within};
+use wgpu::*;
+
+/// The picture, as screens take it.
+pub const PICTURE_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
+/// How far away everything is.
+pub const DEPTH_FORMAT: TextureFormat = TextureFormat::Depth24Plus;
+/// How far from the light everything is.
+pub const SHADOW_FORMAT: TextureFormat = TextureFormat::Depth32Float;
+/// The sides of what the light sees and of what the sky sees [px]: the latter is blurred far more.
+pub const SHADOW_SIDES: [u32; 2] = [512, 128];
+
+/// The images of a picture, and what is bound to put it into a window.
+pub struct Targets {
+    /// Of the window this is for [px].
+    pub window: [u32; 2],
+    /// Of the picture [px].
+    pub size: [u32; 2],
+    pub rough: TextureView,
+    pub depth: TextureView,
+    pub picture: TextureView,
+    pub shown: BindGroup,
+}
+
+/// What the light sees and what the sky sees, and what is bound to look into both.
+pub struct Shadows {
+    pub maps: [TextureView; 2],
+    pub read: BindGroup,
+}
+
+impl Targets {
+    pub fn new(device: &Device, pipelines: &Pipelines, window: [u32; 2]) -> Self {
+        let window = window.map(|side| side.max(1));
+        let size = within(device, window);
+        let inside = TextureUsages::RENDER_ATTACHMENT;
+        let picture = image(
+            device,
+            size,
+            1,
+            PICTURE_FORMAT,
+            inside | TextureUsages::TEXTURE_BINDING,
+        );
+        let smooth = device.create_sampler(&SamplerDescriptor {
+            label: Some("smooth"),
+            mag_filter: FilterMode::Linear,
+            min_filter: FilterMode::Linear,
+            ..SamplerDescriptor::default()
+        });
+        let shown = [
+            BindingResource::TextureView(&picture),
+            BindingResource::Sampler(&smooth),
+        ];
+        Self {
+            window,
+            size,
+            rough: image(device, size, SAMPLES, PICTURE_FORMAT, inside),
+            depth: image(device, size, SAMPLES, DEPTH_FORMAT, inside),
+            shown: bind(device, &pipelines.window_layout, &shown),
+            picture,
+        }
+    }
+}
+
+impl Shadows {
+    pub fn new(device: &Device, pipelines: &Pipelines) -> Self {
+        let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
+        let maps = SHADOW_SIDES.map(|side| image(device, [side; 2], 1, SHADOW_FORMAT, usage));
+        let compare = device.create_sampler(&SamplerDescriptor {
+            label: Some("shadow"),
+            mag_filter: FilterMode::Linear,
+            min_filter: FilterMode::Linear,
+            compare: Some(CompareFunction::LessEqual),
+            ..SamplerDescriptor::default()
+        });
+        let read = [
+            BindingResource::TextureView(&maps[0]),
+            BindingResource::TextureView(&maps[1]),
+            BindingResource::Sampler(&compare),
+        ];
+        Self {
+            read: bind(device, &pipelines.shadow_layout, &read),
+            maps,
+        }
+    }
+}
+
+fn image(
+    device: &Device,
+    [width, height]: [u32; 2],
+    samples: u32,
+    format: TextureFormat,
+    usage: TextureUsages,
+) -> TextureView {
+    let texture = device.create_texture(&TextureDescriptor {
+        label: None,
+        size: Extent3d {
+            width,
+            height,
+            depth_or_array_layers: 1,
+        },
+        mip_level_count: 1,
+        sample_count: samples,
+        dimension: TextureDimension::D2,
+        format,
+        usage,
+        view_formats: &[],
+    });
+    texture.create_view(&TextureViewDescriptor::default())
+}

@@ -1,0 +1,56 @@
+//! Places that are given back and used again.
+
+use std::ops::{Index, IndexMut};
+
+/// Things at places that they keep; a place that was given back is the next one to be taken.
+#[derive(Clone, Debug)]
+pub struct Pool<T> {
+    /// All places, taken or not.
+    pub all: Vec<T>,
+    free: Vec<u32>,
+}
+
+impl<T> Default for Pool<T> {
+    fn default() -> Self {
+        Self {
+            all: Vec::new(),
+            free: Vec::new(),
+        }
+    }
+}
+
+impl<T> Pool<T> {
+    /// Takes a place for something.
+    pub fn take(&mut self, thing: T) -> u32 {
+        match self.free.pop() {
+            Some(place) => {
+                self.all[place as usize] = thing;
+                place
+            }
+            None => {
+                self.all.push(thing);
+                self.all.len() as u32 - 1
+            }
+        }
+    }
+
+    /// Gives a place back; `nothing` stands there until it is taken again.
+    pub fn give_back(&mut self, place: u32, nothing: T) {
+        self.all[place as usize] = nothing;
+        self.free.push(place);
+    }
+}
+
+impl<T> Index<u32> for Pool<T> {
+    type Output = T;
+
+    fn index(&self, place: u32) -> &T {
+        &self.all[place as usize]
+    }
+}
+
+impl<T> IndexMut<u32> for Pool<T> {
+    fn index_mut(&mut self, place: u32) -> &mut T {
+        &mut self.all[place as usize]
+    }
+}

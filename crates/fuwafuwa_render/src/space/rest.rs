@@ -1,0 +1,326 @@
+//! How the stairs of a voxel shape in space are smoothed, once, before it moves.
+//!
+//! As in the plane: every point of the surface gets an offset, in voxels and in the frame of the
+//! body at rest, and a deformed body carries the offsets along.
+
+use fuwafuwa::dim::{add, corner, points_in, voxel_around};
+use fuwafuwa::sharing::{Groups, Sharing};
+use fuwafuwa::vector::{length, minus, plus, scaled};
+use fuwafuwa::view::face_corners;
+use fuwafuwa::{Dim, Dim3, Point, Vector, VoxelGrid};
+
+/// The variance of the smoothing [voxels²] as a share of the root of the number of faces of the
+/// surface. The widest terraces of a ball, where it is flat, grow like that.
+const REACH: f32 = 0.45;
+/// What a round adds to the variance of a flat surface [voxels²]: half of the way to the mean of four
+/// neighbours, of which two are a voxel away along each axis.
+const VARIANCE: f32 = 0.25;
+/// Rounds at most, so that the largest bodies are ready in a moment.
+const MOST_ROUNDS: usize = 200;
+/// A point is not moved by more [voxels] where the body is thin and where it is thick around it: so a
+/// nose of a few voxels stays a nose.
+const FARTHEST: [f32; 2] = [0.3, 0.8];
+/// What is thin and what is thick: the share of voxels that are solid around a point, out to `AROUND`.
+/// A flat surface has 0.5, an edge and a limb three voxels wide have 0.25.
+const SOLID: [f32; 2] = [0.22, 0.32];
+const AROUND: i32 = 3;
+/// Rounds in which the materials of neighbours are mixed: more make dots of few voxels pale.
+const TINT_ROUNDS: usize = 2;
+/// How far points inside the body are moved off the lattice at most, along each axis [voxels]: more
+/// looks rougher, and lets faces turn over.
+const ROUGHNESS: f32 = 0.45;
+
+/// The offsets of a voxel shape.
+#[derive(Clone, Debug, Default)]
+pub struct Rest {
+    /// By lattice point: the first of its entries in `points`, or none.
+    first: Vec<u32>,
+    /// Lattice point by lattice point.
+    points: Vec<RestPoint>,
+    /// The grid they belong to.
+    grid: Option<VoxelGrid<Dim3>>,
+}
+
+/// What the voxels of a group around a lattice point share on the surface.
+#[derive(Copy, Clone, Debug)]
+struct RestPoint {
+    at: Point,
+    /// The voxels, as a mask of octants.
+    group: u8,
+    /// [voxels]
+    offset: Vector,
+    tint: Tint,
+}
+
+/// The materials of the surface around a point, smoothed too, so that the border of two has no stairs.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct Tint {
+    /// The number of the one that there is most of, and of the next.
+    pub materials: [u8; 2],
+    /// How much the next one shows, 0 to 0.5.
+    pub share: f32,
+}
+
+const NONE: u32 = u32::MAX;
+
+impl Rest {
+    /// Finds the offsets of a grid.
+    pub fn new(grid: &VoxelGrid<Dim3>) -> Self {
+        let sharing = Sharing::new(grid);
+        let mut rest = Self {
+            first: vec![NONE; sharing.point_count()],
+            points: Vec::new(),
+            grid: Some(grid.clone()),
+        };
+        for at in sharing.points() {
+            let groups = sharing.groups(at);
+            if groups == Groups::NONE || groups == Groups::joined(Dim3::ALL_CORNERS) {
+                continue;
+            }
+            rest.first[sharing.index(at)] = rest.points.len() as u32;
+            rest.points.extend(groups.iter().map(|group| RestPoint {
+                at,
+                group,
+                offset: [0.0; 3],
+                tint: Tint::default(),
+            }));
+        }
+        let (neighbours, face_count) = rest.neighbours(grid);
+        let places: Vec<Vector> = rest.points.iter().map(|point| place(point.at)).collect();
+        let variance = REACH * (face_count as f32).sqrt();
+        let rounds = ((variance / VARIANCE) as usize).min(MOST_ROUNDS);
+        let smooth = smoothed(&places, &neighbours, rounds);
+        for (point, (&to, &from)) in rest.points.iter_mut().zip(smooth.iter().zip(&places)) {
+            point.offset = limited(minus(to, from), farthest(grid, point.at));
+        }
+        rest.find_tints(grid, &neighbours);
+        rest
+    }
+
+    /// Whether these are the offsets of a grid.
+    pub fn fits(&self, grid: &VoxelGrid<Dim3>) -> bool {
+        self.grid.as_ref() == Some(grid)
+    }
+
+    /// The points of the original surface, each with the octant of one of its voxels.
+    pub fn spots(&self) -> impl Iterator<Item = (Point, usize)> + '_ {
+        let points = self.points.iter();
+        points.map(|point| (point.at, point.group.trailing_zeros() as usize))
+    }
+
+    /// How far a point is moved [voxels], as the voxel in an octant of it sees it: on the original
+    /// surface so that stairs go, inside so that it is rough. It is the same on both lips of a crack.
+    pub fn offset(&self, at: Point, octant: usize) -> Vector {
+        match self.find(at, octant) {
+            Some(found) => self.points[found as usize].offset,
+            None => [0, 1, 2].map(|axis| ROUGHNESS * (2.0 * grain(at, axis) - 1.0)),
+        }
+    }
+
+    /// The materials of a point of the original surface; none inside.
+    pub fn tint(&self, at: Point, octant: usize) -> Option<Tint> {
+        let found = self.find(at, octant)?;
+        Some(self.points[found as usize].tint)
+    }
+
+    fn find(&self, at: Point, octant: usize) -> Option<u32> {
+        let size = self.grid.as_ref()?.size().map(|side| side + 1);
+        let index = (at[2] * size[1] + at[1]) * size[0] + at[0];
+        let first = *self.first.get(index as usize)?;
+        let rest = self.points.get(first as usize..)?;
+        let own = rest.iter().take(8).take_while(|point| point.at == at);
+        let place = own
+            .map(|point| point.group)
+            .position(|group| group >> octant & 1 == 1);
+        Some(first + place? as u32)
+    }
+
+    fn find_tints(&mut self, grid: &VoxelGrid<Dim3>, neighbours: &[Vec<u32>]) {
+        let mut shares = vec![0.0f32; self.points.len()];
+        // The shares of the two that there is most of at each point.
+        let mut most = vec![[0.0f32; 2]; self.points.len()];
+        for material in 1..=grid
+            .voxels()
+            .map(|voxel| grid.material(voxel))
+            .max()
+            .unwrap_or(0)
+        {
+            for (share, point) in shares.iter_mut().zip(&self.points) {
+                let octants = (0..8).filter(|octant| point.group >> octant & 1 == 1);
+                let voxels = octants.map(|octant| voxel_around::<Dim3>(point.at, octant));
+                let own = voxels
+                    .filter(|&voxel| grid.material(voxel) == material)
+                    .count();
+                *share = own as f32 / point.group.count_ones() as f32;
+            }
+            if shares.iter().all(|&share| share == 0.0) {
+                continue;
+            }
+            for _ in 0..TINT_ROUNDS {
+                let mean = |near: &Vec<u32>| {
+                    let sum: f32 = near.iter().map(|&k| shares[k as usize]).sum();
+                    sum / near.len().max(1) as f32
+                };
+                let means: Vec<f32> = neighbours.iter().map(mean).collect();
+                for (share, mean) in shares.iter_mut().zip(means) {
+                    *share = 0.5 * (*share + mean);
+                }
+            }
+            for (point, (most, &share)) in self.points.iter_mut().zip(most.iter_mut().zip(&shares))
+            {
+                let materials = &mut point.tint.materials;
+                if share > most[0] {
+                    (most[1], materials[1]) = (most[0], materials[0]);
+                    (most[0], materials[0]) = (share, material);
+                } else if share > most[1] {
+                    (most[1], materials[1]) = (share, material);
+                }
+            }
+        }
+        for (point, [first, second]) in self.points.iter_mut().zip(most) {
+            // Most of the border is drawn together.
+            let close = (2.0 * second / (first + second).max(1e-6) - 0.25) / 0.75;
+            point.tint.share = 0.5 * close.max(0.0);
+        }
+    }
+
+    /// The neighbours of each point along the edges of bare faces, and how many faces there are.
+    fn neighbours(&self, grid: &VoxelGrid<Dim3>) -> (Vec<Vec<u32>>, usize) {
+        let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); self.points.len()];
+        let mut face_count = 0;
+        for voxel in grid.voxels().filter(|&voxel| grid.is_solid(voxel)) {
+            for face in 0..6 {
+                let mut beyond = voxel;
+                beyond[face / 2] += 2 * (face % 2) as i32 - 1;
+                if grid.is_solid(beyond) {
+                    continue;
+                }
+                face_count += 1;
+                let ring = face_corners::<Dim3>(face)
+                    .map(|vertex| self.find(add(voxel, corner(vertex)), 7 - vertex));
+                for k in 0..4 {
+                    let (Some(a), Some(b)) = (ring[k], ring[(k + 1) % 4]) else {
+                        continue;
+                    };
+                    for (one, other) in [(a, b), (b, a)] {
+                        let near = &mut neighbours[one as usize];
+                        if !near.contains(&other) {
+                            near.push(other);
+                        }
+                    }
+                }
+            }
+        }
+        (neighbours, face_count)
+    }
+}
+
+fn place(at: Point) -> Vector {
+    at.map(|k| k as f32)
+}
+
+/// A surface without its stairs: 3 S − 3 S² + S³ of it, S being `rounds` of blur. What is much
+/// longer than the blur reaches does not shrink, as it would with S alone [Taubin 1995].
+fn smoothed(places: &[Vector], neighbours: &[Vec<u32>], rounds: usize) -> Vec<Vector> {
+    let blurred = |places: &[Vector]| {
+        let mut now = places.to_vec();
+        let mut next = now.clone();
+        for _ in 0..rounds {
+            for (to, (from, near)) in next.iter_mut().zip(now.iter().zip(neighbours)) {
+                let sum = near
+                    .iter()
+                    .fold([0.0; 3], |sum, &k| plus(sum, now[k as usize]));
+                let share = 0.5 / near.len().max(1) as f32;
+                *to = plus(scaled(*from, 0.5), scaled(sum, share));
+            }
+            std::mem::swap(&mut now, &mut next);
+        }
+        now
+    };
+    let once = blurred(places);
+    let twice = blurred(&once);
+    let thrice = blurred(&twice);
+    let sum = |k: usize| plus(scaled(minus(once[k], twice[k]), 3.0), thrice[k]);
+    (0..places.len()).map(sum).collect()
+}
+
+/// How far a point may be moved [voxels].
+fn farthest(grid: &VoxelGrid<Dim3>, at: Point) -> f32 {
+    let low = at.map(|k| k - AROUND);
+    let high = at.map(|k| k + AROUND - 1);
+    let solid = points_in(low, high)
+        .filter(|&voxel| grid.is_solid(voxel))
+        .count();
+    let share = solid as f32 / (8 * AROUND * AROUND * AROUND) as f32;
+    let thick = ((share - SOLID[0]) / (SOLID[1] - SOLID[0])).clamp(0.0, 1.0);
+    FARTHEST[0] + (FARTHEST[1] - FARTHEST[0]) * thick
+}
+
+fn limited(offset: Vector, farthest: f32) -> Vector {
+    match length(offset) {
+        length if length > farthest => scaled(offset, farthest / length),
+        _ => offset,
+    }
+}
+
+/// A number that a lattice point keeps for each axis, 0 to 1.
+fn grain(at: Point, axis: u32) -> f32 {
+    let [x, y, z] = at.map(|k| k as u32);
+    let mixed =
+        x.wrapping_mul(0x9e37_79b1) ^ y.wrapping_mul(0x85eb_ca77) ^ z.wrapping_mul(0xc2b2_ae3d);
+    let mixed = (mixed ^ mixed >> 15)
+        .wrapping_add(axis.wrapping_mul(0x27d4_eb2f))
+        .wrapping_mul(0x2c1b_3c6d);
+    let mixed = (mixed ^ mixed >> 13).wrapping_mul(0x297a_2d39);
+    (mixed >> 16) as f32 / 65535.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ball_is_round() {
+        for n in [12, 32] {
+            let grid = VoxelGrid::<Dim3>::ball(n, 1.0).unwrap();
+            let rest = Rest::new(&grid);
+            let half = 0.5 * n as f32;
+            let round = (grid.solid_count() as f32 * 0.75 / std::f32::consts::PI).cbrt();
+            for point in &rest.points {
+                let at = plus(place(point.at), point.offset);
+                let radius = length(minus(at, [half; 3]));
+                assert!(
+                    (radius - round).abs() < 0.35,
+                    "n = {n}: {radius}, not {round}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn the_border_of_two_materials_is_mixed_and_narrow() {
+        let half = |[x, ..]: Point| 1 + u8::from(x >= 5);
+        let grid = VoxelGrid::<Dim3>::from_fn([10, 4, 4], 1.0, half).unwrap();
+        let rest = Rest::new(&grid);
+        let tint = |x: i32| rest.tint([x, 4, 2], 0).unwrap();
+        assert_eq!((tint(2).materials[0], tint(2).share), (1, 0.0));
+        assert_eq!((tint(8).materials[0], tint(8).share), (2, 0.0));
+        assert!((tint(5).share - 0.5).abs() < 0.01, "{:?}", tint(5));
+        let beside = tint(4);
+        assert!(
+            beside.materials == [1, 2] && beside.share < 0.35,
+            "{beside:?}"
+        );
+        assert_eq!(rest.tint([5, 2, 2], 0), None);
+    }
+
+    #[test]
+    fn voxels_that_meet_along_an_edge_stay_apart() {
+        let grid =
+            VoxelGrid::<Dim3>::from_fn([2, 2, 1], 1.0, |[x, y, _]| u8::from(x == y)).unwrap();
+        let rest = Rest::new(&grid);
+        assert_eq!(rest.points.len(), 16);
+        assert_ne!(rest.find([1, 1, 1], 0), rest.find([1, 1, 1], 3));
+        assert_eq!(rest.find([1, 1, 1], 1), None);
+    }
+}

@@ -1,0 +1,348 @@
+//! The smooth surface of a body in space, as vertices.
+//!
+//! Every tick all points of the surface go where their voxels carry them, and are then smoothed by a
+//! few rounds: what presses on a body presses on its stairs. What is smoothed on one lip of a crack
+//! is smoothed in the same way on the other, so that a closed crack stays closed.
+
+use super::faces::{Faces, Ground, NONE, SkinPoint};
+use super::rest::Rest;
+use crate::theme::Colour;
+use bytemuck::{Pod, Zeroable};
+use fuwafuwa::vector::{cross, dot, length, minus, plus, scaled, three};
+use fuwafuwa::{Body, Dim3, Vector};
+
+/// By how much of the way to the mean of its neighbours a point goes in each round: on the original
+/// surface, at the mouth of a crack, inside. Rounds that go away from it give back the size that the
+/// others take, so that small torn pieces do not shrink [Taubin 1995].
+const ROUNDS: [[f32; 3]; 4] = [
+    [0.5, 0.5, 0.5],
+    [0.5, 0.5, -0.5],
+    [0.5, 0.5, 0.5],
+    [0.5, 0.5, -0.5],
+];
+
+/// A corner of a triangle of the skin.
+#[repr(C)]
+#[derive(Copy, Clone, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct SkinVertex {
+    /// Where [m].
+    pub at: [f32; 3],
+    /// Where it was in the grid [voxels].
+    pub rest: [f32; 3],
+    /// Outwards, of length 32767; and ‖F − R‖ of its voxel, 32767 being 1.
+    pub normal: [i16; 4],
+    /// Red, green, blue; in the last place 255 where it was inside.
+    pub colour: [u8; 4],
+}
+
+/// The surface of a body.
+#[derive(Clone, Debug, Default)]
+pub struct Skin {
+    rest: Rest,
+    faces: Faces,
+    /// By point: where it is, and last how far its voxel is strained.
+    places: Vec<[f32; 4]>,
+    smoothed: Vec<[f32; 4]>,
+    normals: Vec<[f32; 3]>,
+    vertices: Vec<SkinVertex>,
+}
+
+impl Skin {
+    /// Brings the surface up to date with a body; `palette` has the colours of its materials, number
+    /// 1 first. Returns whether the triangles are others than before.
+    pub fn follow(&mut self, body: &Body<Dim3>, palette: &[Colour]) -> bool {
+        if !self.rest.fits(body.grid()) {
+            *self = Self {
+                rest: Rest::new(body.grid()),
+                ..Self::default()
+            };
+        }
+        let is_new = self.faces.follow(body, &self.rest, palette);
+        self.place(body);
+        ROUNDS.iter().for_each(|shares| self.smooth(*shares));
+        self.find_normals();
+        self.write();
+        is_new
+    }
+
+    /// Its vertices. Some belong to no triangle.
+    pub fn vertices(&self) -> &[SkinVertex] {
+        &self.vertices
+    }
+
+    /// Its triangles, three vertices each. Some have no area.
+    pub fn indices(&self) -> &[u32] {
+        &self.faces.indices
+    }
+
+    /// The elements that are a piece each: they are no part of the surface.
+    pub fn crumbs(&self) -> &[u32] {
+        &self.faces.crumbs
+    }
+
+    pub(super) fn rest(&self) -> &Rest {
+        &self.rest
+    }
+
+    pub(super) fn faces(&self) -> &Faces {
+        &self.faces
+    }
+
+    /// Where a point is [m].
+    pub(super) fn position_of(&self, point: u32) -> Vector {
+        three(self.places[point as usize])
+    }
+
+    /// Outwards at a vertex, of length 1.
+    pub(super) fn normal_of(&self, vertex: u32) -> Vector {
+        let normal = self.normals[vertex as usize];
+        scaled(normal, 1.0 / length(normal).max(1e-20))
+    }
+
+    /// Puts all points where their voxels carry them.
+    fn place(&mut self, body: &Body<Dim3>) {
+        let (positions, size) = (body.positions(), body.grid().voxel_size());
+        self.places.clear();
+        self.places
+            .extend(self.faces.points.all.iter().map(|point| match point.node {
+                NONE => [0.0; 4],
+                node => carried(point, positions[node as usize], positions, size),
+            }));
+    }
+
+    fn smooth(&mut self, shares: [f32; 3]) {
+        self.smoothed.clear();
+        let places = &self.places;
+        self.smoothed.extend(
+            places
+                .iter()
+                .zip(&self.faces.points.all)
+                .map(|(&own, point)| {
+                    let near = &point.near[..point.near_count.into()];
+                    if near.is_empty() {
+                        return own;
+                    }
+                    let share = match point.ground {
+                        Ground::Skin => shares[0],
+                        Ground::Mouth => shares[1],
+                        Ground::Torn => shares[2],
+                    };
+                    let sum = near
+                        .iter()
+                        .fold([0.0; 4], |sum, &k| plus(sum, places[k as usize]));
+                    plus(
+                        scaled(own, 1.0 - share),
+                        scaled(sum, share / near.len() as f32),
+                    )
+                }),
+        );
+        std::mem::swap(&mut self.places, &mut self.smoothed);
+    }
+
+    /// Adds up the normals of the faces at each vertex, the larger ones weighing more.
+    fn find_normals(&mut self) {
+        self.normals.clear();
+        self.normals.resize(self.faces.vertices.all.len(), [0.0; 3]);
+        for face in self
+            .faces
+            .faces
+            .all
+            .iter()
+            .filter(|face| face.points[0] != NONE)
+        {
+            let [a, b, c, d] = face.points.map(|point| three(self.places[point as usize]));
+            let normal = cross(minus(c, a), minus(d, b));
+            for vertex in face.vertices {
+                let sum = &mut self.normals[vertex as usize];
+                *sum = plus(*sum, normal);
+            }
+        }
+    }
+
+    fn write(&mut self) {
+        self.vertices.clear();
+        let corners = self.faces.vertices.all.iter().zip(&self.normals);
+        self.vertices.extend(corners.map(|(corner, &normal)| {
+            if corner.point == NONE {
+                return SkinVertex::default();
+            }
+            let [x, y, z, strain] = self.places[corner.point as usize];
+            let normal = scaled(normal, 32767.0 / dot(normal, normal).sqrt().max(1e-20));
+            let [nx, ny, nz] = normal.map(|k| k as i16);
+            SkinVertex {
+                at: [x, y, z],
+                rest: corner.rest,
+                normal: [nx, ny, nz, (strain.min(1.0) * 32767.0) as i16],
+                colour: corner.colour,
+            }
+        }));
+    }
+}
+
+/// Where a point is: its node moved by its offset, as the mean deformation of its voxel turns and
+/// stretches it. Behind that ‖F − R‖, to first order.
+#[inline]
+fn carried(point: &SkinPoint, node: [f32; 4], positions: &[[f32; 4]], size: f32) -> [f32; 4] {
+    let edges = edges(&point.voxel, positions);
+    let moved = edges.iter().zip(point.offset);
+    let mut place = moved.fold(node, |place, (&edge, by)| plus(place, scaled(edge, by)));
+    let over = 1.0 / (size * size);
+    let [xx, yy, zz] = edges.map(|edge| dot(edge, edge) * over - 1.0);
+    let [xy, yz, zx] = [(0, 1), (1, 2), (2, 0)].map(|(a, b)| dot(edges[a], edges[b]) * over);
+    let squared = xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + yz * yz + zx * zx);
+    place[3] = 0.5 * squared.sqrt();
+    place
+}
+
+/// The mean edges of a voxel along its axes [m].
+#[inline]
+pub(super) fn edges(voxel: &[u32; 8], positions: &[[f32; 4]]) -> [[f32; 4]; 3] {
+    let corners = voxel.map(|id| positions[id as usize]);
+    [1, 2, 4].map(|side| {
+        let low = [0, 1, 2, 3].map(|k| (k & (side - 1)) | (k & !(side - 1)) << 1);
+        let ends = low.map(|k| minus(corners[k + side], corners[k]));
+        scaled(plus(plus(ends[0], ends[1]), plus(ends[2], ends[3])), 0.25)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::theme::Theme;
+    use fuwafuwa::{Blade, Material, Settings, VoxelGrid, World};
+
+    fn ball(n: usize) -> World<Dim3> {
+        let mut world = World::new(Settings::default()).unwrap();
+        let grid = VoxelGrid::ball(n, 1.0).unwrap();
+        world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+        world
+    }
+
+    fn skin(world: &World<Dim3>) -> Skin {
+        let mut skin = Skin::default();
+        skin.follow(&world.bodies()[0], &Theme::candy().materials);
+        skin
+    }
+
+    fn cut(world: &mut World<Dim3>, x: f32) {
+        let (across, along) = ([0.0, 1.4, 0.1], [0.0, -0.1, 1.4]);
+        let from = [x, -0.2, -0.2];
+        world.cut(
+            0,
+            &Blade {
+                from,
+                across,
+                along,
+            },
+        );
+    }
+
+    impl Skin {
+        fn corners(&self) -> impl Iterator<Item = [SkinVertex; 3]> + '_ {
+            let triangles = self.indices().chunks(3).filter(|t| t[0] != t[1]);
+            triangles.map(|t| [0, 1, 2].map(|k| self.vertices[t[k] as usize]))
+        }
+
+        /// What its triangles enclose [m³].
+        fn volume(&self) -> f32 {
+            let sixfold = |[a, b, c]: [SkinVertex; 3]| dot(a.at, cross(b.at, c.at));
+            self.corners().map(sixfold).sum::<f32>() / 6.0
+        }
+    }
+
+    #[test]
+    fn the_skin_of_a_ball_is_a_sphere() {
+        let world = ball(32);
+        let count = world.bodies()[0].grid().solid_count() as f32;
+        let round = (0.75 * count / std::f32::consts::PI).cbrt() / 32.0;
+        for vertex in skin(&world).vertices() {
+            let away = minus(vertex.at, [0.5; 3]);
+            let radius = length(away);
+            assert!((radius - round).abs() < 0.3 / 32.0, "{radius}, not {round}");
+            let normal = [0, 1, 2].map(|k| f32::from(vertex.normal[k]) / 32767.0);
+            assert!(dot(normal, away) / radius > 0.995, "{normal:?} at {away:?}");
+            assert_eq!((vertex.colour[3], vertex.normal[3] < 30), (0, true));
+        }
+    }
+
+    #[test]
+    fn a_stretched_ball_is_an_ellipsoid_and_knows_its_strain() {
+        let mut world = ball(32);
+        let whole = skin(&world).volume();
+        let body = world.body_mut(0);
+        let ids: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
+        for id in ids {
+            let [x, y, z] = body.node_state(id).0;
+            body.set_node_state(id, [1.5 * x, y, z], [0.0; 3]);
+        }
+        let skin = skin(&world);
+        assert!((skin.volume() / whole - 1.5).abs() < 0.01);
+        // F − R is 0.5, half of FᵀF − 1 is 0.625.
+        let strains = skin
+            .vertices()
+            .iter()
+            .map(|vertex| f32::from(vertex.normal[3]) / 32767.0);
+        strains.for_each(|strain| assert!((strain - 0.625).abs() < 1e-3, "{strain}"));
+    }
+
+    #[test]
+    fn halves_that_lie_together_fill_the_ball_and_are_fresh_inside() {
+        let mut world = ball(24);
+        let whole = skin(&world).volume();
+        cut(&mut world, 0.47);
+        let halves = skin(&world);
+        let gap = (halves.volume() / whole - 1.0).abs();
+        assert!(gap < 5e-3, "{gap}");
+        let torn = halves
+            .corners()
+            .flatten()
+            .filter(|corner| corner.colour[3] == 255);
+        let mut count = 0;
+        for corner in torn {
+            assert!((corner.at[0] - 0.47).abs() < 1.5 / 24.0, "{corner:?}");
+            count += 1;
+        }
+        assert!(count > 2000, "{count}");
+    }
+
+    #[test]
+    fn what_is_kept_up_to_date_is_as_if_made_anew() {
+        let mut world = ball(16);
+        let mut kept = skin(&world);
+        // Where faces were is the same to the last bit; where they are follows from voxels that may
+        // be others of the same point.
+        let sorted = |skin: &Skin| {
+            let rest = |corner: SkinVertex| (corner.rest.map(f32::to_bits), corner.colour);
+            let mut triangles: Vec<_> = skin.corners().map(|corners| corners.map(rest)).collect();
+            triangles.sort_unstable();
+            triangles
+        };
+        for x in [0.2, 0.8, 0.3, 0.55, 0.4, 0.48] {
+            cut(&mut world, x);
+            assert!(kept.follow(&world.bodies()[0], &Theme::candy().materials));
+            let new = skin(&world);
+            assert_eq!(sorted(&kept), sorted(&new));
+            assert!((kept.volume() / new.volume() - 1.0).abs() < 1e-4);
+            world.step();
+            kept.follow(&world.bodies()[0], &Theme::candy().materials);
+        }
+        let safe = Theme::colour_safe().materials;
+        assert!(kept.follow(&world.bodies()[0], &safe));
+        assert!(!kept.follow(&world.bodies()[0], &safe));
+        // Another body with a grid of its own, and an untorn one with the same.
+        for n in [16, 20] {
+            let other = ball(n);
+            kept.follow(&other.bodies()[0], &Theme::candy().materials);
+            assert_eq!(sorted(&kept), sorted(&skin(&other)));
+        }
+    }
+
+    #[test]
+    fn a_voxel_on_its_own_is_a_crumb() {
+        let mut world = World::<Dim3>::new(Settings::default()).unwrap();
+        let grid = VoxelGrid::from_fn([3, 1, 1], 1.0, |[x, ..]| u8::from(x != 1)).unwrap();
+        world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+        let skin = skin(&world);
+        assert_eq!((skin.crumbs().len(), skin.indices().len()), (2, 0));
+    }
+}

@@ -1,0 +1,35 @@
+//! What the tests of pictures have in common.
+
+use fuwafuwa_render::Colour;
+
+/// A device with what WebGL2 has and nothing more; none where there is no adapter.
+pub fn device() -> Option<(wgpu::Device, wgpu::Queue)> {
+    device_with(wgpu::Limits::downlevel_webgl2_defaults())
+}
+
+pub fn device_with(required_limits: wgpu::Limits) -> Option<(wgpu::Device, wgpu::Queue)> {
+    let instance = wgpu::Instance::default();
+    let adapter = pollster::block_on(instance.request_adapter(&Default::default()));
+    let Ok(adapter) = adapter else {
+        let is_ci = std::env::var("CI").is_ok_and(|value| value == "1" || value == "true");
+        assert!(
+            !is_ci,
+            "no graphics adapter; mesa-vulkan-drivers brings one"
+        );
+        eprintln!("skipped: no graphics adapter; mesa-vulkan-drivers brings one");
+        return None;
+    };
+    let descriptor = wgpu::DeviceDescriptor {
+        required_limits,
+        ..Default::default()
+    };
+    Some(pollster::block_on(adapter.request_device(&descriptor)).expect("a modest device"))
+}
+
+pub fn is_warm([red, green, blue]: Colour) -> bool {
+    red > green + 0.15 && red > blue + 0.15
+}
+
+pub fn difference(a: Colour, b: Colour) -> f32 {
+    (0..3).map(|k| (a[k] - b[k]).abs()).fold(0.0, f32::max)
+}

@@ -1,0 +1,325 @@
+//! Pictures of worlds in space, as any device draws them, Mesa's llvmpipe too. Without a device these
+//! tests say so and pass, unless the environment says CI=1.
+
+mod shared;
+
+use fuwafuwa::{Blade, Body, Dim3, Manipulator, Material, Settings, Shape, VoxelGrid, World};
+use fuwafuwa_render::frame::ElementColour;
+use fuwafuwa_render::space::{Camera, Renderer};
+use fuwafuwa_render::{Basket, Colour, Frame, Look, Particle, Theme};
+use shared::{device, device_with, difference, is_warm};
+use std::sync::LazyLock;
+use wgpu::TextureFormat;
+
+const SIZE: [u32; 2] = [480, 480];
+static THEME: LazyLock<Theme> = LazyLock::new(Theme::candy);
+
+/// A picture, and what it was taken of.
+struct Picture {
+    camera: Camera,
+    pixels: Vec<u8>,
+}
+
+fn take<'a>(
+    world: &World<Dim3>,
+    format: TextureFormat,
+    change: impl Fn(&mut Frame<'a, Camera>),
+) -> Option<Picture> {
+    let (device, queue) = device()?;
+    let mut frame = frame(Camera::fit([0.0; 3], [1.0; 3], SIZE));
+    change(&mut frame);
+    let mut renderer = Renderer::new(&device, format);
+    let pixels = renderer.render_to_image(&device, &queue, world, &frame, SIZE);
+    let (camera, pixels) = (frame.camera, pixels.expect("an image"));
+    Some(Picture { camera, pixels })
+}
+
+fn frame<'a>(camera: Camera) -> Frame<'a, Camera> {
+    Frame {
+        camera,
+        theme: &THEME,
+        look: Look::Skin,
+        basket: None,
+        particles: &[],
+        seconds: 0.0,
+    }
+}
+
+impl Picture {
+    /// The mean colour around a pixel.
+    fn at_pixel(&self, [x, y]: [f32; 2], reach: i32) -> Colour {
+        let mut sum = [0.0; 3];
+        let count = ((2 * reach + 1) * (2 * reach + 1)) as f32;
+        for by_y in -reach..=reach {
+            for by_x in -reach..=reach {
+                let limit = |k: f32, by: i32, side: u32| (k as i32 + by).clamp(0, side as i32 - 1);
+                let (x, y) = (limit(x, by_x, SIZE[0]), limit(y, by_y, SIZE[1]));
+                let first = 4 * (y as usize * SIZE[0] as usize + x as usize);
+                for (k, sum) in sum.iter_mut().enumerate() {
+                    *sum += f32::from(self.pixels[first + k]) / 255.0 / count;
+                }
+            }
+        }
+        sum
+    }
+
+    /// The mean colour around what is seen of a place [m].
+    fn around(&self, at: [f32; 3]) -> Colour {
+        self.at_pixel(self.camera.to_pixel(at, SIZE).unwrap(), 2)
+    }
+}
+
+fn floating() -> World<Dim3> {
+    let gravity = [0.0; 3];
+    let settings = Settings {
+        gravity,
+        ..Settings::default()
+    };
+    let mut world = World::new(settings).unwrap();
+    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    world.add_obstacle(floor, 0.2).unwrap();
+    world
+}
+
+fn ball() -> World<Dim3> {
+    let mut world = floating();
+    let grid = VoxelGrid::ball(32, 1.0).unwrap();
+    world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+    world
+}
+
+fn lightness([red, green, blue]: Colour) -> f32 {
+    0.3 * red + 0.6 * green + 0.1 * blue
+}
+
+#[test]
+fn a_ball_is_warm_on_a_cool_floor_with_a_round_edge_and_a_shadow() {
+    let Some(picture) = take(&ball(), TextureFormat::Rgba8Unorm, |_| ()) else {
+        return;
+    };
+    let [x, y] = picture.camera.to_pixel([0.5; 3], SIZE).unwrap();
+    assert!(is_warm(picture.at_pixel([x, y], 2)));
+    let floor = picture.around([-0.3, 0.0, 1.0]);
+    assert!(!is_warm(floor) && lightness(floor) > 0.85, "{floor:?}");
+    // The light comes from the left, the front and above.
+    let shadow = picture.around([1.0, 0.0, 0.5]);
+    assert!(
+        lightness(shadow) < lightness(floor) - 0.1,
+        "{shadow:?} {floor:?}"
+    );
+    let below = picture.around([0.5, 0.0, 0.7]);
+    assert!(
+        lightness(below) < lightness(floor) - 0.1,
+        "{below:?} {floor:?}"
+    );
+
+    // The edge is where warmth ends: nowhere is it off a circle by what stairs would be off.
+    let edges: Vec<f32> = (0..180)
+        .map(|k| {
+            let (sin, cos) = (k as f32 / 180.0 * std::f32::consts::TAU).sin_cos();
+            let warmth = |radius: f32| {
+                let [red, _, blue] = picture.at_pixel([x + radius * cos, y + radius * sin], 0);
+                red - blue
+            };
+            let found = (0..200)
+                .map(|k| 200.0 - k as f32)
+                .find(|&radius| warmth(radius) > 0.2);
+            found.expect("there is an edge")
+        })
+        .collect();
+    let voxel = edges.iter().sum::<f32>() / 180.0 * 2.0 / 32.0;
+    for k in 0..180 {
+        let near = (0..13).map(|by| edges[(k + by) % 180]).sum::<f32>() / 13.0;
+        let off = (edges[(k + 6) % 180] - near).abs() / voxel;
+        assert!(off < 0.25, "{off} voxels off at {}°", 2 * k);
+    }
+}
+
+#[test]
+fn a_torn_face_shows_a_paler_inside_and_no_gap_where_it_begins() {
+    let mut world = ball();
+    let (from, across, along) = ([0.5, -0.2, -0.2], [0.0, 1.4, 0.0], [0.0, 0.0, 1.4]);
+    world.cut(
+        0,
+        &Blade {
+            from,
+            across,
+            along,
+        },
+    );
+    let closed = take(&world, TextureFormat::Rgba8Unorm, |_| ());
+    let body = world.body_mut(0);
+    let ids: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
+    let left = (ids.iter()).find(|&&id| body.mesh().node(id).at[0] < 8);
+    let left = body.pieces().of_node(*left.unwrap());
+    for id in ids {
+        let [x, y, z] = body.node_state(id).0;
+        let far = if body.pieces().of_node(id) == left {
+            0.0
+        } else {
+            20.0
+        };
+        body.set_node_state(id, [x + far, y, z], [0.0; 3]);
+    }
+    let from_right = |frame: &mut Frame<'_, Camera>| frame.camera.turn = 1.0;
+    let (Some(closed), Some(open)) = (closed, take(&world, TextureFormat::Rgba8Unorm, from_right))
+    else {
+        return;
+    };
+    // What is cut but closed looks whole: its skin is warm all along the cut.
+    for k in 0..20 {
+        let rise = -0.4 + 0.07 * k as f32;
+        let at = [0.5, 0.5 + 0.48 * rise.sin(), 0.5 + 0.48 * rise.cos()];
+        let [x, y] = closed.camera.to_pixel(at, SIZE).unwrap();
+        for by in -3..=3 {
+            let seen = closed.at_pixel([x + by as f32, y], 0);
+            assert!(is_warm(seen), "{seen:?} at {at:?}");
+        }
+    }
+    let inside = open.around([0.5, 0.5, 0.5]);
+    let skin = open.around([0.4, 0.5, 0.97]);
+    let paleness = |[red, green, blue]: Colour| (green + blue) / red;
+    assert!(
+        paleness(inside) > paleness(skin) + 0.1,
+        "{inside:?} {skin:?}"
+    );
+}
+
+#[test]
+fn a_cut_through_the_elements_shows_their_levels() {
+    let world = ball();
+    let picture = take(&world, TextureFormat::Rgba8Unorm, |frame| {
+        frame.look = Look::Elements {
+            colour: ElementColour::Level,
+            ages: &[],
+            nodes: false,
+        };
+        frame.camera.cut = Some(([0.0, 0.0, 1.0], 0.5));
+        frame.camera.rise = 0.1;
+    });
+    let Some(picture) = picture else {
+        return;
+    };
+    let hue = |[red, green, blue]: Colour| [red / green, blue / green, 0.0];
+    let mut count = 0;
+    for view in world.bodies()[0].element_views() {
+        let width = world.bodies()[0].grid().voxel_size() * f32::from(1u8 << view.level);
+        let [x, y, z] = view.slots[13];
+        // Those whose front lies in the cut.
+        if view.level < 2 || view.children != 255 || (z + 0.5 * width - 0.5).abs() > 1e-3 {
+            continue;
+        }
+        let seen = picture.around([x + 0.2 * width, y + 0.2 * width, 0.5]);
+        let wanted = THEME.level(view.level);
+        assert!(
+            difference(hue(seen), hue(wanted)) < 0.2,
+            "level {}: {seen:?}, not {wanted:?}",
+            view.level
+        );
+        count += 1;
+    }
+    assert!(count > 8, "{count} large elements");
+}
+
+#[test]
+fn bars_hands_walls_basket_and_particles_are_there() {
+    let mut world = floating();
+    let (from, to, radius) = ([0.1, 0.1, 0.2], [0.4, 0.1, 0.2], 0.06);
+    let bar = Shape::Capsule { from, to, radius };
+    world.add_obstacle(bar, 0.2).unwrap();
+    let wall = Shape::half_space([0.0, 0.0, 1.0], [0.0, 0.0, -0.6]);
+    world.add_obstacle(wall, 0.2).unwrap();
+    for x in [0.3, 0.7] {
+        let hand = Manipulator::new([x, 0.9, -0.1], 0.1);
+        world.add_manipulator(hand).unwrap();
+    }
+    let region = Shape::Box {
+        centre: [0.9, 0.2, 0.2],
+        half: [0.15, 0.15, 0.15],
+    };
+    let particle = Particle {
+        at: [0.5, 0.05, 0.5],
+        radius: 0.04,
+        colour: [0.8, 0.1, 0.1, 1.0],
+    };
+    let picture = take(&world, TextureFormat::Rgba8Unorm, |frame| {
+        frame.basket = Some(Basket { region, fill: 1.0 });
+        frame.particles = std::slice::from_ref(&particle);
+    });
+    let Some(picture) = picture else {
+        return;
+    };
+    let floor = picture.around([0.5, 0.0, 0.7]);
+    let bar = picture.around([0.2, 0.09, 0.26]);
+    let [first, second] = [0.3, 0.7].map(|x| picture.around([x, 0.9, -0.1]));
+    let (basket, dust) = (picture.around([0.9, 0.1, 0.3]), picture.around(particle.at));
+    // The shadow straight below a hand.
+    let below = picture.around([0.3, 0.0, -0.1]);
+    let wall = picture.around([0.5, 0.05, -0.6]);
+    for (name, seen) in [
+        ("bar", bar),
+        ("basket", basket),
+        ("dust", dust),
+        ("shadow", below),
+        ("wall", wall),
+    ] {
+        assert!(
+            difference(seen, floor) > 0.04,
+            "{name}: {seen:?} on {floor:?}"
+        );
+    }
+    assert!(bar[0] > bar[2] + 0.15, "{bar:?}");
+    assert!(dust[0] > dust[1] + 0.3, "{dust:?}");
+    assert!(difference(first, second) > 0.2, "{first:?} {second:?}");
+}
+
+#[test]
+fn every_format_shows_the_same() {
+    let formats = [
+        TextureFormat::Rgba8Unorm,
+        TextureFormat::Bgra8Unorm,
+        TextureFormat::Rgba8UnormSrgb,
+    ];
+    let world = ball();
+    let pictures = formats.map(|format| take(&world, format, |_| ()));
+    for picture in pictures.iter().flatten() {
+        for at in [[0.5; 3], [0.0; 3], [1.0, 0.0, 1.0]] {
+            let wanted = pictures[0].as_ref().map(|first| first.around(at));
+            let seen = picture.around(at);
+            assert!(
+                wanted.is_some_and(|wanted| difference(seen, wanted) < 0.06),
+                "{seen:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn small_targets_and_small_buffers_are_drawn_as_far_as_they_go() {
+    let limits = wgpu::Limits {
+        max_buffer_size: 100_000,
+        ..wgpu::Limits::downlevel_webgl2_defaults()
+    };
+    let Some((device, queue)) = device_with(limits) else {
+        return;
+    };
+    let mut renderer = Renderer::new(&device, TextureFormat::Rgba8Unorm);
+    for (world, size) in [(ball(), [1, 1]), (floating(), [3, 200]), (ball(), [96, 96])] {
+        let mut frame = frame(Camera::fit([0.0; 3], [1.0; 3], size));
+        for colour in [None, Some(ElementColour::Strain)] {
+            frame.look = colour.map_or(Look::Skin, |colour| Look::Elements {
+                colour,
+                ages: &[],
+                nodes: true,
+            });
+            let image = renderer.render_to_image(&device, &queue, &world, &frame, size);
+            assert_eq!(image.unwrap().len(), 4 * (size[0] * size[1]) as usize);
+        }
+    }
+}
+
+#[test]
+fn a_renderer_can_lie_among_what_egui_keeps_for_callbacks() {
+    fn is_kept<T: Send + Sync + 'static>() {}
+    is_kept::<Renderer>();
+}

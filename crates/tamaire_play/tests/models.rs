@@ -1,0 +1,95 @@
+//! The models among the levels are not drawn by hand: here is what they are.
+
+use std::path::PathBuf;
+use tamaire_play::Level;
+
+/// A crème caramel of 32 voxels across and 20 high: custard of colour 1 under caramel of colour 2.
+fn pudding() -> Vec<u8> {
+    const ACROSS: u8 = 32;
+    const HIGH: u8 = 20;
+    let mut voxels = Vec::new();
+    for z in 0..HIGH {
+        let height = (f32::from(z) + 0.5) / f32::from(HIGH);
+        // A truncated cone with a round upper edge.
+        let rounding = (height - 0.85).max(0.0) / 0.15;
+        let radius = 16.0 - 4.5 * height - 2.0 * rounding * rounding;
+        for (y, x) in (0..ACROSS).flat_map(|y| (0..ACROSS).map(move |x| (y, x))) {
+            let [a, b] = [x, y].map(|k| f32::from(k) + 0.5 - 0.5 * f32::from(ACROSS));
+            let from_axis = (a * a + b * b).sqrt();
+            // The caramel has run down a little at its rim.
+            let caramel = 0.84 - 0.12 * (from_axis / 12.0).powi(4).min(1.0);
+            if from_axis < radius {
+                voxels.push([x, y, z, 1 + u8::from(height > caramel)]);
+            }
+        }
+    }
+    let mut colours = [[0, 0, 0, 255]; 256];
+    colours[0] = [0xf7, 0xd6, 0x7a, 255];
+    colours[1] = [0x8a, 0x47, 0x1c, 255];
+    model([ACROSS, ACROSS, HIGH], &voxels, &colours)
+}
+
+/// A file of MagicaVoxel: its sizes, its voxels with their colours from 1 on, and these colours.
+fn model(size: [u8; 3], voxels: &[[u8; 4]], colours: &[[u8; 4]; 256]) -> Vec<u8> {
+    let size = size.map(|extent| u32::from(extent).to_le_bytes());
+    let count = (voxels.len() as u32).to_le_bytes();
+    let chunks = [
+        chunk(b"SIZE", size.as_flattened(), &[]),
+        chunk(b"XYZI", &[&count, voxels.as_flattened()].concat(), &[]),
+        chunk(b"RGBA", colours.as_flattened(), &[]),
+    ];
+    let version = 150_u32.to_le_bytes();
+    [
+        b"VOX ".as_slice(),
+        &version,
+        &chunk(b"MAIN", &[], &chunks.concat()),
+    ]
+    .concat()
+}
+
+fn chunk(name: &[u8; 4], contents: &[u8], children: &[u8]) -> Vec<u8> {
+    let lengths = [contents, children].map(|part| (part.len() as u32).to_le_bytes());
+    [name, lengths.as_flattened(), contents, children].concat()
+}
+
+fn place() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("levels/pudding.vox")
+}
+
+#[test]
+fn the_pudding_is_what_is_said_here() {
+    let found = std::fs::read(place()).unwrap();
+    assert!(
+        found == pudding(),
+        "write it anew: cargo test -p tamaire_play --test models -- --ignored"
+    );
+}
+
+#[test]
+#[ignore = "writes the model"]
+fn write_the_pudding() {
+    std::fs::write(place(), pudding()).unwrap();
+}
+
+#[test]
+fn a_model_of_any_colours_becomes_the_body_of_a_level() {
+    let level = Level::open(&place().to_string_lossy()).unwrap();
+    assert_eq!(level.game().name.en, "pudding");
+    assert_eq!(level.scene().dim, 3);
+    let level = level.scene().build::<fuwafuwa::Dim3>().unwrap();
+    assert!(level.bodies()[0].grid().solid_count() > 8000);
+
+    let folder = std::env::temp_dir().join(format!("tamaire-models-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = folder.join("wide.VOX");
+    let refused = |bytes: &[u8]| {
+        std::fs::write(&path, bytes).unwrap();
+        let error = Level::open(&path.to_string_lossy()).unwrap_err();
+        error.to_string()
+    };
+    let wide = refused(&model([65, 64, 64], &[[0, 0, 0, 79]], &[[0; 4]; 256]));
+    assert!(wide.contains("expected 262144 voxels at most"), "{wide}");
+    let torn = refused(&pudding()[..1000]);
+    assert!(torn.contains("wide.VOX"), "{torn}");
+    std::fs::remove_dir_all(folder).unwrap();
+}
