@@ -88,7 +88,16 @@ impl App {
                 continue;
             };
             screens::note_use_of_keys(ctx, true);
-            if let Some(action) = self.game.rebinding.take() {
+            let is_of_menus = matches!(
+                control,
+                Control::Pad(PadButton::South | PadButton::East) | Control::Button(0 | 1)
+            );
+            if let Some(action) = self.game.rebinding {
+                if action == Action::CutForces && is_of_menus {
+                    // Nobody could go on in a menu without cutting forces.
+                    continue;
+                }
+                self.game.rebinding = None;
                 self.game.settings.bindings.bind_button(action, control);
                 self.game.keep_settings();
                 continue;
@@ -221,7 +230,12 @@ impl App {
             else {
                 continue;
             };
-            if let Some(action) = game.rebinding.take() {
+            if let Some(action) = game.rebinding {
+                if action == Action::CutForces && OF_MENUS.contains(&key) && key != Key::Escape {
+                    taken.push(key);
+                    continue;
+                }
+                game.rebinding = None;
                 if key != Key::Escape {
                     game.settings.bindings.bind_key(action, key);
                     game.keep_settings();

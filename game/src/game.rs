@@ -147,6 +147,11 @@ impl Game {
             cheered: 0.0,
             attracted: 0,
         };
+        if settings_aside.is_some() {
+            // Nobody knows how strong it was to be, nor how the motors lie.
+            game.settings.haptics = 0.0;
+            game.notify(game.words().forces_zero.to_string());
+        }
         for aside in [settings_aside, records_aside].into_iter().flatten() {
             let kept = game.words().settings_kept;
             game.notify(format!("{kept} {}", aside.display()));
@@ -340,6 +345,14 @@ impl Game {
     pub fn turn(&self) -> Option<f32> {
         let is_space = matches!(self.session.round(), AnyRound::Space(_));
         is_space.then(|| self.camera.turn())
+    }
+
+    /// Takes back that all forces were cut.
+    pub fn restore_forces(&mut self) {
+        self.forces.restore();
+        let cut = self.words().cut_now;
+        self.notices.retain(|(text, _)| text != cut);
+        self.notify(self.words().restored.to_string());
     }
 
     /// Whether a second player can come in.

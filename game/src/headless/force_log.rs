@@ -1,4 +1,5 @@
 //! What a round would be felt like: the forces on each hand in every substep, and what a stick and a pad would be told.
+//! `docs/force-log.md` tells what the columns are.
 
 use crate::felt;
 use crate::settings::Settings;
@@ -25,6 +26,8 @@ pub struct ForceLog {
     file: BufWriter<File>,
     /// Each player's stick and pad.
     feels: [[Feel; 2]; PLAYERS],
+    /// Where each stick pointed at the end of the tick before.
+    aims: [Option<[f32; 2]>; PLAYERS],
     /// As a new player finds them.
     settings: force_feedback::Settings,
     /// Updates so far.
@@ -41,6 +44,7 @@ impl ForceLog {
         Ok(Self {
             file,
             feels: Default::default(),
+            aims: Default::default(),
             settings: Settings::default().force("").unwrap_or_default(),
             updates: 0,
             written: Ok(()),
@@ -72,15 +76,21 @@ impl ForceLog {
                 let Some(reaction) = hand.reactions().get(substep) else {
                     continue;
                 };
-                let [x, y, z] = reaction.contact;
-                let [u, v, w] = reaction.coupling;
-                let row = format!("{seconds:.6},substep,{player},{x},{y},{z},{u},{v},{w},,,,,,,,,");
-                writeln!(self.file, "{row}")?;
+                let contact = numbers(&reaction.contact);
+                let coupling = numbers(&reaction.coupling);
+                writeln!(
+                    self.file,
+                    "{seconds:.6},substep,{player},{contact},{coupling},,,,,,,,,"
+                )?;
             }
         }
         let tears = felt::tears(round);
         for (feels, size) in self.feels.iter_mut().zip(tears) {
             feels.iter_mut().for_each(|feel| feel.tear(size));
+        }
+        let before = self.aims;
+        for (aim, hand) in self.aims.iter_mut().zip(hands) {
+            *aim = Some(aim_at(hand.goal(), round));
         }
         loop {
             let seconds = self.updates as f64 * PERIOD;
@@ -91,8 +101,13 @@ impl ForceLog {
             if seconds < end {
                 continue;
             }
-            for player in 0..hands.len().min(PLAYERS) {
-                self.update(round, player, seconds, end)?;
+            for (player, before) in before.iter().enumerate().take(hands.len()) {
+                // A stick is on its way for all of a tick.
+                let share = ((seconds - end) / tick) as f32;
+                let now = self.aims[player].unwrap_or_default();
+                let before = before.unwrap_or(now);
+                let aim = [0, 1].map(|axis| before[axis] + share * (now[axis] - before[axis]));
+                self.update(round, player, aim, seconds, end)?;
             }
         }
     }
@@ -102,20 +117,20 @@ impl ForceLog {
         &mut self,
         round: &AnyRound,
         player: usize,
+        aim: [f32; 2],
         seconds: f64,
         end: f64,
     ) -> io::Result<()> {
         let hand = &round.hands()[player];
-        let [x, y, z] = felt::contact(hand);
+        let contact = felt::contact(hand);
         let state = State {
-            contact: [x, y],
+            contact: felt::on_stick(contact, turn(round)),
             manner: Manner::Places,
         };
         let mail = Mail {
             wish: felt::silence(round).map_or(Ok(state), Err),
             at: Duration::from_secs_f64(end),
         };
-        let aim = aim_at(hand.goal(), round.level().arena());
         let watchdog = Watchdog::default();
         let now = Duration::from_secs_f64(seconds);
         let [stick, pad] = &mut self.feels[player];
@@ -127,25 +142,41 @@ impl ForceLog {
             &self.settings,
             now,
         );
-        let pair = |output| match output {
-            Output::Force([x, y]) => (x, y),
-            Output::Rumble { low, high } => (low, high),
+        let both = |output| match output {
+            Output::Force(both) => both,
+            Output::Rumble { low, high } => [low, high],
         };
-        let ([u, v], [felt_x, felt_y]) = (aim, stick.newtons);
-        let ((right, up), (slow, fast)) = (pair(stick.output), pair(pad.output));
+        let (contact, aim) = (numbers(&contact), numbers(&aim));
+        let felt = numbers(&stick.newtons);
+        let (pushed, shaken) = (numbers(&both(stick.output)), numbers(&both(pad.output)));
         let silent = stick.silent.map_or(String::new(), |why| why.to_string());
         writeln!(
             self.file,
-            "{seconds:.6},device,{player},{x},{y},{z},,,,\
-             {u},{v},{felt_x},{felt_y},{right},{up},{slow},{fast},{silent}"
+            "{seconds:.6},device,{player},{contact},,,,{aim},{felt},{pushed},{shaken},{silent}"
         )
     }
 }
 
+/// Side by side, to five places: what is less is nothing.
+fn numbers(all: &[f32]) -> String {
+    let rounded = all
+        .iter()
+        .map(|k| (1e5 * f64::from(*k)).round() / 1e5 + 0.0);
+    rounded.map(|k| k.to_string()).collect::<Vec<_>>().join(",")
+}
+
+/// In space the camera looks from the front.
+fn turn(round: &AnyRound) -> Option<f32> {
+    matches!(round, AnyRound::Space(_)).then_some(0.0)
+}
+
 /// Where a stick points that points at a place in the arena [m].
-fn aim_at(place: Vector, [low, high]: [Vector; 2]) -> [f32; 2] {
-    [0, 1].map(|axis| {
+fn aim_at(place: Vector, round: &AnyRound) -> [f32; 2] {
+    let [low, high] = round.level().arena();
+    let share = [0, 1, 2].map(|axis: usize| {
         let middle = 0.5 * (low[axis] + high[axis]);
-        (place[axis] - middle) / (0.5 * (high[axis] - low[axis]))
-    })
+        let half = 0.5 * (high[axis] - low[axis]);
+        (place[axis] - middle) / half.max(1e-3)
+    });
+    felt::on_stick(share, turn(round))
 }

@@ -40,7 +40,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, from: Screen) {
                     let width = ui.available_width();
                     let text = said.restore;
                     if button(ui, &theme, text, vec2(width, 48.0), Weight::Main).clicked() {
-                        game.forces.restore();
+                        game.restore_forces();
                     }
                 } else {
                     let keys = game

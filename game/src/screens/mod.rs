@@ -42,6 +42,8 @@ fn notices(game: &Game, ui: &Ui) {
     let screen = ui.max_rect();
     let above = match game.screen {
         Screen::Play => hud::height(game, ui),
+        // Below the headline and the way back.
+        Screen::Levels | Screen::Settings(_) | Screen::Forces(_) | Screen::Replays => 92.0,
         _ => 18.0,
     };
     let mut y = screen.top() + above;
@@ -49,8 +51,9 @@ fn notices(game: &Game, ui: &Ui) {
     let font = FontId::proportional(18.0 * scale);
     let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("notices"));
     let painter = ui.ctx().layer_painter(layer);
-    // Over a round it stands in the row of what is different from usual.
-    let is_cut = game.forces.is_cut() && game.screen != Screen::Play;
+    // Over a round it stands in the row of what is different from usual, and where it can be taken back there is a button.
+    let is_said = matches!(game.screen, Screen::Play | Screen::Forces(_));
+    let is_cut = game.forces.is_cut() && !is_said;
     let lasting = is_cut.then(|| (game.words().cut_now.to_string(), 1.0));
     let passing = game.notices.iter().cloned();
     let is_new = |notice: &(String, f32)| !is_cut || notice.0 != game.words().cut_now;

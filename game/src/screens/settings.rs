@@ -108,10 +108,13 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, from: Screen) {
             controls(ui, game, &mut chosen);
             ui.add_space(8.0);
             if button(ui, &theme, said.reset, vec2(240.0, 48.0), Weight::Other).clicked() {
-                let language = chosen.language;
+                let usual = Settings::default();
                 chosen = Settings {
-                    language,
-                    ..Settings::default()
+                    language: chosen.language,
+                    // No force comes up unasked, and what was measured stays as it is.
+                    haptics: chosen.haptics.min(usual.haptics),
+                    calibrations: std::mem::take(&mut chosen.calibrations),
+                    ..usual
                 };
             }
         });

@@ -119,6 +119,8 @@ pub(super) const WORDS: Words = Words {
         )
     },
     restore: "Switch forces on again",
+    restored: "Forces are on again.",
+    forces_zero: "The settings were lost, so forces are at 0 until you choose again.",
     speed: "Game speed",
     sensitivity: "Sensitivity",
     stick_places: "Stick points at the place",

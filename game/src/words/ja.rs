@@ -114,6 +114,8 @@ pub(super) const WORDS: Words = Words {
         format!("キーボードの {keys} か、ボタン {buttons} をおすと、手ごたえが すぐ切れます。")
     },
     restore: "手ごたえをもどす",
+    restored: "手ごたえをもどしました。",
+    forces_zero: "せっていが読めなかったので、手ごたえは えらぶまで0です。",
     speed: "はやさ",
     sensitivity: "うごきの大きさ",
     stick_places: "スティックで場所をさす",

@@ -94,6 +94,8 @@ pub struct Words {
     pub cut_now: &'static str,
     pub cut_hint: fn(&[String; 2]) -> String,
     pub restore: &'static str,
+    pub restored: &'static str,
+    pub forces_zero: &'static str,
     pub speed: &'static str,
     pub sensitivity: &'static str,
     pub stick_places: &'static str,
