@@ -182,7 +182,9 @@ impl App {
         }
         // Where the mouse is counts until a tick has heard of it; on a button it does not mean the hand.
         let has_moved = |event: &Event| matches!(event, Event::PointerMoved(_));
-        let points = is_down || events.iter().any(has_moved);
+        // Nor while it turns the camera.
+        let turns = ctx.input(|input| input.pointer.button_down(PointerButton::Secondary));
+        let points = !turns && (is_down || events.iter().any(has_moved));
         let is_on_button = ctx.interaction_snapshot(|seen| !seen.hovered.is_empty());
         if game.screen != Screen::Play || is_on_button {
             game.devices.pointer = None;
@@ -190,7 +192,7 @@ impl App {
             let height = game.session.round().hands()[0].goal()[1];
             game.devices.pointer = Some(view.in_world(at, height));
         }
-        if game.screen == Screen::Play && game.turn().is_some() {
+        if game.screen == Screen::Play && game.turn().is_some() && game.session.is_played() {
             let (wheel, drag, seconds) = ctx.input(|input| {
                 let is_dragged = input.pointer.button_down(PointerButton::Secondary);
                 let drag = if is_dragged {

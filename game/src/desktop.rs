@@ -13,7 +13,7 @@ use std::process::ExitCode;
 #[derive(Parser)]
 #[command(version, after_help = AFTER_HELP)]
 struct Arguments {
-    /// A level (.toml), a picture to make a body of (.png) or a replay (.tamaire)
+    /// A level (.toml), a picture or a model to make a body of (.png, .vox) or a replay (.tamaire)
     #[arg(conflicts_with_all = ["level", "replay"])]
     file: Option<PathBuf>,
     /// No sound

@@ -210,6 +210,7 @@ impl Game {
     pub fn start(&mut self, level: usize) {
         let level = level.min(self.levels.len() - 1);
         self.session = Session::of_people(self.levels[level].clone());
+        self.camera.face_front();
         self.begin();
     }
 
@@ -241,7 +242,8 @@ impl Game {
         self.chosen = known.unwrap_or(self.chosen);
         self.players.start();
         self.effects = Effects::default();
-        self.camera.face_front();
+        // They mean places of the round before.
+        (self.devices.pointer, self.devices.lift, self.view) = (None, 0.0, None);
         self.won = None;
         self.cheered = 0.0;
         self.go(Screen::Play);

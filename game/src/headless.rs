@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use tamaire_play::level::{LevelError, NAMED};
+use tamaire_play::level::{LevelError, NAMED, NAMED_3D};
 use tamaire_play::{AnyRound, Bot, BotKind, Level, Playback, Replay, ReplayError};
 
 /// Exit status when a replay is refused.
@@ -33,7 +33,7 @@ const RATE: f32 = 60.0;
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Without a window")]
 pub struct Options {
-    /// The level, by name (see --list) or in a file (.toml or .png)
+    /// The level, by name (see --list) or in a file (.toml, .png or .vox)
     #[arg(long, requires = "headless", default_value = NAMED[0].0, value_name = "NAME or FILE")]
     pub level: String,
     /// Which bot plays
@@ -127,7 +127,7 @@ pub fn play(options: &Options) -> ExitCode {
 /// Prints the names of the levels.
 pub fn list() {
     let mut text = String::new();
-    for (id, _) in NAMED {
+    for (id, _) in NAMED.iter().chain(&NAMED_3D) {
         let level = Level::open(id).expect("the tests open it");
         let name = &level.game().name;
         let other = name.ja.as_deref().unwrap_or_default();

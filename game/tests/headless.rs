@@ -220,6 +220,7 @@ fn levels_are_listed_by_name() {
         classic.is_some_and(|line| line.contains("Classic")),
         "{told}"
     );
+    assert!(told.lines().any(|line| line.starts_with("classic-3d ")));
 }
 
 #[test]

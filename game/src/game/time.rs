@@ -98,7 +98,10 @@ impl Game {
                     *goal = hand.goal();
                 }
                 let tick = fuwafuwa::world::TICK;
-                players.frame(devices, &settings.bindings, &manner, &hands, tick)
+                let frame = players.frame(devices, &settings.bindings, &manner, &hands, tick);
+                // The wheel was turned once, however many ticks there are.
+                devices.lift = 0.0;
+                frame
             },
             |round| {
                 effects.see(round, camera, still);
@@ -112,7 +115,6 @@ impl Game {
         );
         if is_heard {
             devices.pointer = None;
-            devices.lift = 0.0;
         }
         for (player, size) in tears
             .into_iter()

@@ -54,7 +54,7 @@ impl Default for Bindings {
             (Action::Lower, vec![Key::Z, Key::PageDown]),
             (Action::TurnLeft, vec![Key::OpenBracket]),
             (Action::TurnRight, vec![Key::CloseBracket]),
-            (Action::CutForces, vec![Key::F12, Key::X]),
+            (Action::CutForces, vec![Key::F12]),
         ];
         let pad = |button| PadKey::of(Control::Pad(button));
         let stick = |index| PadKey::of(Control::Button(index));
@@ -231,10 +231,9 @@ mod tests {
 
     #[test]
     fn there_is_always_a_key_that_cuts_forces() {
-        let text = "[keys]\nretry = [\"F12\"]\npause = [\"X\"]\n";
+        let text = "[keys]\nretry = [\"F12\"]\n";
         let bindings = toml::from_str::<Bindings>(text).unwrap().complete();
         assert_eq!(bindings.of_key(Key::F12), Some(Action::CutForces));
-        assert_eq!(bindings.of_key(Key::X), Some(Action::Pause));
         assert!(
             Action::ALL
                 .iter()

@@ -87,10 +87,14 @@ impl Manner {
         ]
     }
 
-    /// The nearest place in the arena.
-    fn within(&self, place: Vector) -> Vector {
+    /// The nearest place in the arena. A level in the plane says nothing about the third axis.
+    fn within(&self, mut place: Vector) -> Vector {
         let [low, high] = self.arena;
-        [0, 1, 2].map(|axis: usize| place[axis].clamp(low[axis], high[axis]))
+        let axes = if self.turn.is_some() { 3 } else { 2 };
+        for axis in 0..axes {
+            place[axis] = place[axis].clamp(low[axis], high[axis]);
+        }
+        place
     }
 
     /// The place in the arena at which a stick points, as high as another [m].
@@ -230,7 +234,10 @@ impl Players {
                 .filter_map(|(control, _)| bindings.of_button(control))
                 .collect();
             let means = |action| held.contains(&action);
-            let rise = opposed(means, Action::Raise, Action::Lower) + rise_of(device);
+            let rise = match manner.turn {
+                Some(_) => opposed(means, Action::Raise, Action::Lower) + rise_of(device),
+                None => 0.0,
+            };
             let hat = direction(means);
             lean += hat;
             lift += rise;
@@ -268,7 +275,9 @@ fn rise_of(device: &Device) -> f32 {
         return 0.0;
     };
     let [_, up] = sticks::radial_dead_zone(pad.right, DEAD, RIM);
-    let [left, right] = pad.triggers;
+    let [[left, _], [right, _]] = pad
+        .triggers
+        .map(|pull| sticks::radial_dead_zone([pull, 0.0], DEAD, RIM));
     up + right - left
 }
 

@@ -14,12 +14,14 @@ const LEAN: f32 = 0.03;
 const PACE: f32 = 3.0;
 /// How fast a shake dies [1/s], and how fast it swings [rad/s].
 const CALM: f32 = 9.0;
-/// In space it begins so far up, and goes no lower and no higher [rad].
+/// In space it begins so far up, and goes no lower, where a hand could be above it, and no higher [rad].
 const RISE: f32 = 0.6;
-const LOWEST: f32 = 0.1;
+const LOWEST: f32 = 0.35;
 const HIGHEST: f32 = 1.5;
 /// Of the distance from which a whole arena in space is seen from all sides it keeps this: its corners are of no interest.
 const CLOSE: f32 = 0.66;
+/// Farther away than any level is large [m].
+const FAR: f32 = 100.0;
 const SWING: f32 = 60.0;
 
 /// Looks at the arena, leans towards the hand, and shakes when something tears.
@@ -154,9 +156,11 @@ impl View {
         if let Some(camera) = &self.space {
             let point = at - self.rect.min;
             let (eye, towards) = camera.ray([point.x, point.y], pixels(self.rect));
-            // Above the horizon it is as far away as can be.
-            let reach = (eye[1] - height) / (-towards[1]).max(1e-3);
-            return plus(eye, scaled(towards, reach));
+            // Past the horizon it is as far away as can be.
+            let reach = (height - eye[1]) / towards[1];
+            let reach = if reach > 0.0 { reach.min(FAR) } else { FAR };
+            let [x, _, z] = plus(eye, scaled(towards, reach));
+            return [x, height, z];
         }
         let way = (at - self.rect.center()) / self.scale;
         [self.centre[0] + way.x, self.centre[1] - way.y, 0.0]
@@ -216,7 +220,15 @@ mod tests {
             let place = view.in_world(view.on_screen(at), at[1]);
             assert!(length(minus(place, at)) < 1e-2, "{place:?}");
         }
+        // From far below: past the horizon, and with the hand above the eye, right stays right and far is far.
         camera.face_front();
+        camera.orbit(0.0, -9.0);
+        let view = camera.view_of_space(rect, arena);
+        for height in [0.4, 1.4] {
+            let [left, right] = [200.0, 700.0].map(|x| view.in_world(pos2(x, 25.0), height));
+            assert!(left[0] < right[0] && left[2] < -1.0, "{left:?} {right:?}");
+            assert_eq!((left[1], right[1]), (height, height));
+        }
         assert_eq!(camera.turn(), 0.0);
     }
 }

@@ -169,7 +169,8 @@ impl Effects {
                 // What comes to a wall stays there.
                 let (first, last) = (low[axis] + speck.radius, high[axis] - speck.radius);
                 if speck.at[axis] < first || speck.at[axis] > last {
-                    speck.at[axis] = speck.at[axis].clamp(first, last);
+                    // A room may be narrower than a speck.
+                    speck.at[axis] = speck.at[axis].min(last).max(first);
                     speck.velocity = [0.0; 3];
                 }
             }

@@ -207,7 +207,8 @@ fn best_seat<D: Dim>(body: &Body<D>, now: Option<u32>) -> Option<Seat> {
     let mut best: Option<(f32, Seat)> = None;
     // In space there are too many to look at all of them.
     let stride = 1 + own().count() * skin.len() / MOST_LOOKS;
-    for (id, node) in own().step_by(stride) {
+    let seated = now.and_then(|now| own().find(|(id, _)| *id == now));
+    for (id, node) in seated.into_iter().chain(own().step_by(stride)) {
         let rest = node.at;
         let away = minus(rest.map(|k| k as f32), middle);
         let lazy = if now == Some(id) { LAZY } else { 0.0 };
