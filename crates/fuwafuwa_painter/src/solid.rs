@@ -101,6 +101,65 @@ impl Solid {
         }
     }
 
+    /// Adds a bar with round ends.
+    pub fn bar(&mut self, [from, to]: [Vector; 2], radius: f32, role: Role) {
+        const ROUND: usize = 32;
+        self.ball(from, radius, role);
+        self.ball(to, radius, role);
+        let along = minus(to, from);
+        // Whichever axis it lies along least is far enough from it.
+        let least = (0..3).min_by(|&a, &b| along[a].abs().total_cmp(&along[b].abs()));
+        let mut aside = [0.0; 3];
+        aside[least.expect("there are three")] = 1.0;
+        let across = unit(cross(along, aside));
+        let up = unit(cross(across, along));
+        let normal = |step: usize| {
+            let (sin, cos) = (step as f32 / ROUND as f32 * std::f32::consts::TAU).sin_cos();
+            plus(scaled(across, cos), scaled(up, sin))
+        };
+        for step in 0..ROUND {
+            let [a, b] = [normal(step), normal(step + 1)];
+            let at = |end: Vector, normal: Vector| plus(end, scaled(normal, radius));
+            let corners = [at(from, a), at(from, b), at(to, b), at(to, a)];
+            self.smooth_quad(corners, [a, b, b, a], role);
+        }
+    }
+
+    /// Adds an upright block.
+    pub fn block(&mut self, centre: Vector, half: Vector, role: Role) {
+        for axis in 0..3 {
+            let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+            for side in [-1.0, 1.0] {
+                let corners = [[-1.0, -side], [1.0, -side], [1.0, side], [-1.0, side]];
+                let corners = corners.map(|[along, across]| {
+                    let mut corner = centre;
+                    corner[axis] += side * half[axis];
+                    corner[u] += along * half[u];
+                    corner[v] += across * half[v];
+                    corner
+                });
+                self.quad(corners, role);
+            }
+        }
+    }
+
+    /// Adds the edges of an upright block, of a width [px].
+    pub fn edges(&mut self, centre: Vector, half: Vector, width: f32, role: Role) {
+        for axis in 0..3 {
+            let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+            for [along, across] in [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]] {
+                let ends = [-1.0, 1.0].map(|side| {
+                    let mut corner = centre;
+                    corner[axis] += side * half[axis];
+                    corner[u] += along * half[u];
+                    corner[v] += across * half[v];
+                    corner
+                });
+                self.segment(ends, width, role);
+            }
+        }
+    }
+
     /// Adds a floor at a height [m].
     pub fn floor(&mut self, height: f32) {
         self.floor = Some(height);
@@ -160,6 +219,26 @@ mod tests {
         let [red, _, blue] = at(&pixels, 30, 30);
         assert!(blue > red, "the blue ball stands in front");
         assert_eq!(at(&pixels, 2, 2), colour(Role::Paper));
+    }
+
+    #[test]
+    fn bars_and_blocks_are_seen_from_all_sides() {
+        for eye in [
+            [0.0, 1.0, 4.0],
+            [0.0, 1.0, -4.0],
+            [4.0, 1.0, 0.1],
+            [-4.0, 1.0, 0.1],
+        ] {
+            for is_bar in [true, false] {
+                let mut solid = Solid::new(Camera { eye, ..CAMERA });
+                match is_bar {
+                    true => solid.bar([[-0.5, 0.0, -0.5], [0.5, 0.0, 0.5]], 0.3, Role::Hand),
+                    false => solid.block([0.0; 3], [0.4, 0.3, 0.5], Role::Hand),
+                }
+                let [red, _, blue] = at(&solid.pixels(60, 60).unwrap(), 30, 30);
+                assert!(blue > red, "{eye:?} {is_bar}");
+            }
+        }
     }
 
     #[test]

@@ -152,10 +152,13 @@ pub fn slots(level: u8, children: u8) -> BTreeSet<usize> {
 /// Paints a world of space, each body as `draw` does.
 pub fn space(solid: &mut Solid, world: &World<Dim3>, draw: DrawSpace) {
     for obstacle in world.obstacles() {
-        if let Shape::HalfSpace { normal, offset } = obstacle.shape
-            && normal[1] > 0.99
-        {
-            solid.floor(offset);
+        match obstacle.shape {
+            Shape::HalfSpace { normal, offset } if normal[1] > 0.99 => solid.floor(offset),
+            // The other walls would hide what is inside.
+            Shape::HalfSpace { .. } => {}
+            Shape::Box { centre, half } => solid.block(centre, half, Role::Bar),
+            Shape::Capsule { from, to, radius } => solid.bar([from, to], radius, Role::Bar),
+            Shape::Ball { centre, radius } => solid.ball(centre, radius, Role::Bar),
         }
     }
     for body in world.bodies() {

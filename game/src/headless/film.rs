@@ -7,7 +7,7 @@ use super::report::by_route;
 use crate::look::{Camera, Effects, Mood};
 use fuwafuwa::vector::{plus, scaled};
 use fuwafuwa::world::TICK;
-use fuwafuwa::{Dim2, Dim3};
+use fuwafuwa::{Dim2, Dim3, Shape};
 use fuwafuwa_painter::soft::{self, Extras};
 use fuwafuwa_painter::solid::{Camera as SolidCamera, Solid};
 use fuwafuwa_painter::stage;
@@ -143,7 +143,7 @@ fn plane(round: &Round<Dim2>, effects: &Effects) -> Painter {
     painter
 }
 
-/// From above and the front, as the game shows it at first.
+/// From above and the front, without faces and walls.
 fn space(round: &Round<Dim3>) -> Result<Painter, PaintError> {
     let [low, high] = round.level().arena();
     let middle = [0, 1, 2].map(|axis| 0.5 * (low[axis] + high[axis]));
@@ -154,6 +154,9 @@ fn space(round: &Round<Dim3>) -> Result<Painter, PaintError> {
         across: 1.1 * across,
     });
     stage::space(&mut solid, round.world(), stage::space_skin);
+    if let Some(&Shape::Box { centre, half }) = round.basket() {
+        solid.edges(centre, half, 2.0, Role::BasketRim);
+    }
     let high = WIDTH * 5 / 8;
     let mut painter = Painter::new(WIDTH, high);
     painter.image([0.0; 2], solid.pixels(WIDTH, high)?);
