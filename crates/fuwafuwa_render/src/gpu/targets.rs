@@ -56,22 +56,8 @@ impl Targets {
             TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
         );
         let image = |label, divisor: u32, samples, format, usage| {
-            let [width, height] = size.map(|side| side.div_ceil(divisor));
-            let texture = device.create_texture(&TextureDescriptor {
-                label: Some(label),
-                size: Extent3d {
-                    width,
-                    height,
-                    depth_or_array_layers: 1,
-                },
-                mip_level_count: 1,
-                sample_count: samples,
-                dimension: TextureDimension::D2,
-                format,
-                usage,
-                view_formats: &[],
-            });
-            texture.create_view(&TextureViewDescriptor::default())
+            let size = size.map(|side| side.div_ceil(divisor));
+            new_image(device, label, size, samples, format, usage)
         };
         let pair = |label, divisor, samples, format, usage| {
             [0, 1].map(|_| image(label, divisor, samples, format, usage))
@@ -85,12 +71,7 @@ impl Targets {
             usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let smooth = device.create_sampler(&SamplerDescriptor {
-            label: Some("smooth"),
-            mag_filter: FilterMode::Linear,
-            min_filter: FilterMode::Linear,
-            ..SamplerDescriptor::default()
-        });
+        let smooth = smooth(device);
         let sources = [
             &skin, &narrow[0], &narrow[1], &narrow[0], &wide[0], &wide[1],
         ];
@@ -194,6 +175,42 @@ pub fn within(device: &Device, window: [u32; 2]) -> [u32; 2] {
     let longest = device.limits().max_texture_dimension_2d as f32 / width.max(height);
     let shrunk = (MOST_PIXELS / (width * height)).sqrt().min(longest);
     window.map(|side| ((side as f32 * shrunk.min(1.0)) as u32).max(1))
+}
+
+/// An image to draw into.
+pub fn new_image(
+    device: &Device,
+    label: &str,
+    [width, height]: [u32; 2],
+    samples: u32,
+    format: TextureFormat,
+    usage: TextureUsages,
+) -> TextureView {
+    let texture = device.create_texture(&TextureDescriptor {
+        label: Some(label),
+        size: Extent3d {
+            width,
+            height,
+            depth_or_array_layers: 1,
+        },
+        mip_level_count: 1,
+        sample_count: samples,
+        dimension: TextureDimension::D2,
+        format,
+        usage,
+        view_formats: &[],
+    });
+    texture.create_view(&TextureViewDescriptor::default())
+}
+
+/// Looks between the pixels of an image.
+pub fn smooth(device: &Device) -> Sampler {
+    device.create_sampler(&SamplerDescriptor {
+        label: Some("smooth"),
+        mag_filter: FilterMode::Linear,
+        min_filter: FilterMode::Linear,
+        ..SamplerDescriptor::default()
+    })
 }
 
 pub fn bind(

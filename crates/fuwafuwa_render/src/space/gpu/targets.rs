@@ -2,7 +2,7 @@
 
 use super::pipelines::Pipelines;
 use crate::gpu::stage::SAMPLES;
-use crate::gpu::targets::{bind, within};
+use crate::gpu::targets::{bind, new_image, smooth, within};
 use wgpu::*;
 
 /// The picture, as screens take it.
@@ -37,19 +37,15 @@ impl Targets {
         let window = window.map(|side| side.max(1));
         let size = within(device, window);
         let inside = TextureUsages::RENDER_ATTACHMENT;
-        let picture = image(
+        let picture = new_image(
             device,
+            "picture",
             size,
             1,
             PICTURE_FORMAT,
             inside | TextureUsages::TEXTURE_BINDING,
         );
-        let smooth = device.create_sampler(&SamplerDescriptor {
-            label: Some("smooth"),
-            mag_filter: FilterMode::Linear,
-            min_filter: FilterMode::Linear,
-            ..SamplerDescriptor::default()
-        });
+        let smooth = smooth(device);
         let shown = [
             BindingResource::TextureView(&picture),
             BindingResource::Sampler(&smooth),
@@ -57,8 +53,15 @@ impl Targets {
         Self {
             window,
             size,
-            rough: image(device, size, SAMPLES, PICTURE_FORMAT, inside),
-            depth: image(device, size, SAMPLES, DEPTH_FORMAT, inside),
+            rough: new_image(
+                device,
+                "rough picture",
+                size,
+                SAMPLES,
+                PICTURE_FORMAT,
+                inside,
+            ),
+            depth: new_image(device, "depth", size, SAMPLES, DEPTH_FORMAT, inside),
             shown: bind(device, &pipelines.window_layout, &shown),
             picture,
         }
@@ -68,7 +71,8 @@ impl Targets {
 impl Shadows {
     pub fn new(device: &Device, pipelines: &Pipelines) -> Self {
         let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
-        let maps = SHADOW_SIDES.map(|side| image(device, [side; 2], 1, SHADOW_FORMAT, usage));
+        let maps = SHADOW_SIDES
+            .map(|side| new_image(device, "shadow", [side; 2], 1, SHADOW_FORMAT, usage));
         let compare = device.create_sampler(&SamplerDescriptor {
             label: Some("shadow"),
             mag_filter: FilterMode::Linear,
@@ -86,28 +90,4 @@ impl Shadows {
             maps,
         }
     }
-}
-
-fn image(
-    device: &Device,
-    [width, height]: [u32; 2],
-    samples: u32,
-    format: TextureFormat,
-    usage: TextureUsages,
-) -> TextureView {
-    let texture = device.create_texture(&TextureDescriptor {
-        label: None,
-        size: Extent3d {
-            width,
-            height,
-            depth_or_array_layers: 1,
-        },
-        mip_level_count: 1,
-        sample_count: samples,
-        dimension: TextureDimension::D2,
-        format,
-        usage,
-        view_formats: &[],
-    });
-    texture.create_view(&TextureViewDescriptor::default())
 }
