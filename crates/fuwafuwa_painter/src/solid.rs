@@ -128,16 +128,9 @@ impl Solid {
     /// Adds an upright block.
     pub fn block(&mut self, centre: Vector, half: Vector, role: Role) {
         for axis in 0..3 {
-            let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
             for side in [-1.0, 1.0] {
                 let corners = [[-1.0, -side], [1.0, -side], [1.0, side], [-1.0, side]];
-                let corners = corners.map(|[along, across]| {
-                    let mut corner = centre;
-                    corner[axis] += side * half[axis];
-                    corner[u] += along * half[u];
-                    corner[v] += across * half[v];
-                    corner
-                });
+                let corners = corners.map(|[u, v]| corner(centre, half, axis, [side, u, v]));
                 self.quad(corners, role);
             }
         }
@@ -146,15 +139,8 @@ impl Solid {
     /// Adds the edges of an upright block, of a width [px].
     pub fn edges(&mut self, centre: Vector, half: Vector, width: f32, role: Role) {
         for axis in 0..3 {
-            let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-            for [along, across] in [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]] {
-                let ends = [-1.0, 1.0].map(|side| {
-                    let mut corner = centre;
-                    corner[axis] += side * half[axis];
-                    corner[u] += along * half[u];
-                    corner[v] += across * half[v];
-                    corner
-                });
+            for [u, v] in [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]] {
+                let ends = [-1.0, 1.0].map(|side| corner(centre, half, axis, [side, u, v]));
                 self.segment(ends, width, role);
             }
         }
@@ -188,6 +174,16 @@ impl Solid {
         let corners = self.triangles.iter().map(|triangle| triangle.corners);
         Shadow::of(&corners.collect::<Vec<_>>(), height)
     }
+}
+
+/// The corner of a block that is on these sides of its middle, -1 or 1: along an axis, and along the two that follow it.
+fn corner(centre: Vector, half: Vector, axis: usize, sides: [f32; 3]) -> Vector {
+    let mut corner = centre;
+    for (step, side) in sides.into_iter().enumerate() {
+        let along = (axis + step) % 3;
+        corner[along] += side * half[along];
+    }
+    corner
 }
 
 fn unit(v: Vector) -> Vector {
