@@ -192,35 +192,10 @@ impl App {
             let height = game.session.round().hands()[0].goal()[1];
             game.devices.pointer = Some(view.in_world(at, height));
         }
-        if game.screen == Screen::Play && game.turn().is_some() && game.session.is_played() {
-            let (wheel, drag, seconds) = ctx.input(|input| {
-                let is_dragged = input.pointer.button_down(PointerButton::Secondary);
-                let drag = if is_dragged {
-                    input.pointer.delta()
-                } else {
-                    egui::Vec2::ZERO
-                };
-                (input.smooth_scroll_delta.y, drag, input.stable_dt.min(0.1))
-            });
-            game.devices.lift += WHEEL * wheel;
-            game.camera.orbit(-DRAG * drag.x, DRAG * drag.y);
-            let turns = |action| {
-                let by_key = keys
-                    .iter()
-                    .any(|&key| game.settings.bindings.of_key(key) == Some(action));
-                f32::from(u8::from(by_key))
-            };
-            let sticks = game.devices.sticks.devices.iter();
-            let pads: f32 = sticks.filter_map(|device| Some(device.pad?.right[0])).sum();
-            let pads = if pads.abs() > 0.3 {
-                pads.clamp(-1.0, 1.0)
-            } else {
-                0.0
-            };
-            let turn = turns(Action::TurnRight) - turns(Action::TurnLeft) + pads;
-            game.camera.orbit(TURN * turn * seconds, 0.0);
-        }
         game.devices.keys = keys.into_iter().collect();
+        if game.screen == Screen::Play && game.turn().is_some() && game.session.is_played() {
+            look_around(game, ctx, turns);
+        }
         let mut taken = Vec::new();
         for event in &events {
             let Event::Key {
@@ -266,6 +241,34 @@ impl App {
             game.open(file.path());
         }
     }
+}
+
+/// In space the wheel raises the hand, and the camera turns: with the mouse where that `drags`, with keys and pads.
+fn look_around(game: &mut Game, ctx: &egui::Context, drags: bool) {
+    let (wheel, delta, seconds) = ctx.input(|input| {
+        let seconds = input.stable_dt.min(0.1);
+        (input.smooth_scroll_delta.y, input.pointer.delta(), seconds)
+    });
+    game.devices.lift += WHEEL * wheel;
+    if drags {
+        game.camera.orbit(-DRAG * delta.x, DRAG * delta.y);
+    }
+    let bindings = &game.settings.bindings;
+    let held = |action| {
+        let mut keys = game.devices.keys.iter();
+        f32::from(u8::from(
+            keys.any(|&key| bindings.of_key(key) == Some(action)),
+        ))
+    };
+    let sticks = game.devices.sticks.devices.iter();
+    let pads: f32 = sticks.filter_map(|device| Some(device.pad?.right[0])).sum();
+    let pads = if pads.abs() > 0.3 {
+        pads.clamp(-1.0, 1.0)
+    } else {
+        0.0
+    };
+    let turn = held(Action::TurnRight) - held(Action::TurnLeft) + pads;
+    game.camera.orbit(TURN * turn * seconds, 0.0);
 }
 
 impl eframe::App for App {

@@ -5,7 +5,7 @@ use super::face::Place;
 use super::feelings::Feeling;
 use super::{Effects, Maps, Mood, Theme, draw_face, glow, hint};
 use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait, RenderState};
-use egui::{Color32, PaintCallbackInfo, Painter, Pos2, Stroke, Ui, vec2};
+use egui::{Color32, PaintCallbackInfo, Painter, Pos2, Rect, Stroke, Ui, vec2};
 use fuwafuwa::vector::{dot, length};
 use fuwafuwa::{Dim, Dim2, Dim3, Vector};
 use fuwafuwa_render::frame::ElementColour;
@@ -63,10 +63,10 @@ pub struct Stage {
     time: f32,
 }
 
-/// Puts the picture that was made ready into egui's pass.
-struct Paint(Arc<Mutex<Renderer>>);
+/// Puts the picture that a renderer made ready into egui's pass.
+struct Paint<R>(Arc<Mutex<R>>, fn(&R, &mut wgpu::RenderPass<'static>));
 
-impl CallbackTrait for Paint {
+impl<R: Send + 'static> CallbackTrait for Paint<R> {
     fn paint(
         &self,
         _: PaintCallbackInfo,
@@ -75,22 +75,7 @@ impl CallbackTrait for Paint {
     ) {
         // A panic elsewhere left at worst an unfinished picture.
         let renderer = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        renderer.paint(pass);
-    }
-}
-
-/// The same in space.
-struct PaintSpace(Arc<Mutex<space::Renderer>>);
-
-impl CallbackTrait for PaintSpace {
-    fn paint(
-        &self,
-        _: PaintCallbackInfo,
-        pass: &mut wgpu::RenderPass<'static>,
-        _: &CallbackResources,
-    ) {
-        let renderer = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        renderer.paint(pass);
+        (self.1)(&renderer, pass);
     }
 }
 
@@ -131,19 +116,10 @@ impl Stage {
             cut: look.elements.and_then(|_| cut(&camera, look)),
             ..camera
         };
-        let scale = ui.ctx().pixels_per_point();
-        let size = (look.view.rect.size() * scale).max(vec2(1.0, 1.0));
-        let size = [size.x.round() as u32, size.y.round() as u32];
+        let size = pixels(ui, look.view.rect);
         self.follow_ages(round, look);
         let specks = particles(look);
-        let frame = Frame {
-            camera,
-            theme: &look.theme.world,
-            look: shown(look, &self.ages),
-            basket: basket(round),
-            particles: &specks,
-            seconds: if look.still { 0.0 } else { look.time },
-        };
+        let frame = frame(camera, round, look, &self.ages, &specks);
         let RenderState {
             device,
             queue,
@@ -157,7 +133,7 @@ impl Stage {
         renderer.prepare(device, queue, &mut encoder, round.world(), &frame, size);
         queue.submit([encoder.finish()]);
         drop(renderer);
-        let paint = PaintSpace(shared.clone());
+        let paint = Paint(shared.clone(), space::Renderer::paint);
         let painter = ui.painter();
         painter.add(Callback::new_paint_callback(look.view.rect, paint));
         if let Some(AnyRound::Space(ghost)) = look.ghost {
@@ -172,25 +148,16 @@ impl Stage {
 
     fn draw_plane(&mut self, ui: &Ui, round: &Round<Dim2>, look: &Look) {
         let view = &look.view;
-        let scale = ui.ctx().pixels_per_point();
-        let size = (view.rect.size() * scale).max(vec2(1.0, 1.0));
-        let size = [size.x.round() as u32, size.y.round() as u32];
+        let size = pixels(ui, view.rect);
         self.follow_ages(round, look);
         let specks = particles(look);
-        let frame = Frame {
-            camera: camera(view),
-            theme: &look.theme.world,
-            look: shown(look, &self.ages),
-            basket: basket(round),
-            particles: &specks,
-            seconds: if look.still { 0.0 } else { look.time },
-        };
+        let frame = frame(camera(view), round, look, &self.ages, &specks);
         let RenderState { device, queue, .. } = &self.state;
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let mut renderer = self.renderer.lock().unwrap_or_else(PoisonError::into_inner);
         renderer.prepare(device, queue, &mut encoder, round.world(), &frame, size);
         queue.submit([encoder.finish()]);
-        let paint = Paint(self.renderer.clone());
+        let paint = Paint(self.renderer.clone(), Renderer::paint);
         let painter = ui.painter();
         painter.add(Callback::new_paint_callback(view.rect, paint));
         glow::draw(painter, round, look);
@@ -228,6 +195,30 @@ fn cut(camera: &space::Camera, look: &Look) -> Option<(Vector, f32)> {
     let towards = [x / long, 0.0, z / long];
     let middle = look.effects.feelings.first()?.at;
     Some((towards, dot(towards, middle)))
+}
+
+/// How much of the screen a part of a window is [px].
+fn pixels(ui: &Ui, rect: Rect) -> [u32; 2] {
+    let size = (rect.size() * ui.ctx().pixels_per_point()).max(vec2(1.0, 1.0));
+    [size.x.round() as u32, size.y.round() as u32]
+}
+
+/// How a round is seen from somewhere.
+fn frame<'a, D: Dim, C>(
+    camera: C,
+    round: &Round<D>,
+    look: &Look<'a>,
+    ages: &'a Ages,
+    particles: &'a [Particle],
+) -> Frame<'a, C> {
+    Frame {
+        camera,
+        theme: &look.theme.world,
+        look: shown(look, ages),
+        basket: basket(round),
+        particles,
+        seconds: if look.still { 0.0 } else { look.time },
+    }
 }
 
 /// What of the bodies is shown.
