@@ -59,6 +59,47 @@ impl Bins {
         &self.points[range.clone()]
     }
 
+    /// Calls `visit` once with the numbers of any two points that are no further apart than `reach`
+    /// [m], which may be no more than a bin is wide.
+    #[inline]
+    pub fn pairs<D: Dim>(&self, reach: f32, mut visit: impl FnMut(u32, u32)) {
+        let mut look = |(at, number): (Row, u32), others: &[(Row, u32)]| {
+            for &(point, other) in others {
+                let apart = minus(point, at);
+                if dot(apart, apart) <= reach * reach {
+                    visit(number, other);
+                }
+            }
+        };
+        // Of two bins side by side one looks at the other.
+        let ahead: &[[i32; 2]] = match D::N {
+            2 => &[[1, 0]],
+            _ => &[[1, 0], [-1, 1], [0, 1], [1, 1]],
+        };
+        for bin in 0..self.start.len() - 1 {
+            let own = self.points_from(bin, bin);
+            if own.is_empty() {
+                continue;
+            }
+            let along = |axis: usize| bin as i32 >> (axis * self.bits) & self.mask;
+            let (x, y, z) = (along(0), along(1), along(2));
+            let mut rows = [(&[] as &[(Row, u32)], &[] as &[(Row, u32)]); 4];
+            for (row, [dy, dz]) in rows.iter_mut().zip(ahead) {
+                *row = self.row([x, y + dy, z + dz]);
+            }
+            let next = self.bin([x + 1, y, z]) as usize;
+            let next = self.points_from(next, next);
+            for (place, &point) in own.iter().enumerate() {
+                look(point, &own[place + 1..]);
+                look(point, next);
+                for (row, rest) in &rows[..ahead.len()] {
+                    look(point, row);
+                    look(point, rest);
+                }
+            }
+        }
+    }
+
     /// Calls `visit` with the number of each point that is no further from `at` than `reach` [m],
     /// which may be no more than a bin is wide.
     #[inline]
@@ -66,25 +107,35 @@ impl Bins {
         let [x, y, z] = self.square(&at);
         let layers = if D::N == 3 { -1..=1 } else { 0..=0 };
         for (dy, dz) in layers.flat_map(|dz| (-1..=1).map(move |dy| (dy, dz))) {
-            let mut look = |from: i32, to: i32| {
-                let row = [from, y.wrapping_add(dy), z.wrapping_add(dz)];
-                let first = self.bin(row) as usize;
-                let last = first + (to - from) as usize;
-                let range = self.start[first] as usize..self.start[last + 1] as usize;
-                for &(point, number) in &self.points[range] {
-                    let apart = minus(point, at);
-                    if dot(apart, apart) <= reach * reach {
-                        visit(number);
-                    }
+            let (row, rest) = self.row([x, y.wrapping_add(dy), z.wrapping_add(dz)]);
+            for &(point, number) in row.iter().chain(rest) {
+                let apart = minus(point, at);
+                if dot(apart, apart) <= reach * reach {
+                    visit(number);
                 }
-            };
-            // A row of three bins is one stretch of points, but where the grid goes round.
-            match x & self.mask {
-                0 => (look(-1, -1), look(0, 1)),
-                x if x == self.mask => (look(x - 1, x), look(0, 0)),
-                x => (look(x - 1, x + 1), ()),
-            };
+            }
         }
+    }
+
+    /// The points in the bin of a square and in those before and after it on the first axis: one
+    /// stretch, and another where the grid goes round.
+    #[inline]
+    fn row(&self, [x, y, z]: Point) -> (&[(Row, u32)], &[(Row, u32)]) {
+        let (x, start) = (x & self.mask, self.bin([0, y, z]) as usize);
+        let from = |first: i32, last: i32| {
+            self.points_from(start + first as usize, start + last as usize)
+        };
+        match x {
+            0 => (from(0, 1), from(self.mask, self.mask)),
+            x if x == self.mask => (from(x - 1, x), from(0, 0)),
+            x => (from(x - 1, x + 1), &[]),
+        }
+    }
+
+    /// The points in the bins from the first to the last.
+    #[inline]
+    fn points_from(&self, first: usize, last: usize) -> &[(Row, u32)] {
+        &self.points[self.start[first] as usize..self.start[last + 1] as usize]
     }
 
     /// The square of the endless grid that a place lies in.
@@ -125,16 +176,25 @@ mod tests {
         let points: Vec<Row> = (0..900).map(point).collect();
         let reach = 0.4;
         let bins = Bins::new::<D>(&points, reach);
+        let is_near = |a: usize, b: usize| {
+            let apart = minus(points[a], points[b]);
+            dot(apart, apart) <= reach * reach
+        };
+        let mut found = Vec::new();
+        bins.pairs::<D>(reach, |a, b| {
+            found.push((a.min(b) as usize, a.max(b) as usize));
+        });
+        found.sort_unstable();
+        let all = (0..points.len()).flat_map(|a| (a + 1..points.len()).map(move |b| (a, b)));
+        let expected: Vec<_> = all.filter(|&(a, b)| is_near(a, b)).collect();
+        assert_eq!(found, expected);
         let mut total = 0;
-        for &at in &points {
+        for (place, &at) in points.iter().enumerate() {
             let mut found = Vec::new();
             bins.near::<D>(at, reach, |number| found.push(number));
             found.sort_unstable();
-            let is_near = |number: &u32| {
-                let apart = minus(points[*number as usize], at);
-                dot(apart, apart) <= reach * reach
-            };
-            let expected: Vec<u32> = (0..points.len() as u32).filter(is_near).collect();
+            let numbers = 0..points.len() as u32;
+            let expected: Vec<u32> = numbers.filter(|&other| is_near(place, other as usize)).collect();
             total += expected.len();
             assert_eq!(found, expected);
         }

@@ -9,7 +9,8 @@ use super::Impulse;
 use super::bins::Bins;
 use super::captives::Captive;
 use crate::body::Body;
-use crate::dim::{Dim, Point};
+use crate::dim::{Dim, Point, voxel_around};
+use crate::sharing::Sharing;
 use crate::solve::Row;
 use crate::vector::{dot, minus, plus, scaled};
 
@@ -17,6 +18,12 @@ use crate::vector::{dot, minus, plus, scaled};
 pub const MARGIN: f32 = 0.3;
 /// How far a skin may stray from its anchor, in voxels: more makes longer lists, less more lists.
 const SLACK: f32 = 0.3;
+/// Where all moves so fast that no list lasts, short ones are better: the slack is halved so many
+/// times at most, once for a list that lasted for less than this many substeps, and doubled again
+/// for one that lasted for more than that.
+const MOST_HASTE: u32 = 3;
+const SHORT: u32 = 3;
+const LONG: u32 = 8;
 /// The share of its slack that a skin may have used up when others look for new pairs.
 const SPARE: f32 = 0.5;
 
@@ -41,6 +48,9 @@ pub struct Skin {
     bare: u8,
     /// Its voxel.
     cell: Point,
+    /// The voxels around it that shared a node with it when its nodes last changed: bit x + 3 y + 9 z,
+    /// each from 0 to 2. If one of two skins says no, they share none: what is cut changes.
+    bound: u32,
     /// Its corner nodes; the first four in 2D.
     pub nodes: [u32; 8],
 }
@@ -89,6 +99,9 @@ pub struct Skins {
     frame: Row,
     /// How far anything may still come before one may have strayed [m].
     spare: f32,
+    /// How often the slack was halved, and how many substeps ago pairs were last looked for.
+    haste: u32,
+    age: u32,
     is_good: bool,
     rest_is_good: bool,
 }
@@ -121,7 +134,7 @@ impl Skins {
         let is_same = self.is_good && self.rest_is_good;
         let mut strayed = Vec::new();
         if !self.is_good {
-            strayed = self.find(bodies, SLACK * size);
+            strayed = self.find(bodies, size);
         }
         if !is_same {
             strayed.resize(self.list.len(), false);
@@ -133,6 +146,7 @@ impl Skins {
             self.note_rest(bodies);
         }
         self.move_close(bodies);
+        self.age = self.age.saturating_add(1);
         let is_spent = !is_same || self.spare <= 0.0;
         let finds_captives = !(self.is_good && self.captives_are_good);
         if is_spent || finds_captives {
@@ -141,7 +155,8 @@ impl Skins {
         if is_spent {
             strayed.resize(self.list.len(), false);
             if self.find_strayed(&mut strayed, size) || !is_same {
-                self.find_pairs::<D>(&strayed, size);
+                self.find_pairs::<D>(&mut strayed, size);
+                self.age = 0;
             }
             (self.is_good, self.rest_is_good) = (true, true);
         }
@@ -160,9 +175,16 @@ impl Skins {
         was_good
     }
 
+    /// How far a skin may stray from its anchor [m], where the largest voxels have a `size` [m].
+    fn slack(&self, size: f32) -> f32 {
+        SLACK * size / (1 << self.haste) as f32
+    }
+
     /// Lists the skins of all bodies anew. Those that were there before and have not come further
-    /// than by `slack` [m] keep their anchors and their pairs; marks the others as strayed.
-    fn find<D: Dim>(&mut self, bodies: &[Body<D>], slack: f32) -> Vec<bool> {
+    /// than they may keep their anchors and their pairs; marks the others as strayed. `size` [m] is
+    /// that of the largest voxels.
+    fn find<D: Dim>(&mut self, bodies: &[Body<D>], size: f32) -> Vec<bool> {
+        let slack = self.slack(size);
         let old = std::mem::take(&mut self.list);
         let anchors = std::mem::take(&mut self.anchors);
         self.centres.clear();
@@ -179,10 +201,15 @@ impl Skins {
             let anchor = minus(centre, self.frame);
             while old.next_if(|(_, old)| old.key() < skin.key()).is_some() {}
             let known = old.next_if(|(_, old)| old.key() == skin.key());
-            let kept = known.filter(|(before, old)| {
+            let same = known.filter(|(_, old)| old.nodes == skin.nodes);
+            let kept = same.filter(|(before, _)| {
                 let moved = minus(anchor, anchors[*before]);
-                old.nodes == skin.nodes && dot(moved, moved) <= slack * slack
+                dot(moved, moved) <= slack * slack
             });
+            let bound = same.map_or_else(
+                || bound(&bodies[skin.body as usize].sharing, skin.cell),
+                |(_, old)| old.bound,
+            );
             if let Some((before, _)) = known {
                 moved_to[before] = place;
             }
@@ -191,7 +218,11 @@ impl Skins {
             self.anchors
                 .push(kept.map_or(anchor, |(before, _)| anchors[before]));
             self.centres.push(centre);
-            self.list.push(Skin { asleep, ..skin });
+            self.list.push(Skin {
+                asleep,
+                bound,
+                ..skin
+            });
         }
         self.pairs.retain_mut(|pair| {
             pair.skins = pair.skins.map(|skin| moved_to[skin as usize]);
@@ -247,44 +278,64 @@ impl Skins {
     /// Marks those that have strayed too far, and if there are any, those that soon will have;
     /// returns whether any are marked. Notes what the others have to spare.
     fn find_strayed(&mut self, strayed: &mut [bool], size: f32) -> bool {
-        let slack = SLACK * size;
         let strays = self.awake.iter().map(|&place| {
             let place = place as usize;
             let moved = minus(minus(self.centres[place], self.anchors[place]), self.frame);
             dot(moved, moved)
         });
         let furthest = strays.clone().fold(0.0, f32::max);
-        let any = furthest > slack * slack || strayed.contains(&true);
-        self.spare = slack - furthest.sqrt();
-        if any {
-            let bearable = SPARE * slack * SPARE * slack;
-            for (&place, stray) in self.awake.iter().zip(strays) {
-                strayed[place as usize] |= stray > bearable;
-            }
-            self.spare = (1.0 - SPARE) * slack;
+        let slack = self.slack(size);
+        if furthest <= slack * slack && !strayed.contains(&true) {
+            self.spare = slack - furthest.sqrt();
+            return false;
         }
-        any
+        if furthest > slack * slack && self.age < SHORT {
+            self.haste = (self.haste + 1).min(MOST_HASTE);
+        } else if self.age > LONG && self.haste > 0 {
+            // The others' pairs were not looked for that far.
+            self.haste -= 1;
+            strayed.fill(true);
+        }
+        let slack = SLACK * size / (1 << self.haste) as f32;
+        let bearable = SPARE * slack * SPARE * slack;
+        for (&place, stray) in self.awake.iter().zip(strays) {
+            strayed[place as usize] |= stray > bearable;
+        }
+        self.spare = (1.0 - SPARE) * slack;
+        true
     }
 
     /// Anchors the strayed where they are and finds their pairs; those of the others stay.
-    fn find_pairs<D: Dim>(&mut self, strayed: &[bool], size: f32) {
+    fn find_pairs<D: Dim>(&mut self, strayed: &mut [bool], size: f32) {
+        let count = strayed.iter().filter(|strayed| **strayed).count();
+        // It is quicker to look for all pairs than for those of each of many.
+        let all = 2 * count > strayed.len();
+        if all {
+            strayed.fill(true);
+        }
         let places = || (0..strayed.len()).filter(|&place| strayed[place]);
         for place in places() {
             self.anchors[place] = minus(self.centres[place], self.frame);
         }
-        let reach = (1.0 + MARGIN + 2.0 * SLACK) * size;
+        let reach = (1.0 + MARGIN) * size + 2.0 * self.slack(size);
         let bins = Bins::new::<D>(&self.anchors, reach);
-        let mut found: Vec<[u32; 2]> = Vec::new();
-        for place in places() {
-            let skin = &self.list[place];
-            bins.near::<D>(self.anchors[place], reach, |other| {
-                let second = &self.list[other as usize];
-                let seen = strayed[other as usize] && other as usize <= place;
-                let both_sleep = skin.asleep && second.asleep;
-                if !(seen || both_sleep || skin.shares_node::<D>(second)) {
-                    found.push([other.min(place as u32), other.max(place as u32)]);
-                }
-            });
+        let mut found: Vec<[u32; 2]> = Vec::with_capacity(2 * self.pairs.len());
+        let mut meet = |a: u32, b: u32| {
+            let [first, second] = [a, b].map(|skin| &self.list[skin as usize]);
+            if !(first.asleep && second.asleep || first.is_bound_to::<D>(second)) {
+                found.push([a.min(b), a.max(b)]);
+            }
+        };
+        if all {
+            bins.pairs::<D>(reach, meet);
+        } else {
+            for place in places() {
+                bins.near::<D>(self.anchors[place], reach, |other| {
+                    if !strayed[other as usize] || other as usize > place {
+                        meet(place as u32, other);
+                    }
+                });
+            }
         }
         self.merge(&sorted(&found, self.list.len()), strayed);
     }
@@ -397,21 +448,39 @@ impl Skin {
         u64::from(self.body) << 32 | u64::from(self.element)
     }
 
-    fn shares_node<D: Dim>(&self, other: &Self) -> bool {
-        if self.piece != other.piece || self.body != other.body {
+    /// Whether both have a node in common.
+    #[inline(always)]
+    fn is_bound_to<D: Dim>(&self, other: &Self) -> bool {
+        let apart = [0, 1, 2].map(|axis| other.cell[axis] - self.cell[axis] + 1);
+        if self.body != other.body || apart.iter().any(|k| !(0..3).contains(k)) {
             return false;
         }
-        let near = (0..D::N).all(|axis| (self.cell[axis] - other.cell[axis]).abs() <= 1);
-        let has = |node: &u32| other.nodes[..D::CORNERS].contains(node);
-        near && self.nodes[..D::CORNERS].iter().any(has)
+        let bit = apart[0] + 3 * apart[1] + 9 * apart[2];
+        self.bound >> bit & other.bound >> (26 - bit) & 1 == 1
     }
+}
+
+/// Which of the voxels around one share a node with it: bit x + 3 y + 9 z, each from 0 to 2.
+fn bound<D: Dim>(sharing: &Sharing<D>, voxel: Point) -> u32 {
+    let mut bound = 0;
+    for octant in 0..D::CORNERS {
+        // The lattice point that sees the voxel in this octant.
+        let mut at = voxel;
+        (0..D::N).for_each(|axis| at[axis] += 1 - (octant >> axis & 1) as i32);
+        let group = sharing.groups(at).group_of(octant);
+        for other in (0..D::CORNERS).filter(|other| group >> other & 1 == 1) {
+            let [x, y, z] = voxel_around::<D>(at, other);
+            let [x, y, z] = [x - voxel[0] + 1, y - voxel[1] + 1, z - voxel[2] + 1];
+            bound |= 1 << (x + 3 * y + 9 * z);
+        }
+    }
+    bound
 }
 
 /// The skins of a body, which stands at a place among all.
 fn skins_of<D: Dim>((place, body): (usize, &Body<D>)) -> impl Iterator<Item = Skin> + '_ {
     let elements = body.mesh.elements();
-    let bare =
-        elements.filter(|(id, element)| element.cell.level == 0 && body.bare[*id as usize] != 0);
+    let bare = elements.filter(|(id, _)| body.bare[*id as usize] != 0);
     bare.map(move |(id, element)| {
         let mut nodes = [0; 8];
         nodes[..D::CORNERS].copy_from_slice(&element.nodes);
@@ -424,6 +493,7 @@ fn skins_of<D: Dim>((place, body): (usize, &Body<D>)) -> impl Iterator<Item = Sk
             asleep: body.pieces.list[piece as usize].asleep,
             bare: body.bare[id as usize],
             cell: element.cell.at,
+            bound: 0,
             nodes,
         }
     })
