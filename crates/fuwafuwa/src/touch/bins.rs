@@ -122,9 +122,8 @@ impl Bins {
     #[inline]
     fn row(&self, [x, y, z]: Point) -> (&[(Row, u32)], &[(Row, u32)]) {
         let (x, start) = (x & self.mask, self.bin([0, y, z]) as usize);
-        let from = |first: i32, last: i32| {
-            self.points_from(start + first as usize, start + last as usize)
-        };
+        let from =
+            |first: i32, last: i32| self.points_from(start + first as usize, start + last as usize);
         match x {
             0 => (from(0, 1), from(self.mask, self.mask)),
             x if x == self.mask => (from(x - 1, x), from(0, 0)),
@@ -194,7 +193,9 @@ mod tests {
             bins.near::<D>(at, reach, |number| found.push(number));
             found.sort_unstable();
             let numbers = 0..points.len() as u32;
-            let expected: Vec<u32> = numbers.filter(|&other| is_near(place, other as usize)).collect();
+            let expected: Vec<u32> = numbers
+                .filter(|&other| is_near(place, other as usize))
+                .collect();
             total += expected.len();
             assert_eq!(found, expected);
         }

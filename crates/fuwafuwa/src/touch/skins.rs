@@ -46,13 +46,20 @@ pub struct Skin {
     pub asleep: bool,
     /// Its bare faces: bit 2 · axis + side.
     bare: u8,
-    /// Its voxel.
-    cell: Point,
+    /// Its corner nodes; the first four in 2D.
+    pub nodes: [u32; 8],
+}
+
+/// Where a skin stands in its body: what tells neighbours from those that may touch it.
+#[derive(Copy, Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Site {
+    body: u32,
     /// The voxels around it that shared a node with it when its nodes last changed: bit x + 3 y + 9 z,
     /// each from 0 to 2. If one of two skins says no, they share none: what is cut changes.
     bound: u32,
-    /// Its corner nodes; the first four in 2D.
-    pub nodes: [u32; 8],
+    /// Its voxel.
+    cell: [i16; 3],
 }
 
 /// Two skins that may touch.
@@ -75,6 +82,7 @@ pub struct SkinPair {
 pub struct Skins {
     /// By body and element.
     pub list: Vec<Skin>,
+    sites: Vec<Site>,
     /// Close to each other, ascending.
     pub pairs: Vec<SkinPair>,
     /// Where the middles of the skins are [m]. Those that are in no pair are looked at only when
@@ -93,6 +101,8 @@ pub struct Skins {
     /// Places of those awake, ascending, and of those that are in pairs or captives or exits.
     pub(super) awake: Vec<u32>,
     close: Vec<u32>,
+    /// Who is in `close`.
+    is_close: Vec<bool>,
     /// Where each was when its pairs were found, as seen from a frame that has come as far as all
     /// skins have on the average, while none sleeps: falling together changes no pair.
     anchors: Vec<Row>,
@@ -134,7 +144,7 @@ impl Skins {
         let is_same = self.is_good && self.rest_is_good;
         let mut strayed = Vec::new();
         if !self.is_good {
-            strayed = self.find(bodies, size);
+            strayed = self.find(bodies);
         }
         if !is_same {
             strayed.resize(self.list.len(), false);
@@ -145,12 +155,13 @@ impl Skins {
             }
             self.note_rest(bodies);
         }
-        self.move_close(bodies);
         self.age = self.age.saturating_add(1);
         let is_spent = !is_same || self.spare <= 0.0;
-        let finds_captives = !(self.is_good && self.captives_are_good);
+        let finds_captives = !self.captives_are_good;
         if is_spent || finds_captives {
             self.move_all(bodies);
+        } else {
+            self.move_close(bodies);
         }
         if is_spent {
             strayed.resize(self.list.len(), false);
@@ -180,53 +191,63 @@ impl Skins {
         SLACK * size / (1 << self.haste) as f32
     }
 
-    /// Lists the skins of all bodies anew. Those that were there before and have not come further
-    /// than they may keep their anchors and their pairs; marks the others as strayed. `size` [m] is
-    /// that of the largest voxels.
-    fn find<D: Dim>(&mut self, bodies: &[Body<D>], size: f32) -> Vec<bool> {
-        let slack = self.slack(size);
+    /// Lists the skins of all bodies anew. Those that were there before keep their anchors and their
+    /// pairs; marks the others as strayed.
+    fn find<D: Dim>(&mut self, bodies: &[Body<D>]) -> Vec<bool> {
         let old = std::mem::take(&mut self.list);
+        let sites = std::mem::take(&mut self.sites);
         let anchors = std::mem::take(&mut self.anchors);
-        self.centres.clear();
+        let centres = std::mem::take(&mut self.centres);
         self.close.clear();
         // Where each of the old ones is now.
         let mut moved_to = vec![GONE; old.len()];
         let mut strayed = Vec::with_capacity(old.len());
-        self.anchors.reserve(old.len());
         self.list.reserve(old.len());
+        self.sites.reserve(old.len());
+        self.anchors.reserve(old.len());
+        self.centres.reserve(old.len());
         let mut old = old.iter().enumerate().peekable();
-        for skin in bodies.iter().enumerate().flat_map(skins_of) {
-            let place = self.list.len() as u32;
-            let centre = skin.mean::<D>(&bodies[skin.body as usize].position);
-            let anchor = minus(centre, self.frame);
+        for (mut skin, voxel) in bodies.iter().enumerate().flat_map(skins_of) {
+            let body = &bodies[skin.body as usize];
             while old.next_if(|(_, old)| old.key() < skin.key()).is_some() {}
             let known = old.next_if(|(_, old)| old.key() == skin.key());
-            let same = known.filter(|(_, old)| old.nodes == skin.nodes);
-            let kept = same.filter(|(before, _)| {
-                let moved = minus(anchor, anchors[*before]);
-                dot(moved, moved) <= slack * slack
-            });
-            let bound = same.map_or_else(
-                || bound(&bodies[skin.body as usize].sharing, skin.cell),
-                |(_, old)| old.bound,
-            );
-            if let Some((before, _)) = known {
-                moved_to[before] = place;
+            if let Some((before, old)) = known {
+                moved_to[before] = self.list.len() as u32;
+                skin.asleep = old.asleep;
             }
-            let asleep = known.map_or(skin.asleep, |(_, old)| old.asleep);
-            strayed.push(kept.is_none());
-            self.anchors
-                .push(kept.map_or(anchor, |(before, _)| anchors[before]));
+            let same = known.filter(|(_, old)| old.nodes == skin.nodes);
+            let (centre, anchor, site) = match same {
+                Some((before, _)) => (centres[before], anchors[before], sites[before]),
+                None => {
+                    let centre = skin.mean::<D>(&body.position);
+                    let site = Site::new(skin.body, voxel, &body.sharing);
+                    (centre, minus(centre, self.frame), site)
+                }
+            };
+            strayed.push(same.is_none());
             self.centres.push(centre);
-            self.list.push(Skin {
-                asleep,
-                bound,
-                ..skin
-            });
+            self.anchors.push(anchor);
+            self.sites.push(site);
+            self.list.push(skin);
         }
+        self.is_close.clear();
+        self.is_close.resize(self.list.len(), false);
         self.pairs.retain_mut(|pair| {
             pair.skins = pair.skins.map(|skin| moved_to[skin as usize]);
             !pair.skins.contains(&GONE)
+        });
+        self.captors.clear();
+        self.captors.resize(self.list.len(), None);
+        self.captives.retain_mut(|captive| {
+            for skin in [&mut captive.skin, &mut captive.exit] {
+                *skin = moved_to[*skin as usize];
+            }
+            let stays = captive.skin != GONE && captive.exit != GONE;
+            if stays {
+                let exit = &self.list[captive.exit as usize];
+                self.captors[captive.skin as usize] = Some((exit.body, exit.piece));
+            }
+            stays
         });
         strayed
     }
@@ -250,25 +271,33 @@ impl Skins {
 
     /// Moves those that are in pairs along with the bodies.
     fn move_close<D: Dim>(&mut self, bodies: &[Body<D>]) {
-        for &place in &self.close {
-            let place = place as usize;
+        for at in 0..self.close.len() {
+            let place = self.close[at] as usize;
             let skin = &self.list[place];
             let centre = skin.mean::<D>(&bodies[skin.body as usize].position);
-            let moved = minus(centre, self.centres[place]);
-            self.moved[place] = dot(moved, moved);
-            self.centres[place] = centre;
+            self.note_move(place, centre);
         }
+    }
+
+    fn note_move(&mut self, place: usize, centre: Row) {
+        let moved = minus(centre, self.centres[place]);
+        self.moved[place] = dot(moved, moved);
+        self.centres[place] = centre;
     }
 
     /// Moves all skins along with the bodies.
     fn move_all<D: Dim>(&mut self, bodies: &[Body<D>]) {
         let mut sum = [0.0; 4];
-        for &place in &self.awake {
-            let place = place as usize;
+        for at in 0..self.awake.len() {
+            let place = self.awake[at] as usize;
             let skin = &self.list[place];
             let centre = skin.mean::<D>(&bodies[skin.body as usize].position);
-            self.centres[place] = centre;
             sum = plus(sum, minus(centre, self.anchors[place]));
+            if self.is_close[place] {
+                self.note_move(place, centre);
+            } else {
+                self.centres[place] = centre;
+            }
         }
         if self.awake.len() == self.list.len() && !self.awake.is_empty() {
             self.frame = scaled(sum, 1.0 / self.awake.len() as f32);
@@ -321,8 +350,9 @@ impl Skins {
         let bins = Bins::new::<D>(&self.anchors, reach);
         let mut found: Vec<[u32; 2]> = Vec::with_capacity(2 * self.pairs.len());
         let mut meet = |a: u32, b: u32| {
-            let [first, second] = [a, b].map(|skin| &self.list[skin as usize]);
-            if !(first.asleep && second.asleep || first.is_bound_to::<D>(second)) {
+            let [first, second] = [a, b].map(|skin| &self.sites[skin as usize]);
+            let sleeps = |skin: u32| self.list[skin as usize].asleep;
+            if !(first.is_bound_to(second) || sleeps(a) && sleeps(b)) {
                 found.push([a.min(b), a.max(b)]);
             }
         };
@@ -342,15 +372,17 @@ impl Skins {
 
     /// Notes which skins matter to contact in the next substeps.
     fn note_close(&mut self) {
-        let mut is_close = vec![false; self.list.len()];
+        self.is_close.fill(false);
         let pairs = self.pairs.iter().flat_map(|pair| pair.skins);
         let captives = self.captives.iter();
         let captives = captives.flat_map(|captive| [captive.skin, captive.exit]);
         for place in pairs.chain(captives) {
-            is_close[place as usize] = true;
+            self.is_close[place as usize] = true;
         }
-        self.close.clone_from(&self.awake);
-        self.close.retain(|&place| is_close[place as usize]);
+        let is_close = |place: &u32| self.is_close[*place as usize];
+        self.close.clear();
+        self.close
+            .extend(self.awake.iter().copied().filter(is_close));
     }
 
     /// Makes the new list of pairs from those just found and the old ones of which neither has
@@ -447,55 +479,60 @@ impl Skin {
     fn key(&self) -> u64 {
         u64::from(self.body) << 32 | u64::from(self.element)
     }
+}
+
+impl Site {
+    fn new<D: Dim>(body: u32, voxel: Point, sharing: &Sharing<D>) -> Self {
+        let mut bound = 0;
+        for octant in 0..D::CORNERS {
+            // The lattice point that sees the voxel in this octant.
+            let mut at = voxel;
+            (0..D::N).for_each(|axis| at[axis] += 1 - (octant >> axis & 1) as i32);
+            let group = sharing.groups(at).group_of(octant);
+            for other in (0..D::CORNERS).filter(|other| group >> other & 1 == 1) {
+                let near = voxel_around::<D>(at, other);
+                let [x, y, z] = [0, 1, 2].map(|axis: usize| near[axis] - voxel[axis] + 1);
+                bound |= 1 << (x + 3 * y + 9 * z);
+            }
+        }
+        Self {
+            body,
+            bound,
+            cell: voxel.map(|k| k as i16),
+        }
+    }
 
     /// Whether both have a node in common.
     #[inline(always)]
-    fn is_bound_to<D: Dim>(&self, other: &Self) -> bool {
-        let apart = [0, 1, 2].map(|axis| other.cell[axis] - self.cell[axis] + 1);
-        if self.body != other.body || apart.iter().any(|k| !(0..3).contains(k)) {
+    fn is_bound_to(&self, other: &Self) -> bool {
+        let [x, y, z] = [0, 1, 2].map(|axis: usize| other.cell[axis] - self.cell[axis] + 1);
+        let is_beside = |k: i16| (0..3).contains(&k);
+        if self.body != other.body || !(is_beside(x) && is_beside(y) && is_beside(z)) {
             return false;
         }
-        let bit = apart[0] + 3 * apart[1] + 9 * apart[2];
+        let bit = x + 3 * y + 9 * z;
         self.bound >> bit & other.bound >> (26 - bit) & 1 == 1
     }
 }
 
-/// Which of the voxels around one share a node with it: bit x + 3 y + 9 z, each from 0 to 2.
-fn bound<D: Dim>(sharing: &Sharing<D>, voxel: Point) -> u32 {
-    let mut bound = 0;
-    for octant in 0..D::CORNERS {
-        // The lattice point that sees the voxel in this octant.
-        let mut at = voxel;
-        (0..D::N).for_each(|axis| at[axis] += 1 - (octant >> axis & 1) as i32);
-        let group = sharing.groups(at).group_of(octant);
-        for other in (0..D::CORNERS).filter(|other| group >> other & 1 == 1) {
-            let [x, y, z] = voxel_around::<D>(at, other);
-            let [x, y, z] = [x - voxel[0] + 1, y - voxel[1] + 1, z - voxel[2] + 1];
-            bound |= 1 << (x + 3 * y + 9 * z);
-        }
-    }
-    bound
-}
-
-/// The skins of a body, which stands at a place among all.
-fn skins_of<D: Dim>((place, body): (usize, &Body<D>)) -> impl Iterator<Item = Skin> + '_ {
+/// The skins of a body, which stands at a place among all, each with its voxel.
+fn skins_of<D: Dim>((place, body): (usize, &Body<D>)) -> impl Iterator<Item = (Skin, Point)> + '_ {
     let elements = body.mesh.elements();
     let bare = elements.filter(|(id, _)| body.bare[*id as usize] != 0);
     bare.map(move |(id, element)| {
         let mut nodes = [0; 8];
         nodes[..D::CORNERS].copy_from_slice(&element.nodes);
         let piece = body.pieces.of_element(id);
-        Skin {
+        let skin = Skin {
             body: place as u32,
             element: id,
             piece,
             radius: 0.5 * body.grid.voxel_size(),
             asleep: body.pieces.list[piece as usize].asleep,
             bare: body.bare[id as usize],
-            cell: element.cell.at,
-            bound: 0,
             nodes,
-        }
+        };
+        (skin, element.cell.at)
     })
 }
 
