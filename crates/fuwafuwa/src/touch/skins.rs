@@ -18,12 +18,6 @@ use crate::vector::{dot, minus, plus, scaled};
 pub const MARGIN: f32 = 0.3;
 /// How far a skin may stray from its anchor, in voxels: more makes longer lists, less more lists.
 const SLACK: f32 = 0.3;
-/// Where all moves so fast that no list lasts, short ones are better: the slack is halved so many
-/// times at most, once for a list that lasted for less than this many substeps, and doubled again
-/// for one that lasted for more than that.
-const MOST_HASTE: u32 = 3;
-const SHORT: u32 = 3;
-const LONG: u32 = 8;
 /// The share of its slack that a skin may have used up when others look for new pairs.
 const SPARE: f32 = 0.5;
 
@@ -109,9 +103,6 @@ pub struct Skins {
     frame: Row,
     /// How far anything may still come before one may have strayed [m].
     spare: f32,
-    /// How often the slack was halved, and how many substeps ago pairs were last looked for.
-    haste: u32,
-    age: u32,
     is_good: bool,
     rest_is_good: bool,
 }
@@ -155,7 +146,6 @@ impl Skins {
             }
             self.note_rest(bodies);
         }
-        self.age = self.age.saturating_add(1);
         let is_spent = !is_same || self.spare <= 0.0;
         let finds_captives = !self.captives_are_good;
         if is_spent || finds_captives {
@@ -167,7 +157,6 @@ impl Skins {
             strayed.resize(self.list.len(), false);
             if self.find_strayed(&mut strayed, size) || !is_same {
                 self.find_pairs::<D>(&mut strayed, size);
-                self.age = 0;
             }
             (self.is_good, self.rest_is_good) = (true, true);
         }
@@ -184,11 +173,6 @@ impl Skins {
             self.velocities[place as usize] = skin.mean::<D>(velocity);
         }
         was_good
-    }
-
-    /// How far a skin may stray from its anchor [m], where the largest voxels have a `size` [m].
-    fn slack(&self, size: f32) -> f32 {
-        SLACK * size / (1 << self.haste) as f32
     }
 
     /// Lists the skins of all bodies anew. Those that were there before keep their anchors and their
@@ -313,19 +297,11 @@ impl Skins {
             dot(moved, moved)
         });
         let furthest = strays.clone().fold(0.0, f32::max);
-        let slack = self.slack(size);
+        let slack = SLACK * size;
         if furthest <= slack * slack && !strayed.contains(&true) {
             self.spare = slack - furthest.sqrt();
             return false;
         }
-        if furthest > slack * slack && self.age < SHORT {
-            self.haste = (self.haste + 1).min(MOST_HASTE);
-        } else if self.age > LONG && self.haste > 0 {
-            // The others' pairs were not looked for that far.
-            self.haste -= 1;
-            strayed.fill(true);
-        }
-        let slack = SLACK * size / (1 << self.haste) as f32;
         let bearable = SPARE * slack * SPARE * slack;
         for (&place, stray) in self.awake.iter().zip(strays) {
             strayed[place as usize] |= stray > bearable;
@@ -346,7 +322,7 @@ impl Skins {
         for place in places() {
             self.anchors[place] = minus(self.centres[place], self.frame);
         }
-        let reach = (1.0 + MARGIN) * size + 2.0 * self.slack(size);
+        let reach = (1.0 + MARGIN + 2.0 * SLACK) * size;
         let bins = Bins::new::<D>(&self.anchors, reach);
         let mut found: Vec<[u32; 2]> = Vec::with_capacity(2 * self.pairs.len());
         let mut meet = |a: u32, b: u32| {
