@@ -45,7 +45,7 @@ fn main() -> ExitCode {
         }
         Task::Wasm(if_missing) => wasm::run(if_missing),
         Task::Kernel(if_missing) => kernel::run(if_missing),
-        Task::Soak => run_all(SOAK),
+        Task::Soak(words) => soak(&words),
         Task::Rapier => run_all(RAPIER),
     };
     match outcome {
@@ -82,6 +82,17 @@ fn play(if_missing: IfMissing, words: &[String]) -> ExitCode {
 fn exit_code(code: Option<i32>) -> ExitCode {
     let code = code.and_then(|code| u8::try_from(code).ok());
     ExitCode::from(code.unwrap_or(FAILED))
+}
+
+/// Plays levels for long, as the words say.
+fn soak(words: &[String]) -> Result<(), Failure> {
+    let mut command = cargo();
+    command.args(["run", "--release", "--package", "tamaire_play"]);
+    command.args(["--example", "soak", "--"]).args(words);
+    execute(
+        &mut command,
+        "a round that nobody meant broke something, see above; its level and tick are named",
+    )
 }
 
 /// Tests draw into images, and open no window.
@@ -156,22 +167,6 @@ const TEST: &[Step] = &[
                and for sums whose order depends on the threads",
     },
 ];
-
-const SOAK: &[Step] = &[Step {
-    arguments: &[
-        "test",
-        "--release",
-        "--package",
-        "tamaire_play",
-        "--test",
-        "soak",
-        "--",
-        "--ignored",
-        "--nocapture",
-    ],
-    environment: &[],
-    hint: "a round that nobody meant broke something, see above; its level and tick are named",
-}];
 
 const RAPIER: &[Step] = &[Step {
     arguments: &[

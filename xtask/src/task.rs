@@ -14,7 +14,8 @@ tasks:
   wasm --install   the same; what is missing comes from Debian's packages
   kernel           sticks and their motors against the force feedback of a real kernel, in QEMU
   kernel --install the same; what is missing comes from Debian's or Ubuntu's packages
-  soak             ten minutes of two hands that do anything, on every level
+  soak [MINUTES [LEVEL …]]
+                   ten minutes of two hands that do anything, on every level, unless told otherwise
   rapier           whether crates/against_rapier, a workspace of its own, still compiles
   help             this text
 
@@ -32,7 +33,8 @@ pub enum Task {
     Check(IfMissing),
     Wasm(IfMissing),
     Kernel(IfMissing),
-    Soak,
+    /// With how long to play, and which levels.
+    Soak(Vec<String>),
     Rapier,
     Help,
 }
@@ -64,7 +66,7 @@ impl Task {
             ["wasm", "--install"] => Task::Wasm(IfMissing::Install),
             ["kernel"] => Task::Kernel(IfMissing::Say),
             ["kernel", "--install"] => Task::Kernel(IfMissing::Install),
-            ["soak"] => Task::Soak,
+            ["soak", ..] => Task::Soak(own[1..].to_vec()),
             ["rapier"] => Task::Rapier,
             ["help" | "--help" | "-h"] => Task::Help,
             _ => return Err(format!("there is no task `{}`", arguments.join(" "))),
@@ -102,6 +104,11 @@ mod tests {
         check("wasm --install", Ok(Task::Wasm(IfMissing::Install)));
         check("kernel", Ok(Task::Kernel(IfMissing::Say)));
         check("kernel --install", Ok(Task::Kernel(IfMissing::Install)));
+        check("soak", Ok(Task::Soak(Vec::new())));
+        check(
+            "soak 2 hoop",
+            Ok(Task::Soak(vec!["2".into(), "hoop".into()])),
+        );
         check("--help", Ok(Task::Help));
         check("", Err("no task given"));
         check("chekc", Err("there is no task `chekc`"));

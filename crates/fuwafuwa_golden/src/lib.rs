@@ -9,7 +9,11 @@
 pub mod exports;
 
 use fuwafuwa::law::Law;
-use fuwafuwa::{Body, Dim, Dim2, Dim3, Manipulator, Material, Settings, Shape, VoxelGrid, World};
+use fuwafuwa::world::FEWEST_SUBSTEPS;
+use fuwafuwa::{
+    Blade, Body, Dim, Dim2, Dim3, Event, Manipulator, Material, Settings, Shape, VoxelGrid, With,
+    World,
+};
 
 /// A simulation without input, and the bits it must end in.
 pub struct Scene {
@@ -23,7 +27,7 @@ pub struct Scene {
 
 /// All scenes. For a new one, run the tests: they print the hash that they found. Static, because
 /// a constant would be compiled, engine included, into whatever names it.
-pub static SCENES: [Scene; 5] = [
+pub static SCENES: [Scene; 6] = [
     Scene {
         name: "torn disc",
         run: || hash_of_torn_world::<Dim2>(32, 70),
@@ -40,6 +44,11 @@ pub static SCENES: [Scene; 5] = [
         golden: 0xff76_4f2b_aeb2_ebe9,
     },
     Scene {
+        name: "ball in pieces that lie on each other, few substeps",
+        run: hash_of_heap,
+        golden: 0xbf28_044e_cb13_4ac4,
+    },
+    Scene {
         name: "disc, law of the paper",
         run: || hash_of_paper_law::<Dim2>(16),
         golden: 0xbaac_2f96_3ab3_61ca,
@@ -51,13 +60,19 @@ pub static SCENES: [Scene; 5] = [
     },
 ];
 
-/// A ball that falls on a floor while a hand pushes it against a wall and through.
-fn torn_world<D: Dim>(n: usize) -> World<D> {
-    let mut world = World::<D>::new(Settings::default()).expect("the scenes are sound");
+/// A floor, and nothing on it.
+fn floor<D: Dim>(settings: Settings) -> World<D> {
+    let mut world = World::new(settings).expect("the scenes are sound");
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
     world
         .add_obstacle(floor, 0.4)
         .expect("the scenes are sound");
+    world
+}
+
+/// A ball that falls on a floor while a hand pushes it against a wall and through.
+fn torn_world<D: Dim>(n: usize) -> World<D> {
+    let mut world = floor::<D>(Settings::default());
     let wall = Shape::half_space([-1.0, 0.0, 0.0], [1.1, 0.0, 0.0]);
     world.add_obstacle(wall, 0.2).expect("the scenes are sound");
     let ball = VoxelGrid::ball(n, 1.0).expect("the scenes are sound");
@@ -81,13 +96,51 @@ fn hash_of_torn_world<D: Dim>(n: usize, ticks: u32) -> u64 {
     world.hash()
 }
 
+/// A ball as soft as those of the game, which comes down in pieces while a hand tears more off.
+fn hash_of_heap() -> u64 {
+    let settings = Settings {
+        most_substeps: FEWEST_SUBSTEPS,
+        ..Settings::default()
+    };
+    let mut world = floor::<Dim3>(settings);
+    let ball = VoxelGrid::ball(12, 1.0).expect("the scenes are sound");
+    let body = Body::new(ball, &[Material::default()]).expect("the scenes are sound");
+    world.add_body(body);
+    for (height, slant) in [(0.3, 0.2), (0.6, -0.3)] {
+        let blade = Blade {
+            from: [-1.0, height - slant, -1.0],
+            across: [3.0, 3.0 * slant, 0.0],
+            along: [0.0, 0.0, 3.0],
+        };
+        world.cut(0, &blade);
+    }
+    let hand = Manipulator::new([0.4, 1.2, 0.5], 0.12);
+    world.add_manipulator(hand).expect("the scenes are sound");
+    let (mut released, mut touched) = (0, 0.0);
+    for tick in 0..50 {
+        world.set_goal(0, [0.4, 1.2 - tick as f32 * 0.03, 0.5]);
+        let report = world.step();
+        assert_eq!(report.substeps, FEWEST_SUBSTEPS);
+        released += report.released;
+        for event in world.events() {
+            if let Event::Touched {
+                with: With::Piece { .. },
+                impulse,
+                ..
+            } = event
+            {
+                touched += impulse;
+            }
+        }
+    }
+    assert!(released > 10, "{released} releases: the body must tear");
+    assert!(touched > 10.0, "{touched} N s: the pieces must press");
+    world.hash()
+}
+
 /// The elastic force of the paper, without tearing.
 fn hash_of_paper_law<D: Dim>(n: usize) -> u64 {
-    let mut world = World::<D>::new(Settings::default()).expect("the scenes are sound");
-    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world
-        .add_obstacle(floor, 0.4)
-        .expect("the scenes are sound");
+    let mut world = floor::<D>(Settings::default());
     let ball = VoxelGrid::ball(n, 1.0).expect("the scenes are sound");
     let grading = fuwafuwa::pyramid::Grading::Graded;
     let body = Body::with(ball, &[Material::default()], Law::Endo2004, grading)

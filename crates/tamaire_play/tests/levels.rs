@@ -15,6 +15,43 @@ fn nothing_tears_by_itself_and_everything_stays_in_the_room() {
     }
 }
 
+#[test]
+fn every_room_is_closed() {
+    for (id, _) in NAMED {
+        is_closed::<Dim2>(id);
+    }
+    for (id, _) in NAMED_3D {
+        is_closed::<Dim3>(id);
+    }
+}
+
+/// That there is something rigid on all sides of the arena, wherever one looks out of it.
+fn is_closed<D: Dim>(id: &str) {
+    const STEPS: i32 = 20;
+    let level = Arc::new(Level::open(id).unwrap());
+    let [low, high] = level.arena();
+    let round = Round::<D>::new(level);
+    let is_rigid = |at: [f32; 3]| {
+        let mut all = round.world().obstacles().iter();
+        all.any(|obstacle| obstacle.shape.distance(at).0 < 0.0)
+    };
+    let place =
+        |axis: usize, step: i32| low[axis] + (high[axis] - low[axis]) * step as f32 / STEPS as f32;
+    let deep = if D::N == 3 { 0..=STEPS } else { 0..=0 };
+    for (x, y, z) in
+        deep.flat_map(|z| (0..=STEPS).flat_map(move |x| (0..=STEPS).map(move |y| (x, y, z))))
+    {
+        let at = [place(0, x), place(1, y), place(2, z)];
+        for axis in 0..D::N {
+            for (side, sign) in [(low, -1.0), (high, 1.0)] {
+                let mut out = at;
+                out[axis] = side[axis] + 0.001 * sign;
+                assert!(is_rigid(out), "{id}: a hole in a wall at {out:?}");
+            }
+        }
+    }
+}
+
 fn stays_whole_and_in_the_room<D: Dim>(id: &str, ticks: usize) {
     let level = Arc::new(Level::open(id).unwrap());
     let mut still = Round::<D>::new(level.clone());

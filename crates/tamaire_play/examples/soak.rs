@@ -1,0 +1,225 @@
+//! Two hands that do anything, for minutes: nothing may break, leak or leave the room.
+//!
+//! `cargo run --release -p tamaire_play --example soak -- [MINUTES [LEVEL …]]`, or `cargo xtask soak` with
+//! the same words, plays ten minutes of every level that comes along, unless told otherwise, each level
+//! on a thread. It prints a row for each minute of a level, and fails if anything was wrong.
+
+use fuwafuwa::{Dim, Dim2, Dim3, Vector};
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::thread;
+use std::time::Instant;
+use tamaire_play::level::{NAMED, NAMED_3D};
+use tamaire_play::{Bot, BotKind, Level, Round};
+
+/// Minutes on each level if nobody says how many, and the most.
+const USUAL_MINUTES: usize = 10;
+const MOST_MINUTES: usize = 60;
+/// How the hands play.
+const SEED: u64 = 7;
+
+/// Ticks in a minute, and from one look at the room and the memory to the next.
+const MINUTE: usize = 60 * 60;
+const LOOK: usize = 60;
+
+/// So far into a wall is not out of the room, in terms of a voxel: a crumb between a hand and a wall
+/// is pressed flat, and a bit into the wall.
+const MARGIN: f32 = 1.0;
+/// The same for a hand [m].
+const HAND_MARGIN: f32 = 1e-3;
+
+/// The most that is held for an element or a node [bytes]. What tears gets more of both.
+const MOST_EACH: f32 = 1200.0;
+/// How much more of it there may be late than early: lists double now and then.
+const GROWTH: f32 = 1.3;
+
+/// Counts the memory that each thread holds.
+struct Counting;
+
+thread_local! {
+    static HELD: Cell<usize> = const { Cell::new(0) };
+}
+
+fn count(change: impl Fn(usize) -> usize) {
+    // A thread that ends gives back memory when this is gone.
+    let _ = HELD.try_with(|held| held.set(change(held.get())));
+}
+
+// SAFETY: hands everything on to the system's allocator.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count(|held| held.wrapping_add(layout.size()));
+        // SAFETY: the caller keeps the same promises.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        count(|held| held.wrapping_sub(layout.size()));
+        // SAFETY: as above.
+        unsafe { System.dealloc(memory, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+fn main() -> ExitCode {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let failures = match parse(&words) {
+        Ok((minutes, levels)) => play_all(minutes, levels),
+        Err(complaint) => vec![complaint],
+    };
+    for failure in &failures {
+        eprintln!("soak: {failure}");
+    }
+    match failures.is_empty() {
+        true => ExitCode::SUCCESS,
+        false => ExitCode::FAILURE,
+    }
+}
+
+/// How many minutes of which levels are asked for; or why that cannot be.
+fn parse(words: &[String]) -> Result<(usize, Vec<Level>), String> {
+    let minutes = match words.first() {
+        None => USUAL_MINUTES,
+        Some(word) => (word.parse().ok())
+            .filter(|minutes| (1..=MOST_MINUTES).contains(minutes))
+            .ok_or_else(|| format!("expected 1 to {MOST_MINUTES} minutes first, found {word:?}"))?,
+    };
+    // Those in space take longest.
+    let all = NAMED_3D.iter().chain(&NAMED).map(|(id, _)| id.to_string());
+    let named = words.iter().skip(1).cloned();
+    let ids: Vec<String> = match words.len() {
+        0 | 1 => all.collect(),
+        _ => named.collect(),
+    };
+    let levels: Result<_, _> = ids.iter().map(|id| Level::open(id)).collect();
+    Ok((minutes, levels.map_err(|error| error.to_string())?))
+}
+
+/// Plays all at once; what was wrong with which.
+fn play_all(minutes: usize, levels: Vec<Level>) -> Vec<String> {
+    println!(
+        "{:12} {:>6} {:>6} {:>6} {:>8} {:>7} {:>8} | {:>8} {:>8} | into walls",
+        "level", "minute", "pieces", "awake", "elements", "MB", "B each", "ms, half", "worst"
+    );
+    thread::scope(|scope| {
+        let start = |level: Level| (level.id.clone(), scope.spawn(move || soak(level, minutes)));
+        let threads: Vec<_> = levels.into_iter().map(start).collect();
+        let ends = threads.into_iter().filter_map(|(id, thread)| {
+            let end = thread
+                .join()
+                .unwrap_or(Err("it panicked, see above".into()));
+            end.err().map(|reason| format!("{id}: {reason}"))
+        });
+        ends.collect()
+    })
+}
+
+fn soak(level: Level, minutes: usize) -> Result<(), String> {
+    match level.scene().dim {
+        2 => play::<Dim2>(level, minutes),
+        _ => play::<Dim3>(level, minutes),
+    }
+}
+
+/// Plays a level, and says what was wrong first.
+fn play<D: Dim>(level: Level, minutes: usize) -> Result<(), String> {
+    let id = level.id.clone();
+    let mut round = Round::<D>::new(Arc::new(level));
+    let mut bot = Bot::new(BotKind::Random, SEED);
+    let (mut times, mut deepest, mut held) = (Vec::new(), f32::MIN, Vec::new());
+    for tick in 1..=minutes * MINUTE {
+        let frame = bot.frame(&round);
+        let start = Instant::now();
+        let report = round.step(frame);
+        times.push(1e3 * start.elapsed().as_secs_f32());
+        let wrong = |reason| format!("tick {tick}, seed {SEED}: {reason}");
+        if report.quarantined > 0 {
+            return Err(wrong("a piece went out of hand".to_string()));
+        }
+        if !tick.is_multiple_of(LOOK) {
+            continue;
+        }
+        deepest = deepest.max(depth(&round).map_err(wrong)?);
+        held.push(held_each(&round));
+        if tick.is_multiple_of(MINUTE) {
+            times.sort_by(f32::total_cmp);
+            let half = times[times.len() / 2];
+            let worst = times.pop().unwrap_or(half);
+            tell(&id, tick / MINUTE, &round, [half, worst, 1e3 * deepest]);
+            times.clear();
+        }
+    }
+    let (early, late) = held.split_at(held.len() / 2);
+    let most = |held: &[f32]| held.iter().copied().fold(0.0, f32::max);
+    let allowed = (GROWTH * most(early)).min(MOST_EACH);
+    match most(late) <= allowed {
+        true => Ok(()),
+        false => Err(format!(
+            "held {:.0} bytes for each element and node, then {:.0}, where {allowed:.0} are allowed",
+            most(early),
+            most(late)
+        )),
+    }
+}
+
+/// How deep the worst node is in a wall [m], or what is out of the room or not finite.
+fn depth<D: Dim>(round: &Round<D>) -> Result<f32, String> {
+    let [low, high] = round.level().arena();
+    let beyond = |from: Vector, to: Vector| {
+        let axes = (0..D::N).map(|axis| (low[axis] - from[axis]).max(to[axis] - high[axis]));
+        axes.fold(f32::MIN, f32::max)
+    };
+    for hand in round.world().manipulators() {
+        let at = hand.position();
+        let is_in = at.iter().all(|k| k.is_finite()) && beyond(at, at) <= HAND_MARGIN;
+        if !is_in {
+            return Err(format!("a hand is out of the room: {at:?}"));
+        }
+    }
+    let mut deepest = f32::MIN;
+    for body in round.world().bodies() {
+        for piece in body.piece_views() {
+            let depth = beyond(piece.low, piece.high);
+            // What is not finite shows in the middle: low and high pass it over.
+            let is_finite = piece.centre.iter().all(|k| k.is_finite());
+            if !is_finite || depth > MARGIN * body.grid().voxel_size() {
+                return Err(format!("{depth} m out of the room: {piece:?}"));
+            }
+            deepest = deepest.max(depth);
+        }
+    }
+    Ok(deepest)
+}
+
+/// How many elements and nodes there are.
+fn parts<D: Dim>(round: &Round<D>) -> [usize; 2] {
+    let meshes = || round.world().bodies().iter().map(|body| body.mesh());
+    let elements = meshes().map(|mesh| mesh.element_count()).sum();
+    [elements, meshes().map(|mesh| mesh.node_count()).sum()]
+}
+
+/// What this thread holds for each of them [bytes], apart from the record of what was played.
+fn held_each<D: Dim>(round: &Round<D>) -> f32 {
+    // A list that grows is up to twice as long.
+    let record = 2 * size_of_val(round.frames()) + 2 * size_of_val(round.hashes());
+    let rest = HELD.get().saturating_sub(record);
+    rest as f32 / parts(round).iter().sum::<usize>() as f32
+}
+
+/// A row about a minute.
+fn tell<D: Dim>(id: &str, minute: usize, round: &Round<D>, [half, worst, deepest]: [f32; 3]) {
+    let bodies = round.world().bodies().iter();
+    let pieces = bodies.flat_map(|body| &body.pieces().list);
+    println!(
+        "{id:12} {minute:>6} {:>6} {:>6} {:>8} {:>7.1} {:>8.0} | {half:>8.1} {worst:>8.1} | {deepest:.1} mm",
+        pieces.clone().count(),
+        pieces.filter(|piece| !piece.asleep).count(),
+        parts(round)[0],
+        HELD.get() as f32 / 1e6,
+        held_each(round),
+    );
+}
