@@ -35,6 +35,64 @@ fn folder() -> TempDir {
     folder
 }
 
+/// A level in space: a little ball on the floor, which a hand can push into the basket or tear.
+const SOLID_LEVEL: &str = r#"
+dim = 3
+gravity = [0.0, -3.0, 0.0]
+drag = 0.5
+most_substeps = 8
+view = [[-1.6, 0.0, -1.0], [1.6, 1.6, 1.0]]
+[game]
+name = { en = "Solid" }
+basket = { centre = [0.9, 0.4, 0.0], half = [0.5, 0.4, 0.6] }
+share = 0.5
+wish = [{ route = "squeeze" }, { pieces = 2 }]
+[[material]]
+strength = 300.0
+toughness = 30.0
+[[body]]
+shape = "ball"
+n = 8
+width = 0.6
+at = [-0.6, 0.0, -0.3]
+[[obstacle]]
+half_space = { normal = [0.0, 1.0, 0.0], point = [0.0, 0.0, 0.0] }
+[[obstacle]]
+half_space = { normal = [-1.0, 0.0, 0.0], point = [1.6, 0.0, 0.0] }
+[[hand]]
+radius = 0.12
+path = [[0.0, -1.3, 0.3, 0.4]]
+"#;
+
+/// A folder with that level: `solid.toml`.
+fn folder_in_space() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("solid.toml"), SOLID_LEVEL).unwrap();
+    folder
+}
+
+/// A model of MagicaVoxel: a solid cube, so many voxels wide.
+fn cube_model(width: u8) -> Vec<u8> {
+    let axis = || 0..width;
+    let voxels = axis().flat_map(|z| axis().flat_map(move |y| axis().map(move |x| [x, y, z, 79])));
+    let voxels: Vec<[u8; 4]> = voxels.collect();
+    let chunk = |name: &[u8; 4], contents: Vec<u8>, children: Vec<u8>| {
+        let lengths = [contents.len() as u32, children.len() as u32].map(u32::to_le_bytes);
+        [&name[..], lengths.as_flattened(), &contents, &children].concat()
+    };
+    let size = [u32::from(width).to_le_bytes(); 3].concat();
+    let list = [
+        &(voxels.len() as u32).to_le_bytes()[..],
+        voxels.as_flattened(),
+    ];
+    let children = [
+        chunk(b"SIZE", size, Vec::new()),
+        chunk(b"XYZI", list.concat(), Vec::new()),
+    ];
+    let main = chunk(b"MAIN", Vec::new(), children.concat());
+    [b"VOX ", &150u32.to_le_bytes()[..], &main].concat()
+}
+
 /// Runs the game in a folder, without a display.
 fn tamaire(folder: &Path, arguments: &str) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_tamaire"));
@@ -276,5 +334,97 @@ fn what_would_be_felt_is_written_down() {
         "--headless --force-log no/forces.csv",
         2,
         &["no/forces.csv"],
+    );
+}
+
+#[test]
+fn a_round_in_space_is_told_recorded_and_filmed() {
+    let folder = folder_in_space();
+    let line = "--headless --level solid.toml --bot squeeze --seconds 20 --json --save it.tamaire \
+                --film it.png --force-log forces.csv";
+    let output = tamaire(folder.path(), line);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let told = json(&output);
+    assert_eq!(
+        (&told["bot"], &told["won"]),
+        (&"squeeze".into(), &true.into()),
+        "{told}"
+    );
+    assert!(told["inside"].as_f64().unwrap() >= 0.5, "{told}");
+    let ticks = told["ticks"].as_u64().unwrap();
+
+    // Eight substeps in a tick, and a hand that comes from the side is pushed on all axes.
+    let table = fs::read_to_string(folder.path().join("forces.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = table
+        .lines()
+        .map(|line| line.split(',').collect())
+        .collect();
+    let is_substep = |row: &&Vec<&str>| row[1] == "substep";
+    assert_eq!(rows.iter().filter(is_substep).count() as u64, 8 * ticks);
+    for (column, name) in (3..).zip(["contact_x_N", "contact_y_N", "contact_z_N"]) {
+        assert_eq!(rows[0][column], name);
+        let forces = rows
+            .iter()
+            .filter(is_substep)
+            .map(|row| row[column].parse::<f64>());
+        let most = forces.map(|force| force.unwrap().abs()).fold(0.0, f64::max);
+        assert!(most > 0.1, "{name}: {most} N");
+    }
+
+    let film = fs::read(folder.path().join("it.png")).unwrap();
+    assert!(film.starts_with(b"\x89PNG") && film.len() > 10_000);
+
+    let line = "--headless --replay it.tamaire --json";
+    let replayed = json(&tamaire(folder.path(), line));
+    assert_eq!(replayed["genuine"], true, "{replayed}");
+    assert_eq!(replayed["hash"], told["hash"]);
+
+    let path = folder.path().join("it.tamaire");
+    let replay = fs::read_to_string(&path).unwrap();
+    fs::write(
+        &path,
+        replay.replace("gravity = [0.0, -3.0", "gravity = [0.0, -2.0"),
+    )
+    .unwrap();
+    let output = tamaire(folder.path(), line);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    assert_eq!(json(&output)["genuine"], false);
+}
+
+#[test]
+fn in_space_the_shaving_bot_tears_and_an_animation_shows_it() {
+    let folder = folder_in_space();
+    let line = "--headless --level solid.toml --bot shave --seconds 1 --json --film it.gif";
+    let output = tamaire(folder.path(), line);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let told = json(&output);
+    assert!(told["pieces"].as_u64().unwrap() > 1, "{told}");
+    assert!(told["kept"].as_f64().unwrap() < 0.99, "{told}");
+    let film = fs::read(folder.path().join("it.gif")).unwrap();
+    assert!(film.starts_with(b"GIF89a") && film.len() > 10_000);
+}
+
+#[test]
+fn a_model_is_a_level_in_space() {
+    let folder = folder_in_space();
+    fs::write(folder.path().join("Dice.vox"), cube_model(4)).unwrap();
+    fs::write(folder.path().join("broken.vox"), &cube_model(4)[..100]).unwrap();
+    let play = |name: &str| {
+        let line = format!("--headless --level {name} --bot idle --seconds 1 --json");
+        tamaire(folder.path(), &line)
+    };
+    let told = json(&play("Dice.vox"));
+    assert_eq!(
+        (&told["level"], &told["name"]),
+        (&"Dice.vox".into(), &"Dice".into())
+    );
+    assert_eq!((&told["pieces"], &told["won"]), (&1.into(), &false.into()));
+
+    let output = play("broken.vox");
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(
+        said.contains("broken.vox") && !said.contains("panicked"),
+        "{said}"
     );
 }
