@@ -5,7 +5,27 @@
 //! → [`round`] one go at a level → [`any`] the same, whatever its dimension → [`replay`] the same again → [`bot`] players that are programs.
 //!
 //! A window, a bot and a replay play alike: they hand one [`InputFrame`] a tick to [`Round::step`]
-//! and look at what came of it.
+//! and look at what came of it. A round in the plane is a `Round<Dim2>`, one in space a `Round<Dim3>`;
+//! [`AnyRound`] is whichever its level asks for:
+//!
+//! ```
+//! use std::sync::Arc;
+//! use tamaire_play::{AnyRound, Bot, BotKind, InputFrame, Level};
+//!
+//! let level = Arc::new(Level::open("hoop")?);
+//! assert_eq!(level.scene().dim, 3);
+//! let mut round = AnyRound::new(level);
+//! // x to the right, y up, z towards the player [m].
+//! round.step(InputFrame::towards([-1.0, 1.2, 0.0]));
+//! let mut bot = Bot::new(BotKind::Squeeze, 1);
+//! for _ in 0..5 {
+//!     let frame = round.ask(&mut bot);
+//!     let report = round.step(frame);
+//!     assert_eq!(report.quarantined, 0);
+//! }
+//! assert_eq!((round.ticks(), round.progress().pieces), (6, 1));
+//! # Ok::<(), tamaire_play::level::LevelError>(())
+//! ```
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
