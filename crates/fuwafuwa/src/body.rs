@@ -61,6 +61,8 @@ struct Blend {
     friction: f32,
     /// The fastest pressure wave of a material that is in use [m/s].
     fastest_wave: f64,
+    /// The fastest swing, that of a single voxel which grows and shrinks [1/s].
+    fastest_swing: f64,
 }
 
 impl<D: Dim> Body<D> {
@@ -280,14 +282,14 @@ impl<D: Dim> Body<D> {
     /// How it is damped in substeps of `duration` [s]: the lead of its elastic forces [s], and the
     /// rate [1/s] at which each piece relaxes towards its rigid motion.
     ///
-    /// A lead of τ damps its slowest swing by τω/2; the fast swing of a single voxel allows τ ≤ (2.8/Ω² − h²) / 2h, of which
-    /// a part is kept back.
+    /// A lead of τ damps its slowest swing by τω/2; the fast swing Ω of a single voxel bears
+    /// Ω²h (h + 2τ) < 4, that is τ < (4/Ω² − h²) / 2h, of which a part is kept back.
     pub(crate) fn damping(&self, duration: f32) -> (f32, f32) {
         let ratio = self.blend.damping;
         let slow = self.blend.slow * self.softening.sqrt();
-        let (step, longest) = (f64::from(duration), self.longest_substep());
-        let fast = 2.0 * 0.6 / longest;
-        let most = 0.7 * (2.8 / (fast * fast) - step * step) / (2.0 * step);
+        let fast = self.blend.fastest_swing * self.softening.sqrt();
+        let step = f64::from(duration);
+        let most = 0.7 * (4.0 / (fast * fast) - step * step) / (2.0 * step);
         let lead = (2.0 * ratio / slow).min(most).max(0.0);
         let rate = 2.0 * slow * (ratio - 0.5 * lead * slow).max(0.0);
         (lead as f32, rate as f32)
@@ -590,11 +592,13 @@ impl Blend {
         let density = mean(&|material| f64::from(material.density));
         let width = f64::from(grid.voxel_size()) * root(total, D::N);
         let waves = used().map(|(_, material)| material.wave_speed());
+        let swings = used().map(|(_, material)| material.voxel_swing(D::N));
         Self {
             damping: mean(&|material| f64::from(material.damping)),
             slow: std::f64::consts::PI * (young / density).sqrt() / width,
             friction: mean(&|material| f64::from(material.friction)) as f32,
             fastest_wave: waves.fold(0.0, f64::max),
+            fastest_swing: swings.fold(0.0, f64::max) / f64::from(grid.voxel_size()),
         }
     }
 }

@@ -134,4 +134,15 @@ impl Material {
         let stiffness = self.elasticity.lame() + 2.0 * self.elasticity.shear_modulus();
         (stiffness / f64::from(self.density)).sqrt()
     }
+
+    /// How fast a voxel by itself swings as it grows and shrinks, times its width [m/s].
+    ///
+    /// Let all its nodes be (1 + ε) times as far from its middle, in N dimensions: it holds the
+    /// energy ½ N² (λ + 2µ/N) ε² in a unit of volume, and moves with ½ ρ N s²/4 ε'², because its
+    /// mass is in its corners; so Ω² = 4 N (λ + 2µ/N) / ρs².
+    pub(crate) fn voxel_swing(&self, dimensions: usize) -> f64 {
+        let axes = dimensions as f64;
+        let stiffness = axes * self.elasticity.lame() + 2.0 * self.elasticity.shear_modulus();
+        2.0 * (stiffness / f64::from(self.density)).sqrt()
+    }
 }

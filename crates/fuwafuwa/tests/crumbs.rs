@@ -2,7 +2,8 @@
 
 use fuwafuwa::vector::{cross, dot, length, minus, plus, scaled};
 use fuwafuwa::{
-    Body, Dim, Dim2, Dim3, Manipulator, Material, Settings, Shape, Vector, VoxelGrid, World,
+    Body, Dim, Dim2, Dim3, Elasticity, Manipulator, Material, Settings, Shape, Vector, VoxelGrid,
+    World,
 };
 
 /// A crumb is well inside a piece when its middle is in an element and this far from all faces, in
@@ -227,4 +228,60 @@ fn check_way_out<D: Dim>(n: usize) {
 fn who_begins_inside_drifts_out() {
     check_way_out::<Dim2>(48);
     check_way_out::<Dim3>(16);
+}
+
+/// How fast the nodes of a voxel by itself still move [m/s], a second after it grew a little.
+fn left_of_a_swing<D: Dim>(poisson: f64, substeps: u32) -> f32 {
+    const WIDE: usize = 32;
+    let elasticity = Elasticity {
+        young: 20_000.0,
+        poisson,
+    };
+    let material = Material {
+        elasticity,
+        ..Material::default()
+    };
+    let settings = Settings {
+        gravity: [0.0; 3],
+        drag: 0.0,
+        most_substeps: substeps,
+    };
+    let mut world = World::<D>::new(settings).unwrap();
+    // It is damped as the large body is that it came off.
+    let mut size = [WIDE; 3];
+    size[D::N..].fill(1);
+    let grid = VoxelGrid::from_fn(size, 1.0 / WIDE as f32, |at| {
+        u8::from(at == [0; 3] || at[0] as usize > WIDE / 2)
+    });
+    world.add_body(Body::new(grid.unwrap(), &[material]).unwrap());
+    let body = world.body_mut(0);
+    let views = body.piece_views();
+    let crumb = views.iter().find(|view| view.element_count == 1).unwrap();
+    let ids = body.mesh().nodes().map(|(id, _)| id);
+    let nodes: Vec<u32> = ids
+        .filter(|&id| body.pieces().of_node(id) == crumb.number)
+        .collect();
+    for &node in &nodes {
+        let (at, _, _) = body.node_state(node);
+        body.set_node_state(node, at, scaled(minus(at, crumb.centre), 0.1));
+    }
+    for _ in 0..60 {
+        world.step();
+    }
+    let speeds = nodes
+        .iter()
+        .map(|&node| world.bodies()[0].node_state(node).1);
+    speeds.map(length).fold(0.0, f32::max)
+}
+
+#[test]
+fn a_crumb_stops_swinging_whatever_it_is_made_of() {
+    for poisson in [0.0, 0.3, 0.45] {
+        for substeps in [8, 16, 64] {
+            let plane = left_of_a_swing::<Dim2>(poisson, substeps);
+            let space = left_of_a_swing::<Dim3>(poisson, substeps);
+            let fast = plane.max(space);
+            assert!(fast < 1e-3, "{poisson}, {substeps}: {plane}, {space} m/s");
+        }
+    }
 }
