@@ -1,10 +1,14 @@
 //! What devices say becomes what players want: places for their hands, and actions.
 
 mod bindings;
+mod devices;
+mod manner;
 mod players;
 
 pub use bindings::{Bindings, PadKey};
-pub use players::{Devices, Manner, Players, Seat};
+pub use devices::{Devices, Seat};
+pub use manner::Manner;
+pub use players::Players;
 
 use serde::{Deserialize, Serialize};
 
