@@ -151,6 +151,12 @@ impl View {
         )
     }
 
+    /// How far across it a place [m] is seen, from -1 at its left to 1 at its right.
+    pub fn across(&self, at: Vector) -> f32 {
+        let half = 0.5 * self.rect.width().max(1.0);
+        ((self.on_screen(at).x - self.rect.center().x) / half).clamp(-1.0, 1.0)
+    }
+
     /// Which place of the world [m] is seen at a point of the screen; in space, at this height [m].
     pub fn in_world(&self, at: Pos2, height: f32) -> Vector {
         if let Some(camera) = &self.space {
