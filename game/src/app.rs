@@ -5,7 +5,7 @@ mod pointing;
 mod presses;
 
 use crate::game::{Game, Screen};
-use crate::input::{Action, Seat};
+use crate::input::{Action, Means, Seat};
 use crate::look::Stage;
 use crate::screens;
 use egui::{Event, Key};
@@ -88,6 +88,7 @@ impl App {
                 continue;
             };
             screens::note_use_of_keys(ctx, true);
+            self.game.note_stick(device);
             let is_of_menus = matches!(
                 control,
                 Control::Pad(PadButton::South | PadButton::East) | Control::Button(0 | 1)
@@ -129,6 +130,7 @@ impl App {
             });
             for direction in self.navigators[place].1.step(device, seconds) {
                 screens::note_use_of_keys(ctx, true);
+                self.game.note_stick(device.id);
                 // One that is tried is pushed about for its own sake.
                 let is_tried = self
                     .game
@@ -156,12 +158,24 @@ impl App {
         let game = &mut self.game;
         let events = ctx.input(|input| input.events.clone());
         self.fingers.hear(&events);
+        let is_touched = ctx.input(|input| input.any_touches())
+            || events
+                .iter()
+                .any(|event| matches!(event, Event::Touch { .. }));
         for event in &events {
             match event {
-                Event::Key { .. } => screens::note_use_of_keys(ctx, true),
+                Event::Key { .. } => {
+                    screens::note_use_of_keys(ctx, true);
+                    game.means = Means::Keys;
+                }
                 Event::PointerMoved(_) | Event::PointerButton { .. } => {
                     screens::note_use_of_keys(ctx, false);
+                    // A finger is told of as a mouse too, after it.
+                    if !is_touched {
+                        game.means = Means::Mouse;
+                    }
                 }
+                Event::Touch { .. } => game.means = Means::Fingers,
                 // A window may never get the focus, and be played with the mouse: only losing it counts.
                 Event::WindowFocused(focused) => {
                     game.is_away = self.had_focus && !focused;

@@ -45,6 +45,7 @@ impl Game {
             }
         }
         self.celebrate(seconds);
+        self.learn(seconds);
         self.feel(seconds);
         if self.screen == Screen::Title && self.session.is_over() {
             self.cheered += seconds;

@@ -79,6 +79,11 @@ impl Camera {
         (self.turn, self.rise) = (0.0, 0.0);
     }
 
+    /// By how much it went around to the right and up [rad].
+    pub fn gone_around(&self) -> [f32; 2] {
+        [self.turn, self.rise]
+    }
+
     /// By how much it went around to the right [rad].
     pub fn turn(&self) -> f32 {
         self.turn
