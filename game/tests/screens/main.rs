@@ -5,4 +5,5 @@ mod clicks;
 mod hostile;
 mod pads;
 mod pictures;
+mod space;
 mod window;
