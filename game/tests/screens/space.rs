@@ -1,31 +1,26 @@
-//! In space: where the hand goes with each device, how the camera turns, what is told of it, and what is dropped.
+//! In space: where the hand goes with each device, how the camera turns, and a round that is won, watched and raced.
 
-use crate::hostile::drop_file;
-use crate::pads::{Table, about, pad};
+use crate::pads::{Table, pad};
+use crate::told::tells;
 use crate::window::*;
-use egui::epaint::ClippedShape;
 use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, TouchPhase, pos2, vec2};
 use fuwafuwa::Vector;
 use fuwafuwa::vector::{length, minus};
 use fuwafuwa::world::TICK;
-use std::path::Path;
-use sticks::{Device, DeviceId, PadButton};
+use sticks::{DeviceId, PadButton};
 use tamaire::game::{Game, Screen};
-use tamaire::input::{Action, Means, Seat};
+use tamaire::input::{Means, Seat};
 use tamaire::platform::Files;
-use tamaire::words::Language;
 use tamaire_play::{AnyRound, Route};
 
-const MODEL: &str = "../crates/tamaire_play/levels/pudding.vox";
-
-fn in_space() -> Window {
+pub fn in_space() -> Window {
     let mut window = window(Files::nowhere());
     start(&mut window, "classic-3d");
     window
 }
 
 /// Where a player's hand is to go next [m].
-fn goal(window: &Window, player: usize) -> Vector {
+pub fn goal(window: &Window, player: usize) -> Vector {
     window.state().game.session.round().hands()[player].goal()
 }
 
@@ -34,13 +29,13 @@ fn turned(window: &Window) -> [f32; 2] {
 }
 
 /// Lets ticks pass that nobody looks at: in software a picture of space takes longer than a tick.
-fn wait(window: &mut Window, ticks: usize) {
+pub fn wait(window: &mut Window, ticks: usize) {
     (0..ticks).for_each(|_| game(window).pass(TICK));
     frames(window, 1);
 }
 
 /// Points with the mouse at a place of the floor, and waits until the hand is above it.
-fn point_at(window: &mut Window, x: f32, z: f32) {
+pub fn point_at(window: &mut Window, x: f32, z: f32) {
     let view = window.state().game.view.expect("it is seen");
     window.hover_at(view.on_screen([x, 0.0, z]));
     frames(window, 1);
@@ -60,7 +55,7 @@ fn wheel(window: &mut Window, points: f32) {
     wait(window, 30);
 }
 
-fn assert_near(found: Vector, expected: Vector) {
+pub fn assert_near(found: Vector, expected: Vector) {
     let away = length(minus(found, expected));
     assert!(away < 0.03, "{found:?}, expected {expected:?}");
 }
@@ -292,144 +287,6 @@ fn one_finger_moves_the_hand_and_a_second_one_raises_it_or_turns_the_camera() {
     assert_eq!(window.state().game.means, Means::Fingers);
 }
 
-/// All words on the screen, each with where it is.
-fn words(window: &Window) -> Vec<(String, egui::Rect)> {
-    fn add(shape: &egui::Shape, words: &mut Vec<(String, egui::Rect)>) {
-        match shape {
-            egui::Shape::Text(text) => {
-                words.push((text.galley.text().into(), text.visual_bounding_rect()));
-            }
-            egui::Shape::Vec(shapes) => shapes.iter().for_each(|shape| add(shape, words)),
-            _ => {}
-        }
-    }
-    let mut words = Vec::new();
-    for ClippedShape { shape, .. } in &window.output().shapes {
-        add(shape, &mut words);
-    }
-    words
-}
-
-fn tells(window: &Window, what: &str) -> bool {
-    words(window).iter().any(|(text, _)| text.contains(what))
-}
-
-#[test]
-fn what_can_be_done_in_space_is_told_until_it_was_tried() {
-    let mut window = in_space();
-    // Nothing takes its time to go.
-    game(&mut window).settings.reduced_motion = true;
-    wait(&mut window, 60);
-    let told = ["Move: mouse", "wheel, or Q Z", "right mouse button, or [ ]"];
-    assert!(
-        told.iter().all(|line| tells(&window, line)),
-        "{:?}",
-        words(&window)
-    );
-    game(&mut window)
-        .settings
-        .bindings
-        .bind_key(Action::Raise, Key::U);
-    frames(&mut window, 1);
-    assert!(tells(&window, "wheel, or U Z"), "what is bound is named");
-    point_at(&mut window, -1.0, 0.7);
-    assert!(!tells(&window, "Move") && tells(&window, "wheel"));
-    window.key_down(Key::U);
-    frames(&mut window, 2);
-    assert!(
-        tells(&window, "Look around: [ ]"),
-        "what was used last is named"
-    );
-    wait(&mut window, 10);
-    window.key_up(Key::U);
-    frames(&mut window, 2);
-    assert!(!tells(&window, "Up and down") && tells(&window, "Look around"));
-    press(&mut window, Key::R);
-    wait(&mut window, 60);
-    assert!(
-        !tells(&window, "Move") && tells(&window, "Look around"),
-        "what is known is not told again"
-    );
-    window.key_down(Key::OpenBracket);
-    frames(&mut window, 12);
-    window.key_up(Key::OpenBracket);
-    frames(&mut window, 1);
-    assert!(!tells(&window, "Look around"));
-    start(&mut window, "classic");
-    frames(&mut window, 2);
-    assert!(
-        !tells(&window, "Move"),
-        "in the plane nothing needs to be told"
-    );
-}
-
-#[test]
-fn a_pad_is_told_of_its_own_controls_and_nothing_is_told_for_ever() {
-    let mut table = Table::with(vec![
-        pad(1),
-        Device::at_rest(DeviceId(2), about("Stick"), 2, 12, 1),
-    ]);
-    game(&mut table.window).settings.reduced_motion = true;
-    start(&mut table.window, "hoop");
-    table.devices[0].pad.as_mut().expect("a pad").left = [0.0, 0.7];
-    table.frames(2);
-    table.devices[0].pad.as_mut().expect("a pad").left = [0.0; 2];
-    table.frames(2);
-    assert!(tells(&table.window, "triggers") && tells(&table.window, "right stick"));
-    table.devices[1].axes = vec![1.0, 0.0];
-    table.frames(2);
-    table.devices[1].axes = vec![0.0; 2];
-    table.frames(2);
-    assert!(tells(&table.window, "buttons 10 11") && tells(&table.window, "buttons 12 13"));
-    for _ in 0..25 {
-        game(&mut table.window).pass(2.0);
-    }
-    table.frames(2);
-    assert!(!tells(&table.window, "buttons"));
-}
-
-#[test]
-fn what_is_told_fits_into_the_smallest_window() {
-    for text_size in [1.0, 1.6] {
-        let mut window = open(Files::nowhere(), vec2(640.0, 400.0), 0.5);
-        game(&mut window).settings.text_size = text_size;
-        start(&mut window, "classic-3d");
-        let bindings = &mut game(&mut window).settings.bindings;
-        // The longest names there are.
-        for (action, key) in [
-            (Action::Raise, Key::BrowserBack),
-            (Action::Lower, Key::Questionmark),
-        ] {
-            bindings.bind_key(action, key);
-        }
-        for means in [
-            Means::Mouse,
-            Means::Fingers,
-            Means::Keys,
-            Means::Pad,
-            Means::Stick,
-        ] {
-            for (language, _) in Language::ALL {
-                game(&mut window).means = means;
-                game(&mut window).settings.language = language;
-                frames(&mut window, 1);
-                let lines = window.state().game.lesson();
-                let room = window.ctx.content_rect();
-                let words = words(&window);
-                for (line, is_missing) in &lines {
-                    let found = words.iter().find(|(text, _)| text == line);
-                    let (_, rect) = found.unwrap_or_else(|| panic!("{line} in {words:?}"));
-                    assert!(
-                        *is_missing && room.contains_rect(*rect),
-                        "{line}: {rect:?} in {room:?}"
-                    );
-                }
-                assert_eq!(lines.len(), 3);
-            }
-        }
-    }
-}
-
 #[test]
 fn a_round_in_space_is_won_kept_watched_and_raced() {
     let folder = folder("space");
@@ -475,82 +332,5 @@ fn a_round_in_space_is_won_kept_watched_and_raced() {
     assert_eq!(game.session.round().progress().outcome, Some(outcome));
     assert!(game.notices.is_empty(), "{:?}", game.notices);
     assert!(length(minus(goal(&window, 0), before)) > 0.1);
-    std::fs::remove_dir_all(folder).expect("it is ours");
-}
-
-#[test]
-fn a_model_dropped_onto_any_round_is_played_in_space() {
-    let mut window = window(Files::nowhere());
-    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join(MODEL);
-    for level in ["classic", "hoop"] {
-        start(&mut window, level);
-        frames(&mut window, 10);
-        drop_file(&mut window, model.clone());
-        assert_eq!(
-            (screen(&window), notices(&window).as_str()),
-            (Screen::Play, ""),
-            "{level}"
-        );
-        let round = window.state().game.session.round();
-        assert!(matches!(round, AnyRound::Space(_)), "{level}");
-        assert_eq!(round.level().game().name.en, "pudding");
-        assert!(
-            round.progress().mass > 0.0 && ticks(&window) <= 2,
-            "{level}"
-        );
-        // It is offered once, however often it is dropped.
-        let levels = &window.state().game.levels;
-        let name = &round.level().id;
-        assert_eq!(levels.iter().filter(|level| &level.id == name).count(), 1);
-        point_at(&mut window, -1.0, 0.7);
-        assert!(
-            (goal(&window, 0)[2] - 0.7).abs() < 0.05,
-            "{level}: it can be played"
-        );
-    }
-}
-
-#[test]
-fn a_damaged_model_is_named_and_nothing_is_lost() {
-    let folder = folder("vox");
-    let whole =
-        std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join(MODEL)).expect("it comes along");
-    let mut window = in_space();
-    point_at(&mut window, -1.0, 0.7);
-    let levels = window.state().game.levels.len();
-    let mut size = whole.clone();
-    // The number of voxels, far beyond the end of the file.
-    let count = whole
-        .windows(4)
-        .position(|word| word == b"XYZI")
-        .expect("it has voxels")
-        + 12;
-    size[count..count + 4].copy_from_slice(&u32::MAX.to_le_bytes());
-    let damaged: [(&str, &[u8], &str); 5] = [
-        ("cut.vox", &whole[..whole.len() / 2], "cut.vox"),
-        ("head.VOX", &whole[..3], "head.VOX"),
-        ("empty.vox", b"", "empty.vox"),
-        ("count.vox", &size, "count.vox"),
-        (
-            "picture.vox",
-            b"\x89PNG\r\n\x1a\n and no model",
-            "picture.vox",
-        ),
-    ];
-    for (file, bytes, told) in damaged {
-        let path = folder.join(file);
-        std::fs::write(&path, bytes).expect("it is ours");
-        let (before, at) = (ticks(&window), goal(&window, 0));
-        drop_file(&mut window, path);
-        let said = notices(&window);
-        assert!(
-            said.contains(told) && said.contains("expected"),
-            "{file}: {said}"
-        );
-        assert_eq!(window.state().game.levels.len(), levels, "{file}");
-        assert_eq!(screen(&window), Screen::Play, "{file}");
-        assert!(ticks(&window) > before, "{file}: the round goes on");
-        assert_near(goal(&window, 0), at);
-    }
     std::fs::remove_dir_all(folder).expect("it is ours");
 }
