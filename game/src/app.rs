@@ -1,11 +1,18 @@
 //! The loop: devices → actions and wishes → time → picture and sound.
 
+mod fingers;
+mod pointing;
+mod presses;
+
 use crate::game::{Game, Screen};
-use crate::input::{Action, Seat};
+use crate::input::{Action, Means, Seat};
 use crate::look::Stage;
 use crate::screens;
-use egui::{Event, Key, Modifiers, PointerButton, RawInput};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use egui::{Event, Key};
+use fingers::Fingers;
+use pointing::{look_around, point};
+use presses::Presses;
+use std::sync::Arc;
 use sticks::{Change, Control, Navigator, PadButton};
 
 /// The font that the game writes with.
@@ -13,12 +20,6 @@ const FONT: &[u8] = include_bytes!("../fonts/MPLUSRounded1c-Bold.ttf");
 
 /// Each screen has room enough in a window of this many points.
 const ROOM: egui::Vec2 = egui::vec2(900.0, 640.0);
-
-/// In space: how far the wheel raises the hand [m/point], how far the mouse [rad/point] and how fast a key or a pad's right
-/// stick turns the camera [rad/s].
-const WHEEL: f32 = 0.002;
-const DRAG: f32 = 0.006;
-const TURN: f32 = 1.5;
 
 /// Keys that menus understand.
 const OF_MENUS: [Key; 8] = [
@@ -32,9 +33,6 @@ const OF_MENUS: [Key; 8] = [
     Key::ArrowRight,
 ];
 
-/// Keys that count once however long they are held: what they lead to must not be left at once.
-const ONCE: [Key; 3] = [Key::Escape, Key::Enter, Key::Space];
-
 /// The game in a window.
 pub struct App {
     /// Its state.
@@ -42,6 +40,7 @@ pub struct App {
     stage: Stage,
     navigators: Vec<(sticks::DeviceId, Navigator)>,
     presses: Presses,
+    fingers: Fingers,
     screen_before: Screen,
     /// Whether the window ever had the focus.
     had_focus: bool,
@@ -69,6 +68,7 @@ impl App {
             stage,
             navigators,
             presses,
+            fingers: Fingers::default(),
             screen_before,
             had_focus: false,
         })
@@ -88,6 +88,7 @@ impl App {
                 continue;
             };
             screens::note_use_of_keys(ctx, true);
+            self.game.note_stick(device);
             let is_of_menus = matches!(
                 control,
                 Control::Pad(PadButton::South | PadButton::East) | Control::Button(0 | 1)
@@ -129,6 +130,7 @@ impl App {
             });
             for direction in self.navigators[place].1.step(device, seconds) {
                 screens::note_use_of_keys(ctx, true);
+                self.game.note_stick(device.id);
                 // One that is tried is pushed about for its own sake.
                 let is_tried = self
                     .game
@@ -154,21 +156,26 @@ impl App {
     /// Takes in keys and the pointer.
     fn hear_window(&mut self, ctx: &egui::Context) {
         let game = &mut self.game;
-        let (events, keys, pointer, is_down) = ctx.input(|input| {
-            let pointer = &input.pointer;
-            (
-                input.events.clone(),
-                input.keys_down.clone(),
-                pointer.latest_pos(),
-                pointer.button_down(PointerButton::Primary),
-            )
-        });
+        let events = ctx.input(|input| input.events.clone());
+        self.fingers.hear(&events);
+        let is_touched = ctx.input(|input| input.any_touches())
+            || events
+                .iter()
+                .any(|event| matches!(event, Event::Touch { .. }));
         for event in &events {
             match event {
-                Event::Key { .. } => screens::note_use_of_keys(ctx, true),
+                Event::Key { .. } => {
+                    screens::note_use_of_keys(ctx, true);
+                    game.means = Means::Keys;
+                }
                 Event::PointerMoved(_) | Event::PointerButton { .. } => {
                     screens::note_use_of_keys(ctx, false);
+                    // A finger is told of as a mouse too, after it.
+                    if !is_touched {
+                        game.means = Means::Mouse;
+                    }
                 }
+                Event::Touch { .. } => game.means = Means::Fingers,
                 // A window may never get the focus, and be played with the mouse: only losing it counts.
                 Event::WindowFocused(focused) => {
                     game.is_away = self.had_focus && !focused;
@@ -180,21 +187,10 @@ impl App {
                 _ => {}
             }
         }
-        // Where the mouse is counts until a tick has heard of it; on a button it does not mean the hand.
-        let has_moved = |event: &Event| matches!(event, Event::PointerMoved(_));
-        // Nor while it turns the camera.
-        let turns = ctx.input(|input| input.pointer.button_down(PointerButton::Secondary));
-        let points = !turns && (is_down || events.iter().any(has_moved));
-        let is_on_button = ctx.interaction_snapshot(|seen| !seen.hovered.is_empty());
-        if game.screen != Screen::Play || is_on_button {
-            game.devices.pointer = None;
-        } else if let (Some(view), Some(at), true) = (game.view, pointer, points) {
-            let height = game.session.round().hands()[0].goal()[1];
-            game.devices.pointer = Some(view.in_world(at, height));
-        }
-        game.devices.keys = keys.into_iter().collect();
+        point(game, ctx);
+        game.devices.keys = ctx.input(|input| input.keys_down.iter().copied().collect());
         if game.screen == Screen::Play && game.turn().is_some() && game.session.is_played() {
-            look_around(game, ctx, turns);
+            look_around(game, ctx, &mut self.fingers);
         }
         let mut taken = Vec::new();
         for event in &events {
@@ -243,34 +239,6 @@ impl App {
     }
 }
 
-/// In space the wheel raises the hand, and the camera turns: with the mouse where that `drags`, with keys and pads.
-fn look_around(game: &mut Game, ctx: &egui::Context, drags: bool) {
-    let (wheel, delta, seconds) = ctx.input(|input| {
-        let seconds = input.stable_dt.min(0.1);
-        (input.smooth_scroll_delta.y, input.pointer.delta(), seconds)
-    });
-    game.devices.lift += WHEEL * wheel;
-    if drags {
-        game.camera.orbit(-DRAG * delta.x, DRAG * delta.y);
-    }
-    let bindings = &game.settings.bindings;
-    let held = |action| {
-        let mut keys = game.devices.keys.iter();
-        f32::from(u8::from(
-            keys.any(|&key| bindings.of_key(key) == Some(action)),
-        ))
-    };
-    let sticks = game.devices.sticks.devices.iter();
-    let pads: f32 = sticks.filter_map(|device| Some(device.pad?.right[0])).sum();
-    let pads = if pads.abs() > 0.3 {
-        pads.clamp(-1.0, 1.0)
-    } else {
-        0.0
-    };
-    let turn = held(Action::TurnRight) - held(Action::TurnLeft) + pads;
-    game.camera.orbit(TURN * turn * seconds, 0.0);
-}
-
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
@@ -307,84 +275,6 @@ fn fit(ctx: &egui::Context, text_size: f32) {
     if !ctx.input(|input| input.pointer.any_down()) {
         ctx.set_zoom_factor(zoom);
     }
-}
-
-/// Keys on their way into egui.
-#[derive(Clone, Default)]
-struct Presses(Arc<Mutex<Waiting>>);
-
-#[derive(Default)]
-struct Waiting {
-    /// What sticks and pads press in menus.
-    keys: Vec<Key>,
-    /// Whether up and down lead through everything in its order, and not to what lies above or below.
-    in_order: bool,
-    /// Which of [`ONCE`] are held.
-    held: Vec<Key>,
-}
-
-impl Presses {
-    fn waiting(&self) -> MutexGuard<'_, Waiting> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-impl egui::Plugin for Presses {
-    fn debug_name(&self) -> &'static str {
-        "sticks and pads"
-    }
-
-    fn input_hook(&mut self, _: &egui::Context, input: &mut RawInput) {
-        let mut waiting = self.waiting();
-        let held = &mut waiting.held;
-        input.events.retain(|event| match *event {
-            Event::Key { key, pressed, .. } if ONCE.contains(&key) => {
-                let was_held = held.contains(&key);
-                held.retain(|other| *other != key);
-                if pressed {
-                    held.push(key);
-                }
-                !(pressed && was_held)
-            }
-            Event::WindowFocused(false) => {
-                held.clear();
-                true
-            }
-            _ => true,
-        });
-        for key in std::mem::take(&mut waiting.keys) {
-            input.events.extend(stroke(key, Modifiers::NONE));
-        }
-        if waiting.in_order {
-            input.events = std::mem::take(&mut input.events)
-                .into_iter()
-                .flat_map(|event| match event {
-                    Event::Key {
-                        key: Key::ArrowDown,
-                        pressed: true,
-                        ..
-                    } => stroke(Key::Tab, Modifiers::NONE).to_vec(),
-                    Event::Key {
-                        key: Key::ArrowUp,
-                        pressed: true,
-                        ..
-                    } => stroke(Key::Tab, Modifiers::SHIFT).to_vec(),
-                    event => vec![event],
-                })
-                .collect();
-        }
-    }
-}
-
-/// A key is pressed and let go.
-fn stroke(key: Key, modifiers: Modifiers) -> [Event; 2] {
-    [true, false].map(|pressed| Event::Key {
-        key,
-        physical_key: None,
-        pressed,
-        repeat: false,
-        modifiers,
-    })
 }
 
 /// Gives egui the game's font and takes its toolbox look away.

@@ -3,11 +3,12 @@
 
 mod feel;
 mod heard;
+mod lesson;
 mod time;
 pub mod trial;
 
 use crate::attract::attract;
-use crate::input::{Action, Devices, Players, Seat};
+use crate::input::{Action, Devices, Means, Players, Seat};
 use crate::look::{Camera, Effects, Theme, View};
 use crate::platform::{Files, Forces, Pads, SavedReplay, Sound};
 use crate::records::Records;
@@ -16,6 +17,7 @@ use crate::settings::Settings;
 use crate::words::Words;
 use fuwafuwa::world::TICK;
 use fuwafuwa_render::frame::ElementColour;
+use lesson::Lesson;
 use std::path::Path;
 use std::sync::Arc;
 use tamaire_play::level::{NAMED, NAMED_3D};
@@ -67,6 +69,8 @@ pub struct Game {
     pub players: Players,
     /// What their devices say.
     pub devices: Devices,
+    /// With what something was done last.
+    pub means: Means,
     /// What flies about.
     pub effects: Effects,
     /// From where it is seen.
@@ -97,6 +101,7 @@ pub struct Game {
     pub forces: Forces,
     /// The one that is tried or measured.
     pub trial: Option<Trial>,
+    lesson: Lesson,
     sound: Sound,
     /// Why nothing is heard, as the player was told last.
     trouble: Option<String>,
@@ -127,6 +132,7 @@ impl Game {
             chosen: 0,
             players: Players::default(),
             devices: Devices::default(),
+            means: Means::default(),
             effects: Effects::default(),
             camera: Camera::default(),
             view: None,
@@ -139,6 +145,7 @@ impl Game {
             time: 0.0,
             rebinding: None,
             is_away: false,
+            lesson: Lesson::default(),
             trouble: None,
             sound,
             pads,
@@ -242,6 +249,7 @@ impl Game {
         self.chosen = known.unwrap_or(self.chosen);
         self.players.start();
         self.effects = Effects::default();
+        self.lesson.begin();
         // They mean places of the round before.
         (self.devices.pointer, self.devices.lift, self.view) = (None, 0.0, None);
         self.won = None;
@@ -374,6 +382,15 @@ impl Game {
             self.rest();
         }
         changes
+    }
+
+    /// Something was done with a stick or pad.
+    pub fn note_stick(&mut self, id: sticks::DeviceId) {
+        let device = self.devices.sticks.device(id);
+        self.means = match device.is_some_and(|device| device.pad.is_some()) {
+            true => Means::Pad,
+            false => Means::Stick,
+        };
     }
 
     /// Lets a round that people play stand still.

@@ -163,6 +163,37 @@ fn a_stick_that_pushes_the_body_is_pushed_back() {
 }
 
 #[test]
+fn in_space_a_stick_feels_the_floor_as_the_camera_sees_it() {
+    // The ball lies behind the hand. Seen from the front the hand pushes away from the player and is pushed towards them;
+    // seen from the right it pushes to the right, and is pushed to the left.
+    for (turn, axis) in [(0.0, 1), (std::f32::consts::FRAC_PI_2, 0)] {
+        let mut table = Table::with(1);
+        let mut levels = table.game.levels.iter();
+        let classic = levels.position(|level| level.id == "classic-3d");
+        table.game.start(classic.expect("it comes along"));
+        table.game.camera.orbit(turn, 0.0);
+        let mut share = 0.0;
+        table.until("pushed back", |table| {
+            share += if share < 1.0 { 0.01 } else { 0.0 };
+            // From before the ball to its middle [m], and which way the stick leans for that.
+            let [x, z] = [-0.6, 0.7 - 1.1 * share];
+            let [right, away]: [f32; 2] = [[-z, -x / 1.6], [x / 1.6, -z]][axis];
+            let long = right.hypot(away);
+            // What the dead zone takes is put in before.
+            let more = (0.15 + 0.8 * long) / long;
+            table.devices[0].axes = vec![more * right, -more * away];
+            table.plug_in();
+            match table.told(0) {
+                Some(Output::Force(force)) => {
+                    force[axis] < -0.05 && force[axis].abs() > 2.0 * force[1 - axis].abs()
+                }
+                _ => false,
+            }
+        });
+    }
+}
+
+#[test]
 fn it_ends_with_a_pause_a_menu_a_new_round_and_another_window() {
     type Way = fn(&mut Game);
     let ways: [(Way, Stop); 5] = [

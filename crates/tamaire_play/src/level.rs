@@ -2,15 +2,28 @@
 
 use fuwafuwa::{Dim, Shape, World};
 use fuwafuwa_scenes::scene::{BodyText, GameText, Scene, SceneError};
+use std::any::Any;
 use std::path::Path;
+use std::sync::{Arc, OnceLock};
 
 /// A level, checked: its world can be built.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Level {
     /// The name by which it is called up, or its file.
     pub id: String,
     scene: Scene,
     game: GameText,
+    /// The [`Start`] in its dimension, once somebody needed it: to build one takes far longer than to copy it.
+    start: Arc<OnceLock<Box<dyn Any + Send + Sync>>>,
+}
+
+/// The world at the start, and its basket.
+type Start<D> = (World<D>, Option<Shape>);
+
+impl PartialEq for Level {
+    fn eq(&self, other: &Self) -> bool {
+        (&self.id, &self.scene, &self.game) == (&other.id, &other.scene, &other.game)
+    }
 }
 
 /// Why there is no such level.
@@ -89,7 +102,8 @@ impl Level {
         if let Some((_, text)) = named.find(|(known, _)| *known == id) {
             let mut scene = Scene::read(id, text, &[])?;
             scene.embed_files(&FILES)?;
-            return Self::of(id, scene);
+            // The tests build it.
+            return Self::unbuilt(id, scene);
         }
         let path = Path::new(id);
         if !path.exists() {
@@ -129,7 +143,29 @@ impl Level {
     ///
     /// # Errors
     /// [`LevelError`] says what is wrong with it.
-    pub fn of(id: &str, mut scene: Scene) -> Result<Self, LevelError> {
+    pub fn of(id: &str, scene: Scene) -> Result<Self, LevelError> {
+        let level = Self::unbuilt(id, scene)?;
+        match level.scene.dim {
+            2 => level.start::<fuwafuwa::Dim2>().map(|_| ())?,
+            _ => level.start::<fuwafuwa::Dim3>().map(|_| ())?,
+        }
+        let [low, high] = level.scene.view;
+        let axes = 0..usize::from(level.scene.dim);
+        let room = axes.map(|axis| high[axis] - low[axis]);
+        let room = room.fold(f32::INFINITY, f32::min);
+        let mut hands = level.scene.hand.iter();
+        if hands.any(|hand| 2.0 * hand.radius > 0.9 * room) {
+            return Err(LevelError::NoGame {
+                id: id.into(),
+                field: "hand",
+                reason: format!("expected hands that can move in the view, {room} m wide"),
+            });
+        }
+        Ok(level)
+    }
+
+    /// The same, without a look at what takes a world to be seen.
+    fn unbuilt(id: &str, mut scene: Scene) -> Result<Self, LevelError> {
         // From here on it needs no file.
         scene.embed_files(&[])?;
         let missing = |field, reason: &str| LevelError::NoGame {
@@ -152,19 +188,13 @@ impl Level {
             let reason = "expected corners within 3.9 m of the origin: it is the arena";
             return Err(missing("view", reason));
         }
-        match scene.dim {
-            2 => check::<fuwafuwa::Dim2>(&scene)?,
-            _ => check::<fuwafuwa::Dim3>(&scene)?,
-        }
-        let axes = 0..usize::from(scene.dim);
-        let room = axes.map(|axis| high[axis] - low[axis]);
-        let room = room.fold(f32::INFINITY, f32::min);
-        if scene.hand.iter().any(|hand| 2.0 * hand.radius > 0.9 * room) {
-            let reason = format!("expected hands that can move in the view, {room} m wide");
-            return Err(missing("hand", &reason));
-        }
-        let id = id.into();
-        Ok(Self { id, scene, game })
+        let (id, start) = (id.into(), Arc::default());
+        Ok(Self {
+            id,
+            scene,
+            game,
+            start,
+        })
     }
 
     /// The scene.
@@ -190,21 +220,33 @@ impl Level {
     }
 
     /// Its world at the start, and its basket.
-    pub(crate) fn build<D: Dim>(&self) -> (World<D>, Option<Shape>) {
-        let checked = "a level was built once when it was checked";
-        let world = self.scene.build().expect(checked);
-        (world, self.scene.basket::<D>().expect(checked))
+    pub(crate) fn build<D: Dim>(&self) -> Start<D> {
+        let start = self.start::<D>();
+        start.expect("it was built when it was checked").clone()
+    }
+
+    /// The same to be looked at; built once.
+    fn start<D: Dim>(&self) -> Result<&Start<D>, SceneError> {
+        let known = match self.start.get() {
+            Some(known) => known,
+            None => {
+                let start: Start<D> = (
+                    self.scene.build_within(most_voxels::<D>(&self.scene))?,
+                    self.scene.basket::<D>()?,
+                );
+                self.start.get_or_init(|| Box::new(start))
+            }
+        };
+        Ok(known.downcast_ref().expect("a level has one dimension"))
     }
 }
 
-fn check<D: Dim>(scene: &Scene) -> Result<(), SceneError> {
+fn most_voxels<D: Dim>(scene: &Scene) -> usize {
     let is_fine = |body: &BodyText| body.crumbled || body.diced.is_some() || body.uniform;
-    let most = match D::N == 3 && !scene.body.iter().any(is_fine) {
+    match D::N == 3 && !scene.body.iter().any(is_fine) {
         true => MAX_WHOLE_VOXELS,
         false => MAX_VOXELS,
-    };
-    scene.build_within::<D>(most)?;
-    scene.basket::<D>().map(|_| ())
+    }
 }
 
 #[cfg(test)]
@@ -214,8 +256,25 @@ mod tests {
     #[test]
     fn all_that_come_along_can_be_opened() {
         for (id, _) in NAMED.iter().chain(&NAMED_3D) {
-            assert!(Level::open(id).is_ok(), "{id}");
+            let level = Level::open(id);
+            let scene = level.map(|level| level.scene);
+            let checked = scene.and_then(|scene| Level::of(id, scene));
+            assert!(checked.is_ok(), "{id}: {checked:?}");
         }
+    }
+
+    #[test]
+    fn a_copy_of_the_start_is_a_start() {
+        let level = Level::open("twins").unwrap();
+        let built = level.scene.build::<fuwafuwa::Dim2>().unwrap();
+        let mut rounds = [0, 1].map(|_| level.build::<fuwafuwa::Dim2>().0);
+        rounds[0].step();
+        assert_ne!(rounds[0].hash(), built.hash());
+        let again = level.clone().build::<fuwafuwa::Dim2>().0;
+        assert_eq!(
+            (rounds[1].hash(), again.hash()),
+            (built.hash(), built.hash())
+        );
     }
 
     /// What is said of a level with changes.

@@ -2,7 +2,7 @@
 
 use crate::{Level, Route, Wish};
 use fuwafuwa::world::TICK;
-use fuwafuwa::{Body, Dim, Shape, World};
+use fuwafuwa::{Body, Dim, PieceView, Shape, World};
 use serde::{Deserialize, Serialize};
 
 /// What moves faster than this does not rest in the basket [m/s].
@@ -115,7 +115,7 @@ impl Progress {
         if !enough {
             self.squeezed = f32::INFINITY;
         } else if self.squeezed.is_infinite() || world.ticks().is_multiple_of(LOOK) {
-            self.squeezed = self.squeezed.min(strain_inside(world, basket));
+            self.squeezed = self.squeezed.min(strain_inside(world, &views, basket));
         }
         if enough && self.held >= level.game().hold {
             let all = views.iter().flatten();
@@ -174,10 +174,9 @@ fn masses_inside<D: Dim>(world: &World<D>, region: &Shape) -> (f32, f32) {
 }
 
 /// The mean strain, by volume, of the pieces whose middle is in a region and that are more than crumbs.
-fn strain_inside<D: Dim>(world: &World<D>, region: &Shape) -> f32 {
+fn strain_inside<D: Dim>(world: &World<D>, views: &[Vec<PieceView>], region: &Shape) -> f32 {
     let (mut sum, mut volume) = (0.0, 0.0);
-    for body in world.bodies() {
-        let pieces = body.piece_views();
+    for (body, pieces) in world.bodies().iter().zip(views) {
         let counts = |piece: u32| {
             let view = &pieces[piece as usize];
             region.distance(view.centre).0 < 0.0 && view.element_count > 50

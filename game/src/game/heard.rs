@@ -1,6 +1,7 @@
 //! What is heard: of a tick, and for as long as it lasts.
 
 use super::{Game, Screen};
+use crate::look::View;
 use fuwafuwa::{Dim, Event, Vector, With};
 use tamaire_play::rules::CRUMB;
 use tamaire_play::{AnyRound, Round};
@@ -12,7 +13,6 @@ const LANDING: f32 = 0.3;
 /// What there is to hear now.
 pub(super) fn soundscape(game: &Game) -> Soundscape {
     let round = game.session.round();
-    let arena = round.level().arena();
     let hold = round.level().game().hold.max(0.1);
     let mut presses = [Press::default(); 2];
     for (press, hand) in presses.iter_mut().zip(round.hands()) {
@@ -22,7 +22,7 @@ pub(super) fn soundscape(game: &Game) -> Soundscape {
         *press = Press {
             force: force.sum::<f32>() / count,
             slip: length(hand.velocity()),
-            x: across(arena, hand.position()[0]),
+            x: across(game.view, hand.position()),
         };
     }
     Soundscape {
@@ -38,16 +38,15 @@ pub(super) fn soundscape(game: &Game) -> Soundscape {
     }
 }
 
-/// What there is to hear of a tick.
-pub(super) fn cues(round: &AnyRound) -> Vec<Cue> {
+/// What there is to hear of a tick of a round that is seen so.
+pub(super) fn cues(round: &AnyRound, view: Option<View>) -> Vec<Cue> {
     match round {
-        AnyRound::Plane(round) => cues_of(round),
-        AnyRound::Space(round) => cues_of(round),
+        AnyRound::Plane(round) => cues_of(round, view),
+        AnyRound::Space(round) => cues_of(round, view),
     }
 }
 
-fn cues_of<D: Dim>(round: &Round<D>) -> Vec<Cue> {
-    let arena = round.level().arena();
+fn cues_of<D: Dim>(round: &Round<D>, view: Option<View>) -> Vec<Cue> {
     let bodies = round.world().bodies();
     // The masses of the pieces of each body, looked up once they are asked for [kg].
     let mut masses: Vec<Option<Vec<f32>>> = vec![None; bodies.len()];
@@ -65,7 +64,7 @@ fn cues_of<D: Dim>(round: &Round<D>) -> Vec<Cue> {
                 at: place, energy, ..
             } => {
                 torn += energy.max(0.01);
-                at = across(arena, place[0]);
+                at = across(view, place);
             }
             Event::Touched {
                 with: With::Obstacle(_),
@@ -74,7 +73,7 @@ fn cues_of<D: Dim>(round: &Round<D>) -> Vec<Cue> {
                 body,
                 piece,
             } => {
-                let x = across(arena, place[0]);
+                let x = across(view, place);
                 let mass = mass_of(body, piece);
                 let speed = impulse / mass;
                 if mass > CRUMB * round.progress().mass {
@@ -95,12 +94,41 @@ fn cues_of<D: Dim>(round: &Round<D>) -> Vec<Cue> {
     cues
 }
 
-/// Where in the arena, from -1 at its left to 1 at its right.
-fn across(arena: [Vector; 2], x: f32) -> f32 {
-    let (low, high) = (arena[0][0], arena[1][0]);
-    (2.0 * (x - low) / (high - low) - 1.0).clamp(-1.0, 1.0)
+/// Where a place is seen, from -1 at the left to 1 at the right; before anything is seen, in the middle.
+fn across(view: Option<View>, at: Vector) -> f32 {
+    view.map_or(0.0, |view| view.across(at))
 }
 
 fn length(v: Vector) -> f32 {
     v.iter().map(|k| k * k).sum::<f32>().sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::platform::{Files, Pads, Sound};
+    use egui::{Rect, pos2};
+
+    #[test]
+    fn a_hand_is_heard_where_it_is_seen() {
+        let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
+        let mut heard = |level: &str, turn: f32| {
+            let mut levels = game.levels.iter();
+            let place = levels.position(|known| known.id == level);
+            game.start(place.expect("it comes along"));
+            assert_eq!(soundscape(&game).presses[0].x, 0.0, "nothing is seen yet");
+            game.camera.orbit(turn, 0.0);
+            let screen = Rect::from_min_max(pos2(0.0, 0.0), pos2(900.0, 600.0));
+            game.view = Some(game.camera.view(screen, game.session.round().level()));
+            soundscape(&game).presses[0].x
+        };
+        for level in ["classic", "classic-3d"] {
+            let x = heard(level, 0.0);
+            assert!((-1.0..-0.5).contains(&x), "{level}: {x}");
+        }
+        let behind = heard("classic-3d", std::f32::consts::PI);
+        assert!(behind > 0.5, "{behind}");
+        let before = heard("classic-3d", -std::f32::consts::FRAC_PI_2);
+        assert!(before.abs() < 0.1, "{before}");
+    }
 }

@@ -45,6 +45,7 @@ impl Game {
             }
         }
         self.celebrate(seconds);
+        self.learn(seconds);
         self.feel(seconds);
         if self.screen == Screen::Title && self.session.is_over() {
             self.cheered += seconds;
@@ -72,6 +73,7 @@ impl Game {
         // In menus the same keys and sticks move the focus; what is won is not torn any more.
         let is_won = self.session.round().progress().outcome.is_some();
         let in_round = self.screen == Screen::Play && !is_won;
+        let view = self.view;
         let mut is_heard = false;
         let mut tears = [0.0f32; PLAYERS];
         let Self {
@@ -108,7 +110,7 @@ impl Game {
                 for (player, size) in felt::tears(round).into_iter().enumerate() {
                     tears[player] = size.max(tears[player]);
                 }
-                for cue in heard::cues(round) {
+                for cue in heard::cues(round, view) {
                     sound.play(cue);
                 }
             },

@@ -113,6 +113,24 @@ impl Bindings {
         ]
     }
 
+    /// The first key, or button of a plain stick, of each of these actions.
+    pub fn first_names(&self, actions: &[Action], on_stick: bool) -> String {
+        let first = |action| match on_stick {
+            true => {
+                let mut buttons = self.buttons.get(action).into_iter().flatten();
+                buttons
+                    .find(|button| button.is_of_stick())
+                    .map(|button| button.0.as_str())
+            }
+            false => self.keys.get(action)?.first().map(|&key| name_of(key)),
+        };
+        actions
+            .iter()
+            .filter_map(first)
+            .collect::<Vec<_>>()
+            .join(" ")
+    }
+
     /// Makes a key mean an action, and nothing else. An action that loses its only key takes the old
     /// one of this action in exchange, so that nothing gets out of reach.
     pub fn bind_key(&mut self, action: Action, key: Key) {

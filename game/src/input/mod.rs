@@ -1,12 +1,32 @@
 //! What devices say becomes what players want: places for their hands, and actions.
 
 mod bindings;
+mod devices;
+mod manner;
 mod players;
 
 pub use bindings::{Bindings, PadKey};
-pub use players::{Devices, Manner, Players, Seat};
+pub use devices::{Devices, Seat};
+pub use manner::Manner;
+pub use players::Players;
 
 use serde::{Deserialize, Serialize};
+
+/// With what the game is played: what an explanation has to name.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub enum Means {
+    /// A mouse.
+    #[default]
+    Mouse,
+    /// Fingers on the screen.
+    Fingers,
+    /// Keys alone.
+    Keys,
+    /// A pad.
+    Pad,
+    /// A plain stick.
+    Stick,
+}
 
 /// Something that a player can want, beside moving about with a mouse or a stick.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

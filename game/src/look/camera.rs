@@ -79,6 +79,11 @@ impl Camera {
         (self.turn, self.rise) = (0.0, 0.0);
     }
 
+    /// By how much it went around to the right and up [rad].
+    pub fn gone_around(&self) -> [f32; 2] {
+        [self.turn, self.rise]
+    }
+
     /// By how much it went around to the right [rad].
     pub fn turn(&self) -> f32 {
         self.turn
@@ -149,6 +154,12 @@ impl View {
             middle.x + self.scale * (at[0] - self.centre[0]),
             middle.y - self.scale * (at[1] - self.centre[1]),
         )
+    }
+
+    /// How far across it a place [m] is seen, from -1 at its left to 1 at its right.
+    pub fn across(&self, at: Vector) -> f32 {
+        let half = 0.5 * self.rect.width().max(1.0);
+        ((self.on_screen(at).x - self.rect.center().x) / half).clamp(-1.0, 1.0)
     }
 
     /// Which place of the world [m] is seen at a point of the screen; in space, at this height [m].

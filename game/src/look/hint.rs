@@ -3,7 +3,7 @@
 
 use super::stage::Hint;
 use super::{Look, View};
-use egui::{Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
+use egui::{Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
 use fuwafuwa::{Dim, Dim2, Dim3, Manipulator, Vector};
 use tamaire_play::Round;
 
@@ -19,20 +19,9 @@ pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &Look) {
     }
 }
 
-/// In space it is said in words how the hand rises and the camera turns.
-pub(super) fn draw_in_space(painter: &Painter, round: &Round<Dim3>, look: &Look) {
-    if hand_to_show(painter, round, look).is_none() {
-        return;
-    }
-    let strength = look.effects.hint;
-    let rect = look.view.rect;
-    let font = FontId::proportional(20.0);
-    let galley = painter.layout_no_wrap(look.how_in_space.into(), font, Color32::PLACEHOLDER);
-    let at = rect.center_bottom() - vec2(0.5 * galley.size().x, 44.0);
-    let card = Rect::from_min_size(at, galley.size()).expand2(vec2(16.0, 8.0));
-    let (paper, ink) = (look.theme.card, look.theme.ink);
-    painter.rect_filled(card, 16.0, paper.gamma_multiply(0.8 * strength));
-    painter.galley(at, galley, ink.gamma_multiply(strength));
+/// In space it is told in words what else it could do.
+pub(super) fn draw_ring_of_space(painter: &Painter, round: &Round<Dim3>, look: &Look) {
+    hand_to_show(painter, round, look);
 }
 
 /// The first hand, with a ring around it, until it has moved.

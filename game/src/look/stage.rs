@@ -30,8 +30,6 @@ pub struct Look<'a> {
     pub ghost: Option<&'a AnyRound>,
     /// Whether to show what the hand could do, until it moves.
     pub hint: Hint,
-    /// How the hand rises and the camera turns, in words.
-    pub how_in_space: &'static str,
     /// With reduced motion.
     pub still: bool,
 }
@@ -142,7 +140,7 @@ impl Stage {
         if look.elements.is_none() {
             draw_faces(painter, round, look);
         }
-        hint::draw_in_space(painter, round, look);
+        hint::draw_ring_of_space(painter, round, look);
         look.effects.confetti.draw(painter, &look.view.flat());
     }
 

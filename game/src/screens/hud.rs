@@ -1,5 +1,6 @@
 //! The little that is shown over a round: time, how full the basket is, what is different from usual.
 
+use super::kit::fitted;
 use super::marks;
 use crate::game::Game;
 use crate::input::{Action, Seat};
@@ -17,6 +18,8 @@ type Mark = fn(&Painter, Pos2, f32, Color32);
 const HIGH: f32 = 44.0;
 const GAP: f32 = 8.0;
 const EDGE: f32 = 15.0;
+/// Height of a line of the lesson.
+const LINE: f32 = 34.0;
 /// Radius of the jar.
 const JAR: f32 = 36.0;
 /// This takes far less room than menus do: where the game is shown smaller for their sake, this is
@@ -71,6 +74,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
     };
     draw_clock(&mut row, &theme, game);
     draw_chips(&mut row, &theme, game);
+    draw_lesson(ui, screen, scale, game);
     is_on_button
 }
 
@@ -150,6 +154,32 @@ fn draw_chips(row: &mut Row, theme: &Theme, game: &Game) {
     }
     if let Some(colour) = game.elements {
         draw_legend(row, theme, colour);
+    }
+}
+
+/// How to play in space, line by line in the lower left corner, until it was tried.
+fn draw_lesson(ui: &Ui, screen: Rect, scale: f32, game: &Game) {
+    let (theme, painter) = (game.theme(), ui.painter());
+    let mut bottom = screen.bottom();
+    for (place, (line, is_missing)) in game.lesson().into_iter().enumerate().rev() {
+        let id = egui::Id::unique(("lesson", place));
+        let strength = match game.settings.reduced_motion {
+            true => f32::from(u8::from(is_missing)),
+            false => ui.ctx().animate_bool_with_time(id, is_missing, 0.5),
+        };
+        if strength == 0.0 {
+            continue;
+        }
+        let ink = theme.ink.gamma_multiply(strength);
+        let width = screen.width() - scale * 28.0;
+        let galley = fitted(painter, &line, scale * 19.0, width, ink);
+        let size = vec2(galley.size().x + scale * 28.0, scale * LINE);
+        let rect = Rect::from_min_size(pos2(screen.left(), bottom - size.y), size);
+        let fill = pale(&theme).gamma_multiply(strength);
+        painter.rect_filled(rect, 0.5 * size.y, fill);
+        painter.galley(rect.center() - 0.5 * galley.size(), galley, ink);
+        // What was tried sinks away.
+        bottom -= strength * scale * (LINE + 0.5 * GAP);
     }
 }
 

@@ -34,7 +34,6 @@ pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
         time: game.time,
         ghost: game.session.ghost(),
         hint,
-        how_in_space: game.words().how_in_space,
         still: game.settings.reduced_motion,
     };
     stage.draw(ui, game.session.round(), &look);

@@ -1,7 +1,7 @@
 //! English.
 
 use super::Words;
-use crate::input::Action;
+use crate::input::{Action, Means};
 use force_feedback::{Ability, Stop};
 use tamaire_play::Route;
 
@@ -155,7 +155,33 @@ pub(super) const WORDS: Words = Words {
     no_sound: "There is no sound device: the game is silent.",
     no_sticks: "Sticks and pads cannot be read here.",
     join_hint: "2 players",
-    how_in_space: "Up and down: wheel, Q Z or triggers. Look around: right mouse button, [ ] or right stick.",
+    how_in_space: |means, [ways, up, around]| match means {
+        Means::Mouse => [
+            "Move: mouse".into(),
+            format!("Up and down: wheel, or {up}"),
+            format!("Look around: right mouse button, or {around}"),
+        ],
+        Means::Fingers => [
+            "Move: one finger".into(),
+            "Up and down: a second finger, up and down".into(),
+            "Look around: a second finger, sideways".into(),
+        ],
+        Means::Keys => [
+            format!("Move: {ways}"),
+            format!("Up and down: {up}"),
+            format!("Look around: {around}"),
+        ],
+        Means::Pad => [
+            "Move: left stick".into(),
+            "Up and down: triggers".into(),
+            "Look around: right stick".into(),
+        ],
+        Means::Stick => [
+            "Move: the stick".into(),
+            format!("Up and down: buttons {up}"),
+            format!("Look around: buttons {around}"),
+        ],
+    },
     watching: "Replay",
     settings_kept: "What was kept could not be read. It was put aside as",
     not_written: "This could not be written:",

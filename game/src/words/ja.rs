@@ -1,7 +1,7 @@
 //! 日本語
 
 use super::Words;
-use crate::input::Action;
+use crate::input::{Action, Means};
 use force_feedback::{Ability, Stop};
 use tamaire_play::level::LevelError;
 use tamaire_play::{ReplayError, Route};
@@ -150,7 +150,33 @@ pub(super) const WORDS: Words = Words {
     no_sound: "音の出る機器がありません。",
     no_sticks: "スティックやパッドは使えません。",
     join_hint: "ふたりで",
-    how_in_space: "上げ下げ：ホイール、Q Z、トリガー。見まわす：右ボタンを引く、[ ]、右スティック。",
+    how_in_space: |means, [ways, up, around]| match means {
+        Means::Mouse => [
+            "動かす：マウス".into(),
+            format!("上げ下げ：ホイール、または {up}"),
+            format!("見まわす：右ボタンを引く、または {around}"),
+        ],
+        Means::Fingers => [
+            "動かす：指一本".into(),
+            "上げ下げ：もう一本の指を上下に".into(),
+            "見まわす：もう一本の指を横に".into(),
+        ],
+        Means::Keys => [
+            format!("動かす：{ways}"),
+            format!("上げ下げ：{up}"),
+            format!("見まわす：{around}"),
+        ],
+        Means::Pad => [
+            "動かす：左スティック".into(),
+            "上げ下げ：トリガー".into(),
+            "見まわす：右スティック".into(),
+        ],
+        Means::Stick => [
+            "動かす：スティック".into(),
+            format!("上げ下げ：ボタン {up}"),
+            format!("見まわす：ボタン {around}"),
+        ],
+    },
     watching: "リプレイ",
     settings_kept: "のこしたものが読めませんでした。もとのファイル：",
     not_written: "書きこめませんでした：",

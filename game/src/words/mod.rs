@@ -3,7 +3,7 @@
 mod en;
 mod ja;
 
-use crate::input::Action;
+use crate::input::{Action, Means};
 use force_feedback::{Ability, Calibration, Stop};
 use serde::{Deserialize, Serialize};
 use tamaire_play::level::LevelError;
@@ -114,7 +114,7 @@ pub struct Words {
     pub no_sound: &'static str,
     pub no_sticks: &'static str,
     pub join_hint: &'static str,
-    pub how_in_space: &'static str,
+    pub how_in_space: fn(Means, &[String; 3]) -> [String; 3],
     pub watching: &'static str,
     pub settings_kept: &'static str,
     pub not_written: &'static str,

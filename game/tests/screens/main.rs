@@ -3,6 +3,9 @@
 
 mod clicks;
 mod hostile;
+mod models;
 mod pads;
 mod pictures;
+mod space;
+mod told;
 mod window;

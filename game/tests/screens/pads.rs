@@ -10,14 +10,14 @@ use tamaire::input::{Action, Seat};
 use tamaire::platform::{Files, Pads};
 
 /// A window with made up devices.
-struct Table {
-    window: Window,
-    devices: Vec<Device>,
+pub struct Table {
+    pub window: Window,
+    pub devices: Vec<Device>,
     rumbles: Recording,
 }
 
 impl Table {
-    fn with(devices: Vec<Device>) -> Self {
+    pub fn with(devices: Vec<Device>) -> Self {
         let window = window(Files::nowhere());
         let rumbles = Recording::new(Ability::Rumble);
         let mut table = Self {
@@ -29,7 +29,7 @@ impl Table {
         table
     }
 
-    fn frames(&mut self, count: usize) {
+    pub fn frames(&mut self, count: usize) {
         let devices = self.devices.clone();
         let notes = devices
             .iter()
@@ -40,7 +40,7 @@ impl Table {
     }
 
     /// Presses a button of the last pad, lets it go, and sees what comes of it.
-    fn tap(&mut self, button: PadButton) {
+    pub fn tap(&mut self, button: PadButton) {
         self.button(button).press();
         self.frames(2);
         self.button(button).down = false;
@@ -64,14 +64,14 @@ impl Table {
     }
 }
 
-fn about(name: &str) -> About {
+pub fn about(name: &str) -> About {
     About {
         name: name.into(),
         guid: String::new(),
     }
 }
 
-fn pad(id: u32) -> Device {
+pub fn pad(id: u32) -> Device {
     let mut device = Device::at_rest(DeviceId(id), about("Pad"), 6, 0, 0);
     device.pad = Some(Pad::default());
     device

@@ -69,6 +69,14 @@ pub fn notices(window: &Window) -> String {
         .join("\n")
 }
 
+/// Begins the level of this name, and lets it be seen.
+pub fn start(window: &mut Window, id: &str) {
+    let game = game(window);
+    let place = game.levels.iter().position(|level| level.id == id);
+    game.start(place.expect("it comes along"));
+    frames(window, 2);
+}
+
 /// The button of this name.
 pub fn button<'w>(window: &'w Window, name: &'w str) -> Node<'w> {
     window.get_by_role_and_label(Role::Button, name)

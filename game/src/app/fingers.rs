@@ -1,0 +1,166 @@
+//! What is done with a second finger, while the first one points.
+
+use egui::{Event, Pos2, TouchDeviceId, TouchId, TouchPhase};
+use std::collections::BTreeMap;
+
+/// A finger has decided which way it goes once it has gone so far [points].
+const DECIDED: f32 = 10.0;
+
+/// The fingers on a screen. egui takes the first one for a mouse; each further one goes either up and down or sideways,
+/// whichever it begins with.
+#[derive(Debug, Default)]
+pub(super) struct Fingers {
+    /// The one that points.
+    first: Option<Finger>,
+    others: BTreeMap<Finger, Drag>,
+    drawn: Drawn,
+}
+
+type Finger = (TouchDeviceId, TouchId);
+
+#[derive(Debug)]
+struct Drag {
+    at: Pos2,
+    way: Option<Way>,
+}
+
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+enum Way {
+    Upright,
+    Sideways,
+}
+
+/// How far further fingers went [points].
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub(super) struct Drawn {
+    /// Upwards.
+    pub(super) up: f32,
+    /// To the right.
+    pub(super) right: f32,
+}
+
+impl Fingers {
+    /// Takes in what happened.
+    pub(super) fn hear(&mut self, events: &[Event]) {
+        self.drawn = Drawn::default();
+        for event in events {
+            if let Event::Touch {
+                device_id,
+                id,
+                phase,
+                pos,
+                ..
+            } = *event
+            {
+                self.touch((device_id, id), phase, pos);
+            }
+        }
+    }
+
+    /// How far they went since this was asked last.
+    pub(super) fn take(&mut self) -> Drawn {
+        std::mem::take(&mut self.drawn)
+    }
+
+    fn touch(&mut self, finger: Finger, phase: TouchPhase, at: Pos2) {
+        match phase {
+            TouchPhase::Start if self.first.is_none() => self.first = Some(finger),
+            TouchPhase::Start => {
+                self.others.insert(finger, Drag { at, way: None });
+            }
+            TouchPhase::Move => self.draw(finger, at),
+            TouchPhase::End | TouchPhase::Cancel => {
+                self.others.remove(&finger);
+                self.first = self.first.filter(|first| *first != finger);
+            }
+        }
+    }
+
+    fn draw(&mut self, finger: Finger, at: Pos2) {
+        let Some(drag) = self.others.get_mut(&finger) else {
+            return;
+        };
+        let by = at - drag.at;
+        if drag.way.is_none() && by.length() > DECIDED {
+            drag.way = Some(match by.y.abs() > by.x.abs() {
+                true => Way::Upright,
+                false => Way::Sideways,
+            });
+        }
+        match drag.way {
+            Some(Way::Upright) => self.drawn.up -= by.y,
+            Some(Way::Sideways) => self.drawn.right += by.x,
+            None => return,
+        }
+        drag.at = at;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::pos2;
+
+    /// What comes of fingers that do these things in one frame: which one, what, and where.
+    fn drawn(fingers: &mut Fingers, touches: &[(u64, TouchPhase, [f32; 2])]) -> [f32; 2] {
+        let events = touches.iter().map(|&(id, phase, [x, y])| Event::Touch {
+            device_id: TouchDeviceId(0),
+            id: TouchId(id),
+            phase,
+            pos: pos2(x, y),
+            force: None,
+        });
+        fingers.hear(&events.collect::<Vec<_>>());
+        let Drawn { up, right } = fingers.take();
+        [up, right]
+    }
+
+    #[test]
+    fn a_second_finger_goes_up_and_down_or_sideways_and_the_first_does_neither() {
+        use TouchPhase::{Cancel, End, Move, Start};
+        let mut fingers = Fingers::default();
+        let first = [(1, Start, [100.0, 100.0]), (1, Move, [300.0, 300.0])];
+        assert_eq!(drawn(&mut fingers, &first), [0.0; 2]);
+        // It has decided itself only after a way, which then counts.
+        assert_eq!(
+            drawn(
+                &mut fingers,
+                &[(2, Start, [50.0, 50.0]), (2, Move, [53.0, 45.0])]
+            ),
+            [0.0; 2]
+        );
+        assert_eq!(drawn(&mut fingers, &[(2, Move, [55.0, 30.0])]), [20.0, 0.0]);
+        assert_eq!(
+            drawn(
+                &mut fingers,
+                &[(1, Move, [0.0, 0.0]), (2, Move, [95.0, 35.0])]
+            ),
+            [-5.0, 0.0]
+        );
+        assert_eq!(
+            drawn(
+                &mut fingers,
+                &[(2, End, [95.0, 35.0]), (2, Move, [0.0, 0.0])]
+            ),
+            [0.0; 2]
+        );
+        let sideways = [
+            (3, Start, [0.0, 0.0]),
+            (3, Move, [30.0, 20.0]),
+            (3, Move, [30.0, 90.0]),
+        ];
+        assert_eq!(drawn(&mut fingers, &sideways), [0.0, 30.0]);
+        // Once the first is gone, the next to come points.
+        drawn(
+            &mut fingers,
+            &[(1, Cancel, [0.0; 2]), (3, Cancel, [0.0; 2])],
+        );
+        assert_eq!(
+            drawn(
+                &mut fingers,
+                &[(4, Start, [0.0; 2]), (4, Move, [0.0, 90.0])]
+            ),
+            [0.0; 2]
+        );
+    }
+}

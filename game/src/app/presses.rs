@@ -1,0 +1,86 @@
+//! Keys on their way into egui: those that sticks and pads press in menus, and those that are held.
+
+use egui::{Event, Key, Modifiers, RawInput};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// Keys that count once however long they are held: what they lead to must not be left at once.
+const ONCE: [Key; 3] = [Key::Escape, Key::Enter, Key::Space];
+
+/// Keys on their way into egui.
+#[derive(Clone, Default)]
+pub(super) struct Presses(Arc<Mutex<Waiting>>);
+
+/// What was pressed and is not in egui yet.
+#[derive(Default)]
+pub(super) struct Waiting {
+    /// What sticks and pads press in menus.
+    pub(super) keys: Vec<Key>,
+    /// Whether up and down lead through everything in its order, and not to what lies above or below.
+    pub(super) in_order: bool,
+    /// Which of [`ONCE`] are held.
+    held: Vec<Key>,
+}
+
+impl Presses {
+    pub(super) fn waiting(&self) -> MutexGuard<'_, Waiting> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl egui::Plugin for Presses {
+    fn debug_name(&self) -> &'static str {
+        "sticks and pads"
+    }
+
+    fn input_hook(&mut self, _: &egui::Context, input: &mut RawInput) {
+        let mut waiting = self.waiting();
+        let held = &mut waiting.held;
+        input.events.retain(|event| match *event {
+            Event::Key { key, pressed, .. } if ONCE.contains(&key) => {
+                let was_held = held.contains(&key);
+                held.retain(|other| *other != key);
+                if pressed {
+                    held.push(key);
+                }
+                !(pressed && was_held)
+            }
+            Event::WindowFocused(false) => {
+                held.clear();
+                true
+            }
+            _ => true,
+        });
+        for key in std::mem::take(&mut waiting.keys) {
+            input.events.extend(stroke(key, Modifiers::NONE));
+        }
+        if waiting.in_order {
+            input.events = std::mem::take(&mut input.events)
+                .into_iter()
+                .flat_map(|event| match event {
+                    Event::Key {
+                        key: Key::ArrowDown,
+                        pressed: true,
+                        ..
+                    } => stroke(Key::Tab, Modifiers::NONE).to_vec(),
+                    Event::Key {
+                        key: Key::ArrowUp,
+                        pressed: true,
+                        ..
+                    } => stroke(Key::Tab, Modifiers::SHIFT).to_vec(),
+                    event => vec![event],
+                })
+                .collect();
+        }
+    }
+}
+
+/// A key is pressed and let go.
+fn stroke(key: Key, modifiers: Modifiers) -> [Event; 2] {
+    [true, false].map(|pressed| Event::Key {
+        key,
+        physical_key: None,
+        pressed,
+        repeat: false,
+        modifiers,
+    })
+}

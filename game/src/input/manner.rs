@@ -1,0 +1,56 @@
+//! How the devices of a player are taken: what is meant by right and away, and where hands may be.
+
+use egui::Vec2;
+use fuwafuwa::Vector;
+
+/// How the devices of a player are taken.
+#[derive(Copy, Clone, Debug)]
+pub struct Manner {
+    /// 1 = usual.
+    pub sensitivity: f32,
+    /// Whether a stick points at a place in the arena, instead of saying how fast to go.
+    pub stick_places: bool,
+    /// Low and high corner of where goals may be [m].
+    pub arena: [Vector; 2],
+    /// In space by how much the camera went around to the right [rad]: what is away from the player goes along the floor,
+    /// away from the camera.
+    pub turn: Option<f32>,
+}
+
+impl Manner {
+    /// Which way in the world it is when somebody leans: to the right, and away.
+    pub(super) fn along(&self, lean: Vec2) -> Vector {
+        let Some(turn) = self.turn else {
+            return [lean.x, lean.y, 0.0];
+        };
+        let (sin, cos) = turn.sin_cos();
+        [
+            cos * lean.x - sin * lean.y,
+            0.0,
+            -sin * lean.x - cos * lean.y,
+        ]
+    }
+
+    /// The nearest place in the arena. A level in the plane says nothing about the third axis.
+    pub(super) fn within(&self, mut place: Vector) -> Vector {
+        let [low, high] = self.arena;
+        let axes = if self.turn.is_some() { 3 } else { 2 };
+        for axis in 0..axes {
+            place[axis] = place[axis].clamp(low[axis], high[axis]);
+        }
+        place
+    }
+
+    /// The place in the arena at which a stick points, in space at a height [m].
+    pub(super) fn place_of(&self, stick: [f32; 2], height: f32) -> Vector {
+        let [low, high] = self.arena;
+        let way = self.along(Vec2::from(stick));
+        let mut place = [0, 1, 2].map(|axis: usize| {
+            0.5 * (low[axis] + high[axis]) + 0.5 * way[axis] * (high[axis] - low[axis])
+        });
+        if self.turn.is_some() {
+            place[1] = height;
+        }
+        place
+    }
+}

@@ -1,0 +1,254 @@
+use super::*;
+use egui::Key;
+use fuwafuwa::world::TICK;
+use sticks::{About, Device, Direction, Snapshot};
+
+const HANDS: [Vector; 2] = [[-1.0, 0.0, 0.0], [-1.0, 0.5, 0.0]];
+const MANNER: Manner = Manner {
+    sensitivity: 1.0,
+    stick_places: false,
+    arena: [[-1.6, -1.0, 0.0], [1.6, 1.0, 0.0]],
+    turn: None,
+};
+const PLACES: Manner = Manner {
+    stick_places: true,
+    ..MANNER
+};
+
+/// What the first player wants next.
+fn goal(players: &mut Players, devices: &Devices, manner: &Manner) -> Option<Vector> {
+    goals(players, devices, manner)[0]
+}
+
+fn goals(players: &mut Players, devices: &Devices, manner: &Manner) -> [Option<Vector>; 2] {
+    let frame = players.frame(devices, &Bindings::default(), manner, &HANDS, TICK);
+    [frame.goal(0), frame.goal(1)]
+}
+
+/// A stick that leans so far to the right and upwards.
+fn stick(id: u32, lean: [f32; 2]) -> Device {
+    let about = About {
+        name: String::new(),
+        guid: String::new(),
+    };
+    let mut stick = Device::at_rest(DeviceId(id), about, 2, 4, 1);
+    stick.axes = vec![lean[0], -lean[1]];
+    stick
+}
+
+fn with_sticks(devices: Vec<Device>) -> Devices {
+    let sticks = Snapshot { devices };
+    Devices {
+        sticks,
+        ..Devices::default()
+    }
+}
+
+fn assert_near(found: Option<Vector>, expected: [f32; 2]) {
+    let found = found.expect("a goal");
+    let is_near = (0..2).all(|axis| (found[axis] - expected[axis]).abs() < 1e-3);
+    assert!(is_near, "{found:?}, expected {expected:?}");
+}
+
+#[test]
+fn the_mouse_says_where_and_its_word_holds() {
+    let mut players = Players::default();
+    let mut devices = Devices::default();
+    assert_eq!(goal(&mut players, &devices, &MANNER), None);
+    devices.pointer = Some([0.7, -0.3, 0.0]);
+    assert_near(goal(&mut players, &devices, &MANNER), [0.7, -0.3]);
+    devices.pointer = None;
+    assert_near(goal(&mut players, &devices, &MANNER), [0.7, -0.3]);
+    players.start();
+    assert_eq!(goal(&mut players, &devices, &MANNER), None);
+}
+
+#[test]
+fn keys_say_how_fast_and_diagonals_are_no_faster() {
+    let step = PACE * TICK;
+    let held = |keys: &[Key]| Devices {
+        keys: keys.iter().copied().collect(),
+        ..Devices::default()
+    };
+    let of = |keys: &[Key], manner: &Manner| goal(&mut Players::default(), &held(keys), manner);
+    assert_near(of(&[Key::D], &MANNER), [-1.0 + step, 0.0]);
+    assert_near(of(&[Key::D, Key::ArrowRight], &MANNER), [-1.0 + step, 0.0]);
+    assert_eq!(of(&[Key::A, Key::D], &MANNER), None);
+    let side = step * 0.5_f32.sqrt();
+    assert_near(of(&[Key::W, Key::A], &MANNER), [-1.0 - side, side]);
+    let slowly = Manner {
+        sensitivity: 0.5,
+        ..MANNER
+    };
+    assert_near(of(&[Key::S], &slowly), [-1.0, -0.5 * step]);
+    // A goal stays in the arena, whatever pushes it out.
+    let narrow = Manner {
+        arena: [[-1.0, -1.0, 0.0], [1.0, 0.0, 0.0]],
+        ..MANNER
+    };
+    assert_near(of(&[Key::W, Key::A], &narrow), [-1.0, 0.0]);
+}
+
+#[test]
+fn a_stick_that_hardly_leans_does_nothing_and_one_that_leans_far_goes_fast() {
+    let of = |lean| {
+        goal(
+            &mut Players::default(),
+            &with_sticks(vec![stick(1, lean)]),
+            &MANNER,
+        )
+    };
+    assert_eq!(of([0.1, -0.1]), None);
+    assert_eq!(of([f32::NAN, 1.0]), None);
+    assert_near(of([1.0, 0.0]), [-1.0 + PACE * TICK, 0.0]);
+    let half = DEAD + 0.5 * (RIM - DEAD);
+    assert_near(of([0.0, half]), [-1.0, 0.5 * PACE * TICK]);
+    let mut hat = stick(1, [0.0; 2]);
+    hat.hats[0].button_mut(Direction::Down).press();
+    let found = goal(&mut Players::default(), &with_sticks(vec![hat]), &MANNER);
+    assert_near(found, [-1.0, -PACE * TICK]);
+}
+
+#[test]
+fn a_stick_that_points_at_places_leaves_the_rest_to_others_while_it_is_still() {
+    let mut players = Players::default();
+    let mut devices = with_sticks(vec![stick(1, [0.0; 2]), stick(2, [0.0; 2])]);
+    assert_eq!(goal(&mut players, &devices, &PLACES), None, "at rest");
+    devices.sticks.devices[1] = stick(2, [1.0, 0.0]);
+    assert_near(goal(&mut players, &devices, &PLACES), [1.6, 0.0]);
+    devices.pointer = Some([0.5, 0.5, 0.0]);
+    assert_near(goal(&mut players, &devices, &PLACES), [0.5, 0.5]);
+    devices.pointer = None;
+    assert_near(goal(&mut players, &devices, &PLACES), [0.5, 0.5]);
+    devices.sticks.devices[1] = stick(2, [0.0, -1.0]);
+    assert_near(goal(&mut players, &devices, &PLACES), [0.0, -1.0]);
+    devices.sticks.devices[1] = stick(2, [0.0; 2]);
+    assert_near(goal(&mut players, &devices, &PLACES), [0.0, 0.0]);
+}
+
+#[test]
+fn in_space_what_is_away_is_away_from_the_camera_and_the_hand_rises() {
+    let manner = Manner {
+        arena: [[-1.6, 0.0, -1.0], [1.6, 1.6, 1.0]],
+        turn: Some(std::f32::consts::FRAC_PI_2),
+        ..MANNER
+    };
+    let hands = [[0.0, 0.5, 0.0]];
+    let goal = |devices: &Devices| {
+        let bindings = Bindings::default();
+        let frame = Players::default().frame(devices, &bindings, &manner, &hands, TICK);
+        frame.goal(0).expect("a goal")
+    };
+    let check = |found: Vector, expected: Vector| {
+        let is_near = (0..3).all(|axis| (found[axis] - expected[axis]).abs() < 1e-3);
+        assert!(is_near, "{found:?}, expected {expected:?}");
+    };
+    let step = PACE * TICK;
+    // The camera went around to the right, so it looks to the left.
+    check(
+        goal(&with_sticks(vec![stick(1, [0.0, 1.0])])),
+        [-step, 0.5, 0.0],
+    );
+    check(
+        goal(&with_sticks(vec![stick(1, [1.0, 0.0])])),
+        [0.0, 0.5, -step],
+    );
+    let keys = Devices {
+        keys: [Key::Q].into(),
+        ..Devices::default()
+    };
+    check(goal(&keys), [0.0, 0.5 + RISE * TICK, 0.0]);
+    let wheel = Devices {
+        pointer: Some([0.3, 0.5, -0.2]),
+        lift: 5.0,
+        ..Devices::default()
+    };
+    check(goal(&wheel), [0.3, 1.6, -0.2]);
+}
+
+#[test]
+fn the_wanted_height_is_kept_as_the_wanted_place_is() {
+    let manner = Manner {
+        arena: [[-1.6, 0.0, -1.0], [1.6, 1.6, 1.0]],
+        turn: Some(0.0),
+        ..MANNER
+    };
+    // The body holds the hand down, and the leash its goal.
+    let here = [0.0, 0.5, 0.0];
+    let mut players = Players::default();
+    let mut goal = |devices: &Devices, manner: &Manner| {
+        let frame = players.frame(devices, &Bindings::default(), manner, &[here], TICK);
+        frame.goal(0).expect("a goal")
+    };
+    let lift = |lift| Devices {
+        lift,
+        ..Devices::default()
+    };
+    let keys = |key| Devices {
+        keys: [key].into(),
+        ..Devices::default()
+    };
+    let assert_height = |found: Vector, height: f32| {
+        assert!(
+            (found[1] - height).abs() < 1e-3,
+            "{found:?}, expected {height}"
+        );
+    };
+    goal(&lift(0.5), &manner);
+    assert_height(goal(&lift(0.3), &manner), 1.3);
+    assert_height(goal(&keys(Key::D), &manner), 1.3);
+    assert_height(goal(&with_sticks(vec![stick(1, [0.0, 1.0])]), &manner), 1.3);
+    let places = Manner {
+        stick_places: true,
+        ..manner
+    };
+    let pointing = with_sticks(vec![stick(1, [1.0, 0.0])]);
+    assert_height(goal(&pointing, &places), 1.3);
+    // Upwards is never down, and back is from where it is: what went on in vain is not to be undone first.
+    assert_height(goal(&keys(Key::Q), &manner), 1.3);
+    assert_height(goal(&keys(Key::Z), &manner), 0.5 - RISE * TICK);
+    goal(&lift(9.0), &manner);
+    assert_height(goal(&lift(-0.1), &manner), 0.4);
+    assert_eq!(
+        players.wanted(0).map(|goal| goal[0] > 1.5),
+        Some(true),
+        "as far as the stick said"
+    );
+}
+
+#[test]
+fn in_the_plane_nothing_rises() {
+    let devices = Devices {
+        lift: 1.0,
+        keys: [Key::Q].into(),
+        ..Devices::default()
+    };
+    let mut players = Players::default();
+    assert_eq!(goal(&mut players, &devices, &MANNER), None);
+    assert_eq!(players.used[0], None);
+}
+
+#[test]
+fn each_device_belongs_to_one_player() {
+    let mut players = Players::default();
+    let mut devices = with_sticks(vec![stick(1, [1.0, 0.0]), stick(2, [0.0; 2])]);
+    assert_eq!(goals(&mut players, &devices, &MANNER)[1], None);
+    players.join(Seat::Stick(DeviceId(1)));
+    let [first, second] = goals(&mut players, &devices, &MANNER);
+    assert_near(first, [-1.0 + PACE * TICK, 0.0]);
+    assert_near(second, [-1.0 + PACE * TICK, 0.5]);
+    // Who comes in and holds still is where the level says.
+    players.join(Seat::Keys);
+    assert_near(goals(&mut players, &devices, &MANNER)[1], [-1.0, 0.5]);
+    players.join(Seat::Keys);
+    assert_eq!(players.second(), None);
+    players.join(Seat::Stick(DeviceId(1)));
+    devices.sticks.devices.remove(0);
+    assert_eq!(goals(&mut players, &devices, &MANNER)[1], None);
+    assert_eq!(players.second(), None, "it was unplugged");
+    // A level may have one hand only.
+    players.join(Seat::Keys);
+    let bindings = Bindings::default();
+    let frame = players.frame(&devices, &bindings, &MANNER, &HANDS[..1], TICK);
+    assert_eq!(frame.goal(1), None);
+}

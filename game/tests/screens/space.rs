@@ -1,0 +1,336 @@
+//! In space: where the hand goes with each device, how the camera turns, and a round that is won, watched and raced.
+
+use crate::pads::{Table, pad};
+use crate::told::tells;
+use crate::window::*;
+use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, TouchPhase, pos2, vec2};
+use fuwafuwa::Vector;
+use fuwafuwa::vector::{length, minus};
+use fuwafuwa::world::TICK;
+use sticks::{DeviceId, PadButton};
+use tamaire::game::{Game, Screen};
+use tamaire::input::{Means, Seat};
+use tamaire::platform::Files;
+use tamaire_play::{AnyRound, Route};
+
+pub fn in_space() -> Window {
+    let mut window = window(Files::nowhere());
+    start(&mut window, "classic-3d");
+    window
+}
+
+/// Where a player's hand is to go next [m].
+pub fn goal(window: &Window, player: usize) -> Vector {
+    window.state().game.session.round().hands()[player].goal()
+}
+
+fn turned(window: &Window) -> [f32; 2] {
+    window.state().game.camera.gone_around()
+}
+
+/// Lets ticks pass that nobody looks at: in software a picture of space takes longer than a tick.
+pub fn wait(window: &mut Window, ticks: usize) {
+    (0..ticks).for_each(|_| game(window).pass(TICK));
+    frames(window, 1);
+}
+
+/// Points with the mouse at a place of the floor, and waits until the hand is above it.
+pub fn point_at(window: &mut Window, x: f32, z: f32) {
+    let view = window.state().game.view.expect("it is seen");
+    window.hover_at(view.on_screen([x, 0.0, z]));
+    frames(window, 1);
+    wait(window, 60);
+}
+
+/// Turns the wheel by so many points, and waits.
+fn wheel(window: &mut Window, points: f32) {
+    window.event(Event::MouseWheel {
+        unit: MouseWheelUnit::Point,
+        delta: vec2(0.0, points),
+        phase: TouchPhase::Move,
+        source: egui::MouseWheelSource::Unknown,
+        modifiers: Modifiers::NONE,
+    });
+    frames(window, 12);
+    wait(window, 30);
+}
+
+pub fn assert_near(found: Vector, expected: Vector) {
+    let away = length(minus(found, expected));
+    assert!(away < 0.03, "{found:?}, expected {expected:?}");
+}
+
+#[test]
+fn the_mouse_points_at_the_floor_and_the_wheel_raises_the_hand() {
+    let mut window = in_space();
+    let height = goal(&window, 0)[1];
+    for [x, z] in [[-1.2, 0.7], [0.2, 0.6], [0.0, -0.6]] {
+        point_at(&mut window, x, z);
+        assert_near(goal(&window, 0), [x, height, z]);
+    }
+    point_at(&mut window, -1.2, 0.7);
+    wheel(&mut window, 250.0);
+    assert_near(goal(&window, 0), [-1.2, height + 0.5, 0.7]);
+    // A long way, on which the hand stays behind, takes none of the height; nor does another camera.
+    point_at(&mut window, 1.2, 0.75);
+    assert_near(goal(&window, 0), [1.2, height + 0.5, 0.75]);
+    game(&mut window).camera.orbit(1.2, 0.3);
+    frames(&mut window, 1);
+    assert_near(goal(&window, 0), [1.2, height + 0.5, 0.75]);
+    point_at(&mut window, 0.8, 0.75);
+    assert_near(goal(&window, 0), [0.8, height + 0.5, 0.75]);
+    wheel(&mut window, -250.0);
+    assert_near(goal(&window, 0), [0.8, height, 0.75]);
+    assert_eq!(window.state().game.means, Means::Mouse);
+}
+
+#[test]
+fn the_right_mouse_button_turns_the_camera_and_leaves_the_hand_alone() {
+    let mut window = in_space();
+    point_at(&mut window, -1.2, 0.6);
+    let before = goal(&window, 0);
+    let button = |pressed, pos| Event::PointerButton {
+        pos,
+        button: PointerButton::Secondary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    let view = window.state().game.view.expect("it is seen");
+    let at = view.on_screen([-1.2, 0.0, 0.6]);
+    window.event(button(true, at));
+    frames(&mut window, 1);
+    for step in 1..=10 {
+        window.hover_at(at + step as f32 * vec2(-10.0, 5.0));
+        frames(&mut window, 1);
+    }
+    window.event(button(false, at + vec2(-100.0, 50.0)));
+    frames(&mut window, 1);
+    let [right, up] = turned(&window);
+    assert!(right > 0.5 && up > 0.2, "{right} {up}");
+    assert_near(goal(&window, 0), before);
+}
+
+#[test]
+fn keys_move_the_hand_away_from_the_camera_raise_it_and_turn_the_camera() {
+    let mut window = in_space();
+    let hold = |window: &mut Window, key, count: usize| {
+        let before = goal(window, 0);
+        window.key_down(key);
+        frames(window, 1);
+        // The camera turns as the window is drawn.
+        match key {
+            Key::CloseBracket => frames(window, count - 1),
+            _ => wait(window, count - 2),
+        }
+        window.key_up(key);
+        frames(window, 1);
+        minus(goal(window, 0), before)
+    };
+    let [x, y, z] = hold(&mut window, Key::Q, 20);
+    assert!(x.abs() < 0.01 && y > 0.3 && z.abs() < 0.01, "{x} {y} {z}");
+    let [x, y, z] = hold(&mut window, Key::S, 10);
+    assert!(x.abs() < 0.01 && y.abs() < 0.01 && z > 0.2, "{x} {y} {z}");
+    let [x, y, z] = hold(&mut window, Key::Z, 20);
+    assert!(x.abs() < 0.01 && y < -0.3 && z.abs() < 0.01, "{x} {y} {z}");
+    hold(&mut window, Key::CloseBracket, 63);
+    let [right, up] = turned(&window);
+    assert!((1.4..1.8).contains(&right) && up == 0.0, "{right} {up}");
+    // The camera looks to the left, along the first axis, from the right.
+    let [x, y, z] = hold(&mut window, Key::D, 10);
+    assert!(x.abs() < 0.08 && y.abs() < 0.01 && z < -0.2, "{x} {y} {z}");
+    let [x, y, z] = hold(&mut window, Key::S, 10);
+    assert!(x > 0.2 && y.abs() < 0.01 && z.abs() < 0.08, "{x} {y} {z}");
+    // In the plane the same keys do nothing.
+    start(&mut window, "classic");
+    let still = hold(&mut window, Key::Q, 10);
+    assert_near(still, [0.0; 3]);
+}
+
+#[test]
+fn triggers_raise_the_hand_and_the_right_stick_looks_around() {
+    let mut table = Table::with(vec![pad(1)]);
+    start(&mut table.window, "classic-3d");
+    let before = goal(&table.window, 0);
+    let hold = |table: &mut Table, right, triggers, count: usize| {
+        let pad = table.devices[0].pad.as_mut().expect("a pad");
+        (pad.right, pad.triggers) = (right, triggers);
+        table.frames(1);
+        match right {
+            [0.0, 0.0] => wait(&mut table.window, count - 2),
+            _ => table.frames(count - 1),
+        }
+    };
+    hold(&mut table, [0.0; 2], [0.0, 1.0], 20);
+    let raised = goal(&table.window, 0);
+    let expected = [before[0], before[1] + 0.4, before[2]];
+    assert_near(raised, expected);
+    assert_eq!(turned(&table.window), [0.0; 2]);
+    // Half as far, half as fast.
+    hold(&mut table, [0.0; 2], [0.55, 0.0], 20);
+    assert_near(
+        goal(&table.window, 0),
+        [before[0], before[1] + 0.2, before[2]],
+    );
+    let low = goal(&table.window, 0);
+    hold(&mut table, [1.0, 0.0], [0.0; 2], 20);
+    let [right, up] = turned(&table.window);
+    assert!(right > 0.3 && up == 0.0, "{right} {up}");
+    hold(&mut table, [0.0, 1.0], [0.0; 2], 20);
+    let [after, up] = turned(&table.window);
+    assert!(after == right && up > 0.3, "{after} {up}");
+    assert_near(goal(&table.window, 0), low);
+    // Beyond its end it does not go.
+    hold(&mut table, [0.0, -1.0], [0.0; 2], 40);
+    assert!((-0.4..-0.2).contains(&turned(&table.window)[1]));
+}
+
+#[test]
+fn two_players_in_space_have_a_hand_each_and_one_camera() {
+    let mut table = Table::with(vec![pad(1), pad(2)]);
+    start(&mut table.window, "classic-3d");
+    table.tap(PadButton::Back);
+    let second = table.window.state().game.players.second();
+    assert_eq!(second, Some(Seat::Stick(DeviceId(2))));
+    table.frames(2);
+    let before = [0, 1].map(|player| goal(&table.window, player));
+    assert_near(
+        before[1],
+        table.window.state().game.session.round().start(1),
+    );
+    let hold = |table: &mut Table, held: [([f32; 2], [f32; 2]); 2], count| {
+        for (device, (left, triggers)) in table.devices.iter_mut().zip(held) {
+            let pad = device.pad.as_mut().expect("a pad");
+            (pad.left, pad.right, pad.triggers) = (left, [0.5, 0.0], triggers);
+        }
+        table.frames(count);
+    };
+    hold(
+        &mut table,
+        [([0.0; 2], [0.0; 2]), ([0.0; 2], [0.0, 1.0])],
+        15,
+    );
+    let after = [0, 1].map(|player| goal(&table.window, player));
+    assert_near(after[0], before[0]);
+    assert_near(after[1], [before[1][0], before[1][1] + 0.3, before[1][2]]);
+    // Both lean, and the camera goes no faster for it.
+    let [right, _] = turned(&table.window);
+    assert!(right < 0.5 * 1.5 * 16.0 / 60.0, "{right}");
+    hold(
+        &mut table,
+        [([0.0, -1.0], [0.0; 2]), ([0.0; 2], [0.0; 2])],
+        10,
+    );
+    let moved = [0, 1].map(|player| goal(&table.window, player));
+    assert!(moved[0][2] > after[0][2] + 0.2, "{after:?} {moved:?}");
+    assert_near(moved[1], after[1]);
+}
+
+/// What a finger does, as eframe tells it: the first is a mouse as well.
+fn touch(window: &mut Window, finger: u64, phase: TouchPhase, pos: Pos2) {
+    window.event(Event::Touch {
+        device_id: egui::TouchDeviceId(1),
+        id: egui::TouchId(finger),
+        phase,
+        pos,
+        force: None,
+    });
+    if finger == 0 {
+        window.event(Event::PointerMoved(pos));
+        if phase != TouchPhase::Move {
+            window.event(Event::PointerButton {
+                pos,
+                button: PointerButton::Primary,
+                pressed: phase == TouchPhase::Start,
+                modifiers: Modifiers::NONE,
+            });
+        }
+    }
+    frames(window, 1);
+}
+
+#[test]
+fn one_finger_moves_the_hand_and_a_second_one_raises_it_or_turns_the_camera() {
+    let mut window = in_space();
+    let height = goal(&window, 0)[1];
+    let view = window.state().game.view.expect("it is seen");
+    touch(
+        &mut window,
+        0,
+        TouchPhase::Start,
+        view.on_screen([-1.2, 0.0, 0.5]),
+    );
+    touch(
+        &mut window,
+        0,
+        TouchPhase::Move,
+        view.on_screen([-0.9, 0.0, 0.6]),
+    );
+    wait(&mut window, 40);
+    assert_near(goal(&window, 0), [-0.9, height, 0.6]);
+    let drag = |window: &mut Window, by: egui::Vec2| {
+        let from = pos2(700.0, 400.0);
+        touch(window, 1, TouchPhase::Start, from);
+        for step in 1..=10 {
+            touch(window, 1, TouchPhase::Move, from + 0.1 * step as f32 * by);
+        }
+        touch(window, 1, TouchPhase::End, from + by);
+        wait(window, 30);
+    };
+    drag(&mut window, vec2(20.0, -0.4 * view.scale));
+    let raised = goal(&window, 0);
+    assert!((raised[1] - height - 0.4).abs() < 0.03, "{raised:?}");
+    assert_eq!(turned(&window), [0.0; 2]);
+    drag(&mut window, vec2(-100.0, 20.0));
+    let [right, up] = turned(&window);
+    assert!((right - 0.6).abs() < 0.05 && up == 0.0, "{right} {up}");
+    assert!((goal(&window, 0)[1] - raised[1]).abs() < 0.01);
+    assert_eq!(window.state().game.means, Means::Fingers);
+}
+
+#[test]
+fn a_round_in_space_is_won_kept_watched_and_raced() {
+    let folder = folder("space");
+    let files = Files::in_folder(&folder);
+    let mut window = window(files.clone());
+    start(&mut window, "classic-3d");
+    win(&mut window);
+    let (outcome, is_best) = game(&mut window).won.expect("it was won");
+    assert!(is_best && outcome.route == Route::Squeeze, "{outcome:?}");
+    click(&mut window, "Save replay");
+    game(&mut window).notices.clear();
+    assert_eq!(files.replays().len(), 1);
+
+    click(&mut window, "Race it");
+    frames(&mut window, 30);
+    let is_space = |round: &AnyRound| matches!(round, AnyRound::Space(_));
+    let ghost = |window: &Window| {
+        let ghost = window.state().game.session.ghost().expect("a ghost");
+        assert!(is_space(ghost));
+        (ghost.frames().len(), ghost.hands()[0].position())
+    };
+    let (ticks, at) = ghost(&window);
+    let mine = window.state().game.session.round().hands()[0].position();
+    assert!(
+        ticks >= 28 && length(minus(at, mine)) > 0.1,
+        "{ticks} {at:?} {mine:?}"
+    );
+
+    game(&mut window).go(Screen::Title);
+    game(&mut window).go(Screen::Replays);
+    frames(&mut window, 2);
+    click(&mut window, "Watch");
+    assert!(!game(&mut window).session.is_played());
+    let before = goal(&window, 0);
+    // Who watches looks on: the hand belongs to the replay.
+    window.key_down(Key::Q);
+    frames(&mut window, 5);
+    window.key_up(Key::Q);
+    assert!(!tells(&window, "Up and down"));
+    let goes_on = |game: &Game| !game.session.is_over();
+    drive(game(&mut window), tamaire_play::BotKind::Idle, goes_on);
+    let game = game(&mut window);
+    assert_eq!(game.session.round().progress().outcome, Some(outcome));
+    assert!(game.notices.is_empty(), "{:?}", game.notices);
+    assert!(length(minus(goal(&window, 0), before)) > 0.1);
+    std::fs::remove_dir_all(folder).expect("it is ours");
+}

@@ -1,0 +1,149 @@
+//! How to play in space is told until it was tried.
+
+use crate::pads::{Table, about, pad};
+use crate::space::{in_space, point_at, wait};
+use crate::window::*;
+use egui::epaint::ClippedShape;
+use egui::{Key, vec2};
+use sticks::{Device, DeviceId};
+use tamaire::input::{Action, Means};
+use tamaire::platform::Files;
+use tamaire::words::Language;
+
+/// All words on the screen, each with where it is.
+fn words(window: &Window) -> Vec<(String, egui::Rect)> {
+    fn add(shape: &egui::Shape, words: &mut Vec<(String, egui::Rect)>) {
+        match shape {
+            egui::Shape::Text(text) => {
+                words.push((text.galley.text().into(), text.visual_bounding_rect()));
+            }
+            egui::Shape::Vec(shapes) => shapes.iter().for_each(|shape| add(shape, words)),
+            _ => {}
+        }
+    }
+    let mut words = Vec::new();
+    for ClippedShape { shape, .. } in &window.output().shapes {
+        add(shape, &mut words);
+    }
+    words
+}
+
+pub fn tells(window: &Window, what: &str) -> bool {
+    words(window).iter().any(|(text, _)| text.contains(what))
+}
+
+#[test]
+fn what_can_be_done_in_space_is_told_until_it_was_tried() {
+    let mut window = in_space();
+    // Nothing takes its time to go.
+    game(&mut window).settings.reduced_motion = true;
+    wait(&mut window, 60);
+    let told = ["Move: mouse", "wheel, or Q Z", "right mouse button, or [ ]"];
+    assert!(
+        told.iter().all(|line| tells(&window, line)),
+        "{:?}",
+        words(&window)
+    );
+    game(&mut window)
+        .settings
+        .bindings
+        .bind_key(Action::Raise, Key::U);
+    frames(&mut window, 1);
+    assert!(tells(&window, "wheel, or U Z"), "what is bound is named");
+    point_at(&mut window, -1.0, 0.7);
+    assert!(!tells(&window, "Move") && tells(&window, "wheel"));
+    window.key_down(Key::U);
+    frames(&mut window, 2);
+    assert!(
+        tells(&window, "Look around: [ ]"),
+        "what was used last is named"
+    );
+    wait(&mut window, 10);
+    window.key_up(Key::U);
+    frames(&mut window, 2);
+    assert!(!tells(&window, "Up and down") && tells(&window, "Look around"));
+    press(&mut window, Key::R);
+    wait(&mut window, 60);
+    assert!(
+        !tells(&window, "Move") && tells(&window, "Look around"),
+        "what is known is not told again"
+    );
+    window.key_down(Key::OpenBracket);
+    frames(&mut window, 12);
+    window.key_up(Key::OpenBracket);
+    frames(&mut window, 1);
+    assert!(!tells(&window, "Look around"));
+    start(&mut window, "classic");
+    frames(&mut window, 2);
+    assert!(
+        !tells(&window, "Move"),
+        "in the plane nothing needs to be told"
+    );
+}
+
+#[test]
+fn a_pad_is_told_of_its_own_controls_and_nothing_is_told_for_ever() {
+    let mut table = Table::with(vec![
+        pad(1),
+        Device::at_rest(DeviceId(2), about("Stick"), 2, 12, 1),
+    ]);
+    game(&mut table.window).settings.reduced_motion = true;
+    start(&mut table.window, "hoop");
+    table.devices[0].pad.as_mut().expect("a pad").left = [0.0, 0.7];
+    table.frames(2);
+    table.devices[0].pad.as_mut().expect("a pad").left = [0.0; 2];
+    table.frames(2);
+    assert!(tells(&table.window, "triggers") && tells(&table.window, "right stick"));
+    table.devices[1].axes = vec![1.0, 0.0];
+    table.frames(2);
+    table.devices[1].axes = vec![0.0; 2];
+    table.frames(2);
+    assert!(tells(&table.window, "buttons 10 11") && tells(&table.window, "buttons 12 13"));
+    for _ in 0..25 {
+        game(&mut table.window).pass(2.0);
+    }
+    table.frames(2);
+    assert!(!tells(&table.window, "buttons"));
+}
+
+#[test]
+fn what_is_told_fits_into_the_smallest_window() {
+    for text_size in [1.0, 1.6] {
+        let mut window = open(Files::nowhere(), vec2(640.0, 400.0), 0.5);
+        game(&mut window).settings.text_size = text_size;
+        start(&mut window, "classic-3d");
+        let bindings = &mut game(&mut window).settings.bindings;
+        // The longest names there are.
+        for (action, key) in [
+            (Action::Raise, Key::BrowserBack),
+            (Action::Lower, Key::Questionmark),
+        ] {
+            bindings.bind_key(action, key);
+        }
+        for means in [
+            Means::Mouse,
+            Means::Fingers,
+            Means::Keys,
+            Means::Pad,
+            Means::Stick,
+        ] {
+            for (language, _) in Language::ALL {
+                game(&mut window).means = means;
+                game(&mut window).settings.language = language;
+                frames(&mut window, 1);
+                let lines = window.state().game.lesson();
+                let room = window.ctx.content_rect();
+                let words = words(&window);
+                for (line, is_missing) in &lines {
+                    let found = words.iter().find(|(text, _)| text == line);
+                    let (_, rect) = found.unwrap_or_else(|| panic!("{line} in {words:?}"));
+                    assert!(
+                        *is_missing && room.contains_rect(*rect),
+                        "{line}: {rect:?} in {room:?}"
+                    );
+                }
+                assert_eq!(lines.len(), 3);
+            }
+        }
+    }
+}
