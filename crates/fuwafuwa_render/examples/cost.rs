@@ -37,6 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 look,
                 basket: None,
                 particles: &[],
+                stickers: &[],
                 seconds: 0.0,
             };
             let mut geometry = Geometry::default();

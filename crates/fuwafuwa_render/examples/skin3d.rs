@@ -57,6 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         },
         basket: None,
         particles: &[],
+        stickers: &[],
         seconds: 0.0,
     };
     let times = (0..20).map(|_| {

@@ -77,6 +77,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                         fill: 0.0,
                     }),
                     particles: &particles,
+                    stickers: &[],
                     seconds: tick as f32 / 60.0,
                 };
                 let begin = Instant::now();

@@ -222,6 +222,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                     look,
                     basket,
                     particles: &particles,
+                    stickers: &[],
                     seconds: tick as f32 / 60.0,
                 };
                 let begin = Instant::now();

@@ -28,6 +28,7 @@ fn frame(camera: Camera, theme: &Theme) -> Frame<'_> {
         look: Look::Skin,
         basket: None,
         particles: &[],
+        stickers: &[],
         seconds: 0.0,
     }
 }

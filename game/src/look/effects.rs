@@ -147,6 +147,7 @@ impl Effects {
         for (place, feeling) in self.feelings.iter_mut().enumerate() {
             let in_basket = |region: &fuwafuwa::Shape| region.distance(feeling.at).0 < 0.0;
             let fate = Fate {
+                eye: (D::N == 3).then(|| camera.eye(self.room)),
                 tick: world.ticks(),
                 torn: torn[place],
                 pressed: self.pressure > HURTS,

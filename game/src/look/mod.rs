@@ -14,7 +14,7 @@ mod theme;
 pub use camera::{Camera, View};
 pub use confetti::Confetti;
 pub use effects::Effects;
-pub use face::{Mood, Place, draw_face};
+pub use face::{Face, Mood};
 pub use feelings::Feeling;
 pub use maps::Maps;
 pub use stage::{Hint, Look, Stage};

@@ -5,6 +5,7 @@ use super::camera::Camera;
 use super::room::{RoomVertex, add_planes, plane};
 use super::rounded::RoundedInstance;
 use super::skin::Skin;
+use super::stickers::Stickers;
 use crate::frame::{Frame, Look};
 use crate::rigid::MOST_WALLS;
 use fuwafuwa::vector::{minus, plus, scaled, three};
@@ -25,6 +26,7 @@ pub struct Geometry {
     /// Which skins have other triangles than before.
     pub(crate) renewed: Vec<bool>,
     pub(crate) boxes: Boxes,
+    pub(crate) stickers: Stickers,
     pub(crate) room: Vec<RoomVertex>,
     /// Outward normal and offset of each half-space [m].
     pub(crate) walls: Vec<[f32; 4]>,
@@ -44,6 +46,7 @@ impl Geometry {
         self.gather_room(world, &frame.camera);
         self.rounded.clear();
         self.boxes.clear();
+        self.stickers.clear();
         let theme = frame.theme;
         let bars = world.obstacles().iter();
         let bars = bars.filter_map(|bar| RoundedInstance::of(bar.shape, theme.bar, 0.0));
@@ -73,6 +76,12 @@ impl Geometry {
             }
         }
         self.crumbs = first..self.rounded.len() as u32;
+        for sticker in frame.stickers.iter().filter(|_| frame.look == Look::Skin) {
+            if let Some(body) = world.bodies().get(sticker.body) {
+                let (skin, eye) = (&self.skins[sticker.body], frame.camera.eye());
+                self.stickers.add(sticker, skin, body, eye);
+            }
+        }
         let dust = frame.particles.iter().enumerate();
         let dust = dust.map(|(place, particle)| RoundedInstance {
             colour: particle.colour,
@@ -191,6 +200,7 @@ mod tests {
             look: Look::Skin,
             basket: None,
             particles: &[],
+            stickers: &[],
             seconds: 0.0,
         };
         let mut geometry = Geometry::default();

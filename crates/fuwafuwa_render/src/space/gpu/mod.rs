@@ -6,7 +6,6 @@ mod targets;
 use super::camera::{Camera, Matrix, product, seen_from};
 use super::geometry::Geometry;
 use super::rounded;
-use super::skin::Skin;
 use crate::frame::Frame;
 use crate::gpu::ImageError;
 use crate::gpu::buffer::{GrowingBuffer, drawable};
@@ -49,6 +48,7 @@ pub struct Renderer {
     /// Vertices and triangles of each body.
     skins: Vec<[GrowingBuffer; 2]>,
     boxes: [GrowingBuffer; 2],
+    stickers: [GrowingBuffer; 2],
     room: GrowingBuffer,
     rounded: GrowingBuffer,
     fine: [GrowingBuffer; 2],
@@ -102,6 +102,7 @@ impl Renderer {
             globals,
             skins: Vec::new(),
             boxes: mesh_buffers(device, "boxes"),
+            stickers: mesh_buffers(device, "stickers"),
             room: GrowingBuffer::new(device, "room", BufferUsages::VERTEX),
             rounded: GrowingBuffer::new(device, "rounded", BufferUsages::VERTEX),
             fine: mesh_buffers(device, "fine balls"),
@@ -139,11 +140,6 @@ impl Renderer {
         pass.draw(0..3, 0..1);
     }
 
-    /// The skin of a body, by its place in the world, as of the last picture that showed skins.
-    pub fn skin(&self, body: usize) -> Option<&Skin> {
-        self.geometry.skins.get(body)
-    }
-
     /// Draws a world into an image, as [`crate::Renderer::render_to_image`] does in the plane.
     ///
     /// # Errors
@@ -168,6 +164,7 @@ impl Renderer {
             skins,
             renewed,
             boxes,
+            stickers,
             room,
             rounded,
             ..
@@ -185,13 +182,10 @@ impl Renderer {
                 indices.write(device, queue, there);
             }
         }
-        write_mesh(
-            device,
-            queue,
-            &mut self.boxes,
-            &boxes.vertices,
-            &boxes.indices,
-        );
+        let (vertices, indices) = (&boxes.vertices, &boxes.indices);
+        write_mesh(device, queue, &mut self.boxes, vertices, indices);
+        let (vertices, indices) = (&stickers.vertices, &stickers.indices);
+        write_mesh(device, queue, &mut self.stickers, vertices, indices);
         self.room.write(device, queue, room);
         self.rounded.write(device, queue, rounded);
         for (buffers, fineness) in [(&mut self.fine, FINE), (&mut self.coarse, COARSE)] {
@@ -298,18 +292,36 @@ impl Renderer {
         self.draw_skins(&mut pass);
         pass.set_pipeline(&pipelines.element);
         draw_mesh(&mut pass, &self.boxes, 0..1);
+        self.draw_rounded(
+            &mut pass,
+            [
+                (&pipelines.bar, &self.fine, &geometry.bars),
+                (&pipelines.crumb, &self.coarse, &geometry.crumbs),
+                (&pipelines.hidden_hand, &self.fine, &geometry.hands),
+                (&pipelines.hand, &self.fine, &geometry.hands),
+            ],
+        );
+        pass.set_pipeline(&pipelines.sticker);
+        draw_mesh(&mut pass, &self.stickers, 0..1);
+        self.draw_rounded(
+            &mut pass,
+            [
+                (&pipelines.glow, &self.fine, &geometry.basket),
+                (&pipelines.line, &self.coarse, &geometry.lines),
+                (&pipelines.dust, &self.coarse, &geometry.dust),
+            ],
+        );
+    }
+
+    fn draw_rounded<const K: usize>(
+        &self,
+        pass: &mut RenderPass<'_>,
+        kinds: [(&RenderPipeline, &[GrowingBuffer; 2], &Range<u32>); K],
+    ) {
         pass.set_vertex_buffer(1, self.rounded.all());
-        for (pipeline, mesh, instances) in [
-            (&pipelines.bar, &self.fine, &geometry.bars),
-            (&pipelines.crumb, &self.coarse, &geometry.crumbs),
-            (&pipelines.hidden_hand, &self.fine, &geometry.hands),
-            (&pipelines.hand, &self.fine, &geometry.hands),
-            (&pipelines.glow, &self.fine, &geometry.basket),
-            (&pipelines.line, &self.coarse, &geometry.lines),
-            (&pipelines.dust, &self.coarse, &geometry.dust),
-        ] {
+        for (pipeline, mesh, instances) in kinds {
             pass.set_pipeline(pipeline);
-            draw_mesh(&mut pass, mesh, self.there(instances));
+            draw_mesh(pass, mesh, self.there(instances));
         }
     }
 

@@ -18,6 +18,7 @@ pub struct Pipelines {
     pub sky: RenderPipeline,
     pub room: RenderPipeline,
     pub skin: RenderPipeline,
+    pub sticker: RenderPipeline,
     pub element: RenderPipeline,
     pub bar: RenderPipeline,
     pub hand: RenderPipeline,
@@ -128,6 +129,8 @@ impl Pipelines {
                 &solid,
             ),
             skin: drawn(&skin, ("skin_corner", "skin"), &skins, &solid),
+            // No mark of a sticker hides another: they are painted on top of each other.
+            sticker: drawn(&skin, ("skin_corner", "sticker"), &skins, &clear),
             element: drawn(&skin, ("box_corner", "box_side"), &boxes, &solid),
             bar: balls(("plain_corner", "bar"), &solid),
             hand: balls(("plain_corner", "hand"), &solid),
