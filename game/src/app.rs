@@ -14,9 +14,10 @@ const FONT: &[u8] = include_bytes!("../fonts/MPLUSRounded1c-Bold.ttf");
 /// Each screen has room enough in a window of this many points.
 const ROOM: egui::Vec2 = egui::vec2(900.0, 640.0);
 
-/// In space: how far the wheel raises the hand [m/point], how far the mouse [rad/point] and how fast a key or a pad's right
+/// In space: how far the wheel raises the hand [m/point] and what share of a body it cuts off [1/point], how far the mouse [rad/point] and how fast a key or a pad's right
 /// stick turns the camera [rad/s].
 const WHEEL: f32 = 0.002;
+const CUT: f32 = 0.0012;
 const DRAG: f32 = 0.006;
 const TURN: f32 = 1.5;
 
@@ -243,13 +244,18 @@ impl App {
     }
 }
 
-/// In space the wheel raises the hand, and the camera turns: with the mouse where that `drags`, with keys and pads.
+/// In space the wheel raises the hand, or cuts bodies open where their elements are seen, and the camera turns: with the mouse where that `drags`, with keys and pads.
 fn look_around(game: &mut Game, ctx: &egui::Context, drags: bool) {
     let (wheel, delta, seconds) = ctx.input(|input| {
         let seconds = input.stable_dt.min(0.1);
         (input.smooth_scroll_delta.y, input.pointer.delta(), seconds)
     });
-    game.devices.lift += WHEEL * wheel;
+    if game.elements.is_none() {
+        game.devices.lift += WHEEL * wheel;
+    } else if wheel != 0.0 {
+        let still = game.settings.reduced_motion;
+        game.opening.cut(CUT * wheel, game.time, still);
+    }
     if drags {
         game.camera.orbit(-DRAG * delta.x, DRAG * delta.y);
     }

@@ -5,7 +5,7 @@ mod shared;
 
 use fuwafuwa::{Blade, Body, Dim3, Manipulator, Material, Settings, Shape, VoxelGrid, World};
 use fuwafuwa_render::frame::ElementColour;
-use fuwafuwa_render::space::{Camera, Renderer};
+use fuwafuwa_render::space::{Camera, Cut, Renderer};
 use fuwafuwa_render::{Basket, Colour, Frame, Look, Mark, Particle, Sticker, Theme};
 use shared::{device, device_with, difference, is_warm};
 use std::sync::LazyLock;
@@ -195,7 +195,10 @@ fn a_cut_through_the_elements_shows_their_levels() {
             ages: &[],
             nodes: false,
         };
-        frame.camera.cut = Some(([0.0, 0.0, 1.0], 0.5));
+        frame.camera.cut = Some(Cut {
+            towards: [0.0, 0.0, 1.0],
+            share: 0.5,
+        });
         frame.camera.rise = 0.1;
     });
     let Some(picture) = picture else {

@@ -8,6 +8,7 @@ mod feelings;
 mod glow;
 mod hint;
 mod maps;
+mod opening;
 mod stage;
 mod theme;
 
@@ -17,5 +18,6 @@ pub use effects::Effects;
 pub use face::{Face, Mood};
 pub use feelings::Feeling;
 pub use maps::Maps;
+pub use opening::Opening;
 pub use stage::{Hint, Look, Stage};
 pub use theme::Theme;

@@ -5,7 +5,7 @@ use super::feelings::Feeling;
 use super::{Effects, Face, Maps, Mood, Theme, glow, hint};
 use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait, RenderState};
 use egui::{Color32, PaintCallbackInfo, Painter, Pos2, Rect, Stroke, Ui, vec2};
-use fuwafuwa::vector::{dot, length, minus, plus, scaled};
+use fuwafuwa::vector::{length, minus, plus, scaled};
 use fuwafuwa::{Dim, Dim2, Dim3, Vector};
 use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_render::{Ages, Basket, Camera, Frame, Particle, Renderer, Sticker, space};
@@ -21,6 +21,8 @@ pub struct Look<'a> {
     pub theme: &'a Theme,
     /// Whether to show the elements instead of the skin.
     pub elements: Option<ElementColour>,
+    /// In space, how much is left of a body that is opened for it, 0 to 1.
+    pub left: f32,
     /// What flies about.
     pub effects: &'a Effects,
     /// Seconds since the game began, for blinking.
@@ -48,6 +50,9 @@ pub enum Hint {
 
 /// Lines of a round that was played before.
 const GHOST: Color32 = Color32::from_rgba_premultiplied(42, 38, 56, 120);
+
+/// A camera that looks down more than this looks from above, as a sine.
+const DOWN: f32 = 0.8;
 
 /// Where rounds are drawn: a part of a window of egui's.
 pub struct Stage {
@@ -112,7 +117,7 @@ impl Stage {
             return;
         };
         let camera = space::Camera {
-            cut: look.elements.and_then(|_| cut(&camera, look)),
+            cut: look.elements.map(|_| cut(&camera, look.left)),
             ..camera
         };
         let size = pixels(ui, look.view.rect);
@@ -196,13 +201,15 @@ impl Stage {
     }
 }
 
-/// What of bodies in space is left out of the element view: what is in front of the middle of the first.
-fn cut(camera: &space::Camera, look: &Look) -> Option<(Vector, f32)> {
-    let [x, _, z] = camera.axes()[2];
-    let long = length([x, z]).max(1e-3);
-    let towards = [x / long, 0.0, z / long];
-    let middle = look.effects.feelings.first()?.at;
-    Some((towards, dot(towards, middle)))
+/// How bodies in space are opened for whom a camera shows them: from the front, or from above where it looks down.
+fn cut(camera: &space::Camera, share: f32) -> space::Cut {
+    let [x, y, z] = camera.axes()[2];
+    let long = length([x, z]);
+    let towards = match y > DOWN {
+        true => [0.0, 1.0, 0.0],
+        false => [x / long, 0.0, z / long],
+    };
+    space::Cut { towards, share }
 }
 
 /// How much of the screen a part of a window is [px].

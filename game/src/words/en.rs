@@ -156,6 +156,7 @@ pub(super) const WORDS: Words = Words {
     no_sticks: "Sticks and pads cannot be read here.",
     join_hint: "2 players",
     how_in_space: "Up and down: wheel, Q Z or triggers. Look around: right mouse button, [ ] or right stick.",
+    look_inside: "Wheel: look deeper",
     watching: "Replay",
     settings_kept: "What was kept could not be read. It was put aside as",
     not_written: "This could not be written:",

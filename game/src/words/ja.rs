@@ -151,6 +151,7 @@ pub(super) const WORDS: Words = Words {
     no_sticks: "スティックやパッドは使えません。",
     join_hint: "ふたりで",
     how_in_space: "上げ下げ：ホイール、Q Z、トリガー。見まわす：右ボタンを引く、[ ]、右スティック。",
+    look_inside: "ホイール：もっとおくを見る",
     watching: "リプレイ",
     settings_kept: "のこしたものが読めませんでした。もとのファイル：",
     not_written: "書きこめませんでした：",

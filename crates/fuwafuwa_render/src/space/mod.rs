@@ -19,7 +19,7 @@ mod rounded;
 pub mod skin;
 mod stickers;
 
-pub use camera::Camera;
+pub use camera::{Camera, Cut};
 pub use geometry::Geometry;
 pub use gpu::Renderer;
 pub use skin::Skin;
