@@ -38,6 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 basket: None,
                 particles: &[],
                 stickers: &[],
+                ghost: None,
                 seconds: 0.0,
             };
             let mut geometry = Geometry::default();

@@ -61,6 +61,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         basket: None,
         particles: &[],
         stickers: &[],
+        ghost: None,
         seconds: 0.0,
     };
     let times = (0..20).map(|_| {

@@ -78,6 +78,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                     }),
                     particles: &particles,
                     stickers: &[],
+                    ghost: None,
                     seconds: tick as f32 / 60.0,
                 };
                 let begin = Instant::now();

@@ -225,6 +225,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                     basket,
                     particles: &particles,
                     stickers: &[],
+                    ghost: None,
                     seconds: tick as f32 / 60.0,
                 };
                 let begin = Instant::now();

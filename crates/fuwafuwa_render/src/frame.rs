@@ -2,7 +2,7 @@
 
 use crate::plane::{Flat, dot, flat, minus, plus, scaled};
 use crate::theme::Theme;
-use fuwafuwa::{Shape, Vector};
+use fuwafuwa::{Dim3, Shape, Vector, World};
 
 /// Everything that a picture needs beside the world; for one in space, a camera in space.
 #[derive(Clone, Debug)]
@@ -19,6 +19,8 @@ pub struct Frame<'a, C = Camera> {
     pub particles: &'a [Particle],
     /// What lies on skins in space. In the plane whoever paints on top paints it.
     pub stickers: &'a [Sticker],
+    /// A world whose bodies and hands are seen through, in space.
+    pub ghost: Option<&'a World<Dim3>>,
     /// A clock for slow motion that means nothing, like the march of dashes [s].
     pub seconds: f32,
 }

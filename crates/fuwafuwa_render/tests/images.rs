@@ -29,6 +29,7 @@ fn frame(camera: Camera, theme: &Theme) -> Frame<'_> {
         basket: None,
         particles: &[],
         stickers: &[],
+        ghost: None,
         seconds: 0.0,
     }
 }

@@ -42,6 +42,7 @@ fn frame<'a>(camera: Camera) -> Frame<'a, Camera> {
         basket: None,
         particles: &[],
         stickers: &[],
+        ghost: None,
         seconds: 0.0,
     }
 }
@@ -261,6 +262,27 @@ fn a_sticker_is_seen_from_its_side_and_not_through_a_bar() {
     let bar = Shape::Capsule { from, to, radius };
     world.add_obstacle(bar, 0.2).unwrap();
     assert_eq!(is_seen(&world, 0.0), Some(false));
+}
+
+#[test]
+fn a_ghost_is_seen_through_and_not_where_the_body_is() {
+    let (world, mut ghost) = (floating(), floating());
+    let grid = VoxelGrid::ball(16, 1.0).unwrap();
+    ghost.add_body(Body::new(grid, &[Material::default()]).unwrap());
+    let middle = |world: &World<Dim3>, ghost| {
+        let picture = take(world, TextureFormat::Rgba8Unorm, |frame| {
+            frame.ghost = ghost
+        });
+        Some(picture?.around([0.5; 3]))
+    };
+    let Some(floor) = middle(&world, None) else {
+        return;
+    };
+    let seen = middle(&world, Some(&ghost)).unwrap();
+    let less = lightness(floor) - lightness(seen);
+    assert!((0.03..0.3).contains(&less), "{floor:?} {seen:?}");
+    let alone = middle(&ghost, None).unwrap();
+    assert!(difference(alone, middle(&ghost, Some(&ghost)).unwrap()) < 0.01);
 }
 
 #[test]

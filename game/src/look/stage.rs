@@ -128,6 +128,10 @@ impl Stage {
             look: shown(look, &self.ages),
             particles: &specks,
             stickers: &stickers,
+            ghost: match look.ghost {
+                Some(AnyRound::Space(ghost)) => Some(ghost.world()),
+                _ => None,
+            },
             seconds: if look.still { 0.0 } else { look.time },
             ..frame(camera, round, look.theme)
         };
@@ -147,9 +151,6 @@ impl Stage {
         let paint = Paint(shared.clone(), space::Renderer::paint);
         let painter = ui.painter();
         painter.add(Callback::new_paint_callback(look.view.rect, paint));
-        if let Some(AnyRound::Space(ghost)) = look.ghost {
-            draw_ghost_of_space(painter, ghost, &look.view);
-        }
         hint::draw_in_space(painter, round, look);
         look.effects.confetti.draw(painter, &look.view.flat());
     }
@@ -228,6 +229,7 @@ pub(super) fn frame<'a, D: Dim, C>(camera: C, round: &Round<D>, theme: &'a Theme
         basket: round.basket().map(|&region| Basket { region, fill }),
         particles: &[],
         stickers: &[],
+        ghost: None,
         seconds: 0.0,
     }
 }
@@ -315,27 +317,6 @@ pub(super) fn face_of(body: usize, feeling: &Feeling, size: f32) -> Face {
         mood: feeling.mood,
         blink: 0.0,
         look_at: plus(feeling.at, feeling.axes[2]),
-    }
-}
-
-/// Rings around the pieces and hands of a round that was played before.
-fn draw_ghost_of_space(painter: &Painter, round: &Round<Dim3>, view: &View) {
-    let stroke = Stroke::new(2.5, GHOST);
-    let ring = |at, radius| {
-        painter.circle_stroke(view.on_screen(at), view.scale_at(at) * radius, stroke);
-    };
-    for body in round.world().bodies() {
-        let voxel = body.grid().voxel_size();
-        let density = body.materials()[0].density;
-        for piece in body.piece_views() {
-            let radius = (0.75 * piece.mass / density / std::f32::consts::PI).cbrt();
-            if radius > 2.0 * voxel {
-                ring(piece.centre, radius);
-            }
-        }
-    }
-    for hand in round.world().manipulators() {
-        ring(hand.position(), hand.radius);
     }
 }
 

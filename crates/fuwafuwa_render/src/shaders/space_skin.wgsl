@@ -45,6 +45,14 @@ fn sticker(in: SkinCorner) -> @location(0) vec4f {
     return shown(under_hands(colour, in.at, normal), in.colour.a);
 }
 
+// A body that is seen through, more so where it faces the eye.
+@fragment
+fn ghost(in: SkinCorner) -> @location(0) vec4f {
+    let away = 1.0 - abs(dot(normalize(in.normal.xyz), normalize(globals.eye.xyz - in.at)));
+    let colour = mix(vec3f(0.45, 0.42, 0.62), in.colour.rgb, 0.25);
+    return shown(to_linear(colour), 0.16 + 0.6 * smoothstep(0.35, 1.0, away));
+}
+
 struct BoxCorner {
     @builtin(position) clip: vec4f,
     @location(0) at: vec3f,

@@ -6,6 +6,7 @@ mod targets;
 use super::camera::{Camera, Matrix, product, seen_from};
 use super::geometry::Geometry;
 use super::rounded;
+use super::skin::Skin;
 use crate::frame::Frame;
 use crate::gpu::ImageError;
 use crate::gpu::buffer::{GrowingBuffer, drawable};
@@ -47,6 +48,7 @@ pub struct Renderer {
     globals: [BindGroup; 3],
     /// Vertices and triangles of each body.
     skins: Vec<[GrowingBuffer; 2]>,
+    ghosts: Vec<[GrowingBuffer; 2]>,
     boxes: [GrowingBuffer; 2],
     stickers: [GrowingBuffer; 2],
     room: GrowingBuffer,
@@ -101,6 +103,7 @@ impl Renderer {
             uniforms,
             globals,
             skins: Vec::new(),
+            ghosts: Vec::new(),
             boxes: mesh_buffers(device, "boxes"),
             stickers: mesh_buffers(device, "stickers"),
             room: GrowingBuffer::new(device, "room", BufferUsages::VERTEX),
@@ -161,27 +164,16 @@ impl Renderer {
 
     fn upload(&mut self, device: &Device, queue: &Queue) {
         let Geometry {
-            skins,
-            renewed,
             boxes,
             stickers,
             room,
             rounded,
             ..
         } = &self.geometry;
-        self.skins.truncate(skins.len());
-        while self.skins.len() < skins.len() {
-            self.skins.push(mesh_buffers(device, "skin"));
-        }
-        for (place, is_new) in renewed.iter().enumerate() {
-            let (skin, [vertices, indices]) = (&skins[place], &mut self.skins[place]);
-            vertices.write(device, queue, skin.vertices());
-            // A body that is gone leaves its buffers to the next one.
-            if *is_new || indices.count() as usize != skin.indices().len() {
-                let there = drawable(skin.indices(), skin.vertices(), vertices.count());
-                indices.write(device, queue, there);
-            }
-        }
+        let (skins, renewed) = (&self.geometry.skins, &self.geometry.renewed);
+        write_skins(device, queue, &mut self.skins, skins, renewed);
+        let (skins, renewed) = (&self.geometry.ghosts, &self.geometry.renewed_ghosts);
+        write_skins(device, queue, &mut self.ghosts, skins, renewed);
         let (vertices, indices) = (&boxes.vertices, &boxes.indices);
         write_mesh(device, queue, &mut self.boxes, vertices, indices);
         let (vertices, indices) = (&stickers.vertices, &stickers.indices);
@@ -311,6 +303,15 @@ impl Renderer {
                 (&pipelines.dust, &self.coarse, &geometry.dust),
             ],
         );
+        // Of a ghost one sees what is in front; so that is found first.
+        for pipeline in [&pipelines.ghost_depth, &pipelines.ghost] {
+            pass.set_pipeline(pipeline);
+            for buffers in &self.ghosts {
+                draw_mesh(&mut pass, buffers, 0..1);
+            }
+        }
+        let hands = (&pipelines.ghost_hand, &self.fine, &geometry.ghost_hands);
+        self.draw_rounded(&mut pass, [hands]);
     }
 
     fn draw_rounded<const K: usize>(
@@ -361,6 +362,29 @@ fn seen_by(light: Vector, middle: Vector, half: f32) -> Matrix {
 fn mesh_buffers(device: &Device, label: &'static str) -> [GrowingBuffer; 2] {
     [BufferUsages::VERTEX, BufferUsages::INDEX]
         .map(|usage| GrowingBuffer::new(device, label, usage))
+}
+
+/// Writes skins; those that were not renewed have the triangles that they had.
+fn write_skins(
+    device: &Device,
+    queue: &Queue,
+    buffers: &mut Vec<[GrowingBuffer; 2]>,
+    skins: &[Skin],
+    renewed: &[bool],
+) {
+    buffers.truncate(skins.len());
+    while buffers.len() < skins.len() {
+        buffers.push(mesh_buffers(device, "skin"));
+    }
+    for (place, is_new) in renewed.iter().enumerate() {
+        let (skin, [vertices, indices]) = (&skins[place], &mut buffers[place]);
+        vertices.write(device, queue, skin.vertices());
+        // A body that is gone leaves its buffers to the next one.
+        if *is_new || indices.count() as usize != skin.indices().len() {
+            let there = drawable(skin.indices(), skin.vertices(), vertices.count());
+            indices.write(device, queue, there);
+        }
+    }
 }
 
 fn write_mesh<T: Pod>(
