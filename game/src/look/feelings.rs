@@ -29,7 +29,7 @@ const TURN: f32 = 25.0;
 const ABOVE: f32 = 0.4;
 const LOST: f32 = 0.8;
 const FOUND: f32 = 0.98;
-const WANDER: f32 = 4.0;
+const WANDER: f32 = 7.0;
 
 /// How a body feels, and where on it that is seen.
 #[derive(Clone, Debug)]
