@@ -137,21 +137,21 @@ impl Heights {
         }
         // Where there is no skin, the plane goes on where the skin ended.
         let lowest = seen.iter().map(|at| at[2]).reduce(f32::min)?;
-        let height = |place: usize| {
-            let at = [place % SIDE, place / SIDE].map(|k| coordinate(k));
-            let away = |by: &[f32; 3]| minus([by[0], by[1]], at);
-            let close = || seen.iter().filter(|by| length(away(by)) < 2.0 * near);
-            let top = close().map(|by| by[2]).fold(lowest, f32::max);
-            let (mut sum, mut weight) = (lowest * 1e-6, 1e-6);
-            for by in close().filter(|by| by[2] > top - FOLD) {
-                let by_far = length(away(by)) / (2.0 * near);
-                let share = (1.0 - by_far * by_far).powi(3);
-                sum += share * by[2];
-                weight += share;
-            }
-            sum / weight
-        };
-        Some(Self(std::array::from_fn(height)))
+        let reach = 2.0 * near;
+        let mut tops = [lowest; SIDE * SIDE];
+        for by in &seen {
+            around(by, reach, |place, _| tops[place] = tops[place].max(by[2]));
+        }
+        let (mut sums, mut weights) = ([lowest * 1e-6; SIDE * SIDE], [1e-6; SIDE * SIDE]);
+        for by in &seen {
+            around(by, reach, |place, share| {
+                if by[2] > tops[place] - FOLD {
+                    sums[place] += share * by[2];
+                    weights[place] += share;
+                }
+            });
+        }
+        Some(Self(std::array::from_fn(|k| sums[k] / weights[k])))
     }
 
     /// The height at a place.
@@ -168,9 +168,26 @@ impl Heights {
     }
 }
 
-/// Where a row of heights is.
-fn coordinate(k: usize) -> f32 {
-    REACH * (2.0 * k as f32 / (SIDE - 1) as f32 - 1.0)
+/// Does something with all heights that are closer to a place than `reach`, and by how much they are, 0 to 1.
+fn around(place: &[f32; 3], reach: f32, mut act: impl FnMut(usize, f32)) {
+    let step = 2.0 * REACH / (SIDE - 1) as f32;
+    let range = |k: usize| {
+        let first = ((place[k] + REACH - reach) / step).ceil().max(0.0) as usize;
+        let last = ((place[k] + REACH + reach) / step).floor();
+        first..(last + 1.0).clamp(0.0, SIDE as f32) as usize
+    };
+    for y in range(1) {
+        for x in range(0) {
+            let away = minus(
+                [x, y].map(|k| step * k as f32 - REACH),
+                [place[0], place[1]],
+            );
+            let share = 1.0 - dot(away, away) / (reach * reach);
+            if share > 0.0 {
+                act(y * SIDE + x, share * share * share);
+            }
+        }
+    }
 }
 
 #[cfg(test)]
