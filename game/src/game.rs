@@ -9,7 +9,7 @@ pub mod trial;
 
 use crate::attract::attract;
 use crate::input::{Action, Devices, Means, Players, Seat};
-use crate::look::{Camera, Effects, Theme, View};
+use crate::look::{Camera, Effects, Opening, Theme, View};
 use crate::platform::{Files, Forces, Pads, SavedReplay, Sound};
 use crate::records::Records;
 use crate::session::Session;
@@ -79,6 +79,8 @@ pub struct Game {
     pub view: Option<View>,
     /// What the colours of elements tell, when they are seen instead of the skin.
     pub elements: Option<ElementColour>,
+    /// How far bodies in space are opened for that.
+    pub opening: Opening,
     /// Whether time goes slowly.
     pub slow: bool,
     /// Whether time stands still, but for single steps.
@@ -137,6 +139,7 @@ impl Game {
             camera: Camera::default(),
             view: None,
             elements: None,
+            opening: Opening::default(),
             slow: false,
             stepping: false,
             won: None,
@@ -332,6 +335,9 @@ impl Game {
             }
             (Screen::Paused, Action::Pause) => self.go(Screen::Play),
             (Screen::Play | Screen::Title, Action::Elements) => {
+                if self.elements.is_none() {
+                    self.opening = Opening::begin(self.time);
+                }
                 self.elements = match self.elements {
                     None => Some(ElementColour::Level),
                     Some(ElementColour::Level) => Some(ElementColour::Strain),

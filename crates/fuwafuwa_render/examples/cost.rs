@@ -37,6 +37,8 @@ fn main() -> Result<(), Box<dyn Error>> {
                 look,
                 basket: None,
                 particles: &[],
+                stickers: &[],
+                ghost: None,
                 seconds: 0.0,
             };
             let mut geometry = Geometry::default();

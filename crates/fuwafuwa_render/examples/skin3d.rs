@@ -3,7 +3,7 @@
 
 use fuwafuwa::Dim3;
 use fuwafuwa_render::frame::ElementColour;
-use fuwafuwa_render::space::{Camera, Geometry, Skin};
+use fuwafuwa_render::space::{Camera, Cut, Geometry, Skin};
 use fuwafuwa_render::{Frame, Look, Theme};
 use fuwafuwa_scenes::Scene;
 use std::error::Error;
@@ -46,7 +46,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut geometry = Geometry::default();
     let frame = Frame {
         camera: Camera {
-            cut: Some(([0.0, 0.0, 1.0], 0.5)),
+            cut: Some(Cut {
+                towards: [0.0, 0.0, 1.0],
+                share: 0.5,
+            }),
             ..Camera::fit(scene.view[0], scene.view[1], [1, 1])
         },
         theme: &theme,
@@ -57,6 +60,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         },
         basket: None,
         particles: &[],
+        stickers: &[],
+        ghost: None,
         seconds: 0.0,
     };
     let times = (0..20).map(|_| {

@@ -77,6 +77,8 @@ fn main() -> Result<(), Box<dyn Error>> {
                         fill: 0.0,
                     }),
                     particles: &particles,
+                    stickers: &[],
+                    ghost: None,
                     seconds: tick as f32 / 60.0,
                 };
                 let begin = Instant::now();

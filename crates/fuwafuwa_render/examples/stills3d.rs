@@ -4,7 +4,7 @@
 
 use fuwafuwa::{Dim3, World};
 use fuwafuwa_render::frame::ElementColour;
-use fuwafuwa_render::space::{Camera, Renderer};
+use fuwafuwa_render::space::{Camera, Cut, Renderer};
 use fuwafuwa_render::{Ages, Basket, Frame, Look, Particle, Theme};
 use fuwafuwa_scenes::Scene;
 use std::error::Error;
@@ -194,8 +194,10 @@ fn main() -> Result<(), Box<dyn Error>> {
                 ages: &ages.seconds,
                 nodes: false,
             };
-            let middle = world.bodies()[0].piece_views()[0].centre[2];
-            let cut = Some(([0.0, 0.0, 1.0], middle));
+            let cut = Some(Cut {
+                towards: [0.0, 0.0, 1.0],
+                share: 0.5,
+            });
             let looks = [
                 (Look::Skin, &candy, None),
                 (elements(ElementColour::Level), &candy, cut),
@@ -222,6 +224,8 @@ fn main() -> Result<(), Box<dyn Error>> {
                     look,
                     basket,
                     particles: &particles,
+                    stickers: &[],
+                    ghost: None,
                     seconds: tick as f32 / 60.0,
                 };
                 let begin = Instant::now();

@@ -1,18 +1,20 @@
 //! A frame that follows a body, for a face to be painted in.
 
-use crate::plane::{Flat, flat};
-use fuwafuwa::vector::{minus, plus, scaled};
+use fuwafuwa::vector::{cross, dot, minus, plus, scaled};
 use fuwafuwa::{Body, Dim, Vector};
+
+/// Steps towards the turn of a piece. Each doubles its correct digits once it is near.
+const STEPS: usize = 12;
+/// What is flatter than this has no turn of its own: its volume, as a share of its length cubed.
+const FLAT: f32 = 1.0e-7;
 
 /// A frame that follows the largest piece of a body.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Anchor {
     /// Its centre of mass [m].
     pub position: Vector,
-    /// What is to the right in the body at rest, now, as seen along z; of length 1.
-    pub right: Flat,
-    /// What is up in the body at rest, now; of length 1 and square to `right`.
-    pub up: Flat,
+    /// What is along the axes of the body at rest, now; of length 1 and square to each other.
+    pub axes: [Vector; 3],
     /// Radius of a disc of its area at rest, in space of a ball of its volume [m].
     pub scale: f32,
 }
@@ -20,7 +22,7 @@ pub struct Anchor {
 /// The frame of the largest piece of a body: it moves and turns with it, and does not shear.
 ///
 /// The turn is the one that leaves the least of the motion unexplained: the rotation part of
-/// Σ m (x − x̄)(r − r̄)ᵀ over its nodes, x where they are and r where they were at rest; in space the one around z.
+/// Σ m (x − x̄)(r − r̄)ᵀ over its nodes, x where they are and r where they were at rest.
 pub fn anchor<D: Dim>(body: &Body<D>) -> Anchor {
     let (mesh, pieces) = (body.mesh(), body.pieces());
     let mut masses = vec![0.0f32; pieces.list.len()];
@@ -44,23 +46,18 @@ pub fn anchor<D: Dim>(body: &Body<D>) -> Anchor {
         position = plus(position, scaled(at, share));
         origin = plus(origin, scaled(rest, share));
     }
-    let (mut cos, mut sin) = (0.0, 0.0);
+    let mut sums = [[0.0; 3]; 3];
     for (at, rest, mass) in states() {
-        let (x, r) = (flat(minus(at, position)), flat(minus(rest, origin)));
-        cos += mass * (x[0] * r[0] + x[1] * r[1]);
-        sin += mass * (x[1] * r[0] - x[0] * r[1]);
+        let (x, r) = (minus(at, position), minus(rest, origin));
+        for (sum, r) in sums.iter_mut().zip(r) {
+            *sum = plus(*sum, scaled(x, mass * r));
+        }
     }
-    let length = (cos * cos + sin * sin).sqrt();
-    let right = match length > 0.0 {
-        true => [cos / length, sin / length],
-        false => [1.0, 0.0],
-    };
     let whole: f32 = masses.iter().sum();
     let voxels = body.grid().solid_count() as f32 * masses[largest] / whole;
     Anchor {
         position,
-        right,
-        up: [-right[1], right[0]],
+        axes: turn_of::<D>(sums),
         scale: body.grid().voxel_size()
             * match D::N {
                 2 => (voxels / std::f32::consts::PI).sqrt(),
@@ -69,10 +66,36 @@ pub fn anchor<D: Dim>(body: &Body<D>) -> Anchor {
     }
 }
 
+/// The rotation part of a matrix, both by columns: the mean of it and of its inverse turned over, again and
+/// again [Higham 1986].
+fn turn_of<D: Dim>(mut columns: [Vector; 3]) -> [Vector; 3] {
+    let size = |columns: &[Vector; 3]| columns.iter().map(|c| dot(*c, *c)).sum::<f32>().sqrt();
+    if D::N == 2 {
+        // In the plane it turns around the third axis.
+        columns[2] = [0.0, 0.0, size(&columns)];
+    }
+    for _ in 0..STEPS {
+        let [a, b, c] = columns;
+        let large = size(&columns);
+        let volume = dot(a, cross(b, c));
+        if volume.is_nan() || volume <= FLAT * large * large * large {
+            return [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        }
+        let inverse = [cross(b, c), cross(c, a), cross(a, b)].map(|k| scaled(k, 1.0 / volume));
+        // Of the same size, both come close to the turn at once.
+        let share = (size(&inverse) / large).sqrt();
+        columns = [0, 1, 2].map(|k| {
+            let sum = plus(scaled(columns[k], share), scaled(inverse[k], 1.0 / share));
+            scaled(sum, 0.5)
+        });
+    }
+    columns
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::{Blade, Dim2, Material, Settings, VoxelGrid, World};
+    use fuwafuwa::{Blade, Dim2, Dim3, Material, Settings, VoxelGrid, World};
 
     #[test]
     fn it_turns_with_the_largest_piece_and_ignores_its_squash() {
@@ -81,7 +104,7 @@ mod tests {
         world.add_body(Body::new(grid, &[Material::default()]).unwrap());
         let rest = anchor(&world.bodies()[0]);
         assert!(
-            (rest.scale - 0.48).abs() < 0.02 && (rest.right[0] - 1.0).abs() < 1e-6,
+            (rest.scale - 0.48).abs() < 0.02 && (rest.axes[0][0] - 1.0).abs() < 1e-6,
             "{rest:?}"
         );
 
@@ -104,12 +127,31 @@ mod tests {
             }
         }
         let now = anchor(&world.bodies()[0]);
+        let [right, up, _] = now.axes;
         assert!(
-            (now.right[0] - cos).abs() < 1e-3 && (now.right[1] - sin).abs() < 1e-3,
+            (right[0] - cos).abs() < 1e-3 && (right[1] - sin).abs() < 1e-3,
             "{now:?}"
         );
-        assert_eq!(now.up, [-now.right[1], now.right[0]]);
+        assert!((up[0] + right[1]).abs() < 1e-5 && (up[1] - right[0]).abs() < 1e-5);
         assert!(now.position[0].abs() < 10.0 && now.scale < rest.scale);
+    }
+
+    #[test]
+    fn in_space_it_turns_around_any_axis() {
+        let mut world = World::<Dim3>::new(Settings::default()).unwrap();
+        let grid = VoxelGrid::ball(12, 1.0).unwrap();
+        world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+        let body = world.body_mut(0);
+        let ids: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
+        for id in ids {
+            // Half as high, then turned so that x leads to y, y to z and z to x.
+            let [x, y, z] = body.node_state(id).0;
+            body.set_node_state(id, [z, x, 0.5 * y], [0.0; 3]);
+        }
+        let wanted = [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]];
+        for (axis, wanted) in anchor(&world.bodies()[0]).axes.into_iter().zip(wanted) {
+            assert!(dot(axis, wanted) > 0.9999, "{axis:?}, not {wanted:?}");
+        }
     }
 
     fn middle(body: &Body<Dim2>) -> u32 {

@@ -2,7 +2,7 @@
 
 use crate::plane::{Flat, dot, flat, minus, plus, scaled};
 use crate::theme::Theme;
-use fuwafuwa::{Shape, Vector};
+use fuwafuwa::{Dim3, Shape, Vector, World};
 
 /// Everything that a picture needs beside the world; for one in space, a camera in space.
 #[derive(Clone, Debug)]
@@ -17,6 +17,10 @@ pub struct Frame<'a, C = Camera> {
     pub basket: Option<Basket>,
     /// Crumbs, dust, sparks.
     pub particles: &'a [Particle],
+    /// What lies on skins in space. In the plane whoever paints on top paints it.
+    pub stickers: &'a [Sticker],
+    /// A world whose bodies and hands are seen through, in space.
+    pub ghost: Option<&'a World<Dim3>>,
     /// A clock for slow motion that means nothing, like the march of dashes [s].
     pub seconds: f32,
 }
@@ -78,6 +82,34 @@ pub struct Particle {
     pub radius: f32,
     /// Red, green, blue (sRGB), opacity; 0 to 1.
     pub colour: [f32; 4],
+}
+
+/// A patch of the plane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mark {
+    /// Its corners, counterclockwise, to the right and up; all between them and their mean belongs to it.
+    pub outline: Vec<[f32; 2]>,
+    /// Red, green, blue (sRGB), opacity; 0 to 1.
+    pub colour: [f32; 4],
+    /// How far its middle stands out of where it lies, where there is room to: its edge does not.
+    pub bulge: f32,
+    /// How far its edge does.
+    pub lift: f32,
+}
+
+/// Marks on the skin of a piece, each on top of the one before: a face.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sticker {
+    /// The body, by its place in the world.
+    pub body: usize,
+    /// Its piece.
+    pub piece: u32,
+    /// A place inside [m]. The sticker lies on the skin that is seen from there.
+    pub from: Vector,
+    /// To the right, up, and out of the skin; as long as a mark's coordinate 1 is to be [m].
+    pub axes: [Vector; 3],
+    /// What is on it.
+    pub marks: Vec<Mark>,
 }
 
 impl Camera {

@@ -33,7 +33,7 @@ pub mod theme;
 
 pub use ages::Ages;
 pub use anchor::{Anchor, anchor};
-pub use frame::{Basket, Camera, Frame, Look, Particle};
+pub use frame::{Basket, Camera, Frame, Look, Mark, Particle, Sticker};
 pub use geometry::Geometry;
 pub use gpu::{ImageError, Renderer};
 pub use theme::{Colour, Theme};

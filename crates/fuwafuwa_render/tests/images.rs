@@ -28,6 +28,8 @@ fn frame(camera: Camera, theme: &Theme) -> Frame<'_> {
         look: Look::Skin,
         basket: None,
         particles: &[],
+        stickers: &[],
+        ghost: None,
         seconds: 0.0,
     }
 }

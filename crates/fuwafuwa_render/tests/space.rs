@@ -5,8 +5,8 @@ mod shared;
 
 use fuwafuwa::{Blade, Body, Dim3, Manipulator, Material, Settings, Shape, VoxelGrid, World};
 use fuwafuwa_render::frame::ElementColour;
-use fuwafuwa_render::space::{Camera, Renderer};
-use fuwafuwa_render::{Basket, Colour, Frame, Look, Particle, Theme};
+use fuwafuwa_render::space::{Camera, Cut, Renderer};
+use fuwafuwa_render::{Basket, Colour, Frame, Look, Mark, Particle, Sticker, Theme};
 use shared::{device, device_with, difference, is_warm};
 use std::sync::LazyLock;
 use wgpu::TextureFormat;
@@ -41,6 +41,8 @@ fn frame<'a>(camera: Camera) -> Frame<'a, Camera> {
         look: Look::Skin,
         basket: None,
         particles: &[],
+        stickers: &[],
+        ghost: None,
         seconds: 0.0,
     }
 }
@@ -194,7 +196,10 @@ fn a_cut_through_the_elements_shows_their_levels() {
             ages: &[],
             nodes: false,
         };
-        frame.camera.cut = Some(([0.0, 0.0, 1.0], 0.5));
+        frame.camera.cut = Some(Cut {
+            towards: [0.0, 0.0, 1.0],
+            share: 0.5,
+        });
         frame.camera.rise = 0.1;
     });
     let Some(picture) = picture else {
@@ -219,6 +224,65 @@ fn a_cut_through_the_elements_shows_their_levels() {
         count += 1;
     }
     assert!(count > 8, "{count} large elements");
+}
+
+#[test]
+fn a_sticker_is_seen_from_its_side_and_not_through_a_bar() {
+    let outline = [[-0.3, -0.3], [0.3, -0.3], [0.3, 0.3], [-0.3, 0.3]].to_vec();
+    let mark = Mark {
+        outline,
+        colour: [0.1, 0.2, 0.9, 1.0],
+        bulge: 0.05,
+        lift: 0.0,
+    };
+    let sticker = Sticker {
+        body: 0,
+        piece: 0,
+        from: [0.5; 3],
+        axes: [[0.5, 0.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 0.5]],
+        marks: vec![mark],
+    };
+    let stickers = [sticker];
+    let is_seen = |world: &World<Dim3>, turn: f32| {
+        let picture = take(world, TextureFormat::Rgba8Unorm, |frame| {
+            frame.stickers = &stickers;
+            frame.camera.turn = turn;
+            frame.camera.rise = 0.0;
+        });
+        let [red, _, blue] = picture?.around([0.5; 3]);
+        Some(blue > red + 0.3)
+    };
+    let mut world = ball();
+    let Some(from_the_front) = is_seen(&world, 0.0) else {
+        return;
+    };
+    assert!(from_the_front);
+    assert_eq!(is_seen(&world, std::f32::consts::PI), Some(false));
+    let (from, to, radius) = ([0.0, 0.5, 1.2], [1.0, 0.5, 1.2], 0.1);
+    let bar = Shape::Capsule { from, to, radius };
+    world.add_obstacle(bar, 0.2).unwrap();
+    assert_eq!(is_seen(&world, 0.0), Some(false));
+}
+
+#[test]
+fn a_ghost_is_seen_through_and_not_where_the_body_is() {
+    let (world, mut ghost) = (floating(), floating());
+    let grid = VoxelGrid::ball(16, 1.0).unwrap();
+    ghost.add_body(Body::new(grid, &[Material::default()]).unwrap());
+    let middle = |world: &World<Dim3>, ghost| {
+        let picture = take(world, TextureFormat::Rgba8Unorm, |frame| {
+            frame.ghost = ghost
+        });
+        Some(picture?.around([0.5; 3]))
+    };
+    let Some(floor) = middle(&world, None) else {
+        return;
+    };
+    let seen = middle(&world, Some(&ghost)).unwrap();
+    let less = lightness(floor) - lightness(seen);
+    assert!((0.03..0.3).contains(&less), "{floor:?} {seen:?}");
+    let alone = middle(&ghost, None).unwrap();
+    assert!(difference(alone, middle(&ghost, Some(&ghost)).unwrap()) < 0.01);
 }
 
 #[test]

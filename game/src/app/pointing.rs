@@ -6,6 +6,8 @@ use egui::{Context, Event, PointerButton};
 
 /// How far the wheel raises the hand [m/point].
 const WHEEL: f32 = 0.002;
+/// What share of a body it cuts off [1/point].
+const CUT: f32 = 0.0012;
 /// How far a mouse or a finger turns the camera [rad/point].
 const DRAG: f32 = 0.006;
 /// How fast a key or a stick that leans fully turns it [rad/s].
@@ -40,7 +42,7 @@ pub(super) fn point(game: &mut Game, ctx: &Context) {
     game.devices.pointer = Some(place);
 }
 
-/// In space the wheel and a second finger raise the hand; mouse, second finger, keys, sticks and pads turn the camera.
+/// In space the wheel and a second finger raise the hand, or the wheel cuts bodies open where their elements are seen; mouse, second finger, keys, sticks and pads turn the camera.
 pub(super) fn look_around(game: &mut Game, ctx: &Context, fingers: &mut Fingers) {
     let (wheel, mouse, seconds) = ctx.input(|input| {
         let turns = input.pointer.button_down(PointerButton::Secondary);
@@ -54,7 +56,13 @@ pub(super) fn look_around(game: &mut Game, ctx: &Context, fingers: &mut Fingers)
     let fingers = fingers.take();
     // The hand rises as far as the finger does.
     let metres = game.view.map_or(0.0, |view| 1.0 / view.scale);
-    game.devices.lift += WHEEL * wheel + metres * fingers.up;
+    game.devices.lift += metres * fingers.up;
+    if game.elements.is_none() {
+        game.devices.lift += WHEEL * wheel;
+    } else if wheel != 0.0 {
+        let still = game.settings.reduced_motion;
+        game.opening.cut(CUT * wheel, game.time, still);
+    }
     game.camera
         .orbit(-DRAG * (mouse.x + fingers.right), DRAG * mouse.y);
     let turn = TURN * seconds * game.devices.turn(&game.settings.bindings);

@@ -89,6 +89,11 @@ impl Camera {
         self.turn
     }
 
+    /// In space where it is, nearly: the shape of the screen has a say in it too [m].
+    pub fn eye(&self, arena: [Vector; 2]) -> Vector {
+        self.space_camera(arena, [16, 10]).eye()
+    }
+
     /// What it sees on a part of the screen that is to hold the arena of a level.
     pub fn view(&self, rect: Rect, level: &Level) -> View {
         match level.scene().dim {
@@ -97,17 +102,21 @@ impl Camera {
         }
     }
 
-    fn view_of_space(&self, rect: Rect, arena: [Vector; 2]) -> View {
-        let fitted = space::Camera::fit(arena[0], arena[1], pixels(rect));
+    fn space_camera(&self, arena: [Vector; 2], size: [u32; 2]) -> space::Camera {
+        let fitted = space::Camera::fit(arena[0], arena[1], size);
         let swing = self.shake * vec2(self.phase.sin(), (1.3 * self.phase).cos());
-        let camera = space::Camera {
+        space::Camera {
             target: plus(fitted.target, [self.lean.x, self.lean.y, 0.0]),
             distance: CLOSE * fitted.distance,
             turn: self.turn,
             rise: RISE + self.rise,
             shake: [swing.x, swing.y, 0.0],
             ..fitted
-        };
+        }
+    }
+
+    fn view_of_space(&self, rect: Rect, arena: [Vector; 2]) -> View {
+        let camera = self.space_camera(arena, pixels(rect));
         let [x, y, _] = camera.target;
         View {
             rect,

@@ -3,7 +3,7 @@
 use super::Camera;
 use super::confetti::Confetti;
 use super::feelings::{Fate, Feeling};
-use fuwafuwa::vector::{length, minus};
+use fuwafuwa::vector::{length, minus, plus, scaled};
 use fuwafuwa::{Body, Dim, Event, Vector, With};
 use tamaire_play::{AnyRound, Round};
 
@@ -18,7 +18,12 @@ const HURTS: f32 = 350.0;
 /// A hand that has gone so far needs no hint any more [m].
 const MOVED: f32 = 0.12;
 /// Air that slows dust down [1/s].
-const DRAG: f32 = 3.0;
+const DRAG: f32 = 1.5;
+/// Where something pulls dust down, it is thrown up as fast as it would fall in so long [s].
+const THROWN: f32 = 0.35;
+/// What of its speed dust keeps when it bounces off a wall, across it and along it; slower than this it lies [m/s].
+const BOUNCE: [f32; 2] = [0.45, 0.7];
+const LIES: f32 = 0.25;
 
 /// A speck of dust.
 #[derive(Copy, Clone, Debug)]
@@ -38,6 +43,16 @@ pub struct Speck {
 }
 
 impl Speck {
+    /// Comes to a wall that is square to an axis.
+    fn bounce(&mut self, axis: usize) {
+        let across = -BOUNCE[0] * self.velocity[axis];
+        self.velocity = match across.abs() < LIES {
+            true => [0.0; 3],
+            false => scaled(self.velocity, BOUNCE[1]),
+        };
+        self.velocity[axis] = if across.abs() < LIES { 0.0 } else { across };
+    }
+
     /// From 1 while it lies about to 0 when it goes.
     pub fn strength(&self) -> f32 {
         (self.left / 0.7).clamp(0.0, 1.0)
@@ -147,6 +162,7 @@ impl Effects {
         for (place, feeling) in self.feelings.iter_mut().enumerate() {
             let in_basket = |region: &fuwafuwa::Shape| region.distance(feeling.at).0 < 0.0;
             let fate = Fate {
+                eye: (D::N == 3).then(|| camera.eye(self.room)),
                 tick: world.ticks(),
                 torn: torn[place],
                 pressed: self.pressure > HURTS,
@@ -166,12 +182,11 @@ impl Effects {
                 speck.velocity[axis] *= slower;
                 speck.velocity[axis] += self.gravity[axis] * seconds;
                 speck.at[axis] += speck.velocity[axis] * seconds;
-                // What comes to a wall stays there.
                 let (first, last) = (low[axis] + speck.radius, high[axis] - speck.radius);
                 if speck.at[axis] < first || speck.at[axis] > last {
                     // A room may be narrower than a speck.
                     speck.at[axis] = speck.at[axis].min(last).max(first);
-                    speck.velocity = [0.0; 3];
+                    speck.bounce(axis);
                 }
             }
         }
@@ -205,11 +220,15 @@ impl Effects {
         }
         let mut any = |low: f32, high: f32| low + (high - low) * self.random.f32();
         let depth = if self.axes == 3 { any(-0.9, 0.9) } else { 0.0 };
+        let thrown = scaled(self.gravity, -THROWN);
+        let velocity = [any(-0.9, 0.9), any(-0.9, 0.9), depth];
+        // Much is fine, some are crumbs.
+        let size = any(0.0, 1.0);
         let speck = Speck {
             at,
-            velocity: [any(-0.9, 0.9), any(-0.9, 0.9), depth],
+            velocity: plus(velocity, thrown),
             left: any(1.5, 5.0),
-            radius: any(0.004, 0.012),
+            radius: 0.004 + 0.016 * size * size * size,
             material,
             is_fresh: any(0.0, 1.0) < 0.4,
         };

@@ -1,7 +1,17 @@
-//! The face of a body.
+//! The face of a body: marks on a piece of paper, which the plane shows as it is, and space sticks to the skin.
 
-use egui::epaint::{CubicBezierShape, EllipseShape};
-use egui::{Color32, Painter, Pos2, Stroke, Vec2, vec2};
+use super::View;
+use egui::{Color32, Painter, Pos2, Shape, Stroke, vec2};
+use fuwafuwa::Vector;
+use fuwafuwa::vector::{dot, length, minus, plus, scaled};
+use fuwafuwa_render::{Mark, Sticker};
+use std::f32::consts::{PI, TAU};
+
+/// Thickness of its lines, in sizes of the face, and on the screen at least [points].
+const LINE: f32 = 0.07;
+const THIN: f32 = 1.5;
+/// A smaller one cannot be read [points].
+const LEAST: f32 = 5.0;
 
 /// How a body feels.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -16,153 +26,237 @@ pub enum Mood {
     Beam,
 }
 
-/// Where a face is.
+/// A face as it is now.
 #[derive(Copy, Clone, Debug)]
-pub struct Place {
-    /// Its middle on the screen.
-    pub at: Pos2,
-    /// To its left eye's outside, in points: its size and how it is turned.
-    pub right: Vec2,
-    /// Upwards, of the same length.
-    pub up: Vec2,
-    /// What it looks at, on the screen.
-    pub look_at: Pos2,
+pub struct Face {
+    /// The body, by its place in the world, and the piece of it.
+    pub body: usize,
+    /// Its piece.
+    pub piece: u32,
+    /// Its middle; in space inside the body [m].
+    pub at: Vector,
+    /// To its right as it is seen, up, and out of it; as long as it is large [m].
+    pub axes: [Vector; 3],
+    /// What it shows.
+    pub mood: Mood,
+    /// From 0 = open to 1 = shut.
+    pub blink: f32,
+    /// What it looks at [m].
+    pub look_at: Vector,
 }
 
-/// Draws a face; `blink` from 0 = open to 1 = shut.
-pub fn draw_face(painter: &Painter, place: &Place, mood: Mood, blink: f32) {
-    let ink = Color32::from_rgb(74, 44, 42);
-    let point = |x: f32, y: f32| place.at + x * place.right + y * place.up;
-    let unit = place.right.length();
-    if unit < 5.0 {
-        return;
+impl Face {
+    /// Paints it over a picture of the plane.
+    pub fn paint(&self, painter: &Painter, view: &View) {
+        let [right, up, _] = self.axes.map(|axis| view.scale * vec2(axis[0], -axis[1]));
+        let unit = right.length();
+        if unit < LEAST {
+            return;
+        }
+        let at = view.on_screen(self.at);
+        for mark in self.marks(LINE.max(THIN / unit)) {
+            let corners = mark.outline.iter().map(|[x, y]| at + *x * right + *y * up);
+            let corners: Vec<Pos2> = corners.collect();
+            let [red, green, blue, alpha] = mark.colour.map(|k| (255.0 * k + 0.5) as u8);
+            let colour = Color32::from_rgba_unmultiplied(red, green, blue, alpha);
+            painter.add(Shape::convex_polygon(corners, colour, Stroke::NONE));
+        }
     }
-    let line = Stroke::new((0.07 * unit).max(1.5), ink);
-    let turn = place.right.angle();
-    for side in [-1.0, 1.0] {
-        let eye = point(0.42 * side, 0.18);
-        match mood {
+
+    /// As it lies on the skin of a body in space.
+    pub fn sticker(&self) -> Sticker {
+        Sticker {
+            body: self.body,
+            piece: self.piece,
+            from: self.at,
+            axes: self.axes,
+            marks: self.marks(LINE),
+        }
+    }
+
+    /// What it is made of, with lines so thick, in sizes of the face.
+    fn marks(&self, line: f32) -> Vec<Mark> {
+        let mut pen = Pen {
+            line,
+            marks: Vec::new(),
+        };
+        for side in [-1.0, 1.0] {
+            self.draw_eye(&mut pen, side);
+            let rosy = if self.mood == Mood::Beam { 0.43 } else { 0.27 };
+            let blush = with_alpha(rgb(240, 90, 90), rosy);
+            pen.area(ellipse([0.68 * side, -0.12], [0.14, 0.09]), blush, 0.0);
+        }
+        self.draw_mouth(&mut pen);
+        if self.mood == Mood::Wince {
+            draw_sweat(&mut pen);
+        }
+        pen.marks
+    }
+
+    fn draw_eye(&self, pen: &mut Pen, side: f32) {
+        let eye = [0.42 * side, 0.18];
+        match self.mood {
             Mood::Wince => {
                 // > <
                 let (outer, inner) = (0.60 * side, 0.28 * side);
-                let bend = point(inner, 0.18);
-                painter.line_segment([point(outer, 0.32), bend], line);
-                painter.line_segment([bend, point(outer, 0.04)], line);
-                painter.circle_filled(bend, 0.5 * line.width, ink);
+                pen.stroke(&[[outer, 0.32], [inner, 0.18], [outer, 0.04]]);
             }
             // ^ ^
-            Mood::Beam => arch(painter, line, &point, [0.42 * side, 0.10], 0.28),
-            Mood::Calm if blink > 0.6 => arch(painter, line, &point, [0.42 * side, 0.20], -0.12),
+            Mood::Beam => pen.arch([eye[0], 0.10], 0.28),
+            Mood::Calm if self.blink > 0.6 => pen.arch([eye[0], 0.20], -0.12),
             Mood::Calm | Mood::Shock => {
-                let is_shocked = mood == Mood::Shock;
-                let size = if is_shocked { 0.25 } else { 0.20 };
-                let open = if is_shocked { 1.0 } else { 1.0 - blink };
-                painter.add(EllipseShape {
-                    center: eye,
-                    radius: vec2(size, 1.15 * size * open) * unit,
-                    fill: Color32::WHITE,
-                    stroke: line,
-                    angle: turn,
-                });
-                let pupil = if is_shocked { 0.07 } else { 0.125 };
-                let way = place.look_at - eye;
-                let gaze = way / (way.length() + 0.8 * unit);
-                let at = eye + (size - pupil) * unit * vec2(gaze.x, gaze.y * open);
+                let is_shocked = self.mood == Mood::Shock;
+                let (size, pupil) = if is_shocked {
+                    (0.25, 0.07)
+                } else {
+                    (0.20, 0.125)
+                };
+                let open = if is_shocked { 1.0 } else { 1.0 - self.blink };
+                let oval = |by: f32| ellipse(eye, [size + by, 1.15 * size * open + by]);
+                pen.area(oval(0.5 * pen.line), INK, 0.04);
+                pen.area(oval(-0.5 * pen.line), WHITE, EYEBALL);
+                let gaze = self.gaze(eye);
+                let reach = size - pupil;
+                let at = plus(eye, [reach * gaze[0], reach * gaze[1] * open]);
                 let pupil = pupil * open.max(0.6);
-                painter.circle_filled(at, pupil * unit, ink);
-                let glint = at + vec2(-0.35, -0.4) * pupil * unit;
-                painter.circle_filled(glint, 0.35 * pupil * unit, Color32::WHITE);
+                pen.on_eyeball(ellipse(at, [pupil; 2]), INK);
+                let glint = plus(at, [-0.35 * pupil, 0.4 * pupil]);
+                pen.on_eyeball(ellipse(glint, [0.35 * pupil; 2]), WHITE);
             }
         }
-        let rosy = if mood == Mood::Beam { 110 } else { 70 };
-        let blush = Color32::from_rgba_unmultiplied(240, 90, 90, rosy);
-        painter.add(EllipseShape {
-            angle: turn,
-            ..EllipseShape::filled(point(0.68 * side, -0.12), vec2(0.14, 0.09) * unit, blush)
-        });
     }
-    if mood == Mood::Wince {
-        draw_sweat(painter, &point, unit);
+
+    /// Which way an eye looks, from −1 to 1 to the right and up.
+    fn gaze(&self, eye: [f32; 2]) -> [f32; 2] {
+        let by = minus(self.look_at, self.at);
+        let way = self
+            .axes
+            .map(|axis| dot(by, axis) / dot(axis, axis).max(1e-12));
+        let way = minus(way, [eye[0], eye[1], 0.0]);
+        let share = 1.0 / (length(way) + 0.8);
+        [share * way[0], share * way[1]]
     }
-    match mood {
-        Mood::Calm => curve(
-            painter,
-            line,
-            [
-                point(-0.14, -0.16),
-                point(-0.08, -0.28),
-                point(0.08, -0.28),
-                point(0.14, -0.16),
-            ],
-        ),
-        Mood::Wince => curve(
-            painter,
-            line,
-            [
-                point(-0.20, -0.22),
-                point(-0.08, -0.08),
-                point(0.08, -0.38),
-                point(0.20, -0.22),
-            ],
-        ),
-        Mood::Shock => {
-            let mouth = vec2(0.11, 0.16) * unit;
-            painter.add(EllipseShape {
-                angle: turn,
-                ..EllipseShape::filled(point(0.0, -0.28), mouth, ink)
-            });
-        }
-        Mood::Beam => {
-            let mut outline: Vec<Pos2> = vec![point(-0.26, -0.10)];
-            for step in 0..=12 {
-                let angle = std::f32::consts::PI * step as f32 / 12.0;
-                outline.push(point(-0.26 * angle.cos(), -0.10 - 0.30 * angle.sin()));
+
+    fn draw_mouth(&self, pen: &mut Pen) {
+        match self.mood {
+            Mood::Calm => pen.curve([[-0.14, -0.16], [-0.08, -0.28], [0.08, -0.28], [0.14, -0.16]]),
+            Mood::Wince => {
+                pen.curve([[-0.20, -0.22], [-0.08, -0.08], [0.08, -0.38], [0.20, -0.22]]);
             }
-            let shape = egui::Shape::convex_polygon(outline, ink, Stroke::NONE);
-            painter.add(shape);
-            let tongue = Color32::from_rgb(240, 110, 110);
-            painter.add(EllipseShape {
-                angle: turn,
-                ..EllipseShape::filled(point(0.0, -0.31), vec2(0.12, 0.07) * unit, tongue)
-            });
+            Mood::Shock => pen.area(ellipse([0.0, -0.28], [0.11, 0.16]), INK, 0.0),
+            Mood::Beam => {
+                let corners = (0..=12).map(|step| {
+                    let (sin, cos) = (PI * step as f32 / 12.0).sin_cos();
+                    [-0.26 * cos, -0.10 - 0.30 * sin]
+                });
+                pen.area(corners.collect(), INK, 0.0);
+                let tongue = ellipse([0.0, -0.31], [0.12, 0.07]);
+                pen.area(tongue, rgb(240, 110, 110), 0.03);
+            }
         }
     }
 }
 
-/// An arch over a place, as an eye that is shut; `rise` < 0 hangs down.
-fn arch(
-    painter: &Painter,
-    stroke: Stroke,
-    point: &impl Fn(f32, f32) -> Pos2,
-    [x, y]: [f32; 2],
-    rise: f32,
-) {
-    let points = [[-0.17, 0.0], [-0.12, rise], [0.12, rise], [0.17, 0.0]];
-    let points = points.map(|[across, up]| point(x + across, y + up));
-    curve(painter, stroke, points);
+/// What eyes and mouths are drawn with, and what they are.
+const INK: [f32; 4] = rgb(74, 44, 42);
+const WHITE: [f32; 4] = [1.0; 4];
+/// How far an eyeball stands out, in sizes of the face.
+const EYEBALL: f32 = 0.13;
+
+struct Pen {
+    /// How thick its lines are.
+    line: f32,
+    marks: Vec<Mark>,
+}
+
+impl Pen {
+    /// Fills an outline.
+    fn area(&mut self, outline: Vec<[f32; 2]>, colour: [f32; 4], bulge: f32) {
+        self.marks.push(Mark {
+            outline,
+            colour,
+            bulge,
+            lift: 0.0,
+        });
+    }
+
+    /// Fills an outline that lies on an eyeball.
+    fn on_eyeball(&mut self, outline: Vec<[f32; 2]>, colour: [f32; 4]) {
+        self.area(outline, colour, 0.02);
+        if let Some(mark) = self.marks.last_mut() {
+            mark.lift = 0.85 * EYEBALL;
+        }
+    }
+
+    /// Draws a line with round ends.
+    fn stroke(&mut self, points: &[[f32; 2]]) {
+        for pair in points.windows(2) {
+            let [dx, dy] = minus(pair[1], pair[0]);
+            let turn = dy.atan2(dx);
+            let corners = (0..16).map(|step| {
+                // Half around the end, then half around the beginning.
+                let end = pair[1 - step / 8];
+                let angle = turn - 0.5 * PI + PI * (step - step / 8) as f32 / 7.0;
+                plus(end, scaled([angle.cos(), angle.sin()], 0.5 * self.line))
+            });
+            self.area(corners.collect(), INK, 0.0);
+        }
+    }
+
+    /// Draws a Bézier curve.
+    fn curve(&mut self, [a, b, c, d]: [[f32; 2]; 4]) {
+        let points = (0..=10).map(|step| {
+            let (t, s) = (step as f32 / 10.0, 1.0 - step as f32 / 10.0);
+            let ends = plus(scaled(a, s * s * s), scaled(d, t * t * t));
+            let between = plus(scaled(b, 3.0 * s * s * t), scaled(c, 3.0 * s * t * t));
+            plus(ends, between)
+        });
+        self.stroke(&points.collect::<Vec<_>>());
+    }
+
+    /// Draws an arch over a place, as an eye that is shut; `rise` < 0 hangs down.
+    fn arch(&mut self, at: [f32; 2], rise: f32) {
+        let points = [[-0.17, 0.0], [-0.12, rise], [0.12, rise], [0.17, 0.0]];
+        self.curve(points.map(|by| plus(at, by)));
+    }
 }
 
 /// A drop at the temple.
-fn draw_sweat(painter: &Painter, point: &impl Fn(f32, f32) -> Pos2, unit: f32) {
-    let water = Color32::from_rgb(150, 210, 240);
-    let outline = [
-        [0.0, 0.20],
-        [0.08, 0.02],
-        [0.05, -0.06],
-        [-0.05, -0.06],
-        [-0.08, 0.02],
-    ];
-    let corners = outline.map(|[x, y]| point(0.80 + x, 0.42 + y));
-    let rim = Stroke::new((0.025 * unit).max(1.0), Color32::from_rgb(74, 120, 160));
-    painter.add(egui::Shape::convex_polygon(corners.to_vec(), water, rim));
+fn draw_sweat(pen: &mut Pen) {
+    let drop = |size: f32| {
+        // Counterclockwise from its tip.
+        let outline = [
+            [0.0, 0.20],
+            [-0.08, 0.02],
+            [-0.05, -0.06],
+            [0.05, -0.06],
+            [0.08, 0.02],
+        ];
+        outline
+            .map(|by| plus([0.80, 0.42], scaled(by, size)))
+            .to_vec()
+    };
+    pen.area(drop(1.2), rgb(74, 120, 160), 0.02);
+    pen.area(drop(1.0), rgb(150, 210, 240), 0.05);
 }
 
-fn curve(painter: &Painter, stroke: Stroke, points: [Pos2; 4]) {
-    let fill = Color32::TRANSPARENT;
-    painter.add(CubicBezierShape::from_points_stroke(
-        points, false, fill, stroke,
-    ));
-    for end in [points[0], points[3]] {
-        painter.circle_filled(end, 0.5 * stroke.width, stroke.color);
-    }
+fn ellipse(at: [f32; 2], size: [f32; 2]) -> Vec<[f32; 2]> {
+    let corners = (0..28).map(|step| {
+        let (sin, cos) = (TAU * step as f32 / 28.0).sin_cos();
+        plus(at, [size[0] * cos, size[1] * sin])
+    });
+    corners.collect()
+}
+
+const fn rgb(red: u8, green: u8, blue: u8) -> [f32; 4] {
+    [
+        red as f32 / 255.0,
+        green as f32 / 255.0,
+        blue as f32 / 255.0,
+        1.0,
+    ]
+}
+
+fn with_alpha([red, green, blue, _]: [f32; 4], alpha: f32) -> [f32; 4] {
+    [red, green, blue, alpha]
 }

@@ -1,7 +1,7 @@
 //! How a body feels, and where on it that is seen.
 
 use super::Mood;
-use fuwafuwa::vector::{length, minus, plus, scaled};
+use fuwafuwa::vector::{cross, dot, length, minus, plus, scaled};
 use fuwafuwa::world::TICK;
 use fuwafuwa::{Body, Dim, Vector};
 use fuwafuwa_render::anchor;
@@ -24,6 +24,12 @@ const LEAST: f32 = 0.03;
 const GLIDE: f32 = 7.0;
 const GROW: f32 = 6.0;
 const TURN: f32 = 25.0;
+/// In space a face looks at who looks, and so much above: bars stand low. One that is turned farther away than the first,
+/// as a cosine, wanders over the body until it is as close as the second. How fast it does so [1/s].
+const ABOVE: f32 = 0.4;
+const LOST: f32 = 0.8;
+const FOUND: f32 = 0.98;
+const WANDER: f32 = 7.0;
 
 /// How a body feels, and where on it that is seen.
 #[derive(Clone, Debug)]
@@ -34,10 +40,15 @@ pub struct Feeling {
     pub age: f32,
     /// Middle of its face [m].
     pub at: Vector,
-    /// What is to the right in the face, as seen along z; of length 1.
-    pub right: [f32; 2],
+    /// To the right in the face as it is seen, up, and out of it; of length 1.
+    pub axes: [Vector; 3],
     /// Half of the face's width [m], nearly; 0 when the body is dust.
     pub size: f32,
+    /// The piece that it is on.
+    pub piece: u32,
+    /// The same axes in the body at rest.
+    worn: [Vector; 3],
+    wanders: bool,
     seat: Option<Seat>,
     /// From the seat to where the face still is [m].
     behind: Vector,
@@ -68,6 +79,8 @@ pub struct Fate {
     pub pressed: bool,
     /// It is where it should be.
     pub home: bool,
+    /// In space where the camera is [m].
+    pub eye: Option<Vector>,
 }
 
 impl Feeling {
@@ -77,8 +90,11 @@ impl Feeling {
             mood: Mood::Calm,
             age: 9.0,
             at: [0.0; 3],
-            right: [1.0, 0.0],
+            axes: UPRIGHT,
             size: 0.0,
+            piece: 0,
+            worn: UPRIGHT,
+            wanders: false,
             seat: None,
             behind: [0.0; 3],
             strain: 0.0,
@@ -99,7 +115,32 @@ impl Feeling {
             self.choose_seat(body);
         }
         self.sit(body, TICK);
+        if let Some(eye) = fate.eye {
+            self.wander(eye, TICK);
+        }
         self.feel(fate);
+    }
+
+    /// Goes over the body to where the camera sees it, once it has been turned away.
+    fn wander(&mut self, eye: Vector, seconds: f32) {
+        let by = minus(eye, self.at);
+        let high = plus(by, [0.0, ABOVE * length(by), 0.0]);
+        let [_, up, out] = square([[0.0; 3], UPRIGHT[1], high]);
+        let least = if self.wanders { FOUND } else { LOST };
+        self.wanders = dot(self.axes[2], out).min(dot(self.axes[1], up)) < least;
+        if !self.wanders {
+            return;
+        }
+        let in_body = |of: Vector| {
+            let along = |k: usize| scaled(self.worn[k], dot(self.axes[k], of));
+            plus(plus(along(0), along(1)), along(2))
+        };
+        // Straight from behind any way is right.
+        let out = plus(in_body(out), scaled(self.worn[0], 0.05));
+        let share = WANDER * seconds;
+        let mixed = |from: Vector, to: Vector| plus(from, scaled(minus(to, from), share));
+        let [right, own_up, own_out] = self.worn;
+        self.worn = square([right, mixed(own_up, in_body(up)), mixed(own_out, out)]);
     }
 
     fn feel(&mut self, fate: Fate) {
@@ -142,11 +183,17 @@ impl Feeling {
         let at = body.node_state(seat.node).0;
         self.behind = self.behind.map(|k| towards(k, 0.0, GLIDE));
         self.at = plus(at, self.behind);
-        let turned = [0, 1].map(|axis| towards(self.right[axis], frame.right[axis], TURN));
-        let long = length(turned);
-        self.right = match long > 0.1 {
-            true => turned.map(|k| k / long),
-            false => frame.right,
+        self.piece = body.pieces().of_node(seat.node);
+        let now = self.worn.map(|axis| {
+            let along = |k: usize| scaled(frame.axes[k], axis[k]);
+            plus(plus(along(0), along(1)), along(2))
+        });
+        let turned = [0, 1, 2]
+            .map(|k| [0, 1, 2].map(|axis| towards(self.axes[k][axis], now[k][axis], TURN)));
+        // Half a turn has no middle.
+        self.axes = match length(turned[2]).min(length(turned[1])) > 0.1 {
+            true => square(turned),
+            false => now,
         };
         let room = 1.1 * seat.depth * body.grid().voxel_size();
         let size = (0.55 * frame.scale).min(room);
@@ -166,6 +213,17 @@ impl Feeling {
         }
         self.seat = after;
     }
+}
+
+/// To the right, up and towards who looks.
+const UPRIGHT: [Vector; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+/// Axes of length 1 and square to each other: the third as it is, the second nearly, the first as it must be.
+fn square([_, up, out]: [Vector; 3]) -> [Vector; 3] {
+    let unit = |of: Vector| scaled(of, 1.0 / length(of).max(1e-9));
+    let out = unit(out);
+    let right = unit(cross(up, out));
+    [right, cross(out, right), out]
 }
 
 fn is_there<D: Dim>(body: &Body<D>, seat: Seat) -> bool {
@@ -249,7 +307,7 @@ fn strain<D: Dim>(body: &Body<D>) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::{Blade, Dim2, Material, Settings, VoxelGrid, World};
+    use fuwafuwa::{Blade, Dim2, Dim3, Material, Settings, VoxelGrid, World};
 
     fn alone(grid: VoxelGrid<Dim2>) -> World<Dim2> {
         let mut world = World::new(Settings::default()).expect("usual");
@@ -296,6 +354,34 @@ mod tests {
         assert!(feeling.at[0] > before[0] + 0.05 && feeling.size < size);
         let dust = alone(VoxelGrid::ball(4, 0.05).expect("a crumb"));
         assert_eq!(Feeling::of(&dust.bodies()[0]).size, 0.0);
+    }
+
+    #[test]
+    fn in_space_a_face_turns_with_its_body_and_comes_back_to_the_camera() {
+        let mut world = World::<Dim3>::new(Settings::default()).expect("usual");
+        let grid = VoxelGrid::ball(12, 1.0).expect("a ball");
+        world.add_body(Body::new(grid, &[Material::default()]).expect("usual"));
+        let mut feeling = Feeling::of(&world.bodies()[0]);
+        assert!(feeling.axes[2][2] > 0.99, "{feeling:?}");
+        // The body turns its back.
+        let body = world.body_mut(0);
+        let ids: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
+        for id in ids {
+            let [x, y, z] = body.node_state(id).0;
+            body.set_node_state(id, [1.0 - x, y, 1.0 - z], [0.0; 3]);
+        }
+        let mut see = |eye, ticks: usize| {
+            let fate = Fate {
+                eye,
+                ..Fate::default()
+            };
+            (0..ticks).for_each(|_| feeling.see(&world.bodies()[0], fate));
+            feeling.axes
+        };
+        let [_, up, out] = see(None, 60);
+        assert!(out[2] < -0.99 && up[1] > 0.99, "{out:?}");
+        let [_, up, out] = see(Some([0.5, 0.0, 9.0]), 90);
+        assert!(out[2] > 0.9 && up[1] > 0.9, "{out:?}");
     }
 
     #[test]

@@ -1,12 +1,12 @@
 //! Little pictures of levels as they begin, drawn as rounds are.
 
 use super::feelings::Feeling;
-use super::stage::{basket, camera, place};
-use super::{Camera, Mood, Theme, View, draw_face};
+use super::stage::{camera, face_of, frame};
+use super::{Camera, Face, Theme, View};
 use eframe::egui_wgpu::RenderState;
 use egui::{Color32, Painter, Rect, TextureId, pos2};
 use fuwafuwa::Dim;
-use fuwafuwa_render::{Frame, Look, Renderer, space};
+use fuwafuwa_render::{Frame, Renderer, Sticker, space};
 use std::sync::Arc;
 use tamaire_play::{AnyRound, Level, Round};
 use wgpu::{CommandEncoder, FilterMode, TextureFormat, TextureUsages, TextureView};
@@ -27,7 +27,8 @@ pub struct Maps {
 struct Picture {
     level: Arc<Level>,
     texture: TextureId,
-    feelings: Vec<Feeling>,
+    /// In the plane; in space they are in the picture.
+    faces: Vec<Face>,
 }
 
 impl Maps {
@@ -40,8 +41,8 @@ impl Maps {
         let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
         painter.image(picture.texture, rect, whole, Color32::WHITE);
         let view = view(rect, level);
-        for feeling in &picture.feelings {
-            draw_face(painter, &place(feeling, &view, true), Mood::Calm, 0.0);
+        for face in &picture.faces {
+            face.paint(painter, &view);
         }
     }
 
@@ -94,24 +95,28 @@ impl Maps {
         let rect = Rect::from_min_max(pos2(0.0, 0.0), pos2(SIZE[0] as f32, SIZE[1] as f32));
         let view = view(rect, level);
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let feelings = match AnyRound::new(level.clone()) {
+        let faces = match AnyRound::new(level.clone()) {
             AnyRound::Plane(round) => {
                 let renderer = self
                     .renderer
                     .get_or_insert_with(|| Renderer::new(device, FORMAT));
-                let frame = still(camera(&view), theme, &round);
+                let frame = frame(camera(&view), &round, theme);
                 renderer.prepare(device, queue, &mut encoder, round.world(), &frame, SIZE);
                 renderer.paint(&mut pass(&mut encoder, &target));
-                feelings(&round)
+                faces(&round)
             }
             AnyRound::Space(round) => {
                 let new = || space::Renderer::new(device, FORMAT);
                 let renderer = self.space.get_or_insert_with(new);
                 let camera = view.space.expect("the view of a level in space has it");
-                let frame = still(camera, theme, &round);
+                let stickers: Vec<Sticker> = faces(&round).iter().map(Face::sticker).collect();
+                let frame = Frame {
+                    stickers: &stickers,
+                    ..frame(camera, &round, theme)
+                };
                 renderer.prepare(device, queue, &mut encoder, round.world(), &frame, SIZE);
                 renderer.paint(&mut pass(&mut encoder, &target));
-                feelings(&round)
+                Vec::new()
             }
         };
         queue.submit([encoder.finish()]);
@@ -119,25 +124,16 @@ impl Maps {
         Picture {
             level: level.clone(),
             texture: textures.register_native_texture(device, &target, FilterMode::Linear),
-            feelings,
+            faces,
         }
     }
 }
 
-/// How a round looks before it begins.
-fn still<'a, D: Dim, C>(camera: C, theme: &'a Theme, round: &Round<D>) -> Frame<'a, C> {
-    Frame {
-        camera,
-        theme: &theme.world,
-        look: Look::Skin,
-        basket: basket(round),
-        particles: &[],
-        seconds: 0.0,
-    }
-}
-
-fn feelings<D: Dim>(round: &Round<D>) -> Vec<Feeling> {
-    round.world().bodies().iter().map(Feeling::of).collect()
+fn faces<D: Dim>(round: &Round<D>) -> Vec<Face> {
+    let bodies = round.world().bodies().iter().enumerate();
+    bodies
+        .map(|(number, body)| face_of(number, &Feeling::of(body), 1.0))
+        .collect()
 }
 
 /// A pass that fills a picture.

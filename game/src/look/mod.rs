@@ -8,14 +8,16 @@ mod feelings;
 mod glow;
 mod hint;
 mod maps;
+mod opening;
 mod stage;
 mod theme;
 
 pub use camera::{Camera, View};
 pub use confetti::Confetti;
 pub use effects::Effects;
-pub use face::{Mood, Place, draw_face};
+pub use face::{Face, Mood};
 pub use feelings::Feeling;
 pub use maps::Maps;
+pub use opening::Opening;
 pub use stage::{Hint, Look, Stage};
 pub use theme::Theme;

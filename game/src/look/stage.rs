@@ -1,15 +1,14 @@
 //! A round on the screen: the world, what flies about, the faces.
 
 use super::camera::View;
-use super::face::Place;
 use super::feelings::Feeling;
-use super::{Effects, Maps, Mood, Theme, draw_face, glow, hint};
+use super::{Effects, Face, Maps, Mood, Theme, glow, hint};
 use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait, RenderState};
 use egui::{Color32, PaintCallbackInfo, Painter, Pos2, Rect, Stroke, Ui, vec2};
-use fuwafuwa::vector::{dot, length};
+use fuwafuwa::vector::{length, minus, plus, scaled};
 use fuwafuwa::{Dim, Dim2, Dim3, Vector};
 use fuwafuwa_render::frame::ElementColour;
-use fuwafuwa_render::{Ages, Basket, Camera, Frame, Particle, Renderer, space};
+use fuwafuwa_render::{Ages, Basket, Camera, Frame, Particle, Renderer, Sticker, space};
 use std::sync::{Arc, Mutex, PoisonError};
 use tamaire_play::{AnyRound, Level, Round};
 
@@ -22,6 +21,8 @@ pub struct Look<'a> {
     pub theme: &'a Theme,
     /// Whether to show the elements instead of the skin.
     pub elements: Option<ElementColour>,
+    /// In space, how much is left of a body that is opened for it, 0 to 1.
+    pub left: f32,
     /// What flies about.
     pub effects: &'a Effects,
     /// Seconds since the game began, for blinking.
@@ -47,6 +48,9 @@ pub enum Hint {
 
 /// Lines of a round that was played before.
 const GHOST: Color32 = Color32::from_rgba_premultiplied(42, 38, 56, 120);
+
+/// A camera that looks down more than this looks from above, as a sine.
+const DOWN: f32 = 0.8;
 
 /// Where rounds are drawn: a part of a window of egui's.
 pub struct Stage {
@@ -111,13 +115,24 @@ impl Stage {
             return;
         };
         let camera = space::Camera {
-            cut: look.elements.and_then(|_| cut(&camera, look)),
+            cut: look.elements.map(|_| cut(&camera, look.left)),
             ..camera
         };
         let size = pixels(ui, look.view.rect);
         self.follow_ages(round, look);
         let specks = particles(look);
-        let frame = frame(camera, round, look, &self.ages, &specks);
+        let stickers: Vec<Sticker> = faces(round, look).iter().map(Face::sticker).collect();
+        let frame = Frame {
+            look: shown(look, &self.ages),
+            particles: &specks,
+            stickers: &stickers,
+            ghost: match look.ghost {
+                Some(AnyRound::Space(ghost)) => Some(ghost.world()),
+                _ => None,
+            },
+            seconds: if look.still { 0.0 } else { look.time },
+            ..frame(camera, round, look.theme)
+        };
         let RenderState {
             device,
             queue,
@@ -134,12 +149,6 @@ impl Stage {
         let paint = Paint(shared.clone(), space::Renderer::paint);
         let painter = ui.painter();
         painter.add(Callback::new_paint_callback(look.view.rect, paint));
-        if let Some(AnyRound::Space(ghost)) = look.ghost {
-            draw_ghost_of_space(painter, ghost, &look.view);
-        }
-        if look.elements.is_none() {
-            draw_faces(painter, round, look);
-        }
         hint::draw_ring_of_space(painter, round, look);
         look.effects.confetti.draw(painter, &look.view.flat());
     }
@@ -149,7 +158,12 @@ impl Stage {
         let size = pixels(ui, view.rect);
         self.follow_ages(round, look);
         let specks = particles(look);
-        let frame = frame(camera(view), round, look, &self.ages, &specks);
+        let frame = Frame {
+            look: shown(look, &self.ages),
+            particles: &specks,
+            seconds: if look.still { 0.0 } else { look.time },
+            ..frame(camera(view), round, look.theme)
+        };
         let RenderState { device, queue, .. } = &self.state;
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let mut renderer = self.renderer.lock().unwrap_or_else(PoisonError::into_inner);
@@ -162,8 +176,8 @@ impl Stage {
         if let Some(AnyRound::Plane(ghost)) = look.ghost {
             draw_ghost(painter, ghost, view);
         }
-        if look.elements.is_none() {
-            draw_faces(painter, round, look);
+        for face in faces(round, look) {
+            face.paint(painter, view);
         }
         hint::draw(painter, round, look);
         look.effects.confetti.draw(painter, view);
@@ -186,13 +200,15 @@ impl Stage {
     }
 }
 
-/// What of bodies in space is left out of the element view: what is in front of the middle of the first.
-fn cut(camera: &space::Camera, look: &Look) -> Option<(Vector, f32)> {
-    let [x, _, z] = camera.axes()[2];
-    let long = length([x, z]).max(1e-3);
-    let towards = [x / long, 0.0, z / long];
-    let middle = look.effects.feelings.first()?.at;
-    Some((towards, dot(towards, middle)))
+/// How bodies in space are opened for whom a camera shows them: from the front, or from above where it looks down.
+fn cut(camera: &space::Camera, share: f32) -> space::Cut {
+    let [x, y, z] = camera.axes()[2];
+    let long = length([x, z]);
+    let towards = match y > DOWN {
+        true => [0.0, 1.0, 0.0],
+        false => [x / long, 0.0, z / long],
+    };
+    space::Cut { towards, share }
 }
 
 /// How much of the screen a part of a window is [px].
@@ -201,21 +217,18 @@ fn pixels(ui: &Ui, rect: Rect) -> [u32; 2] {
     [size.x.round() as u32, size.y.round() as u32]
 }
 
-/// How a round is seen from somewhere.
-fn frame<'a, D: Dim, C>(
-    camera: C,
-    round: &Round<D>,
-    look: &Look<'a>,
-    ages: &'a Ages,
-    particles: &'a [Particle],
-) -> Frame<'a, C> {
+/// How a round is seen from somewhere while nothing happens.
+pub(super) fn frame<'a, D: Dim, C>(camera: C, round: &Round<D>, theme: &'a Theme) -> Frame<'a, C> {
+    let fill = (round.progress().inside / round.level().game().share).clamp(0.0, 1.0);
     Frame {
         camera,
-        theme: &look.theme.world,
-        look: shown(look, ages),
-        basket: basket(round),
-        particles,
-        seconds: if look.still { 0.0 } else { look.time },
+        theme: &theme.world,
+        look: fuwafuwa_render::Look::Skin,
+        basket: round.basket().map(|&region| Basket { region, fill }),
+        particles: &[],
+        stickers: &[],
+        ghost: None,
+        seconds: 0.0,
     }
 }
 
@@ -241,12 +254,6 @@ pub(super) fn camera(view: &View) -> Camera {
     }
 }
 
-/// The basket of a round, as full as it is.
-pub(super) fn basket<D: Dim>(round: &Round<D>) -> Option<Basket> {
-    let fill = (round.progress().inside / round.level().game().share).clamp(0.0, 1.0);
-    round.basket().map(|&region| Basket { region, fill })
-}
-
 fn particles(look: &Look) -> Vec<Particle> {
     let world = &look.theme.world;
     let specks = look.effects.specks.iter().map(|speck| {
@@ -263,8 +270,11 @@ fn particles(look: &Look) -> Vec<Particle> {
     specks.collect()
 }
 
-fn draw_faces<D: Dim>(painter: &Painter, round: &Round<D>, look: &Look) {
-    let view = &look.view;
+/// The faces of all bodies; in the element view there are none.
+fn faces<D: Dim>(round: &Round<D>, look: &Look) -> Vec<Face> {
+    if look.elements.is_some() {
+        return Vec::new();
+    }
     let bodies = round.world().bodies();
     // Before the first tick nobody has felt anything.
     let fresh: Vec<Feeling>;
@@ -275,66 +285,36 @@ fn draw_faces<D: Dim>(painter: &Painter, round: &Round<D>, look: &Look) {
             &fresh
         }
     };
-    for (number, feeling) in feelings.iter().enumerate() {
+    let face = |(number, feeling): (usize, &Feeling)| {
         // Blinks every four seconds or so, not all at once.
         let phase = (look.time + 1.3 * number as f32).rem_euclid(3.7);
-        let blink = (1.0 - (phase - 0.1).abs() / 0.1).clamp(0.0, 1.0);
-        let at = view.on_screen(feeling.at);
         let hands = round.world().manipulators().iter();
-        let hands = hands.map(|hand| view.on_screen(hand.position()));
-        let look_at = hands.min_by(|a, b| a.distance(at).total_cmp(&b.distance(at)));
-        let place = Place {
-            look_at: look_at.unwrap_or(Pos2::ZERO),
-            ..place(feeling, view, look.still)
+        let hands = hands.map(|hand| hand.position());
+        let away = |hand: &Vector| length(minus(*hand, feeling.at));
+        let nearest = hands.min_by(|a, b| away(a).total_cmp(&away(b)));
+        let start = match look.still || feeling.mood == Mood::Calm {
+            true => 0.0,
+            false => 0.16 * (-9.0 * feeling.age).exp(),
         };
-        draw_face(painter, &place, feeling.mood, blink);
-    }
-}
-
-/// Where the face is on the screen; it starts a little when the mood changes.
-pub(super) fn place(feeling: &Feeling, view: &View, still: bool) -> Place {
-    let start = if still {
-        0.0
-    } else {
-        0.16 * (-9.0 * feeling.age).exp()
-    };
-    let start = if feeling.mood == Mood::Calm {
-        0.0
-    } else {
-        start
-    };
-    let size = (1.0 + start) * feeling.size * view.scale_at(feeling.at);
-    // In space it looks at the camera.
-    let [x, y] = match view.space {
-        None => feeling.right,
-        Some(_) => [1.0, 0.0],
-    };
-    Place {
-        at: view.on_screen(feeling.at),
-        right: size * vec2(x, -y),
-        up: size * vec2(-y, -x),
-        look_at: view.on_screen(feeling.at),
-    }
-}
-
-/// Rings around the pieces and hands of a round that was played before.
-fn draw_ghost_of_space(painter: &Painter, round: &Round<Dim3>, view: &View) {
-    let stroke = Stroke::new(2.5, GHOST);
-    let ring = |at, radius| {
-        painter.circle_stroke(view.on_screen(at), view.scale_at(at) * radius, stroke);
-    };
-    for body in round.world().bodies() {
-        let voxel = body.grid().voxel_size();
-        let density = body.materials()[0].density;
-        for piece in body.piece_views() {
-            let radius = (0.75 * piece.mass / density / std::f32::consts::PI).cbrt();
-            if radius > 2.0 * voxel {
-                ring(piece.centre, radius);
-            }
+        Face {
+            blink: (1.0 - (phase - 0.1).abs() / 0.1).clamp(0.0, 1.0),
+            look_at: nearest.unwrap_or(feeling.at),
+            ..face_of(number, feeling, 1.0 + start)
         }
-    }
-    for hand in round.world().manipulators() {
-        ring(hand.position(), hand.radius);
+    };
+    feelings.iter().enumerate().map(face).collect()
+}
+
+/// The face of a body that looks straight ahead, so many times as large as usual.
+pub(super) fn face_of(body: usize, feeling: &Feeling, size: f32) -> Face {
+    Face {
+        body,
+        piece: feeling.piece,
+        at: feeling.at,
+        axes: feeling.axes.map(|axis| scaled(axis, size * feeling.size)),
+        mood: feeling.mood,
+        blink: 0.0,
+        look_at: plus(feeling.at, feeling.axes[2]),
     }
 }
 

@@ -152,6 +152,9 @@ fn draw_chips(row: &mut Row, theme: &Theme, game: &Game) {
     if game.forces.is_cut() {
         chip("×", said.forces_cut);
     }
+    if game.elements.is_some() && game.turn().is_some() {
+        chip("↕", said.look_inside);
+    }
     if let Some(colour) = game.elements {
         draw_legend(row, theme, colour);
     }

@@ -30,6 +30,7 @@ pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
         view,
         theme: &theme,
         elements: game.elements,
+        left: game.opening.share(game.time, game.settings.reduced_motion),
         effects: &game.effects,
         time: game.time,
         ghost: game.session.ghost(),

@@ -182,6 +182,7 @@ pub(super) const WORDS: Words = Words {
             format!("Look around: buttons {around}"),
         ],
     },
+    look_inside: "Wheel: look deeper",
     watching: "Replay",
     settings_kept: "What was kept could not be read. It was put aside as",
     not_written: "This could not be written:",

@@ -177,6 +177,7 @@ pub(super) const WORDS: Words = Words {
             format!("見まわす：ボタン {around}"),
         ],
     },
+    look_inside: "ホイール：もっとおくを見る",
     watching: "リプレイ",
     settings_kept: "のこしたものが読めませんでした。もとのファイル：",
     not_written: "書きこめませんでした：",

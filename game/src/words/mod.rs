@@ -115,6 +115,8 @@ pub struct Words {
     pub no_sticks: &'static str,
     pub join_hint: &'static str,
     pub how_in_space: fn(Means, &[String; 3]) -> [String; 3],
+    /// How one looks deeper into bodies in space.
+    pub look_inside: &'static str,
     pub watching: &'static str,
     pub settings_kept: &'static str,
     pub not_written: &'static str,

@@ -31,6 +31,28 @@ fn skin(in: SkinCorner) -> @location(0) vec4f {
     return shown(flesh(base, fresh, in.normal.w, in.at, normal, facing), 1.0);
 }
 
+// Paint that shines a little.
+@fragment
+fn sticker(in: SkinCorner) -> @location(0) vec4f {
+    let normal = normalize(in.normal.xyz);
+    let light = normalize(LIGHT);
+    let open = open_to_light(in.at, normal);
+    let wrapped = clamp(dot(normal, light) * 0.5 + 0.5, 0.0, 1.0);
+    var colour = to_linear(in.colour.rgb) * mix(vec3f(0.66, 0.62, 0.68), vec3f(1.08), wrapped * mix(0.6, 1.0, open));
+    colour *= from_around(in.at, normal);
+    let towards = max(dot(normal, normalize(light + normalize(globals.eye.xyz - in.at))), 0.0);
+    colour += vec3f(0.35 * open * smoothstep(0.975, 0.999, towards));
+    return shown(under_hands(colour, in.at, normal), in.colour.a);
+}
+
+// A body that is seen through, more so where it faces the eye.
+@fragment
+fn ghost(in: SkinCorner) -> @location(0) vec4f {
+    let away = 1.0 - abs(dot(normalize(in.normal.xyz), normalize(globals.eye.xyz - in.at)));
+    let colour = mix(vec3f(0.45, 0.42, 0.62), in.colour.rgb, 0.25);
+    return shown(to_linear(colour), 0.16 + 0.6 * smoothstep(0.35, 1.0, away));
+}
+
 struct BoxCorner {
     @builtin(position) clip: vec4f,
     @location(0) at: vec3f,

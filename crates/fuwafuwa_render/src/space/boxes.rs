@@ -1,13 +1,13 @@
 //! Elements as boxes that have gone out of shape with them.
 
+use super::camera::Cut;
 use crate::elements::colour_of;
 use crate::frame::ElementColour;
 use crate::theme::{Theme, bytes};
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::dim::{add, corner, scale};
-use fuwafuwa::mesh::Element;
 use fuwafuwa::stencil::slot_index;
-use fuwafuwa::vector::{dot, minus, plus, scaled, three};
+use fuwafuwa::vector::{dot, length, minus, plus, scaled, three};
 use fuwafuwa::view::face_corners;
 use fuwafuwa::{Body, Dim3, ElementView, Vector};
 
@@ -15,6 +15,8 @@ use fuwafuwa::{Body, Dim3, ElementView, Vector};
 const GAP: f32 = 0.03;
 /// An element whose middle is so far behind the cut, in its own widths, has all its neighbours.
 const DEEP: f32 = 2.2;
+/// What is thinner has no inside to be looked into [voxels].
+const THIN: f32 = 6.0;
 
 /// A corner of a triangle of the element view.
 #[repr(C)]
@@ -48,24 +50,25 @@ impl Boxes {
         self.indices.clear();
     }
 
-    /// Adds the elements of a body with their middle inside the half-space `cut`, as far as something
-    /// of them can be seen.
+    /// Adds the elements of a body whose middle is not cut off, as far as something of them can be seen.
     pub fn add(
         &mut self,
         body: &Body<Dim3>,
         theme: &Theme,
         colour: ElementColour,
         ages: &[f32],
-        cut: Option<(Vector, f32)>,
+        cut: Option<Cut>,
     ) {
+        let planes = cut.map_or(Vec::new(), |cut| planes(body, cut));
         let mut quads: Vec<(u8, u8, Quads)> = Vec::new();
         for (id, element) in body.mesh().elements() {
             let bare = body.bare_faces(id);
-            let depth = match cut {
-                Some((normal, offset)) => offset - dot(normal, middle(body, element)),
-                None => f32::MAX,
-            };
-            let width = body.grid().voxel_size() * element.cell.width() as f32;
+            let width = element.cell.width() as f32;
+            let piece = body.pieces().of_node(element.nodes[0]) as usize;
+            let middle = element.cell.at.map(|k| (k as f32 + 0.5) * width);
+            let depth = planes
+                .get(piece)
+                .map_or(f32::MAX, |plane| plane.depth(middle));
             let is_at_cut = depth < DEEP * width;
             if depth < 0.0 || bare == 0 && !is_at_cut {
                 continue;
@@ -110,16 +113,67 @@ impl Boxes {
     }
 }
 
-/// The mean of the nodes of an element [m].
-fn middle(body: &Body<Dim3>, element: &Element) -> Vector {
-    let places = element
-        .nodes
-        .iter()
-        .map(|&id| three(body.positions()[id as usize]));
-    scaled(
-        places.fold([0.0; 3], plus),
-        1.0 / element.nodes.len() as f32,
-    )
+/// Where a piece is cut, in its body at rest [voxels].
+#[derive(Copy, Clone, Debug)]
+struct Plane {
+    axis: usize,
+    /// 1 or −1: on which side it is cut off.
+    side: f32,
+    /// Where, along the axis towards that side.
+    at: f32,
+}
+
+impl Plane {
+    /// How far a place at rest is behind it [voxels].
+    fn depth(&self, rest: Vector) -> f32 {
+        self.at - self.side * rest[self.axis]
+    }
+}
+
+/// Where each piece of a body is cut.
+fn planes(body: &Body<Dim3>, cut: Cut) -> Vec<Plane> {
+    let nodes = || {
+        body.mesh().nodes().map(|(id, node)| {
+            let at = three(body.positions()[id as usize]);
+            (
+                body.pieces().of_node(id) as usize,
+                at,
+                node.at.map(|k| k as f32),
+            )
+        })
+    };
+    let none = ([f32::MAX; 3], [f32::MIN; 3], [0.0; 3], 0.0f32);
+    let mut spans = vec![none; body.pieces().list.len()];
+    for (piece, at, rest) in nodes() {
+        let (low, high, sum, count) = &mut spans[piece];
+        (0..3).for_each(|k| (low[k], high[k]) = (low[k].min(rest[k]), high[k].max(rest[k])));
+        (*sum, *count) = (plus(*sum, at), *count + 1.0);
+    }
+    // By piece and axis: in which direction, more or less, the axis leads now.
+    let mut axes = vec![[[0.0; 3]; 3]; spans.len()];
+    for (piece, at, rest) in nodes() {
+        let (low, high, sum, count) = spans[piece];
+        let by = minus(at, scaled(sum, 1.0 / count));
+        for k in 0..3 {
+            let along = rest[k] - 0.5 * (low[k] + high[k]);
+            axes[piece][k] = plus(axes[piece][k], scaled(by, along));
+        }
+    }
+    let plane = |((low, high, ..), axes): ((Vector, Vector, _, _), [Vector; 3])| {
+        let facing = axes.map(|axis| dot(axis, cut.towards) / length(axis).max(1e-12));
+        let more = |a: &usize, b: &usize| facing[*a].abs().total_cmp(&facing[*b].abs());
+        let axis = (0..3).max_by(more).unwrap_or(0);
+        let side = 1.0f32.copysign(facing[axis]);
+        let wide = high[axis] - low[axis];
+        let first = (side * low[axis]).min(side * high[axis]);
+        let share = if wide < THIN { 2.0 } else { cut.share };
+        Plane {
+            axis,
+            side,
+            at: first + share * wide,
+        }
+    };
+    spans.into_iter().zip(axes).map(plane).collect()
 }
 
 /// The quads around what an element fills, those of a block in the order of its faces.
@@ -161,7 +215,7 @@ fn quads_of(level: u8, children: u8) -> Quads {
 mod tests {
     use super::*;
     use fuwafuwa::vector::cross;
-    use fuwafuwa::{Material, VoxelGrid};
+    use fuwafuwa::{Material, Settings, VoxelGrid, World};
 
     #[test]
     fn quads_close_around_what_is_filled() {
@@ -183,21 +237,41 @@ mod tests {
     }
 
     #[test]
-    fn boxes_fill_the_half_that_is_left() {
-        let grid = VoxelGrid::<Dim3>::cube(4, 1.0).unwrap();
-        let body = Body::new(grid, &[Material::default()]).unwrap();
-        let volume = |cut| {
+    fn boxes_fill_what_is_left_of_a_body_however_it_lies() {
+        let grid = VoxelGrid::<Dim3>::cube(8, 1.0).unwrap();
+        let mut world = World::<Dim3>::new(Settings::default()).unwrap();
+        world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+        let volume = |world: &World<Dim3>, share: f32| {
+            let towards = [0.6, 0.0, 0.8];
+            let (theme, cut) = (Theme::candy(), Some(Cut { towards, share }));
             let mut boxes = Boxes::default();
-            boxes.add(&body, &Theme::candy(), ElementColour::Level, &[], cut);
+            boxes.add(&world.bodies()[0], &theme, ElementColour::Level, &[], cut);
             let at = |k: &u32| boxes.vertices[*k as usize].at;
             let triangles = boxes.indices.chunks(3);
             let triangles = triangles.map(|t| (at(&t[0]), at(&t[1]), at(&t[2])));
-            triangles.map(|(a, b, c)| dot(a, cross(b, c))).sum::<f32>() / 6.0
+            let volume = triangles.map(|(a, b, c)| dot(a, cross(b, c))).sum::<f32>() / 6.0;
+            let front = boxes.vertices.iter().map(|vertex| dot(vertex.at, towards));
+            (volume, front.fold(f32::MIN, f32::max))
         };
         // Gaps make boxes smaller.
-        let half = volume(Some(([0.0, 0.0, 1.0], 0.5)));
-        assert!((0.44..0.5).contains(&half), "{half}");
-        assert!((volume(None) - 0.95).abs() < 0.05);
-        assert_eq!(volume(Some(([0.0, 0.0, 1.0], -1.0))), 0.0);
+        let (half, front) = volume(&world, 0.5);
+        assert!(
+            (0.44..0.5).contains(&half) && front < 1.01,
+            "{half} {front}"
+        );
+        assert!((0.84..0.97).contains(&volume(&world, 1.0).0));
+        assert_eq!(volume(&world, 0.0).0, 0.0);
+        // It lies on its side, away from where it was.
+        let body = world.body_mut(0);
+        let ids: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
+        for id in ids {
+            let [x, y, z] = body.node_state(id).0;
+            body.set_node_state(id, [1.0 - y + 5.0, z, 1.0 - x], [0.0; 3]);
+        }
+        let (half, front) = volume(&world, 0.5);
+        assert!(
+            (0.44..0.5).contains(&half) && front < 3.0 + 1.01,
+            "{half} {front}"
+        );
     }
 }

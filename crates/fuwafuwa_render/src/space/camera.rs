@@ -22,9 +22,18 @@ pub struct Camera {
     pub field: f32,
     /// By how much it is shaken out of place [m].
     pub shake: Vector,
-    /// A half-space, as its outward normal and its offset [m] along it: in the element view, elements
-    /// with their middle outside are left out, so that one looks into bodies.
-    pub cut: Option<(Vector, f32)>,
+    /// In the element view, what is left out of bodies, so that one looks into them.
+    pub cut: Option<Cut>,
+}
+
+/// Pieces that are cut open, each along the plane of its own grid that faces a direction most: so elements stay whole,
+/// and what was cut stays so while a body rolls and trembles.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Cut {
+    /// Where what is left out would be, of length 1.
+    pub towards: Vector,
+    /// How much of a piece is left, 0 to 1.
+    pub share: f32,
 }
 
 /// What is nearer than this share of the distance is not seen.

@@ -78,14 +78,6 @@ pub struct SkinPoint {
     is_dirty: bool,
 }
 
-impl SkinPoint {
-    /// Its vertex on the original surface, or inside.
-    pub fn vertex(&self, ground: Ground) -> Option<u32> {
-        let vertex = self.vertices[usize::from(ground == Ground::Torn)];
-        (vertex != NONE).then_some(vertex)
-    }
-}
-
 /// What a point lies on.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Ground {
@@ -189,12 +181,6 @@ impl Faces {
         self.indices.resize(6 * self.faces.all.len(), 0);
         new.iter().for_each(|&face| self.triangulate(face));
         any
-    }
-
-    /// The point of a node of the surface.
-    pub fn point_of(&self, node: u32) -> Option<u32> {
-        let place = self.of_node.get(node as usize)?;
-        (*place != NONE).then_some(*place)
     }
 
     /// Which elements differ from what they were, and what they are now.

@@ -5,8 +5,10 @@ use super::camera::Camera;
 use super::room::{RoomVertex, add_planes, plane};
 use super::rounded::RoundedInstance;
 use super::skin::Skin;
+use super::stickers::Stickers;
 use crate::frame::{Frame, Look};
 use crate::rigid::MOST_WALLS;
+use crate::theme::Theme;
 use fuwafuwa::vector::{minus, plus, scaled, three};
 use fuwafuwa::{Body, Dim3, Shape, Vector, World};
 use std::ops::Range;
@@ -24,7 +26,11 @@ pub struct Geometry {
     pub(crate) skins: Vec<Skin>,
     /// Which skins have other triangles than before.
     pub(crate) renewed: Vec<bool>,
+    /// The same of the ghost.
+    pub(crate) ghosts: Vec<Skin>,
+    pub(crate) renewed_ghosts: Vec<bool>,
     pub(crate) boxes: Boxes,
+    pub(crate) stickers: Stickers,
     pub(crate) room: Vec<RoomVertex>,
     /// Outward normal and offset of each half-space [m].
     pub(crate) walls: Vec<[f32; 4]>,
@@ -32,6 +38,7 @@ pub struct Geometry {
     pub(crate) rounded: Vec<RoundedInstance>,
     pub(crate) bars: Range<u32>,
     pub(crate) hands: Range<u32>,
+    pub(crate) ghost_hands: Range<u32>,
     pub(crate) crumbs: Range<u32>,
     pub(crate) dust: Range<u32>,
     pub(crate) lines: Range<u32>,
@@ -44,15 +51,23 @@ impl Geometry {
         self.gather_room(world, &frame.camera);
         self.rounded.clear();
         self.boxes.clear();
+        self.stickers.clear();
         let theme = frame.theme;
         let bars = world.obstacles().iter();
         let bars = bars.filter_map(|bar| RoundedInstance::of(bar.shape, theme.bar, 0.0));
         self.bars = append(&mut self.rounded, bars);
         let hands = || world.manipulators().iter().enumerate();
-        let balls = hands().filter_map(|(player, hand)| {
-            RoundedInstance::of(hand.shape(), theme.hand(player), player as f32)
-        });
-        self.hands = append(&mut self.rounded, balls);
+        self.hands = append(&mut self.rounded, balls(world, theme));
+        let ghosts = frame.ghost.map_or(&[][..], World::bodies);
+        self.ghosts.resize_with(ghosts.len(), Skin::default);
+        let skins = self.ghosts.iter_mut().zip(ghosts);
+        let renewed = skins.map(|(skin, body)| skin.follow(body, &theme.materials));
+        self.renewed_ghosts = renewed.collect();
+        let of_ghost = frame
+            .ghost
+            .into_iter()
+            .flat_map(|ghost| balls(ghost, theme));
+        self.ghost_hands = append(&mut self.rounded, of_ghost);
         self.skins.resize_with(world.bodies().len(), Skin::default);
         self.renewed.clear();
         let first = self.rounded.len() as u32;
@@ -73,6 +88,12 @@ impl Geometry {
             }
         }
         self.crumbs = first..self.rounded.len() as u32;
+        for sticker in frame.stickers.iter().filter(|_| frame.look == Look::Skin) {
+            if let Some(body) = world.bodies().get(sticker.body) {
+                let (skin, eye) = (&self.skins[sticker.body], frame.camera.eye());
+                self.stickers.add(sticker, skin, body, eye);
+            }
+        }
         let dust = frame.particles.iter().enumerate();
         let dust = dust.map(|(place, particle)| RoundedInstance {
             colour: particle.colour,
@@ -115,6 +136,14 @@ impl Geometry {
         let height = heights.fold(f32::MIN, f32::max);
         (f32::MIN < height && height < at[1]).then_some([at[0], height, at[2]])
     }
+}
+
+/// The hands of a world.
+fn balls(world: &World<Dim3>, theme: &Theme) -> impl Iterator<Item = RoundedInstance> {
+    let hands = world.manipulators().iter().enumerate();
+    hands.filter_map(|(player, hand)| {
+        RoundedInstance::of(hand.shape(), theme.hand(player), player as f32)
+    })
 }
 
 /// Adds instances; returns where they are.
@@ -163,7 +192,6 @@ fn crumb(body: &Body<Dim3>, id: u32, frame: &Frame<'_, Camera>) -> Option<Rounde
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Theme;
     use fuwafuwa::{Manipulator, Material, Settings, VoxelGrid};
 
     #[test]
@@ -191,6 +219,8 @@ mod tests {
             look: Look::Skin,
             basket: None,
             particles: &[],
+            stickers: &[],
+            ghost: None,
             seconds: 0.0,
         };
         let mut geometry = Geometry::default();

@@ -1,13 +1,12 @@
 //! Worlds in space: the same way through as in the plane.
 //!
 //! [`camera`] is what a caller says beside the rest of a [`crate::Frame`] → `rest` how a body is smooth
-//! before it moves → `faces` what of it is bare → [`skin`] its smooth surface now, [`anchor`] places on
+//! before it moves → `faces` what of it is bare → [`skin`] its smooth surface now, `stickers` what lies on
 //! it; `boxes` its elements → `rounded` and `room` everything rigid → [`geometry`] all of them → `gpu`
 //! draws them: first what the light and the sky see, then the picture.
 //!
 //! Up is the second axis: the sky, the lines below hands and the floor go by it.
 
-pub mod anchor;
 mod boxes;
 pub mod camera;
 mod faces;
@@ -18,9 +17,9 @@ mod rest;
 mod room;
 mod rounded;
 pub mod skin;
+mod stickers;
 
-pub use anchor::{SkinAnchor, Spot};
-pub use camera::Camera;
+pub use camera::{Camera, Cut};
 pub use geometry::Geometry;
 pub use gpu::Renderer;
 pub use skin::Skin;

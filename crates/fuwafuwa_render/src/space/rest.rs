@@ -102,12 +102,6 @@ impl Rest {
         self.grid.as_ref() == Some(grid)
     }
 
-    /// The points of the original surface, each with the octant of one of its voxels.
-    pub fn spots(&self) -> impl Iterator<Item = (Point, usize)> + '_ {
-        let points = self.points.iter();
-        points.map(|point| (point.at, point.group.trailing_zeros() as usize))
-    }
-
     /// How far a point is moved [voxels], as the voxel in an octant of it sees it: on the original
     /// surface so that stairs go, inside so that it is rough. It is the same on both lips of a crack.
     pub fn offset(&self, at: Point, octant: usize) -> Vector {

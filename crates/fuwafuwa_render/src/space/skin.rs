@@ -8,8 +8,8 @@ use super::faces::{Faces, Ground, NONE, SkinPoint};
 use super::rest::Rest;
 use crate::theme::Colour;
 use bytemuck::{Pod, Zeroable};
-use fuwafuwa::vector::{cross, dot, length, minus, plus, scaled, three};
-use fuwafuwa::{Body, Dim3, Vector};
+use fuwafuwa::vector::{cross, dot, minus, plus, scaled, three};
+use fuwafuwa::{Body, Dim3};
 
 /// By how much of the way to the mean of its neighbours a point goes in each round: on the original
 /// surface, at the mouth of a crack, inside. Rounds that go away from it give back the size that the
@@ -80,23 +80,20 @@ impl Skin {
         &self.faces.crumbs
     }
 
-    pub(super) fn rest(&self) -> &Rest {
-        &self.rest
-    }
-
-    pub(super) fn faces(&self) -> &Faces {
-        &self.faces
-    }
-
-    /// Where a point is [m].
-    pub(super) fn position_of(&self, point: u32) -> Vector {
-        three(self.places[point as usize])
-    }
-
-    /// Outwards at a vertex, of length 1.
-    pub(super) fn normal_of(&self, vertex: u32) -> Vector {
-        let normal = self.normals[vertex as usize];
-        scaled(normal, 1.0 / length(normal).max(1e-20))
+    /// Its vertices on a piece, as of the last look.
+    pub(super) fn vertices_of<'a>(
+        &'a self,
+        body: &'a Body<Dim3>,
+        piece: u32,
+    ) -> impl Iterator<Item = &'a SkinVertex> {
+        let corners = self.faces.vertices.all.iter().zip(&self.vertices);
+        let own = corners.filter(move |(corner, _)| {
+            let point = self.faces.points.all.get(corner.point as usize);
+            point.is_some_and(|point| {
+                point.node != NONE && body.pieces().of_node(point.node) == piece
+            })
+        });
+        own.map(|(_, vertex)| vertex)
     }
 
     /// Puts all points where their voxels carry them.
@@ -196,7 +193,7 @@ fn carried(point: &SkinPoint, node: [f32; 4], positions: &[[f32; 4]], size: f32)
 
 /// The mean edges of a voxel along its axes [m].
 #[inline]
-pub(super) fn edges(voxel: &[u32; 8], positions: &[[f32; 4]]) -> [[f32; 4]; 3] {
+fn edges(voxel: &[u32; 8], positions: &[[f32; 4]]) -> [[f32; 4]; 3] {
     let corners = voxel.map(|id| positions[id as usize]);
     [1, 2, 4].map(|side| {
         let low = [0, 1, 2, 3].map(|k| (k & (side - 1)) | (k & !(side - 1)) << 1);
@@ -209,6 +206,7 @@ pub(super) fn edges(voxel: &[u32; 8], positions: &[[f32; 4]]) -> [[f32; 4]; 3] {
 mod tests {
     use super::*;
     use crate::theme::Theme;
+    use fuwafuwa::vector::length;
     use fuwafuwa::{Blade, Material, Settings, VoxelGrid, World};
 
     fn ball(n: usize) -> World<Dim3> {

@@ -48,7 +48,9 @@ pub struct Renderer {
     globals: [BindGroup; 3],
     /// Vertices and triangles of each body.
     skins: Vec<[GrowingBuffer; 2]>,
+    ghosts: Vec<[GrowingBuffer; 2]>,
     boxes: [GrowingBuffer; 2],
+    stickers: [GrowingBuffer; 2],
     room: GrowingBuffer,
     rounded: GrowingBuffer,
     fine: [GrowingBuffer; 2],
@@ -101,7 +103,9 @@ impl Renderer {
             uniforms,
             globals,
             skins: Vec::new(),
+            ghosts: Vec::new(),
             boxes: mesh_buffers(device, "boxes"),
+            stickers: mesh_buffers(device, "stickers"),
             room: GrowingBuffer::new(device, "room", BufferUsages::VERTEX),
             rounded: GrowingBuffer::new(device, "rounded", BufferUsages::VERTEX),
             fine: mesh_buffers(device, "fine balls"),
@@ -139,11 +143,6 @@ impl Renderer {
         pass.draw(0..3, 0..1);
     }
 
-    /// The skin of a body, by its place in the world, as of the last picture that showed skins.
-    pub fn skin(&self, body: usize) -> Option<&Skin> {
-        self.geometry.skins.get(body)
-    }
-
     /// Draws a world into an image, as [`crate::Renderer::render_to_image`] does in the plane.
     ///
     /// # Errors
@@ -165,33 +164,20 @@ impl Renderer {
 
     fn upload(&mut self, device: &Device, queue: &Queue) {
         let Geometry {
-            skins,
-            renewed,
             boxes,
+            stickers,
             room,
             rounded,
             ..
         } = &self.geometry;
-        self.skins.truncate(skins.len());
-        while self.skins.len() < skins.len() {
-            self.skins.push(mesh_buffers(device, "skin"));
-        }
-        for (place, is_new) in renewed.iter().enumerate() {
-            let (skin, [vertices, indices]) = (&skins[place], &mut self.skins[place]);
-            vertices.write(device, queue, skin.vertices());
-            // A body that is gone leaves its buffers to the next one.
-            if *is_new || indices.count() as usize != skin.indices().len() {
-                let there = drawable(skin.indices(), skin.vertices(), vertices.count());
-                indices.write(device, queue, there);
-            }
-        }
-        write_mesh(
-            device,
-            queue,
-            &mut self.boxes,
-            &boxes.vertices,
-            &boxes.indices,
-        );
+        let (skins, renewed) = (&self.geometry.skins, &self.geometry.renewed);
+        write_skins(device, queue, &mut self.skins, skins, renewed);
+        let (skins, renewed) = (&self.geometry.ghosts, &self.geometry.renewed_ghosts);
+        write_skins(device, queue, &mut self.ghosts, skins, renewed);
+        let (vertices, indices) = (&boxes.vertices, &boxes.indices);
+        write_mesh(device, queue, &mut self.boxes, vertices, indices);
+        let (vertices, indices) = (&stickers.vertices, &stickers.indices);
+        write_mesh(device, queue, &mut self.stickers, vertices, indices);
         self.room.write(device, queue, room);
         self.rounded.write(device, queue, rounded);
         for (buffers, fineness) in [(&mut self.fine, FINE), (&mut self.coarse, COARSE)] {
@@ -298,18 +284,45 @@ impl Renderer {
         self.draw_skins(&mut pass);
         pass.set_pipeline(&pipelines.element);
         draw_mesh(&mut pass, &self.boxes, 0..1);
-        pass.set_vertex_buffer(1, self.rounded.all());
-        for (pipeline, mesh, instances) in [
-            (&pipelines.bar, &self.fine, &geometry.bars),
-            (&pipelines.crumb, &self.coarse, &geometry.crumbs),
-            (&pipelines.hidden_hand, &self.fine, &geometry.hands),
-            (&pipelines.hand, &self.fine, &geometry.hands),
-            (&pipelines.glow, &self.fine, &geometry.basket),
-            (&pipelines.line, &self.coarse, &geometry.lines),
-            (&pipelines.dust, &self.coarse, &geometry.dust),
-        ] {
+        self.draw_rounded(
+            &mut pass,
+            [
+                (&pipelines.bar, &self.fine, &geometry.bars),
+                (&pipelines.crumb, &self.coarse, &geometry.crumbs),
+                (&pipelines.hidden_hand, &self.fine, &geometry.hands),
+                (&pipelines.hand, &self.fine, &geometry.hands),
+            ],
+        );
+        pass.set_pipeline(&pipelines.sticker);
+        draw_mesh(&mut pass, &self.stickers, 0..1);
+        self.draw_rounded(
+            &mut pass,
+            [
+                (&pipelines.glow, &self.fine, &geometry.basket),
+                (&pipelines.line, &self.coarse, &geometry.lines),
+                (&pipelines.dust, &self.coarse, &geometry.dust),
+            ],
+        );
+        // Of a ghost one sees what is in front; so that is found first.
+        for pipeline in [&pipelines.ghost_depth, &pipelines.ghost] {
             pass.set_pipeline(pipeline);
-            draw_mesh(&mut pass, mesh, self.there(instances));
+            for buffers in &self.ghosts {
+                draw_mesh(&mut pass, buffers, 0..1);
+            }
+        }
+        let hands = (&pipelines.ghost_hand, &self.fine, &geometry.ghost_hands);
+        self.draw_rounded(&mut pass, [hands]);
+    }
+
+    fn draw_rounded<const K: usize>(
+        &self,
+        pass: &mut RenderPass<'_>,
+        kinds: [(&RenderPipeline, &[GrowingBuffer; 2], &Range<u32>); K],
+    ) {
+        pass.set_vertex_buffer(1, self.rounded.all());
+        for (pipeline, mesh, instances) in kinds {
+            pass.set_pipeline(pipeline);
+            draw_mesh(pass, mesh, self.there(instances));
         }
     }
 
@@ -349,6 +362,29 @@ fn seen_by(light: Vector, middle: Vector, half: f32) -> Matrix {
 fn mesh_buffers(device: &Device, label: &'static str) -> [GrowingBuffer; 2] {
     [BufferUsages::VERTEX, BufferUsages::INDEX]
         .map(|usage| GrowingBuffer::new(device, label, usage))
+}
+
+/// Writes skins; those that were not renewed have the triangles that they had.
+fn write_skins(
+    device: &Device,
+    queue: &Queue,
+    buffers: &mut Vec<[GrowingBuffer; 2]>,
+    skins: &[Skin],
+    renewed: &[bool],
+) {
+    buffers.truncate(skins.len());
+    while buffers.len() < skins.len() {
+        buffers.push(mesh_buffers(device, "skin"));
+    }
+    for (place, is_new) in renewed.iter().enumerate() {
+        let (skin, [vertices, indices]) = (&skins[place], &mut buffers[place]);
+        vertices.write(device, queue, skin.vertices());
+        // A body that is gone leaves its buffers to the next one.
+        if *is_new || indices.count() as usize != skin.indices().len() {
+            let there = drawable(skin.indices(), skin.vertices(), vertices.count());
+            indices.write(device, queue, there);
+        }
+    }
 }
 
 fn write_mesh<T: Pod>(

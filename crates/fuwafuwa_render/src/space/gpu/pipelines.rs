@@ -18,6 +18,10 @@ pub struct Pipelines {
     pub sky: RenderPipeline,
     pub room: RenderPipeline,
     pub skin: RenderPipeline,
+    pub sticker: RenderPipeline,
+    pub ghost_depth: RenderPipeline,
+    pub ghost: RenderPipeline,
+    pub ghost_hand: RenderPipeline,
     pub element: RenderPipeline,
     pub bar: RenderPipeline,
     pub hand: RenderPipeline,
@@ -115,6 +119,26 @@ impl Pipelines {
             }),
             ..clear.clone()
         };
+        // A ghost in the same place as a body is a little behind it, and not seen.
+        let farther = |is_written| {
+            Some(DepthStencilState {
+                bias: DepthBiasState {
+                    constant: 16,
+                    slope_scale: 4.0,
+                    clamp: 0.0,
+                },
+                ..depth_state(DEPTH_FORMAT, is_written)
+            })
+        };
+        let ghost_depth = Target {
+            depth: farther(true),
+            mask: ColorWrites::empty(),
+            ..solid.clone()
+        };
+        let ghost = Target {
+            depth: farther(false),
+            ..clear.clone()
+        };
         let window_entry = match target.is_srgb() {
             true => "linear_window",
             false => "window",
@@ -128,6 +152,11 @@ impl Pipelines {
                 &solid,
             ),
             skin: drawn(&skin, ("skin_corner", "skin"), &skins, &solid),
+            // No mark of a sticker hides another: they are painted on top of each other.
+            sticker: drawn(&skin, ("skin_corner", "sticker"), &skins, &clear),
+            ghost_depth: drawn(&skin, ("skin_corner", "ghost"), &skins, &ghost_depth),
+            ghost: drawn(&skin, ("skin_corner", "ghost"), &skins, &ghost),
+            ghost_hand: balls(("plain_corner", "hidden_hand"), &clear),
             element: drawn(&skin, ("box_corner", "box_side"), &boxes, &solid),
             bar: balls(("plain_corner", "bar"), &solid),
             hand: balls(("plain_corner", "hand"), &solid),

@@ -1,0 +1,256 @@
+//! Stickers as vertices: every mark a cushion that lies on the skin, however that has gone out of shape.
+//!
+//! ```text
+//!        out            The skin is seen as heights over the plane of the sticker, which are found
+//!      ╭──┼──╮          anew each time: so a sticker needs to know nothing of tears, and lies on
+//!    ╭╯   ┼   ╰╮        what is outermost there now.
+//!   ╱    from   ╲
+//! ```
+
+use super::skin::{Skin, SkinVertex};
+use crate::frame::{Mark, Sticker};
+use crate::theme::bytes;
+use fuwafuwa::vector::{cross, dot, length, minus, plus, scaled};
+use fuwafuwa::{Body, Dim3, Vector};
+
+/// The heights of the skin reach so far to each side, in coordinates of marks, and are so many in a row.
+const REACH: f32 = 1.2;
+const SIDE: usize = 25;
+/// A height is the mean of what is so near, in coordinates of marks and in voxels: what of both is more.
+const NEAR: [f32; 2] = [0.12, 1.1];
+/// Skin that is lower than another by so much, in coordinates of marks, lies below a fold.
+const FOLD: f32 = 0.3;
+/// So much closer to the eye than its place on the skin is a mark, in coordinates of marks: no bump shows through.
+const CLOSER: f32 = 0.06;
+/// The rings of a cushion, as shares of the way from its middle to its edge.
+const RINGS: [f32; 5] = [1.0, 0.94, 0.8, 0.55, 0.25];
+
+/// Stickers as vertices, with the buffers to make them again and again.
+#[derive(Clone, Debug, Default)]
+pub struct Stickers {
+    /// Corners; their place at rest says nothing, and the last of their colour is their opacity.
+    pub vertices: Vec<SkinVertex>,
+    /// Three to a triangle.
+    pub indices: Vec<u32>,
+}
+
+impl Stickers {
+    /// Forgets all stickers.
+    pub fn clear(&mut self) {
+        self.vertices.clear();
+        self.indices.clear();
+    }
+
+    /// Adds a sticker, as it is seen from a place [m].
+    pub fn add(&mut self, sticker: &Sticker, skin: &Skin, body: &Body<Dim3>, eye: Vector) {
+        let Some(heights) = Heights::new(sticker, skin, body) else {
+            return;
+        };
+        for mark in &sticker.marks {
+            self.add_mark(mark, &heights, sticker, eye);
+        }
+    }
+
+    fn add_mark(&mut self, mark: &Mark, heights: &Heights, sticker: &Sticker, eye: Vector) {
+        let count = mark.outline.len();
+        let sum = mark.outline.iter().fold([0.0; 2], |sum, &at| plus(sum, at));
+        let middle = scaled(sum, 1.0 / count as f32);
+        let place = |at: [f32; 2], height: f32| {
+            let [right, up, out] = sticker.axes;
+            let along = plus(scaled(right, at[0]), scaled(up, at[1]));
+            plus(
+                sticker.from,
+                plus(along, scaled(out, heights.at(at) + height)),
+            )
+        };
+        let mut places: Vec<Vector> = Vec::new();
+        for ring in RINGS {
+            let height = mark.lift + mark.bulge * (1.0 - ring * ring).sqrt();
+            let corners = mark.outline.iter();
+            places.extend(
+                corners.map(|&at| place(plus(middle, scaled(minus(at, middle), ring)), height)),
+            );
+        }
+        places.push(place(middle, mark.lift + mark.bulge));
+        let mut triangles: Vec<[usize; 3]> = Vec::new();
+        for k in 0..count {
+            let next = (k + 1) % count;
+            for ring in 0..RINGS.len() - 1 {
+                let (outer, inner) = (ring * count, (ring + 1) * count);
+                triangles.push([outer + k, outer + next, inner + next]);
+                triangles.push([outer + k, inner + next, inner + k]);
+            }
+            let last = (RINGS.len() - 1) * count;
+            triangles.push([last + k, last + next, places.len() - 1]);
+        }
+        let mut normals = vec![[0.0; 3]; places.len()];
+        for corners in &triangles {
+            let [a, b, c] = corners.map(|corner| places[corner]);
+            let normal = cross(minus(b, a), minus(c, a));
+            for &corner in corners {
+                normals[corner] = plus(normals[corner], normal);
+            }
+        }
+        let first = self.vertices.len();
+        let [red, green, blue, alpha] = mark.colour;
+        let colour = bytes([red, green, blue], alpha);
+        let closer = CLOSER * length(sticker.axes[2]);
+        self.vertices
+            .extend(places.iter().zip(normals).map(|(&at, normal)| {
+                let way = minus(eye, at);
+                let normal = scaled(normal, 32767.0 / length(normal).max(1e-20));
+                let [x, y, z] = normal.map(|k| k as i16);
+                SkinVertex {
+                    at: plus(at, scaled(way, closer / length(way).max(closer))),
+                    normal: [x, y, z, 0],
+                    colour,
+                    ..SkinVertex::default()
+                }
+            }));
+        let corners = triangles.into_iter().flatten();
+        self.indices
+            .extend(corners.map(|corner| (first + corner) as u32));
+    }
+}
+
+/// The skin around a sticker, as heights over its plane, in coordinates of marks.
+struct Heights([f32; SIDE * SIDE]);
+
+impl Heights {
+    /// Finds it; none where there is no skin.
+    fn new(sticker: &Sticker, skin: &Skin, body: &Body<Dim3>) -> Option<Self> {
+        let square = sticker.axes.map(|axis| dot(axis, axis));
+        if square.contains(&0.0) {
+            return None;
+        }
+        let voxel = body.grid().voxel_size() / square[2].sqrt();
+        let near = NEAR[0].max(NEAR[1] * voxel);
+        let mut seen: Vec<[f32; 3]> = Vec::new();
+        for vertex in skin.vertices_of(body, sticker.piece) {
+            let by = minus(vertex.at, sticker.from);
+            let at = [0, 1, 2].map(|k| dot(by, sticker.axes[k]) / square[k]);
+            let normal = [0, 1, 2].map(|k| f32::from(vertex.normal[k]));
+            let is_in_reach = at[0].abs().max(at[1].abs()) < REACH + 2.0 * near;
+            if is_in_reach && at[2] > 0.0 && dot(normal, sticker.axes[2]) > 0.0 {
+                seen.push(at);
+            }
+        }
+        // Where there is no skin, the plane goes on where the skin ended.
+        let lowest = seen.iter().map(|at| at[2]).reduce(f32::min)?;
+        let reach = 2.0 * near;
+        let mut tops = [lowest; SIDE * SIDE];
+        for by in &seen {
+            around(by, reach, |place, _| tops[place] = tops[place].max(by[2]));
+        }
+        let (mut sums, mut weights) = ([lowest * 1e-6; SIDE * SIDE], [1e-6; SIDE * SIDE]);
+        for by in &seen {
+            around(by, reach, |place, share| {
+                if by[2] > tops[place] - FOLD {
+                    sums[place] += share * by[2];
+                    weights[place] += share;
+                }
+            });
+        }
+        Some(Self(std::array::from_fn(|k| sums[k] / weights[k])))
+    }
+
+    /// The height at a place.
+    fn at(&self, place: [f32; 2]) -> f32 {
+        let last = SIDE as f32 - 1.0;
+        let [x, y] = place.map(|k| (0.5 * last * (k / REACH + 1.0)).clamp(0.0, last - 1e-3));
+        let (left, low) = (x as usize, y as usize);
+        let (right, up) = (x - left as f32, y - low as f32);
+        let row = |low: usize| {
+            let first = low * SIDE + left;
+            self.0[first] + right * (self.0[first + 1] - self.0[first])
+        };
+        row(low) + up * (row(low + 1) - row(low))
+    }
+}
+
+/// Does something with all heights that are closer to a place than `reach`, and by how much they are, 0 to 1.
+fn around(place: &[f32; 3], reach: f32, mut act: impl FnMut(usize, f32)) {
+    let step = 2.0 * REACH / (SIDE - 1) as f32;
+    let range = |k: usize| {
+        let first = ((place[k] + REACH - reach) / step).ceil().max(0.0) as usize;
+        let last = ((place[k] + REACH + reach) / step).floor();
+        first..(last + 1.0).clamp(0.0, SIDE as f32) as usize
+    };
+    for y in range(1) {
+        for x in range(0) {
+            let away = minus(
+                [x, y].map(|k| step * k as f32 - REACH),
+                [place[0], place[1]],
+            );
+            let share = 1.0 - dot(away, away) / (reach * reach);
+            if share > 0.0 {
+                act(y * SIDE + x, share * share * share);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Theme;
+    use fuwafuwa::{Blade, Material, Settings, VoxelGrid, World};
+
+    #[test]
+    fn a_sticker_lies_on_the_skin_and_on_what_is_left_of_it() {
+        let mut world = World::<Dim3>::new(Settings::default()).unwrap();
+        let grid = VoxelGrid::ball(32, 1.0).unwrap();
+        world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+        let outline = [[-0.6, -0.6], [0.6, -0.6], [0.6, 0.6], [-0.6, 0.6]].to_vec();
+        let mark = Mark {
+            outline,
+            colour: [1.0; 4],
+            bulge: 0.0,
+            lift: 0.0,
+        };
+        let mut sticker = Sticker {
+            body: 0,
+            piece: 0,
+            from: [0.5; 3],
+            axes: [[0.25, 0.0, 0.0], [0.0, 0.25, 0.0], [0.0, 0.0, 0.25]],
+            marks: vec![mark],
+        };
+        let mut skin = Skin::default();
+        let mut stuck = |world: &World<Dim3>, sticker: &Sticker| {
+            let body = &world.bodies()[0];
+            skin.follow(body, &Theme::candy().materials);
+            let mut stickers = Stickers::default();
+            stickers.add(sticker, &skin, body, [0.5, 0.5, 9.0]);
+            stickers
+        };
+        let whole = stuck(&world, &sticker);
+        assert_eq!(whole.vertices.len(), 21);
+        for vertex in &whole.vertices {
+            let away = length(minus(vertex.at, [0.5; 3]));
+            // As far out as the skin, and no more than a bump of it closer to the eye.
+            assert!((0.485..0.53).contains(&away), "{away}");
+            assert!(vertex.normal[2] > 20000, "{vertex:?}");
+        }
+        // A slice is cut off: the sticker lies on the torn face of what is left.
+        let (from, across, along) = ([-0.2, -0.2, 0.75], [1.4, 0.0, 0.0], [0.0, 1.4, 0.0]);
+        let blade = Blade {
+            from,
+            across,
+            along,
+        };
+        world.cut(0, &blade);
+        let body = &world.bodies()[0];
+        let nodes = body.mesh().nodes();
+        let inside = nodes.min_by(|a, b| {
+            let away = |id: u32| length(minus(body.node_state(id).0, [0.5; 3]));
+            away(a.0).total_cmp(&away(b.0))
+        });
+        sticker.piece = body.pieces().of_node(inside.unwrap().0);
+        for vertex in stuck(&world, &sticker).vertices {
+            assert!((0.73..0.81).contains(&vertex.at[2]), "{vertex:?}");
+        }
+        // What is not there has no stickers.
+        sticker.piece = 99;
+        assert!(stuck(&world, &sticker).indices.is_empty());
+    }
+}

@@ -1,0 +1,62 @@
+//! How far bodies in space are opened for the element view.
+
+use std::f32::consts::TAU;
+
+/// Until somebody takes the cut, it goes to and fro between all and this share of a body, in so long [s].
+const LEAST: f32 = 0.4;
+const PERIOD: f32 = 9.0;
+/// Somebody may leave this share at least.
+const FEWEST: f32 = 0.05;
+
+/// How far bodies in space are opened for the element view.
+#[derive(Copy, Clone, Debug, Default)]
+pub struct Opening {
+    /// When it began, in seconds of the game.
+    since: f32,
+    /// How much somebody wants to be left of a body, 0 to 1.
+    wish: Option<f32>,
+}
+
+impl Opening {
+    /// Begins with whole bodies.
+    pub fn begin(time: f32) -> Self {
+        Self {
+            since: time,
+            wish: None,
+        }
+    }
+
+    /// How much of a body is left, 0 to 1; `still` = with reduced motion.
+    pub fn share(&self, time: f32, still: bool) -> f32 {
+        let swing = 0.5 + 0.5 * (TAU * (time - self.since) / PERIOD).cos();
+        let by_itself = if still {
+            0.5
+        } else {
+            LEAST + (1.0 - LEAST) * swing
+        };
+        self.wish.unwrap_or(by_itself)
+    }
+
+    /// Somebody takes it, and cuts off more.
+    pub fn cut(&mut self, more: f32, time: f32, still: bool) {
+        let share = self.share(time, still) - more;
+        self.wish = Some(share.clamp(FEWEST, 1.0));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_opens_by_itself_until_somebody_takes_it() {
+        let mut opening = Opening::begin(10.0);
+        assert_eq!(opening.share(10.0, false), 1.0);
+        assert!((opening.share(10.0 + 0.5 * PERIOD, false) - LEAST).abs() < 1e-3);
+        opening.cut(0.2, 10.0, false);
+        assert_eq!(opening.share(13.0, false), 0.8);
+        opening.cut(9.0, 13.0, false);
+        assert_eq!(opening.share(99.0, false), FEWEST);
+        assert_eq!(Opening::begin(0.0).share(3.0, true), 0.5);
+    }
+}
