@@ -5,6 +5,9 @@ use crate::solve::Row;
 use crate::vector::{dot, minus};
 use std::ops::Range;
 
+/// A point [m] and its number.
+type Numbered = (Row, u32);
+
 /// Points in the bins of a grid that goes round and round: what lies a multiple of the grid's
 /// extent apart shares a bin, so bodies may fly off as far as they like.
 pub struct Bins {
@@ -15,7 +18,7 @@ pub struct Bins {
     mask: i32,
     /// `points[start[b]..start[b + 1]]` lie in bin b, with their numbers, ascending.
     start: Vec<u32>,
-    points: Vec<(Row, u32)>,
+    points: Vec<Numbered>,
 }
 
 impl Bins {
@@ -55,7 +58,7 @@ impl Bins {
     }
 
     /// Some points with their numbers.
-    pub fn points(&self, range: &Range<usize>) -> &[(Row, u32)] {
+    pub fn points(&self, range: &Range<usize>) -> &[Numbered] {
         &self.points[range.clone()]
     }
 
@@ -63,7 +66,7 @@ impl Bins {
     /// [m], which may be no more than a bin is wide.
     #[inline]
     pub fn pairs<D: Dim>(&self, reach: f32, mut visit: impl FnMut(u32, u32)) {
-        let mut look = |(at, number): (Row, u32), others: &[(Row, u32)]| {
+        let mut look = |(at, number): Numbered, others: &[Numbered]| {
             for &(point, other) in others {
                 let apart = minus(point, at);
                 if dot(apart, apart) <= reach * reach {
@@ -83,7 +86,7 @@ impl Bins {
             }
             let along = |axis: usize| bin as i32 >> (axis * self.bits) & self.mask;
             let (x, y, z) = (along(0), along(1), along(2));
-            let mut rows = [(&[] as &[(Row, u32)], &[] as &[(Row, u32)]); 4];
+            let mut rows: [[&[Numbered]; 2]; 4] = [[&[]; 2]; 4];
             for (row, [dy, dz]) in rows.iter_mut().zip(ahead) {
                 *row = self.row([x, y + dy, z + dz]);
             }
@@ -92,9 +95,8 @@ impl Bins {
             for (place, &point) in own.iter().enumerate() {
                 look(point, &own[place + 1..]);
                 look(point, next);
-                for (row, rest) in &rows[..ahead.len()] {
-                    look(point, row);
-                    look(point, rest);
+                for stretch in rows[..ahead.len()].iter().flatten() {
+                    look(point, stretch);
                 }
             }
         }
@@ -107,8 +109,8 @@ impl Bins {
         let [x, y, z] = self.square(&at);
         let layers = if D::N == 3 { -1..=1 } else { 0..=0 };
         for (dy, dz) in layers.flat_map(|dz| (-1..=1).map(move |dy| (dy, dz))) {
-            let (row, rest) = self.row([x, y.wrapping_add(dy), z.wrapping_add(dz)]);
-            for &(point, number) in row.iter().chain(rest) {
+            let row = self.row([x, y.wrapping_add(dy), z.wrapping_add(dz)]);
+            for &(point, number) in row.into_iter().flatten() {
                 let apart = minus(point, at);
                 if dot(apart, apart) <= reach * reach {
                     visit(number);
@@ -120,20 +122,20 @@ impl Bins {
     /// The points in the bin of a square and in those before and after it on the first axis: one
     /// stretch, and another where the grid goes round.
     #[inline]
-    fn row(&self, [x, y, z]: Point) -> (&[(Row, u32)], &[(Row, u32)]) {
+    fn row(&self, [x, y, z]: Point) -> [&[Numbered]; 2] {
         let (x, start) = (x & self.mask, self.bin([0, y, z]) as usize);
         let from =
             |first: i32, last: i32| self.points_from(start + first as usize, start + last as usize);
         match x {
-            0 => (from(0, 1), from(self.mask, self.mask)),
-            x if x == self.mask => (from(x - 1, x), from(0, 0)),
-            x => (from(x - 1, x + 1), &[]),
+            0 => [from(0, 1), from(self.mask, self.mask)],
+            x if x == self.mask => [from(x - 1, x), from(0, 0)],
+            x => [from(x - 1, x + 1), &[]],
         }
     }
 
     /// The points in the bins from the first to the last.
     #[inline]
-    fn points_from(&self, first: usize, last: usize) -> &[(Row, u32)] {
+    fn points_from(&self, first: usize, last: usize) -> &[Numbered] {
         &self.points[self.start[first] as usize..self.start[last + 1] as usize]
     }
 
