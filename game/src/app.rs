@@ -158,15 +158,18 @@ impl App {
         let game = &mut self.game;
         let events = ctx.input(|input| input.events.clone());
         self.fingers.hear(&events);
+        let is_by_stick = self.presses.waiting().is_by_stick;
         let is_touched = ctx.input(|input| input.any_touches())
             || events
                 .iter()
                 .any(|event| matches!(event, Event::Touch { .. }));
         for event in &events {
             match event {
-                Event::Key { .. } => {
+                Event::Key { pressed, .. } => {
                     screens::note_use_of_keys(ctx, true);
-                    game.means = Means::Keys;
+                    if *pressed && !is_by_stick {
+                        game.means = Means::Keys;
+                    }
                 }
                 Event::PointerMoved(_) | Event::PointerButton { .. } => {
                     screens::note_use_of_keys(ctx, false);

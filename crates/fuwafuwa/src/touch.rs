@@ -94,6 +94,11 @@ impl Nearby {
         self.skins.expire();
     }
 
+    /// The bodies are in somebody else's hands.
+    pub fn doubt(&mut self) {
+        self.skins.doubt();
+    }
+
     /// Who is asleep has changed.
     pub fn expire_rest(&mut self) {
         self.skins.expire_rest();

@@ -3,7 +3,7 @@
 
 use fuwafuwa::{
     Blade, Body, Dim, Dim2, Dim3, Drive, Event, Grading, Law, Manipulator, Material, Settings,
-    Shape, VoxelGrid, World,
+    Shape, VoxelGrid, With, World,
 };
 
 const FLOOR: Shape = Shape::HalfSpace {
@@ -453,4 +453,40 @@ fn a_cut_is_told_where_it_was() {
     assert_eq!(places, count);
     let parted = |event: &&Event| matches!(event, Event::Parted { .. });
     assert_eq!(world.events().iter().filter(parted).count(), 1);
+}
+
+fn bar(size: [usize; 2]) -> Body<Dim2> {
+    let grid = VoxelGrid::from_fn([size[0], size[1], 1], 0.03, |_| 1).unwrap();
+    Body::new(grid, &[Material::default()]).unwrap()
+}
+
+#[test]
+fn a_quarantined_body_still_holds_others_up() {
+    let mut world = World::new(Settings::default()).unwrap();
+    world.add_body(bar([24, 4]).moved([f32::INFINITY, 0.0, 0.0]));
+    world.add_body(bar([6, 6]).moved([0.27, 0.25, 0.0]));
+    step(&mut world, 30);
+    let view = &world.bodies()[1].piece_views()[0];
+    assert!(view.low[1] > 0.05, "it fell through: {view:?}");
+}
+
+#[test]
+fn another_body_in_the_place_of_one_is_taken_for_what_it_is() {
+    let mut world = world::<Dim2>();
+    world.add_body(bar([2, 7]));
+    world.step();
+    *world.body_mut(0) = bar([2, 8]).thrown([0.0, -4.0, 0.0]);
+    let mut touches = 0;
+    for _ in 0..30 {
+        world.step();
+        let is_own = |event: &&Event| {
+            let own = With::Piece { body: 0, piece: 0 };
+            matches!(event, Event::Touched { with, .. } if *with == own)
+        };
+        touches += world.events().iter().filter(is_own).count();
+    }
+    assert!(
+        touches < 10,
+        "its neighbouring voxels push each other {touches} times"
+    );
 }

@@ -27,7 +27,7 @@ const LOOK: usize = 60;
 /// So far into a wall is not out of the room, in terms of a voxel: a crumb between a hand and a wall
 /// is pressed flat, and a bit into the wall.
 const MARGIN: f32 = 1.0;
-/// The same for a hand [m].
+/// The same for a hand, and for the middle of a piece [m].
 const HAND_MARGIN: f32 = 1e-3;
 
 /// The most that is held for an element or a node [bytes]. What tears gets more of both.
@@ -186,7 +186,8 @@ fn depth<D: Dim>(round: &Round<D>) -> Result<f32, String> {
             let depth = beyond(piece.low, piece.high);
             // What is not finite shows in the middle: low and high pass it over.
             let is_finite = piece.centre.iter().all(|k| k.is_finite());
-            if !is_finite || depth > MARGIN * body.grid().voxel_size() {
+            let middle = beyond(piece.centre, piece.centre);
+            if !is_finite || depth > MARGIN * body.grid().voxel_size() || middle > HAND_MARGIN {
                 return Err(format!("{depth} m out of the room: {piece:?}"));
             }
             deepest = deepest.max(depth);

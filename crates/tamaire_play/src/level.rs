@@ -222,7 +222,9 @@ impl Level {
     /// Its world at the start, and its basket.
     pub(crate) fn build<D: Dim>(&self) -> Start<D> {
         let start = self.start::<D>();
-        start.expect("it was built when it was checked").clone()
+        start
+            .expect("the tests build those that come along, a check all others")
+            .clone()
     }
 
     /// The same to be looked at; built once.

@@ -44,6 +44,10 @@ impl Fingers {
     pub(super) fn hear(&mut self, events: &[Event]) {
         self.drawn = Drawn::default();
         for event in events {
+            // What ends while the window is away is not heard of.
+            if let Event::WindowFocused(false) = event {
+                *self = Self::default();
+            }
             if let Event::Touch {
                 device_id,
                 id,
@@ -64,7 +68,9 @@ impl Fingers {
 
     fn touch(&mut self, finger: Finger, phase: TouchPhase, at: Pos2) {
         match phase {
-            TouchPhase::Start if self.first.is_none() => self.first = Some(finger),
+            TouchPhase::Start if self.first.is_none_or(|first| first == finger) => {
+                self.first = Some(finger);
+            }
             TouchPhase::Start => {
                 self.others.insert(finger, Drag { at, way: None });
             }

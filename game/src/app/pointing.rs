@@ -42,7 +42,8 @@ pub(super) fn point(game: &mut Game, ctx: &Context) {
     game.devices.pointer = Some(place);
 }
 
-/// In space the wheel and a second finger raise the hand, or the wheel cuts bodies open where their elements are seen; mouse, second finger, keys, sticks and pads turn the camera.
+/// In space the wheel and a second finger raise the hand, or the wheel cuts bodies open where their elements are seen;
+/// mouse, second finger, keys, sticks and pads turn the camera.
 pub(super) fn look_around(game: &mut Game, ctx: &Context, fingers: &mut Fingers) {
     let (wheel, mouse, seconds) = ctx.input(|input| {
         let turns = input.pointer.button_down(PointerButton::Secondary);

@@ -15,6 +15,8 @@ pub(super) struct Presses(Arc<Mutex<Waiting>>);
 pub(super) struct Waiting {
     /// What sticks and pads press in menus.
     pub(super) keys: Vec<Key>,
+    /// Whether there are such keys in this frame.
+    pub(super) is_by_stick: bool,
     /// Whether up and down lead through everything in its order, and not to what lies above or below.
     pub(super) in_order: bool,
     /// Which of [`ONCE`] are held.
@@ -50,6 +52,7 @@ impl egui::Plugin for Presses {
             }
             _ => true,
         });
+        waiting.is_by_stick = !waiting.keys.is_empty();
         for key in std::mem::take(&mut waiting.keys) {
             input.events.extend(stroke(key, Modifiers::NONE));
         }

@@ -48,7 +48,8 @@ impl Game {
     /// How the hand moves and rises and the camera turns, with what was used last; each with whether it is still to be
     /// told. Nothing in the plane, where nobody plays, and to those who have won in space.
     pub fn lesson(&self) -> Vec<(String, bool)> {
-        if !self.is_played_in_space() || self.has_won_in_space() {
+        // Where elements are seen, the wheel looks deeper.
+        if !self.is_played_in_space() || self.has_won_in_space() || self.elements.is_some() {
             return Vec::new();
         }
         let on_stick = self.means == Means::Stick;

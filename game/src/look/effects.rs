@@ -46,10 +46,7 @@ impl Speck {
     /// Comes to a wall that is square to an axis.
     fn bounce(&mut self, axis: usize) {
         let across = -BOUNCE[0] * self.velocity[axis];
-        self.velocity = match across.abs() < LIES {
-            true => [0.0; 3],
-            false => scaled(self.velocity, BOUNCE[1]),
-        };
+        self.velocity = scaled(self.velocity, BOUNCE[1]);
         self.velocity[axis] = if across.abs() < LIES { 0.0 } else { across };
     }
 
@@ -183,10 +180,15 @@ impl Effects {
                 speck.velocity[axis] += self.gravity[axis] * seconds;
                 speck.at[axis] += speck.velocity[axis] * seconds;
                 let (first, last) = (low[axis] + speck.radius, high[axis] - speck.radius);
-                if speck.at[axis] < first || speck.at[axis] > last {
+                let (is_low, is_high) = (speck.at[axis] < first, speck.at[axis] > last);
+                if is_low || is_high {
                     // A room may be narrower than a speck.
                     speck.at[axis] = speck.at[axis].min(last).max(first);
-                    speck.bounce(axis);
+                    let outward = speck.velocity[axis];
+                    // What came off right at a wall is on its way already.
+                    if is_low && outward < 0.0 || is_high && outward > 0.0 {
+                        speck.bounce(axis);
+                    }
                 }
             }
         }

@@ -152,7 +152,7 @@ fn draw_chips(row: &mut Row, theme: &Theme, game: &Game) {
     if game.forces.is_cut() {
         chip("×", said.forces_cut);
     }
-    if game.elements.is_some() && game.turn().is_some() {
+    if game.elements.is_some() && game.turn().is_some() && game.session.is_played() {
         chip("↕", said.look_inside);
     }
     if let Some(colour) = game.elements {

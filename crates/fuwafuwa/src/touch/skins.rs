@@ -113,6 +113,12 @@ impl Skins {
         self.is_good = false;
     }
 
+    /// Bodies may be anything and anywhere: nothing is carried over but impulses.
+    pub fn doubt(&mut self) {
+        self.is_good = false;
+        self.list.iter_mut().for_each(|skin| skin.nodes = [GONE; 8]);
+    }
+
     /// Somebody woke or fell asleep.
     pub fn expire_rest(&mut self) {
         self.rest_is_good = false;
@@ -137,8 +143,8 @@ impl Skins {
         if !self.is_good {
             strayed = self.find(bodies);
         }
+        strayed.resize(self.list.len(), false);
         if !is_same {
-            strayed.resize(self.list.len(), false);
             for (skin, strayed) in self.list.iter_mut().zip(&mut strayed) {
                 let asleep = sleeps(bodies, skin);
                 *strayed |= skin.asleep && !asleep;
@@ -154,7 +160,6 @@ impl Skins {
             self.move_close(bodies);
         }
         if is_spent {
-            strayed.resize(self.list.len(), false);
             if self.find_strayed(&mut strayed, size) || !is_same {
                 self.find_pairs::<D>(&mut strayed, size);
             }
@@ -195,11 +200,13 @@ impl Skins {
             let body = &bodies[skin.body as usize];
             while old.next_if(|(_, old)| old.key() < skin.key()).is_some() {}
             let known = old.next_if(|(_, old)| old.key() == skin.key());
+            // Who falls asleep may have been put elsewhere: a quarantined piece is.
+            let same =
+                known.filter(|(_, old)| old.nodes == skin.nodes && old.asleep == skin.asleep);
             if let Some((before, old)) = known {
                 moved_to[before] = self.list.len() as u32;
                 skin.asleep = old.asleep;
             }
-            let same = known.filter(|(_, old)| old.nodes == skin.nodes);
             let (centre, anchor, site) = match same {
                 Some((before, _)) => (centres[before], anchors[before], sites[before]),
                 None => {
@@ -227,6 +234,7 @@ impl Skins {
                 *skin = moved_to[*skin as usize];
             }
             let stays = captive.skin != GONE && captive.exit != GONE;
+            // Where the exit went with a part that came off, the rest is a stranger until the next tick.
             if stays {
                 let exit = &self.list[captive.exit as usize];
                 self.captors[captive.skin as usize] = Some((exit.body, exit.piece));
@@ -600,6 +608,44 @@ mod tests {
             changes > 10,
             "{changes} new lists: they must have been needed"
         );
+    }
+
+    /// A body is torn at random; who is bound to whom against the nodes they have.
+    fn check_bound<D: Dim>(n: usize) {
+        let grid = VoxelGrid::<D>::ball(n, 1.0).unwrap();
+        let mut body = Body::new(grid, &[Material::default()]).unwrap();
+        let size = body.grid.voxel_size();
+        let mut seed = 5u32;
+        let mut random = |below: usize| {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) as usize % below
+        };
+        let mut skins = Skins::default();
+        for _ in 0..60 {
+            skins.expire();
+            skins.follow(std::slice::from_ref(&body), size);
+            for b in 0..skins.list.len() {
+                for a in 0..b {
+                    let [own, other] = [a, b].map(|skin| &skins.list[skin].nodes[..D::CORNERS]);
+                    let shares = own.iter().any(|node| other.contains(node));
+                    assert_eq!(skins.sites[a].is_bound_to(&skins.sites[b]), shares);
+                }
+            }
+            let count = 1 + random(12);
+            let sides = (0..count).map(|_| {
+                let mut at = [0; 3];
+                (0..D::N).for_each(|axis| at[axis] = random(n + 1) as i32);
+                (at, 1 + random((1 << D::CORNERS) - 2) as u8)
+            });
+            body.release(&sides.collect::<Vec<_>>()).unwrap();
+        }
+        assert!(body.pieces.list.len() > 10);
+    }
+
+    #[test]
+    fn neighbours_are_known() {
+        check_bound::<Dim2>(14);
+        check_bound::<Dim3>(8);
     }
 
     #[test]

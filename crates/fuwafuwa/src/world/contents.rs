@@ -112,7 +112,7 @@ impl<D: Dim> World<D> {
     pub fn body_mut(&mut self, body: usize) -> &mut Body<D> {
         let pieces = self.pieces_of(body);
         self.wake(&pieces);
-        self.nearby.expire();
+        self.nearby.doubt();
         &mut self.bodies[body]
     }
 
