@@ -247,6 +247,7 @@ impl Game {
     }
 
     fn begin(&mut self) {
+        self.opening = Opening::begin(self.time);
         let level = self.session.round().level();
         let known = self.levels.iter().position(|known| known == level);
         self.chosen = known.unwrap_or(self.chosen);

@@ -25,7 +25,8 @@ pub struct Progress {
     pub inside: f32,
     /// Share of it in the basket, whether it rests or moves.
     pub within: f32,
-    /// Share of it in the largest piece of each body.
+    /// The mass in the largest piece of each body, as a share of what that was at the start: a body may
+    /// begin in parts.
     pub kept: f32,
     /// Number of pieces.
     pub pieces: usize,
@@ -37,6 +38,8 @@ pub struct Progress {
     /// How it ended, if it has.
     pub outcome: Option<Outcome>,
     bodies: usize,
+    /// Mass of the largest piece of each body at the start, all together [kg].
+    whole: f32,
 }
 
 /// How a round was won.
@@ -47,7 +50,7 @@ pub struct Outcome {
     pub ticks: u64,
     /// By squeezing, by shaving, or some of both.
     pub route: Route,
-    /// Share of the mass in the largest piece of each body.
+    /// The mass in the largest piece of each body, as a share of what that was at the start.
     pub kept: f32,
     /// Share of the mass in the basket.
     pub inside: f32,
@@ -88,6 +91,7 @@ impl Progress {
             squeezed: f32::INFINITY,
             outcome: None,
             bodies: world.bodies().len(),
+            whole: greatest(&views_of(world)),
         }
     }
 
@@ -98,11 +102,8 @@ impl Progress {
         basket: Option<&Shape>,
         world: &World<D>,
     ) {
-        let views: Vec<_> = world.bodies().iter().map(Body::piece_views).collect();
-        let greatest = views
-            .iter()
-            .map(|views| views.iter().map(|view| view.mass).fold(0.0, f32::max));
-        self.kept = greatest.sum::<f32>() / self.mass;
+        let views = views_of(world);
+        self.kept = greatest(&views) / self.whole;
         self.pieces = views.iter().map(Vec::len).sum();
         let Some(basket) = basket else {
             return;
@@ -143,6 +144,18 @@ impl Progress {
             (false, true) => Route::Mix,
         }
     }
+}
+
+fn views_of<D: Dim>(world: &World<D>) -> Vec<Vec<PieceView>> {
+    world.bodies().iter().map(Body::piece_views).collect()
+}
+
+/// Mass of the largest piece of each body, all together [kg].
+fn greatest(views: &[Vec<PieceView>]) -> f32 {
+    let greatest = views
+        .iter()
+        .map(|views| views.iter().map(|view| view.mass).fold(0.0, f32::max));
+    greatest.sum()
 }
 
 fn total_mass<D: Dim>(world: &World<D>) -> f32 {

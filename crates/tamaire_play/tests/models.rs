@@ -1,7 +1,7 @@
 //! The models among the levels are not drawn by hand: here is what they are.
 
 use std::path::PathBuf;
-use tamaire_play::Level;
+use tamaire_play::{InputFrame, Level, Round};
 
 /// A crème caramel of 32 voxels across and 20 high: custard of colour 1 under caramel of colour 2.
 fn pudding() -> Vec<u8> {
@@ -92,4 +92,19 @@ fn a_model_of_any_colours_becomes_the_body_of_a_level() {
     let torn = refused(&pudding()[..1000]);
     assert!(torn.contains("wide.VOX"), "{torn}");
     std::fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn a_model_in_two_parts_is_kept_as_it_began() {
+    let cubes = (0..24u8).filter(|x| !(10..14).contains(x));
+    let voxels = cubes.flat_map(|x| (0..100).map(move |k| [x, k % 10, k / 10, 1]));
+    let voxels: Vec<_> = voxels.collect();
+    let path = std::env::temp_dir().join(format!("tamaire-two-{}.vox", std::process::id()));
+    std::fs::write(&path, model([24, 10, 10], &voxels, &[[200; 4]; 256])).unwrap();
+    let level = Level::open(&path.to_string_lossy()).unwrap();
+    std::fs::remove_file(path).unwrap();
+    let mut round = Round::<fuwafuwa::Dim3>::new(std::sync::Arc::new(level));
+    round.step(InputFrame::default());
+    assert_eq!(round.progress().pieces, 2);
+    assert_eq!(round.progress().kept, 1.0);
 }
