@@ -123,6 +123,7 @@ fn a_round_in_space() {
     frames(&mut window, 1);
     picture(&mut window, "space");
     game(&mut window).elements = Some(fuwafuwa_render::frame::ElementColour::Level);
+    game(&mut window).opening.cut(0.05, 0.0, true);
     game(&mut window).camera.orbit(0.5, 0.1);
     frames(&mut window, 1);
     picture(&mut window, "space_elements");
