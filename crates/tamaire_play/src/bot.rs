@@ -19,10 +19,9 @@ const CAREFUL: f32 = 0.2;
 const PATIENCE: u32 = 210;
 /// How far off the middle of a piece its strokes pass, in terms of its reach: in the plane, where a hand
 /// cuts off all that it passes, and in space, where it would only plough a furrow so far out.
-const GRAZING: [f32; 2] = [0.75, 0.55];
-/// The shaving bot gathers when the largest piece has this share of what it had: in the plane, and in
-/// space, where what is left is held squeezed on two axes.
-const SMALL_ENOUGH: [f32; 2] = [0.95, 0.92];
+const GRAZING: [f32; 2] = [0.78, 0.55];
+/// The shaving bot gathers when the largest piece has this share of what it had.
+const SMALL_ENOUGH: f32 = 0.92;
 /// It presses for so many ticks when enough is in the basket, and lets go.
 const LONG_ENOUGH: u32 = 30;
 
@@ -61,7 +60,7 @@ pub struct Bot {
     stroke: Stroke,
     strokes: u32,
     gathers: bool,
-    /// Share of the mass in the largest piece at which it gathers, where that is not small enough.
+    /// Share of the mass in the largest piece at which it gathers.
     aim: f32,
     /// The most that was in the basket, for how many ticks nothing got better, and how many pieces
     /// were given up for it.
@@ -96,7 +95,7 @@ impl Bot {
             // The first goes along one side or the other.
             strokes: u32::from(temper[0] > 0.0),
             gathers: false,
-            aim: 1.0,
+            aim: SMALL_ENOUGH + 0.01 * temper[2],
             best: 0.0,
             waited: 0,
             skips: 0,
@@ -180,11 +179,10 @@ impl Bot {
     /// Strokes past the middle of the largest piece, now on one side of it, now on the other, until
     /// it is small enough; then gathers what is needed.
     fn shave<D: Dim>(&mut self, sight: &Sight) -> Vector {
-        let small_enough = SMALL_ENOUGH[D::N - 2];
-        self.gathers |= sight.share < self.aim.min(small_enough + 0.01 * self.temper[2]);
+        self.gathers |= sight.share < self.aim;
         // What is stuck in front of the mouth has to be smaller still.
         if self.gathers && self.waited > PATIENCE && !sight.piece.fits {
-            (self.gathers, self.aim) = (false, small_enough * sight.share);
+            (self.gathers, self.aim) = (false, SMALL_ENOUGH * sight.share);
         }
         if self.gathers {
             return self.push(sight);
