@@ -62,6 +62,9 @@ pub struct Mesh<D: Dim> {
     places: Places,
     /// The elements of each cell, by its place.
     by_cell: Chains,
+    /// One more than the element that owns each voxel, by the place of its cell of level 0; 0 where
+    /// nothing is.
+    owners: Vec<u32>,
     /// The nodes at each lattice point, by its index.
     by_point: Chains,
     classes: BTreeMap<(u8, u32), u32>,
@@ -106,6 +109,7 @@ impl<D: Dim> Mesh<D> {
             dense_surface: pyramid.grading() == Grading::Coarse,
             places: pyramid.places().clone(),
             by_cell: Chains::new(pyramid.places().count()),
+            owners: vec![0; pyramid.places().count_of(0)],
             by_point: Chains::new(sharing.point_count()),
             classes: BTreeMap::new(),
             carriers: Vec::new(),
@@ -227,10 +231,7 @@ impl<D: Dim> Mesh<D> {
 
     /// The element that owns a solid voxel; `None` for an empty one.
     pub fn owner(&self, voxel: Point) -> Option<u32> {
-        path::<D>(voxel).find_map(|(cell, child)| {
-            let mut ids = self.by_cell.at(self.places.number(cell)?);
-            ids.find(|&id| self.alive(id).children >> child & 1 == 1)
-        })
+        self.owners[self.places.number(Cell::of(voxel))?].checked_sub(1)
     }
 
     /// The first of the voxels that an element fills.
@@ -300,9 +301,11 @@ impl<D: Dim> Mesh<D> {
         } else {
             self.elements[id as usize] = Some(element);
         }
-        let place = self.places.number(cell);
-        self.by_cell
-            .append(place.expect("cells lie in the grid"), id);
+        let place = |cell| self.places.number(cell).expect("cells lie in the grid");
+        self.by_cell.append(place(cell), id);
+        for voxel in self.voxels(self.alive(id)) {
+            self.owners[place(Cell::of(voxel))] = id + 1;
+        }
     }
 
     /// Gives an element the nodes and the class that its surroundings ask for; false when it has
@@ -401,12 +404,8 @@ impl<D: Dim> Mesh<D> {
 
 /// The cells that contain a voxel, finest first, each with the child that holds the voxel.
 fn path<D: Dim>(voxel: Point) -> impl Iterator<Item = (Cell, usize)> {
-    let finest = Cell {
-        level: 0,
-        at: voxel,
-    };
     // The widest grid has 2^10 voxels on an axis.
-    std::iter::successors(Some((finest, 0)), |(cell, _)| {
+    std::iter::successors(Some((Cell::of(voxel), 0)), |(cell, _)| {
         (cell.level < 10).then(|| (cell.parent(), cell.child_index::<D>()))
     })
 }

@@ -2,7 +2,8 @@
 //!
 //! Elements that share a node are of one piece. A release can part a piece only at the points it
 //! changed, so both sides are followed from there at the same pace until they meet, or until one
-//! of them is used up: that one is the new piece. What it costs goes with the smaller side.
+//! of them is used up: that one is the new piece. What it costs goes with the smaller side. Where
+//! much was released at once, a side that comes upon what was followed before goes on from there.
 
 use crate::dim::Dim;
 use crate::mesh::Mesh;
@@ -38,10 +39,23 @@ pub struct Pieces {
 
 /// One side of a release that is being followed.
 struct Search {
-    /// Its place among the sides at the start.
+    /// Its place among the sides of all that was released.
     place: usize,
     found: Vec<u32>,
     next: VecDeque<u32>,
+}
+
+/// What is known of the sides of all that was released at once.
+struct Sides {
+    /// The mark of the first of them.
+    first: u32,
+    /// Which of them hang together.
+    same: Same,
+    /// Those that are being followed, and those that were, as far as was needed.
+    running: Vec<Search>,
+    resting: Vec<Search>,
+    /// The pieces that came off.
+    born: Vec<u32>,
 }
 
 /// Which of some things, given by their places, have turned out to be the same.
@@ -55,6 +69,12 @@ impl Same {
     pub(crate) fn new(count: usize) -> Self {
         let lower = (0..count).collect();
         Self { lower }
+    }
+
+    /// One more, like none of the others; returns its place.
+    fn add(&mut self) -> usize {
+        self.lower.push(self.lower.len());
+        self.lower.len() - 1
     }
 
     /// The lowest of the kind of one.
@@ -146,103 +166,104 @@ impl Pieces {
         self.of_element[element as usize] = self.of_node[nodes[0] as usize];
     }
 
-    /// Finds out whether the elements `around` a release still hang together. Every part that does
-    /// not reach the rest of its piece becomes a piece of its own; returns their numbers.
-    pub fn part<D: Dim>(&mut self, mesh: &Mesh<D>, around: &[u32]) -> Vec<u32> {
-        let mut sides: BTreeMap<u32, Vec<Vec<u32>>> = BTreeMap::new();
-        for side in self.sides(mesh, around) {
-            sides
-                .entry(self.of_element(side[0]))
-                .or_default()
-                .push(side);
-        }
-        let mut born = Vec::new();
-        // What hangs together right here needs no search.
-        for starts in sides.into_values().filter(|starts| starts.len() > 1) {
-            self.part_one(mesh, starts, &mut born);
-        }
-        born
-    }
-
-    /// Some elements, sorted by which of them hang together through nodes of their own.
-    fn sides<D: Dim>(&mut self, mesh: &Mesh<D>, around: &[u32]) -> Vec<Vec<u32>> {
-        let first = self.marks(around.len());
-        let mut same = Same::new(around.len());
-        for (place, &id) in around.iter().enumerate() {
-            let element = mesh
-                .element(id)
-                .expect("elements around a release are alive");
-            for &node in &element.nodes {
-                let seen = &mut self.node_seen[node as usize];
-                if *seen < first {
-                    *seen = first + place as u32;
-                    continue;
-                }
-                same.join(place, (*seen - first) as usize);
-            }
-        }
-        let mut sides: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
-        for (place, &id) in around.iter().enumerate() {
-            let side = sides.entry(same.lowest(place)).or_default();
-            side.push(id);
-        }
-        sides.into_values().collect()
-    }
-
-    /// The first of some marks that nothing bears yet.
-    fn marks(&mut self, count: usize) -> u32 {
-        if self.marked > u32::MAX - count as u32 {
+    /// Finds out whether the elements around each of some places, where something was released, still
+    /// hang together. Every part that does not reach the rest of its piece becomes a piece of its
+    /// own; returns their numbers.
+    pub fn part<D: Dim>(&mut self, mesh: &Mesh<D>, places: &[Vec<u32>]) -> Vec<u32> {
+        if self.marked > u32::MAX / 2 {
             self.marked = 0;
             self.seen.fill(0);
             self.node_seen.fill(0);
         }
-        self.marked += count as u32;
-        self.marked - count as u32 + 1
+        let mut sides = Sides {
+            first: self.marked + 1,
+            same: Same::new(0),
+            running: Vec::new(),
+            resting: Vec::new(),
+            born: Vec::new(),
+        };
+        for around in places {
+            self.part_at(mesh, around, &mut sides);
+        }
+        // What hung together only through a piece that came off shares no place, but each side of
+        // it has one in common with that piece.
+        let is_off = |&id: &u32| sides.born.contains(&self.of_element(id));
+        let beside_off = places.iter().filter(|around| around.iter().any(is_off));
+        let around: Vec<u32> = beside_off.flatten().copied().collect();
+        self.part_at(mesh, &around, &mut sides);
+        self.marked += sides.same.lower.len() as u32;
+        sides.born
     }
 
-    /// As [`Pieces::part`], for the sides of one piece.
-    fn part_one<D: Dim>(&mut self, mesh: &Mesh<D>, starts: Vec<Vec<u32>>, born: &mut Vec<u32>) {
-        let first = self.marks(starts.len());
-        let mut same = Same::new(starts.len());
-        let mut searches: Vec<Search> = Vec::new();
-        for (place, found) in starts.into_iter().enumerate() {
-            for &id in &found {
-                self.seen[id as usize] = first + place as u32;
-            }
+    /// As [`Pieces::part`], at one place.
+    fn part_at<D: Dim>(&mut self, mesh: &Mesh<D>, around: &[u32], sides: &mut Sides) {
+        let mut by_piece: BTreeMap<u32, Vec<Vec<u32>>> = BTreeMap::new();
+        for side in sides_of(mesh, around) {
+            let of_piece = by_piece.entry(self.of_element(side[0]));
+            of_piece.or_default().push(side);
+        }
+        // What hangs together right here needs no search.
+        for starts in by_piece.into_values().filter(|starts| starts.len() > 1) {
+            self.follow(mesh, starts, sides);
+        }
+    }
+
+    /// Follows the sides of one piece until they have met or are used up.
+    fn follow<D: Dim>(&mut self, mesh: &Mesh<D>, starts: Vec<Vec<u32>>, sides: &mut Sides) {
+        let first = sides.first;
+        let mut known = Vec::new();
+        for mut found in starts {
+            let place = sides.same.add();
+            found.retain(|&id| {
+                let seen = &mut self.seen[id as usize];
+                let is_new = *seen < first;
+                if is_new {
+                    *seen = first + place as u32;
+                } else {
+                    known.push((place, *seen));
+                }
+                is_new
+            });
             let next = found.iter().copied().collect();
-            searches.push(Search { place, found, next });
+            sides.running.push(Search { place, found, next });
+        }
+        for (place, seen) in known {
+            let own = sides
+                .running
+                .iter()
+                .position(|search| sides.same.lowest(search.place) == sides.same.lowest(place));
+            sides.meet(own.expect("a side that met another runs on as one"), seen);
         }
         let mut turn = 0;
-        while searches.len() > 1 {
-            turn %= searches.len();
-            let Some(id) = searches[turn].next.pop_front() else {
-                let alone = searches.remove(turn);
-                born.push(self.split_off(mesh, &alone.found));
+        while sides.running.len() > 1 {
+            turn %= sides.running.len();
+            let Some(id) = sides.running[turn].next.pop_front() else {
+                let alone = sides.running.remove(turn);
+                sides.born.push(self.split_off(mesh, &alone.found));
                 continue;
             };
             let element = mesh.element(id).expect("searches find live elements");
             for &node in &element.nodes {
-                let place = searches[turn].place;
-                let mark = first + place as u32;
+                let mark = first + sides.running[turn].place as u32;
                 let seen = std::mem::replace(&mut self.node_seen[node as usize], mark);
                 if seen >= first {
-                    turn = meet(&mut searches, turn, &mut same, (seen - first) as usize);
+                    turn = sides.meet(turn, seen);
                     continue;
                 }
                 for near in mesh.carrier_ids(node) {
                     let seen = &mut self.seen[near as usize];
                     if *seen >= first {
-                        let other = (*seen - first) as usize;
-                        turn = meet(&mut searches, turn, &mut same, other);
+                        turn = sides.meet(turn, *seen);
                         continue;
                     }
                     *seen = mark;
-                    searches[turn].found.push(near);
-                    searches[turn].next.push_back(near);
+                    sides.running[turn].found.push(near);
+                    sides.running[turn].next.push_back(near);
                 }
             }
             turn += 1;
         }
+        sides.resting.append(&mut sides.running);
     }
 
     /// Makes a piece of the given elements: asleep or stopped, like the one they were of.
@@ -264,24 +285,52 @@ impl Pieces {
     }
 }
 
-/// Adds the search that saw what the one at `turn` sees now, if it is another one, to it; returns
-/// where that one stands now.
-fn meet(searches: &mut Vec<Search>, turn: usize, same: &mut Same, seen_by: usize) -> usize {
-    let own = same.lowest(searches[turn].place);
-    let other = same.lowest(seen_by);
-    if own == other {
-        return turn;
+impl Sides {
+    /// The side at `turn` comes upon what bears a mark: adds the side that left it, if it is another
+    /// one, to it. Returns where it stands now.
+    fn meet(&mut self, turn: usize, mark: u32) -> usize {
+        let own = self.same.lowest(self.running[turn].place);
+        let other = self.same.lowest((mark - self.first) as usize);
+        if own == other {
+            return turn;
+        }
+        let same = &mut self.same;
+        let mut is_met = |search: &Search| same.lowest(search.place) == other;
+        let running = self.running.iter().position(&mut is_met);
+        let resting = self.resting.iter().position(&mut is_met);
+        self.same.join(own, other);
+        let met = match (running, resting) {
+            (Some(place), _) => self.running.remove(place),
+            (_, Some(place)) => self.resting.swap_remove(place),
+            // All of it came off before, this side with it.
+            _ => return turn,
+        };
+        let turn = turn - usize::from(running.is_some_and(|place| place < turn));
+        self.running[turn].found.extend(met.found);
+        self.running[turn].next.extend(met.next);
+        turn
     }
-    let place = searches
-        .iter()
-        .position(|search| same.lowest(search.place) == other)
-        .expect("a search that has ended is met by nobody");
-    let met = searches.remove(place);
-    same.join(own, other);
-    let turn = if place < turn { turn - 1 } else { turn };
-    searches[turn].found.extend(met.found);
-    searches[turn].next.extend(met.next);
-    turn
+}
+
+/// Some elements, sorted by which of them hang together through nodes of their own.
+fn sides_of<D: Dim>(mesh: &Mesh<D>, around: &[u32]) -> Vec<Vec<u32>> {
+    let mut nodes: Vec<(u32, usize)> = Vec::new();
+    for (place, &id) in around.iter().enumerate() {
+        let element = mesh.element(id);
+        let element = element.expect("elements around a release are alive");
+        nodes.extend(element.nodes.iter().map(|&node| (node, place)));
+    }
+    nodes.sort_unstable();
+    let mut same = Same::new(around.len());
+    for two in nodes.windows(2).filter(|two| two[0].0 == two[1].0) {
+        same.join(two[0].1, two[1].1);
+    }
+    let mut sides: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
+    for (place, &id) in around.iter().enumerate() {
+        let side = sides.entry(same.lowest(place)).or_default();
+        side.push(id);
+    }
+    sides.into_values().collect()
 }
 
 /// The elements that share a node with one, itself included, some of them more than once.

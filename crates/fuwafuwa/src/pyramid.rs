@@ -61,6 +61,15 @@ impl Cell {
         }
     }
 
+    /// The cell of level 0 that is a voxel.
+    #[inline]
+    pub fn of(voxel: Point) -> Self {
+        Self {
+            level: 0,
+            at: voxel,
+        }
+    }
+
     /// The voxel in its low corner.
     #[inline]
     pub fn first_voxel(self) -> Point {
@@ -95,12 +104,9 @@ impl Places {
             count: 0,
         };
         loop {
+            let next = places.levels.len() + 1;
             places.levels.push((size, places.count));
-            places.count += size
-                .iter()
-                .map(|&extent| extent as usize)
-                .product::<usize>();
-            let next = places.levels.len();
+            places.count += places.count_of(next - 1);
             if size == [1; 3] || next > SMALL_LEVEL && WIDEST << next > longest {
                 return places;
             }
@@ -111,6 +117,12 @@ impl Places {
     /// How many places there are.
     pub fn count(&self) -> usize {
         self.count
+    }
+
+    /// Cells of a level; those of level 0 have the first numbers.
+    pub fn count_of(&self, level: usize) -> usize {
+        let (size, _) = self.levels[level];
+        size.iter().map(|&extent| extent as usize).product()
     }
 
     /// The number of a cell; `None` outside the grid.

@@ -9,6 +9,17 @@ use crate::pyramid::Grading;
 use crate::solve::Row;
 use std::collections::BTreeMap;
 
+/// What a release changed in a body.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Torn {
+    /// Numbers of the pieces that came off.
+    pub parted: Vec<u32>,
+    /// Elements that are gone or new, or have other nodes or other bare faces than before.
+    pub elements: Vec<u32>,
+    /// Nodes that are gone or new.
+    pub nodes: Vec<u32>,
+}
+
 impl<D: Dim> Body<D> {
     /// Releases the sharing of nodes at lattice points, each between the octants of its mask and
     /// the rest, and remodels around them [Endo 2004, §3.2]. Positions and velocities pass over;
@@ -18,8 +29,13 @@ impl<D: Dim> Body<D> {
     /// # Errors
     /// A [`Defect`] when the mesh breaks: a fault of this library.
     pub fn release(&mut self, at: &[(Point, u8)]) -> Result<Vec<u32>, Defect> {
+        Ok(self.tear(at)?.parted)
+    }
+
+    /// As [`Body::release`]; tells all that it changed.
+    pub(crate) fn tear(&mut self, at: &[(Point, u8)]) -> Result<Torn, Defect> {
         if self.pyramid.grading() == Grading::Coarse {
-            return Ok(Vec::new());
+            return Ok(Torn::default());
         }
         let mut changed: Vec<Point> = Vec::new();
         for &(point, side) in at {
@@ -28,7 +44,7 @@ impl<D: Dim> Body<D> {
             }
         }
         if changed.is_empty() {
-            return Ok(Vec::new());
+            return Ok(Torn::default());
         }
         changed.extend(self.sharing.normalise(around::<D>(&changed)));
         let near = around::<D>(&changed).into_iter();
@@ -39,24 +55,15 @@ impl<D: Dim> Body<D> {
         self.pass_on(&remodelled);
         self.expose(&beside::<D>(&changed));
         let places = self.places_around(&changed);
-        self.refresh_fronts(&places.concat(), &remodelled);
+        let beside = places.concat();
+        self.refresh_fronts(&beside, &remodelled);
         self.awake_is_stale = true;
-        Ok(self.part(&places))
-    }
-
-    /// Looks place by place for pieces that came off; returns their numbers.
-    fn part(&mut self, places: &[Vec<u32>]) -> Vec<u32> {
-        let mut parted = Vec::new();
-        for elements in places {
-            parted.extend(self.pieces.part(&self.mesh, elements));
-        }
-        // What hung together only through a piece that came off shares no place, but each side of
-        // it has one in common with that piece.
-        let is_off = |&id: &u32| parted.contains(&self.pieces.of_element(id));
-        let beside_off = places.iter().filter(|place| place.iter().any(is_off));
-        let elements: Vec<u32> = beside_off.flatten().copied().collect();
-        parted.extend(self.pieces.part(&self.mesh, &elements));
-        parted
+        let new = remodelled.inherited.iter().map(|new| new.node);
+        Ok(Torn {
+            parted: self.pieces.part(&self.mesh, &places),
+            nodes: new.chain(remodelled.abandoned).collect(),
+            elements: [beside, remodelled.removed, remodelled.seated].concat(),
+        })
     }
 
     /// The elements around the given points, ascending: a list for each of the places where they
@@ -210,9 +217,13 @@ impl<D: Dim> Body<D> {
     }
 }
 
+/// The lattice points around the given ones and themselves, each once.
 fn around<D: Dim>(points: &[Point]) -> Vec<Point> {
     let near = |&point: &Point| neighbourhood::<D>(point, 1);
-    points.iter().flat_map(near).collect()
+    let mut near: Vec<Point> = points.iter().flat_map(near).collect();
+    near.sort_unstable();
+    near.dedup();
+    near
 }
 
 /// The voxels around the given points, in ascending order.

@@ -216,13 +216,17 @@ impl<D: Dim> Body<D> {
             piece: self.pieces.of_element(id),
             material: self.grid.material(self.mesh.first_voxel(element)),
             children: element.children,
-            strain: self.strain(id, element),
+            strain: self.strain_of(id, element),
             slots: self.slot_positions(element),
         }
     }
 
-    /// ‖F − R‖ of an element: 0.1 is a stretch by a tenth.
-    fn strain(&self, id: u32, element: &Element) -> f32 {
+    /// How far an element is strained, if it is alive: ‖F − R‖, where 0.1 is a stretch by a tenth.
+    pub fn strain(&self, id: u32) -> Option<f32> {
+        Some(self.strain_of(id, self.mesh.element(id)?))
+    }
+
+    fn strain_of(&self, id: u32, element: &Element) -> f32 {
         let deformation = self.deformation(element).1;
         let rotation = self.blocks.rotation(id);
         let mut sum = 0.0;

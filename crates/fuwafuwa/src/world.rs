@@ -230,15 +230,14 @@ impl<D: Dim> World<D> {
             };
             self.events.extend(failures.iter().map(released));
             let sides = failures.iter().map(|failure| (failure.at, failure.side));
-            let parted = body.release(&sides.collect::<Vec<_>>());
-            let parted = parted.expect("a release leaves the mesh whole");
+            let torn = body.tear(&sides.collect::<Vec<_>>());
+            let torn = torn.expect("a release leaves the mesh whole");
             report.released += failures.len() as u32;
-            report.parted += parted.len() as u32;
-            let events = parted
-                .iter()
-                .map(|&piece| Event::Parted { body: index, piece });
+            report.parted += torn.parted.len() as u32;
+            let parts = torn.parted.iter();
+            let events = parts.map(|&piece| Event::Parted { body: index, piece });
             self.events.extend(events);
-            self.nearby.expire();
+            self.nearby.tear(index, &torn);
         }
     }
 
@@ -277,10 +276,17 @@ impl<D: Dim> World<D> {
         let colliders = self.colliders();
         let obstacles = self.obstacles.len();
         self.nearby.refresh(&self.bodies, &colliders, duration);
+        let nearby = &mut self.nearby;
         let hits = self
             .contacts
-            .find(&self.bodies, &colliders, &mut self.nearby, duration);
-        self.wake(&hits);
+            .find(&self.bodies, &colliders, nearby, duration);
+        // Who wakes is no wall any more, and rests on what did not count while it slept: look again.
+        if self.wake(&hits) {
+            self.nearby.refresh(&self.bodies, &colliders, 0.0);
+            let nearby = &mut self.nearby;
+            self.contacts
+                .find(&self.bodies, &colliders, nearby, duration);
+        }
         let hands = &mut self.manipulators;
         self.contacts
             .find_hands(hands, &colliders[..obstacles], duration);
@@ -346,10 +352,11 @@ impl<D: Dim> World<D> {
         self.events.extend(events);
     }
 
-    fn wake(&mut self, hits: &[Hit]) {
+    /// Wakes the sleepers that were hit; returns whether there were any.
+    fn wake(&mut self, hits: &[Hit]) -> bool {
         let woken = wake(&mut self.bodies, hits);
         if woken.is_empty() {
-            return;
+            return false;
         }
         for body in &mut self.bodies {
             body.refresh_awake();
@@ -359,6 +366,7 @@ impl<D: Dim> World<D> {
             .iter()
             .map(|&(body, piece)| Event::Woke { body, piece });
         self.events.extend(events);
+        true
     }
 
     /// Everything rigid as nodes meet it: obstacles first, then hands.

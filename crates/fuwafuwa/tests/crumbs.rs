@@ -285,3 +285,49 @@ fn a_crumb_stops_swinging_whatever_it_is_made_of() {
         }
     }
 }
+
+/// How deep in the floor a crumb that slept there is at the most, when something heavy is thrown on
+/// it [voxels].
+fn depth_of_a_sleeper<D: Dim>(size: usize, speed: f32) -> f32 {
+    const VOXEL: f32 = 1.0 / 32.0;
+    let settings = Settings {
+        most_substeps: 8,
+        ..Settings::default()
+    };
+    let mut world = World::<D>::new(settings).unwrap();
+    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    world.add_obstacle(floor, 0.4).unwrap();
+    let crumb = VoxelGrid::<D>::cube(1, VOXEL).unwrap();
+    world.add_body(Body::new(crumb, &[Material::default()]).unwrap());
+    for _ in 0..90 {
+        world.step();
+    }
+    assert!(world.bodies()[0].pieces().list[0].asleep);
+    let block = VoxelGrid::<D>::cube(size, size as f32 * VOXEL).unwrap();
+    let mut heavy = Material::default();
+    heavy.density *= 10.0;
+    let block = Body::new(block, &[heavy]).unwrap();
+    let thrown = block.thrown([0.0, -speed, 0.0]);
+    world.add_body(thrown.moved([-0.3 * VOXEL, 4.0 * VOXEL, -0.2 * VOXEL]));
+    let mut lowest = f32::INFINITY;
+    for _ in 0..20 {
+        world.step();
+        let crumb = &world.bodies()[0];
+        let nodes = crumb.mesh().nodes();
+        lowest = nodes.fold(lowest, |low, (id, _)| low.min(crumb.node_state(id).0[1]));
+    }
+    assert!(!world.bodies()[0].pieces().list[0].asleep, "it was missed");
+    -lowest / VOXEL
+}
+
+#[test]
+fn a_sleeper_that_is_hit_is_not_driven_into_the_floor() {
+    for size in [2, 4, 8] {
+        for speed in [1.0, 2.0] {
+            let plane = depth_of_a_sleeper::<Dim2>(size, speed);
+            let space = depth_of_a_sleeper::<Dim3>(size, speed);
+            let depth = plane.max(space);
+            assert!(depth < 0.5, "{size}, {speed} m/s: {plane}, {space} voxels");
+        }
+    }
+}

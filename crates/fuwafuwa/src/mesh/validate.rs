@@ -23,8 +23,14 @@ impl<D: Dim> Mesh<D> {
     /// The level that owns each voxel; `u8::MAX` where there is none.
     fn check_ownership(&self, grid: &VoxelGrid<D>) -> Result<Vec<u8>, Defect> {
         let mut owners = vec![u8::MAX; grid.voxels().count()];
-        for (_, element) in self.elements() {
+        for (id, element) in self.elements() {
             for voxel in self.voxels(element) {
+                if self.owner(voxel) != Some(id) {
+                    let other = self.owner(voxel);
+                    return Err(Defect(format!(
+                        "{id} fills {voxel:?}, listed for {other:?}"
+                    )));
+                }
                 if !grid.is_solid(voxel) {
                     let cell = element.cell;
                     return Err(Defect(format!("{cell:?} fills the empty voxel {voxel:?}")));

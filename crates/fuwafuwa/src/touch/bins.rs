@@ -2,23 +2,27 @@
 
 use crate::dim::{Dim, Point};
 use crate::solve::Row;
-use crate::vector::{dot, minus};
 use std::ops::Range;
 
-/// A point [m] and its number.
-type Numbered = (Row, u32);
+/// 1.5 · 2²³: to it and to what is up to 2²² greater or smaller only whole numbers can be added.
+const LARGE: f32 = 12_582_912.0;
+
+/// Points that are looked at together.
+const LANES: usize = 4;
 
 /// Points in the bins of a grid that goes round and round: what lies a multiple of the grid's
-/// extent apart shares a bin, so bodies may fly off as far as they like.
+/// extent apart shares a bin, so bodies may fly off, for two million bins.
 pub struct Bins {
     /// One over the width of a bin [1/m].
     inverse: f32,
     /// log₂ of the number of bins on each axis, and that number − 1.
     bits: usize,
     mask: i32,
-    /// `points[start[b]..start[b + 1]]` lie in bin b, with their numbers, ascending.
+    /// The points at `start[b]..start[b + 1]` lie in bin b, by ascending numbers.
     start: Vec<u32>,
-    points: Vec<Numbered>,
+    numbers: Vec<u32>,
+    /// Where they are, axis by axis [m]; a few more, so that four can be read from the last on.
+    places: [Vec<f32>; 3],
 }
 
 impl Bins {
@@ -27,25 +31,31 @@ impl Bins {
         // About a bin for each point; four on an axis, so that three neighbours differ.
         let wanted = points.len().max(1).ilog2() as usize;
         let bits = wanted.div_ceil(D::N).max(2);
+        let places = || vec![0.0; points.len() + LANES];
         let mut bins = Self {
-            inverse: 1.0 / width,
+            // A little wider: what is no further apart than a width is rounded to squares side by side.
+            inverse: 0.999 / width,
             bits,
             mask: (1 << bits) - 1,
             start: vec![0; (1 << (D::N * bits)) + 1],
-            points: vec![([0.0; 4], 0); points.len()],
+            numbers: vec![0; points.len()],
+            places: [places(), places(), places()],
         };
-        let places: Vec<u32> = points.iter().map(|at| bins.bin(bins.square(at))).collect();
-        for &bin in &places {
+        let of_point: Vec<u32> = points.iter().map(|at| bins.bin(bins.square(at))).collect();
+        for &bin in &of_point {
             bins.start[bin as usize + 1] += 1;
         }
         for bin in 1..bins.start.len() {
             bins.start[bin] += bins.start[bin - 1];
         }
         let mut next = bins.start.clone();
-        for (number, (point, &bin)) in points.iter().zip(&places).enumerate() {
-            let place = &mut next[bin as usize];
-            bins.points[*place as usize] = (*point, number as u32);
-            *place += 1;
+        for (number, (point, &bin)) in points.iter().zip(&of_point).enumerate() {
+            let place = next[bin as usize] as usize;
+            bins.numbers[place] = number as u32;
+            for (places, &along) in bins.places.iter_mut().zip(point) {
+                places[place] = along;
+            }
+            next[bin as usize] += 1;
         }
         bins
     }
@@ -57,46 +67,43 @@ impl Bins {
         ranges.filter(|range| !range.is_empty())
     }
 
-    /// Some points with their numbers.
-    pub fn points(&self, range: &Range<usize>) -> &[Numbered] {
-        &self.points[range.clone()]
+    /// The number of a point, by its place among all, and where it is [m].
+    #[inline(always)]
+    pub fn point(&self, place: usize) -> (u32, Row) {
+        let [x, y, z] = self.places.each_ref().map(|places| places[place]);
+        (self.numbers[place], [x, y, z, 0.0])
     }
 
     /// Calls `visit` once with the numbers of any two points that are no further apart than `reach`
     /// [m], which may be no more than a bin is wide.
     #[inline]
     pub fn pairs<D: Dim>(&self, reach: f32, mut visit: impl FnMut(u32, u32)) {
-        let mut look = |(at, number): Numbered, others: &[Numbered]| {
-            for &(point, other) in others {
-                let apart = minus(point, at);
-                if dot(apart, apart) <= reach * reach {
-                    visit(number, other);
-                }
-            }
-        };
         // Of two bins side by side one looks at the other.
         let ahead: &[[i32; 2]] = match D::N {
             2 => &[[1, 0]],
             _ => &[[1, 0], [-1, 1], [0, 1], [1, 1]],
         };
+        let mut others: Vec<Range<usize>> = Vec::new();
         for bin in 0..self.start.len() - 1 {
-            let own = self.points_from(bin, bin);
+            let own = self.range(bin, bin);
             if own.is_empty() {
                 continue;
             }
             let along = |axis: usize| bin as i32 >> (axis * self.bits) & self.mask;
             let (x, y, z) = (along(0), along(1), along(2));
-            let mut rows: [[&[Numbered]; 2]; 4] = [[&[]; 2]; 4];
-            for (row, [dy, dz]) in rows.iter_mut().zip(ahead) {
-                *row = self.row([x, y + dy, z + dz]);
-            }
             let next = self.bin([x + 1, y, z]) as usize;
-            let next = self.points_from(next, next);
-            for (place, &point) in own.iter().enumerate() {
-                look(point, &own[place + 1..]);
-                look(point, next);
-                for stretch in rows[..ahead.len()].iter().flatten() {
-                    look(point, stretch);
+            others.clear();
+            others.push(self.range(next, next));
+            for [dy, dz] in ahead {
+                others.extend(self.row([x, y + dy, z + dz]));
+            }
+            others.retain(|range| !range.is_empty());
+            for place in own.clone() {
+                let (number, at) = self.point(place);
+                let mut visit = |other| visit(number, other);
+                self.look(place + 1..own.end, at, reach, &mut visit);
+                for range in &others {
+                    self.look(range.clone(), at, reach, &mut visit);
                 }
             }
         }
@@ -108,47 +115,70 @@ impl Bins {
     pub fn near<D: Dim>(&self, at: Row, reach: f32, mut visit: impl FnMut(u32)) {
         let [x, y, z] = self.square(&at);
         let layers = if D::N == 3 { -1..=1 } else { 0..=0 };
-        for (dy, dz) in layers.flat_map(|dz| (-1..=1).map(move |dy| (dy, dz))) {
-            let row = self.row([x, y.wrapping_add(dy), z.wrapping_add(dz)]);
-            for &(point, number) in row.into_iter().flatten() {
-                let apart = minus(point, at);
-                if dot(apart, apart) <= reach * reach {
-                    visit(number);
+        for dz in layers {
+            for dy in -1..=1 {
+                for range in self.row([x, y.wrapping_add(dy), z.wrapping_add(dz)]) {
+                    self.look(range, at, reach, &mut visit);
                 }
             }
         }
     }
 
-    /// The points in the bin of a square and in those before and after it on the first axis: one
-    /// stretch, and another where the grid goes round.
-    #[inline]
-    fn row(&self, [x, y, z]: Point) -> [&[Numbered]; 2] {
-        let (x, start) = (x & self.mask, self.bin([0, y, z]) as usize);
-        let from =
-            |first: i32, last: i32| self.points_from(start + first as usize, start + last as usize);
-        match x {
-            0 => [from(0, 1), from(self.mask, self.mask)],
-            x if x == self.mask => [from(x - 1, x), from(0, 0)],
-            x => [from(x - 1, x + 1), &[]],
+    /// Calls `visit` with the numbers of those of some points that are no further from `at` than
+    /// `reach` [m].
+    #[inline(always)]
+    fn look(&self, range: Range<usize>, at: Row, reach: f32, mut visit: impl FnMut(u32)) {
+        let [xs, ys, zs] = &self.places;
+        let mut first = range.start;
+        while first < range.end {
+            let four = |along: &Vec<f32>| -> [f32; LANES] {
+                let four = &along[first..first + LANES];
+                [four[0], four[1], four[2], four[3]]
+            };
+            let [x, y, z] = [four(xs), four(ys), four(zs)];
+            let mut is_near = [false; LANES];
+            for lane in 0..LANES {
+                let apart = [x[lane] - at[0], y[lane] - at[1], z[lane] - at[2]];
+                let squared = apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2];
+                is_near[lane] = squared <= reach * reach;
+            }
+            if is_near != [false; LANES] {
+                for (lane, place) in (first..range.end).take(LANES).enumerate() {
+                    if is_near[lane] {
+                        visit(self.numbers[place]);
+                    }
+                }
+            }
+            first += LANES;
         }
     }
 
-    /// The points in the bins from the first to the last.
+    /// Where the points in the bin of a square and in those before and after it on the first axis
+    /// begin and end: one stretch, and another where the grid goes round.
     #[inline]
-    fn points_from(&self, first: usize, last: usize) -> &[Numbered] {
-        &self.points[self.start[first] as usize..self.start[last + 1] as usize]
+    fn row(&self, [x, y, z]: Point) -> [Range<usize>; 2] {
+        let (x, start) = (x & self.mask, self.bin([0, y, z]) as usize);
+        let from =
+            |first: i32, last: i32| self.range(start + first as usize, start + last as usize);
+        match x {
+            0 => [from(0, 1), from(self.mask, self.mask)],
+            x if x == self.mask => [from(x - 1, x), from(0, 0)],
+            x => [from(x - 1, x + 1), 0..0],
+        }
+    }
+
+    /// Where the points in the bins from the first to the last begin and end.
+    #[inline]
+    fn range(&self, first: usize, last: usize) -> Range<usize> {
+        self.start[first] as usize..self.start[last + 1] as usize
     }
 
     /// The square of the endless grid that a place lies in.
     #[inline]
     fn square(&self, at: &Row) -> Point {
-        let mut square = [0; 3];
-        for axis in 0..3 {
-            let place = at[axis] * self.inverse;
-            // Rounded down: towards zero alone, the squares around zero would be twice as wide.
-            square[axis] = (place as i32).wrapping_sub(i32::from(place < 0.0));
-        }
-        square
+        // The last bits of a number so large are the whole ones: quicker than to ask whether they fit.
+        let whole = |along: f32| (along * self.inverse + LARGE).to_bits() as i32;
+        [whole(at[0]), whole(at[1]), whole(at[2])]
     }
 
     #[inline]
@@ -163,6 +193,7 @@ impl Bins {
 mod tests {
     use super::*;
     use crate::dim::{Dim2, Dim3};
+    use crate::vector::{dot, minus};
 
     fn check<D: Dim>() {
         let mut seed = 7u32;

@@ -8,9 +8,9 @@
 use super::Impulse;
 use super::bins::Bins;
 use super::captives::Captive;
+use super::skin::{Site, Skin, skin_of, skins_of};
 use crate::body::Body;
-use crate::dim::{Dim, Point, voxel_around};
-use crate::sharing::Sharing;
+use crate::dim::{Dim, Point};
 use crate::solve::Row;
 use crate::vector::{dot, minus, plus, scaled};
 
@@ -23,38 +23,6 @@ const SPARE: f32 = 0.5;
 
 /// The place of a skin that is no more.
 const GONE: u32 = u32::MAX;
-
-/// The ball around a surface element that stands for its skin.
-#[derive(Copy, Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Skin {
-    /// Place among the bodies.
-    pub body: u32,
-    /// Element id.
-    pub element: u32,
-    /// Piece number.
-    pub piece: u32,
-    /// Half a voxel [m].
-    pub radius: f32,
-    /// Whether its piece sleeps.
-    pub asleep: bool,
-    /// Its bare faces: bit 2 · axis + side.
-    bare: u8,
-    /// Its corner nodes; the first four in 2D.
-    pub nodes: [u32; 8],
-}
-
-/// Where a skin stands in its body: what tells neighbours from those that may touch it.
-#[derive(Copy, Clone, Debug)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct Site {
-    body: u32,
-    /// The voxels around it that shared a node with it when its nodes last changed: bit x + 3 y + 9 z,
-    /// each from 0 to 2. If one of two skins says no, they share none: what is cut changes.
-    bound: u32,
-    /// Its voxel.
-    cell: [i16; 3],
-}
 
 /// Two skins that may touch.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -105,10 +73,18 @@ pub struct Skins {
     spare: f32,
     is_good: bool,
     rest_is_good: bool,
+    /// What was torn since: body and element.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    torn: Vec<(u32, u32)>,
 }
 
 impl Skins {
-    /// The meshes have changed.
+    /// Elements of a body are gone or new, or have other nodes or other bare faces.
+    pub fn tear(&mut self, body: u32, elements: &[u32]) {
+        self.torn.extend(elements.iter().map(|&id| (body, id)));
+    }
+
+    /// The meshes have changed, nobody knows where.
     pub fn expire(&mut self) {
         self.is_good = false;
     }
@@ -135,18 +111,18 @@ impl Skins {
     }
 
     /// Follows the bodies: where the skins are now, and which pairs are close; `size` [m] is that
-    /// of the largest voxels. Returns whether the list of skins is still the same.
-    pub fn follow<D: Dim>(&mut self, bodies: &[Body<D>], size: f32) -> bool {
-        let was_good = self.is_good;
-        let is_same = self.is_good && self.rest_is_good;
+    /// of the largest voxels.
+    pub fn follow<D: Dim>(&mut self, bodies: &[Body<D>], size: f32) {
+        let is_listed = self.is_good && self.torn.is_empty();
+        let is_same = is_listed && self.rest_is_good;
         let mut strayed = Vec::new();
-        if !self.is_good {
+        if !is_listed {
             strayed = self.find(bodies);
         }
         strayed.resize(self.list.len(), false);
         if !is_same {
             for (skin, strayed) in self.list.iter_mut().zip(&mut strayed) {
-                let asleep = sleeps(bodies, skin);
+                let asleep = skin.sleeps(bodies);
                 *strayed |= skin.asleep && !asleep;
                 skin.asleep = asleep;
             }
@@ -177,12 +153,38 @@ impl Skins {
             let velocity = &bodies[skin.body as usize].velocity;
             self.velocities[place as usize] = skin.mean::<D>(velocity);
         }
-        was_good
+    }
+
+    /// The skins of all bodies, ascending, each with its voxel: found anew, or if the others are good
+    /// those of what was torn.
+    fn listed<D: Dim>(&mut self, bodies: &[Body<D>]) -> Vec<(Skin, Point)> {
+        let mut torn = std::mem::take(&mut self.torn);
+        if !self.is_good {
+            return bodies.iter().enumerate().flat_map(skins_of).collect();
+        }
+        torn.sort_unstable();
+        torn.dedup();
+        let mut next = torn.iter().copied().peekable();
+        let mut is_torn = |skin: &Skin| {
+            let own = (skin.body, skin.element);
+            while next.next_if(|&torn| torn < own).is_some() {}
+            next.peek() == Some(&own)
+        };
+        let whole = self.list.iter().zip(&self.sites);
+        let whole = whole.filter(|(skin, _)| !is_torn(skin));
+        let whole = whole.map(|(skin, site)| (skin.followed(bodies), site.voxel()));
+        let mut listed: Vec<(Skin, Point)> = whole.collect();
+        let found = |&(body, id): &(u32, u32)| skin_of(body, &bodies[body as usize], id);
+        listed.extend(torn.iter().filter_map(found));
+        // Two ascending runs.
+        listed.sort_by_key(|(skin, _)| skin.key());
+        listed
     }
 
     /// Lists the skins of all bodies anew. Those that were there before keep their anchors and their
     /// pairs; marks the others as strayed.
     fn find<D: Dim>(&mut self, bodies: &[Body<D>]) -> Vec<bool> {
+        let listed = self.listed(bodies);
         let old = std::mem::take(&mut self.list);
         let sites = std::mem::take(&mut self.sites);
         let anchors = std::mem::take(&mut self.anchors);
@@ -191,12 +193,12 @@ impl Skins {
         // Where each of the old ones is now.
         let mut moved_to = vec![GONE; old.len()];
         let mut strayed = Vec::with_capacity(old.len());
-        self.list.reserve(old.len());
-        self.sites.reserve(old.len());
-        self.anchors.reserve(old.len());
-        self.centres.reserve(old.len());
+        self.list.reserve(listed.len());
+        self.sites.reserve(listed.len());
+        self.anchors.reserve(listed.len());
+        self.centres.reserve(listed.len());
         let mut old = old.iter().enumerate().peekable();
-        for (mut skin, voxel) in bodies.iter().enumerate().flat_map(skins_of) {
+        for (mut skin, voxel) in listed {
             let body = &bodies[skin.body as usize];
             while old.next_if(|(_, old)| old.key() < skin.key()).is_some() {}
             let known = old.next_if(|(_, old)| old.key() == skin.key());
@@ -296,8 +298,8 @@ impl Skins {
         }
     }
 
-    /// Marks those that have strayed too far, and if there are any, those that soon will have;
-    /// returns whether any are marked. Notes what the others have to spare.
+    /// Where any have strayed too far, marks them and those that soon will have; returns whether any
+    /// are marked. Notes what the others have to spare.
     fn find_strayed(&mut self, strayed: &mut [bool], size: f32) -> bool {
         let strays = self.awake.iter().map(|&place| {
             let place = place as usize;
@@ -306,9 +308,9 @@ impl Skins {
         });
         let furthest = strays.clone().fold(0.0, f32::max);
         let slack = SLACK * size;
-        if furthest <= slack * slack && !strayed.contains(&true) {
+        if furthest <= slack * slack {
             self.spare = slack - furthest.sqrt();
-            return false;
+            return strayed.contains(&true);
         }
         let bearable = SPARE * slack * SPARE * slack;
         for (&place, stray) in self.awake.iter().zip(strays) {
@@ -399,125 +401,11 @@ impl Skins {
     }
 }
 
-/// The mean of the rows of a skin's corner nodes.
-#[inline(always)]
-pub fn mean<D: Dim>(rows: &[Row], nodes: &[u32; 8]) -> Row {
-    let mut sum = rows[nodes[0] as usize];
-    for &node in &nodes[1..D::CORNERS] {
-        sum = plus(sum, rows[node as usize]);
-    }
-    scaled(sum, 1.0 / D::CORNERS as f32)
-}
-
 impl SkinPair {
     /// Its skins among all of them.
     pub fn both<'a>(&self, skins: &'a [Skin]) -> [&'a Skin; 2] {
         self.skins.map(|skin| &skins[skin as usize])
     }
-}
-
-impl Skin {
-    /// The mean of something at its corners.
-    #[inline]
-    pub fn mean<D: Dim>(&self, rows: &[Row]) -> Row {
-        mean::<D>(rows, &self.nodes)
-    }
-
-    /// Whether it is a piece of its own.
-    pub fn is_crumb<D: Dim>(&self) -> bool {
-        self.bare.count_ones() as usize == 2 * D::N
-    }
-
-    /// Whether a bare face of it has none opposite.
-    pub fn leads_out(&self) -> bool {
-        (self.bare ^ self.bare >> 1) & 0b1_0101 != 0
-    }
-
-    /// From its middle out of the body, through the bare faces; nothing for a crumb or a sheet.
-    pub fn outward<D: Dim>(&self, position: &[Row]) -> Row {
-        let mut sum = [0.0; 4];
-        for corner in 0..D::CORNERS {
-            let is_bare = |axis: usize, side: usize| f32::from(self.bare >> (2 * axis + side) & 1);
-            // The middle of a face less that of all corners: half a step across.
-            let weight: f32 = (0..D::N)
-                .map(|axis| {
-                    let out = is_bare(axis, 1) - is_bare(axis, 0);
-                    if corner >> axis & 1 == 1 { out } else { -out }
-                })
-                .sum();
-            let at = position[self.nodes[corner] as usize];
-            sum = plus(sum, scaled(at, weight / D::CORNERS as f32));
-        }
-        sum
-    }
-
-    /// One over the mass that a push on it meets [1/kg].
-    fn lightness<D: Dim>(&self, bodies: &[Body<D>]) -> f32 {
-        let all = &bodies[self.body as usize].lightness;
-        let nodes = self.nodes[..D::CORNERS].iter();
-        let sum: f32 = nodes.map(|&node| all[node as usize]).sum();
-        sum / (D::CORNERS * D::CORNERS) as f32
-    }
-
-    /// Body and element in one number.
-    fn key(&self) -> u64 {
-        u64::from(self.body) << 32 | u64::from(self.element)
-    }
-}
-
-impl Site {
-    fn new<D: Dim>(body: u32, voxel: Point, sharing: &Sharing<D>) -> Self {
-        let mut bound = 0;
-        for octant in 0..D::CORNERS {
-            // The lattice point that sees the voxel in this octant.
-            let mut at = voxel;
-            (0..D::N).for_each(|axis| at[axis] += 1 - (octant >> axis & 1) as i32);
-            let group = sharing.groups(at).group_of(octant);
-            for other in (0..D::CORNERS).filter(|other| group >> other & 1 == 1) {
-                let near = voxel_around::<D>(at, other);
-                let [x, y, z] = [0, 1, 2].map(|axis: usize| near[axis] - voxel[axis] + 1);
-                bound |= 1 << (x + 3 * y + 9 * z);
-            }
-        }
-        Self {
-            body,
-            bound,
-            cell: voxel.map(|k| k as i16),
-        }
-    }
-
-    /// Whether both have a node in common.
-    #[inline(always)]
-    fn is_bound_to(&self, other: &Self) -> bool {
-        let [x, y, z] = [0, 1, 2].map(|axis: usize| other.cell[axis] - self.cell[axis] + 1);
-        let is_beside = |k: i16| (0..3).contains(&k);
-        if self.body != other.body || !(is_beside(x) && is_beside(y) && is_beside(z)) {
-            return false;
-        }
-        let bit = x + 3 * y + 9 * z;
-        self.bound >> bit & other.bound >> (26 - bit) & 1 == 1
-    }
-}
-
-/// The skins of a body, which stands at a place among all, each with its voxel.
-fn skins_of<D: Dim>((place, body): (usize, &Body<D>)) -> impl Iterator<Item = (Skin, Point)> + '_ {
-    let elements = body.mesh.elements();
-    let bare = elements.filter(|(id, _)| body.bare[*id as usize] != 0);
-    bare.map(move |(id, element)| {
-        let mut nodes = [0; 8];
-        nodes[..D::CORNERS].copy_from_slice(&element.nodes);
-        let piece = body.pieces.of_element(id);
-        let skin = Skin {
-            body: place as u32,
-            element: id,
-            piece,
-            radius: 0.5 * body.grid.voxel_size(),
-            asleep: body.pieces.list[piece as usize].asleep,
-            bare: body.bare[id as usize],
-            nodes,
-        };
-        (skin, element.cell.at)
-    })
 }
 
 /// Pairs of numbers below `count` in ascending order: by the first numbers at one go, and the few
@@ -541,11 +429,6 @@ fn sorted(pairs: &[[u32; 2]], count: usize) -> Vec<[u32; 2]> {
         same.sort_unstable();
     }
     sorted
-}
-
-fn sleeps<D: Dim>(bodies: &[Body<D>], skin: &Skin) -> bool {
-    let pieces = &bodies[skin.body as usize].pieces;
-    pieces.list[skin.piece as usize].asleep
 }
 
 #[cfg(test)]
@@ -622,8 +505,9 @@ mod tests {
         };
         let mut skins = Skins::default();
         for _ in 0..60 {
-            skins.expire();
             skins.follow(std::slice::from_ref(&body), size);
+            let anew = skins_of((0, &body)).map(|(skin, _)| skin);
+            assert_eq!(skins.list, anew.collect::<Vec<_>>());
             for b in 0..skins.list.len() {
                 for a in 0..b {
                     let [own, other] = [a, b].map(|skin| &skins.list[skin].nodes[..D::CORNERS]);
@@ -637,13 +521,14 @@ mod tests {
                 (0..D::N).for_each(|axis| at[axis] = random(n + 1) as i32);
                 (at, 1 + random((1 << D::CORNERS) - 2) as u8)
             });
-            body.release(&sides.collect::<Vec<_>>()).unwrap();
+            let torn = body.tear(&sides.collect::<Vec<_>>()).unwrap();
+            skins.tear(0, &torn.elements);
         }
         assert!(body.pieces.list.len() > 10);
     }
 
     #[test]
-    fn neighbours_are_known() {
+    fn skins_and_their_neighbours_are_known_after_every_tear() {
         check_bound::<Dim2>(14);
         check_bound::<Dim3>(8);
     }
