@@ -172,7 +172,7 @@ impl BodyText {
             Some(text) => BASE64
                 .decode(text)
                 .map_err(|error| wrong(format!("expected base64: {error}"))),
-            None => import::read(file).map_err(|error| Wrong::new("file", error)),
+            None => import::read(file).map_err(Wrong::file),
         }
     }
 

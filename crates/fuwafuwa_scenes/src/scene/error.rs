@@ -1,5 +1,6 @@
 //! What can be wrong with a scene, and where in its file that stands.
 
+use crate::import::ImportError;
 use std::collections::BTreeMap;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -44,6 +45,18 @@ pub enum SceneError {
         field: String,
         /// What was expected and what was found.
         reason: String,
+    },
+    /// A picture or a model that a body is made from gives no shape.
+    #[error("{name}{}: {field}: {error}", in_line(line))]
+    Shape {
+        /// The scene or file that asks for it.
+        name: String,
+        /// The line, when it stands in a text.
+        line: Option<usize>,
+        /// The field, with the numbers of entries counted from 1.
+        field: String,
+        /// Which file, where in it, and what was expected there.
+        error: Box<ImportError>,
     },
 }
 
@@ -103,12 +116,24 @@ fn in_line(line: &Option<usize>) -> String {
 #[derive(Debug)]
 pub(super) struct Wrong {
     path: String,
-    reason: String,
+    reason: Reason,
+}
+
+#[derive(Debug)]
+enum Reason {
+    Text(String),
+    Import(Box<ImportError>),
 }
 
 impl Wrong {
     pub(super) fn new(field: &str, reason: impl ToString) -> Self {
-        let (path, reason) = (field.into(), reason.to_string());
+        let (path, reason) = (field.into(), Reason::Text(reason.to_string()));
+        Self { path, reason }
+    }
+
+    /// A file that gives no shape.
+    pub(super) fn file(error: ImportError) -> Self {
+        let (path, reason) = ("file".into(), Reason::Import(Box::new(error)));
         Self { path, reason }
     }
 
@@ -183,11 +208,20 @@ impl Origin {
             "" => "scene",
             name => name,
         };
-        SceneError::Build {
-            name: name.into(),
-            line,
-            field: in_words(&wrong.path),
-            reason: wrong.reason,
+        let (name, field) = (name.into(), in_words(&wrong.path));
+        match wrong.reason {
+            Reason::Text(reason) => SceneError::Build {
+                name,
+                line,
+                field,
+                reason,
+            },
+            Reason::Import(error) => SceneError::Shape {
+                name,
+                line,
+                field,
+                error,
+            },
         }
     }
 

@@ -118,7 +118,6 @@ fn of_form<D: Dim>(text: &BodyText, form: Form) -> Result<Voxels, Wrong> {
 }
 
 fn of_file<D: Dim>(text: &BodyText, file: &Path) -> Result<Voxels, Wrong> {
-    let wrong = |error: crate::import::ImportError| Wrong::new("file", error);
     let good = text.proportions == [1.0; 3];
     require(good, "proportions", "a file has its own")?;
     let ending = file.extension().and_then(|ending| ending.to_str());
@@ -133,8 +132,8 @@ fn of_file<D: Dim>(text: &BodyText, file: &Path) -> Result<Voxels, Wrong> {
             let both = named && text.material.is_some();
             require(!both, "material", "the colours name the materials")?;
             let bytes = text.file_bytes(file)?;
-            let picture = Picture::decode(&name, &bytes).map_err(wrong)?;
-            let grid = picture.grid(across, 1.0, &colours).map_err(wrong)?;
+            let picture = Picture::decode(&name, &bytes).map_err(Wrong::file)?;
+            let grid = picture.grid(across, 1.0, &colours).map_err(Wrong::file)?;
             let material = text.material.unwrap_or(1);
             Ok(Voxels::of(&grid, voxel_size(text, &grid), |solid| {
                 if named { solid } else { solid * material }
@@ -146,8 +145,8 @@ fn of_file<D: Dim>(text: &BodyText, file: &Path) -> Result<Voxels, Wrong> {
             let expected = "the palette indices of a model are its materials, see colours";
             require(text.material.is_none(), "material", expected)?;
             let bytes = text.file_bytes(file)?;
-            let model = Model::decode(&name, &bytes).map_err(wrong)?;
-            let grid = model.grid(1.0, &colours).map_err(wrong)?;
+            let model = Model::decode(&name, &bytes).map_err(Wrong::file)?;
+            let grid = model.grid(1.0, &colours).map_err(Wrong::file)?;
             Ok(Voxels::of(&grid, voxel_size(text, &grid), |solid| solid))
         }
         _ => {
