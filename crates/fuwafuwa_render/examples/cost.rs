@@ -31,15 +31,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             nodes: false,
         };
         for (look_name, look) in [("skin", Look::Skin), ("elements", elements)] {
+            let camera = Camera::fit(scene.view[0], scene.view[1], SIZE);
             let frame = Frame {
-                camera: Camera::fit(scene.view[0], scene.view[1], SIZE),
-                theme: &theme,
                 look,
-                basket: None,
-                particles: &[],
-                stickers: &[],
-                ghost: None,
-                seconds: 0.0,
+                ..Frame::new(camera, &theme)
             };
             let mut geometry = Geometry::default();
             let gather = best(200, || geometry.gather(&world, &frame));

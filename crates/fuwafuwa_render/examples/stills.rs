@@ -66,8 +66,6 @@ fn main() -> Result<(), Box<dyn Error>> {
             ];
             for (look_name, look, theme) in looks {
                 let frame = Frame {
-                    camera,
-                    theme,
                     look,
                     basket: (name == "squeeze").then_some(Basket {
                         region: Shape::Box {
@@ -77,9 +75,8 @@ fn main() -> Result<(), Box<dyn Error>> {
                         fill: 0.0,
                     }),
                     particles: &particles,
-                    stickers: &[],
-                    ghost: None,
                     seconds: tick as f32 / 60.0,
+                    ..Frame::new(camera, theme)
                 };
                 let begin = Instant::now();
                 let image = renderer.render_to_image(&device, &queue, &world, &frame, SIZE)?;

@@ -214,19 +214,17 @@ fn main() -> Result<(), Box<dyn Error>> {
                 } else {
                     scene.view
                 };
+                let camera = Camera {
+                    cut,
+                    turn,
+                    ..Camera::fit(low, high, SIZE)
+                };
                 let frame = Frame {
-                    camera: Camera {
-                        cut,
-                        turn,
-                        ..Camera::fit(low, high, SIZE)
-                    },
-                    theme,
                     look,
                     basket,
                     particles: &particles,
-                    stickers: &[],
-                    ghost: None,
                     seconds: tick as f32 / 60.0,
+                    ..Frame::new(camera, theme)
                 };
                 let begin = Instant::now();
                 let image = renderer.render_to_image(&device, &queue, &world, &frame, SIZE)?;

@@ -7,6 +7,7 @@ use fuwafuwa::{Body, Dim, Vector};
 const STEPS: usize = 12;
 /// What is flatter than this has no turn of its own: its volume, as a share of its length cubed.
 const FLAT: f32 = 1.0e-7;
+const UPRIGHT: [Vector; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// A frame that follows the largest piece of a body.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -40,9 +41,55 @@ pub fn anchor<D: Dim>(body: &Body<D>) -> Anchor {
             (at, node.at.map(|k| k as f32), mass)
         })
     };
+    let (position, _, axes) = frame::<D, _>(states);
+    let whole: f32 = masses.iter().sum();
+    let voxels = body.grid().solid_count() as f32 * masses[largest] / whole;
+    Anchor {
+        position,
+        axes: axes.unwrap_or(UPRIGHT),
+        scale: body.grid().voxel_size()
+            * match D::N {
+                2 => (voxels / std::f32::consts::PI).sqrt(),
+                _ => (0.75 * voxels / std::f32::consts::PI).cbrt(),
+            },
+    }
+}
+
+/// Where a place of a piece is [m] and how it is turned, by what of the piece was no farther from it than `reach`, both in
+/// voxels of the body at rest; none where that is too little or too flat to have a turn.
+pub fn anchor_at<D: Dim>(
+    body: &Body<D>,
+    piece: u32,
+    place: Vector,
+    reach: f32,
+) -> Option<(Vector, [Vector; 3])> {
+    let states = || {
+        let near = body.mesh().nodes().filter_map(move |(id, node)| {
+            let rest = node.at.map(|k| k as f32);
+            let away = minus(rest, place);
+            (dot(away, away) < reach * reach && body.pieces().of_node(id) == piece)
+                .then_some((id, rest))
+        });
+        near.map(|(id, rest)| {
+            let (at, _, mass) = body.node_state(id);
+            (at, rest, mass)
+        })
+    };
+    let (position, origin, axes) = frame::<D, _>(states);
+    let axes = axes?;
+    let by = scaled(minus(place, origin), body.grid().voxel_size());
+    let moved = (0..3).fold(position, |sum, k| plus(sum, scaled(axes[k], by[k])));
+    Some((moved, axes))
+}
+
+/// The mean place of nodes now and at rest, and their turn, from where each is, was, and how heavy it is.
+fn frame<D: Dim, I: Iterator<Item = (Vector, Vector, f32)>>(
+    states: impl Fn() -> I,
+) -> (Vector, Vector, Option<[Vector; 3]>) {
+    let whole: f32 = states().map(|(_, _, mass)| mass).sum();
     let (mut position, mut origin) = ([0.0; 3], [0.0; 3]);
     for (at, rest, mass) in states() {
-        let share = mass / masses[largest];
+        let share = mass / whole;
         position = plus(position, scaled(at, share));
         origin = plus(origin, scaled(rest, share));
     }
@@ -53,22 +100,12 @@ pub fn anchor<D: Dim>(body: &Body<D>) -> Anchor {
             *sum = plus(*sum, scaled(x, mass * r));
         }
     }
-    let whole: f32 = masses.iter().sum();
-    let voxels = body.grid().solid_count() as f32 * masses[largest] / whole;
-    Anchor {
-        position,
-        axes: turn_of::<D>(sums),
-        scale: body.grid().voxel_size()
-            * match D::N {
-                2 => (voxels / std::f32::consts::PI).sqrt(),
-                _ => (0.75 * voxels / std::f32::consts::PI).cbrt(),
-            },
-    }
+    (position, origin, turn_of::<D>(sums))
 }
 
 /// The rotation part of a matrix, both by columns: the mean of it and of its inverse turned over, again and
-/// again [Higham 1986].
-fn turn_of<D: Dim>(mut columns: [Vector; 3]) -> [Vector; 3] {
+/// again [Higham 1986]; none of what is flat or turned inside out.
+fn turn_of<D: Dim>(mut columns: [Vector; 3]) -> Option<[Vector; 3]> {
     let size = |columns: &[Vector; 3]| columns.iter().map(|c| dot(*c, *c)).sum::<f32>().sqrt();
     if D::N == 2 {
         // In the plane it turns around the third axis.
@@ -79,7 +116,7 @@ fn turn_of<D: Dim>(mut columns: [Vector; 3]) -> [Vector; 3] {
         let large = size(&columns);
         let volume = dot(a, cross(b, c));
         if volume.is_nan() || volume <= FLAT * large * large * large {
-            return [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+            return None;
         }
         let inverse = [cross(b, c), cross(c, a), cross(a, b)].map(|k| scaled(k, 1.0 / volume));
         // Of the same size, both come close to the turn at once.
@@ -89,7 +126,7 @@ fn turn_of<D: Dim>(mut columns: [Vector; 3]) -> [Vector; 3] {
             scaled(sum, 0.5)
         });
     }
-    columns
+    Some(columns)
 }
 
 #[cfg(test)]

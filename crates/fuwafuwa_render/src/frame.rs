@@ -25,6 +25,22 @@ pub struct Frame<'a, C = Camera> {
     pub seconds: f32,
 }
 
+impl<'a, C> Frame<'a, C> {
+    /// The skin of a world as it stands, and nothing beside it.
+    pub fn new(camera: C, theme: &'a Theme) -> Self {
+        Self {
+            camera,
+            theme,
+            look: Look::Skin,
+            basket: None,
+            particles: &[],
+            stickers: &[],
+            ghost: None,
+            seconds: 0.0,
+        }
+    }
+}
+
 /// Where the camera is. What it looks at fills the target, whatever that measures.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Camera {

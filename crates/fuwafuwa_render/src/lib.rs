@@ -32,7 +32,7 @@ pub mod space;
 pub mod theme;
 
 pub use ages::Ages;
-pub use anchor::{Anchor, anchor};
+pub use anchor::{Anchor, anchor, anchor_at};
 pub use frame::{Basket, Camera, Frame, Look, Mark, Particle, Sticker};
 pub use geometry::Geometry;
 pub use gpu::{ImageError, Renderer};

@@ -21,19 +21,6 @@ struct Picture {
     pixels: Vec<u8>,
 }
 
-fn frame(camera: Camera, theme: &Theme) -> Frame<'_> {
-    Frame {
-        camera,
-        theme,
-        look: Look::Skin,
-        basket: None,
-        particles: &[],
-        stickers: &[],
-        ghost: None,
-        seconds: 0.0,
-    }
-}
-
 fn take<'a>(
     world: &World<Dim2>,
     format: TextureFormat,
@@ -41,7 +28,7 @@ fn take<'a>(
 ) -> Option<Picture> {
     let (device, queue) = device()?;
     let camera = Camera::fit([-0.1, -0.1, 0.0], [1.1, 1.1, 0.0], SIZE);
-    let mut frame = frame(camera, &THEME);
+    let mut frame = Frame::new(camera, &THEME);
     change(&mut frame);
     let mut renderer = Renderer::new(&device, format);
     let pixels = renderer.render_to_image(&device, &queue, world, &frame, SIZE);
@@ -285,7 +272,7 @@ fn nothing_is_a_picture_too_and_so_is_what_has_no_skin() {
         let mut image = |world: &World<Dim2>, look| {
             let frame = Frame {
                 look,
-                ..frame(camera, &theme)
+                ..Frame::new(camera, &theme)
             };
             let image = renderer.render_to_image(&device, &queue, world, &frame, size);
             image.unwrap()
@@ -310,7 +297,7 @@ fn a_window_wider_than_a_texture_can_be_is_drawn_smaller() {
     assert_eq!(device.limits().max_texture_dimension_2d, 2048);
     let mut renderer = Renderer::new(&device, TextureFormat::Rgba8Unorm);
     let size = [2560, 800];
-    let frame = frame(Camera::fit([0.0; 3], [1.0; 3], size), &THEME);
+    let frame = Frame::new(Camera::fit([0.0; 3], [1.0; 3], size), &THEME);
     let mut encoder = device.create_command_encoder(&Default::default());
     renderer.prepare(&device, &queue, &mut encoder, &disc(), &frame, size);
     queue.submit([encoder.finish()]);
@@ -343,7 +330,7 @@ fn what_is_too_much_for_a_buffer_is_left_out() {
     world.add_body(body.unwrap());
     let mut renderer = Renderer::new(&device, TextureFormat::Rgba8Unorm);
     let size = [96, 96];
-    let mut frame = frame(Camera::fit([0.0; 3], [1.0; 3], size), &THEME);
+    let mut frame = Frame::new(Camera::fit([0.0; 3], [1.0; 3], size), &THEME);
     for colour in [None, Some(ElementColour::Level)] {
         frame.look = colour.map_or(Look::Skin, |colour| Look::Elements {
             colour,

@@ -26,25 +26,12 @@ fn take<'a>(
     change: impl Fn(&mut Frame<'a, Camera>),
 ) -> Option<Picture> {
     let (device, queue) = device()?;
-    let mut frame = frame(Camera::fit([0.0; 3], [1.0; 3], SIZE));
+    let mut frame = Frame::new(Camera::fit([0.0; 3], [1.0; 3], SIZE), &THEME);
     change(&mut frame);
     let mut renderer = Renderer::new(&device, format);
     let pixels = renderer.render_to_image(&device, &queue, world, &frame, SIZE);
     let (camera, pixels) = (frame.camera, pixels.expect("an image"));
     Some(Picture { camera, pixels })
-}
-
-fn frame<'a>(camera: Camera) -> Frame<'a, Camera> {
-    Frame {
-        camera,
-        theme: &THEME,
-        look: Look::Skin,
-        basket: None,
-        particles: &[],
-        stickers: &[],
-        ghost: None,
-        seconds: 0.0,
-    }
 }
 
 impl Picture {
@@ -369,7 +356,7 @@ fn small_targets_and_small_buffers_are_drawn_as_far_as_they_go() {
     };
     let mut renderer = Renderer::new(&device, TextureFormat::Rgba8Unorm);
     for (world, size) in [(ball(), [1, 1]), (floating(), [3, 200]), (ball(), [96, 96])] {
-        let mut frame = frame(Camera::fit([0.0; 3], [1.0; 3], size));
+        let mut frame = Frame::new(Camera::fit([0.0; 3], [1.0; 3], size), &THEME);
         for colour in [None, Some(ElementColour::Strain)] {
             frame.look = colour.map_or(Look::Skin, |colour| Look::Elements {
                 colour,

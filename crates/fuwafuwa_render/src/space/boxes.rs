@@ -1,22 +1,23 @@
 //! Elements as boxes that have gone out of shape with them.
 
 use super::camera::Cut;
+use super::cut::planes;
 use crate::elements::colour_of;
 use crate::frame::ElementColour;
 use crate::theme::{Theme, bytes};
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::dim::{add, corner, scale};
+use fuwafuwa::mesh::Element;
 use fuwafuwa::stencil::slot_index;
-use fuwafuwa::vector::{dot, length, minus, plus, scaled, three};
+use fuwafuwa::vector::{minus, plus, scaled, three};
 use fuwafuwa::view::face_corners;
 use fuwafuwa::{Body, Dim3, ElementView, Vector};
 
 /// How far a box stays inside its element [voxels]: so neighbours are told apart.
 const GAP: f32 = 0.03;
-/// An element whose middle is so far behind the cut, in its own widths, has all its neighbours.
-const DEEP: f32 = 2.2;
-/// What is thinner has no inside to be looked into [voxels].
-const THIN: f32 = 6.0;
+/// An element whose middle is so far behind the cut, in its own widths, has all its neighbours: the middle of one
+/// towards the cut, which is twice as wide at most, is that much closer to it.
+const DEEP: f32 = 1.51;
 
 /// A corner of a triangle of the element view.
 #[repr(C)]
@@ -38,9 +39,11 @@ pub struct Boxes {
     pub vertices: Vec<BoxVertex>,
     /// Three to a triangle.
     pub indices: Vec<u32>,
+    /// By body and piece: across which axis it was cut last, and on which side.
+    sides: Vec<Vec<(usize, f32)>>,
 }
 
-/// The faces of a block of an element: corners of its slots, and which sides are edges.
+/// The faces of a block of an element: slots at their corners, and which sides are edges.
 type Quads = Vec<([usize; 4], [bool; 4])>;
 
 impl Boxes {
@@ -50,16 +53,26 @@ impl Boxes {
         self.indices.clear();
     }
 
-    /// Adds the elements of a body whose middle is not cut off, as far as something of them can be seen.
+    /// Adds the elements of the body at a place of the world whose middle is not cut off, as far as something of them can be
+    /// seen.
     pub fn add(
         &mut self,
+        place: usize,
         body: &Body<Dim3>,
         theme: &Theme,
         colour: ElementColour,
         ages: &[f32],
         cut: Option<Cut>,
     ) {
-        let planes = cut.map_or(Vec::new(), |cut| planes(body, cut));
+        if self.sides.len() <= place {
+            self.sides.resize(place + 1, Vec::new());
+        }
+        let sides = &mut self.sides[place];
+        let planes = cut.map_or(Vec::new(), |cut| planes(body, cut, sides));
+        *sides = planes
+            .iter()
+            .map(|plane| (plane.axis, plane.side))
+            .collect();
         let mut quads: Vec<(u8, u8, Quads)> = Vec::new();
         for (id, element) in body.mesh().elements() {
             let bare = body.bare_faces(id);
@@ -73,8 +86,9 @@ impl Boxes {
             if depth < 0.0 || bare == 0 && !is_at_cut {
                 continue;
             }
-            let Some(view) = body.element_view(id) else {
-                continue;
+            let view = match element.cell.level {
+                0 => small_view(body, id, element, colour),
+                _ => body.element_view(id).expect("it is one of the mesh"),
             };
             let form = (element.cell.level.min(1), element.children);
             let known = quads.iter().position(|known| (known.0, known.1) == form);
@@ -83,11 +97,14 @@ impl Boxes {
                 quads.len() - 1
             });
             let shown = bytes(colour_of(&view, theme, colour, ages), 1.0);
-            let shrunk = 1.0 - GAP / element.cell.width() as f32;
+            let (centre, share) = (view.slots[13], 1.0 - GAP / width);
+            let shrunk = view
+                .slots
+                .map(|at| plus(centre, scaled(minus(at, centre), share)));
             for (face, quad) in quads[place].2.iter().enumerate() {
                 // At level 0 quads go by faces.
                 if is_at_cut || bare >> face & 1 == 1 {
-                    self.add_quad(&view, quad, shrunk, shown);
+                    self.add_quad(&shrunk, quad, shown);
                 }
             }
         }
@@ -95,15 +112,13 @@ impl Boxes {
 
     fn add_quad(
         &mut self,
-        view: &ElementView,
+        places: &[Vector; 27],
         (slots, edges): &([usize; 4], [bool; 4]),
-        shrunk: f32,
         colour: [u8; 4],
     ) {
         let first = self.vertices.len() as u32;
-        let centre = view.slots[13];
         for (k, &slot) in slots.iter().enumerate() {
-            let at = plus(centre, scaled(minus(view.slots[slot], centre), shrunk));
+            let at = places[slot];
             // Side k leads from corner k to the next one.
             let is_on = |side: usize| side == k || (side + 1) % 4 == k;
             let sides = [0, 1, 2, 3].map(|side| if edges[side] && is_on(side) { 0 } else { 255 });
@@ -113,67 +128,31 @@ impl Boxes {
     }
 }
 
-/// Where a piece is cut, in its body at rest [voxels].
-#[derive(Copy, Clone, Debug)]
-struct Plane {
-    axis: usize,
-    /// 1 or −1: on which side it is cut off.
-    side: f32,
-    /// Where, along the axis towards that side.
-    at: f32,
-}
-
-impl Plane {
-    /// How far a place at rest is behind it [voxels].
-    fn depth(&self, rest: Vector) -> f32 {
-        self.at - self.side * rest[self.axis]
+/// What [`Body::element_view`] says of an element of level 0, as far as it is shown: most are such, and have no slots to be
+/// worked out but their corners and their middle.
+fn small_view(body: &Body<Dim3>, id: u32, element: &Element, colour: ElementColour) -> ElementView {
+    let mut slots = [[0.0; 3]; 27];
+    let corners: [Vector; 8] =
+        std::array::from_fn(|k| three(body.positions()[element.nodes[k] as usize]));
+    for (k, &at) in corners.iter().enumerate() {
+        slots[slot_index(scale(corner(k), 2))] = at;
     }
-}
-
-/// Where each piece of a body is cut.
-fn planes(body: &Body<Dim3>, cut: Cut) -> Vec<Plane> {
-    let nodes = || {
-        body.mesh().nodes().map(|(id, node)| {
-            let at = three(body.positions()[id as usize]);
-            (
-                body.pieces().of_node(id) as usize,
-                at,
-                node.at.map(|k| k as f32),
-            )
-        })
-    };
-    let none = ([f32::MAX; 3], [f32::MIN; 3], [0.0; 3], 0.0f32);
-    let mut spans = vec![none; body.pieces().list.len()];
-    for (piece, at, rest) in nodes() {
-        let (low, high, sum, count) = &mut spans[piece];
-        (0..3).for_each(|k| (low[k], high[k]) = (low[k].min(rest[k]), high[k].max(rest[k])));
-        (*sum, *count) = (plus(*sum, at), *count + 1.0);
+    slots[13] = scaled(
+        corners.iter().fold([0.0; 3], |sum, &at| plus(sum, at)),
+        0.125,
+    );
+    ElementView {
+        id,
+        level: 0,
+        piece: body.pieces().of_element(id),
+        material: 0,
+        children: element.children,
+        strain: match colour {
+            ElementColour::Level => 0.0,
+            ElementColour::Strain => body.strain(id).unwrap_or(0.0),
+        },
+        slots,
     }
-    // By piece and axis: in which direction, more or less, the axis leads now.
-    let mut axes = vec![[[0.0; 3]; 3]; spans.len()];
-    for (piece, at, rest) in nodes() {
-        let (low, high, sum, count) = spans[piece];
-        let by = minus(at, scaled(sum, 1.0 / count));
-        for k in 0..3 {
-            let along = rest[k] - 0.5 * (low[k] + high[k]);
-            axes[piece][k] = plus(axes[piece][k], scaled(by, along));
-        }
-    }
-    let plane = |((low, high, ..), axes): ((Vector, Vector, _, _), [Vector; 3])| {
-        let facing = axes.map(|axis| dot(axis, cut.towards) / length(axis).max(1e-12));
-        let more = |a: &usize, b: &usize| facing[*a].abs().total_cmp(&facing[*b].abs());
-        let axis = (0..3).max_by(more).unwrap_or(0);
-        let side = 1.0f32.copysign(facing[axis]);
-        let wide = high[axis] - low[axis];
-        let first = (side * low[axis]).min(side * high[axis]);
-        let share = if wide < THIN { 2.0 } else { cut.share };
-        Plane {
-            axis,
-            side,
-            at: first + share * wide,
-        }
-    };
-    spans.into_iter().zip(axes).map(plane).collect()
 }
 
 /// The quads around what an element fills, those of a block in the order of its faces.
@@ -214,8 +193,8 @@ fn quads_of(level: u8, children: u8) -> Quads {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::vector::cross;
-    use fuwafuwa::{Material, Settings, VoxelGrid, World};
+    use fuwafuwa::vector::{cross, dot, length};
+    use fuwafuwa::{Manipulator, Material, Settings, Shape, VoxelGrid, World};
 
     #[test]
     fn quads_close_around_what_is_filled() {
@@ -237,6 +216,33 @@ mod tests {
     }
 
     #[test]
+    fn small_elements_look_as_the_body_says() {
+        let mut world = World::<Dim3>::new(Settings::default()).unwrap();
+        let grid = VoxelGrid::<Dim3>::ball(12, 1.0).unwrap();
+        world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+        let hand = Manipulator::new([0.5, 1.3, 0.5], 0.3);
+        let hand = world.add_manipulator(hand).unwrap();
+        let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+        world.add_obstacle(floor, 0.2).unwrap();
+        for _ in 0..40 {
+            world.set_goal(hand, [0.5, 0.8, 0.4]);
+            world.step();
+        }
+        let body = &world.bodies()[0];
+        let mut most = 0.0f32;
+        for (id, element) in body.mesh().elements().filter(|(_, of)| of.cell.level == 0) {
+            let exact = body.element_view(id).unwrap();
+            let small = small_view(body, id, element, ElementColour::Strain);
+            for slot in (0..8).map(|k| slot_index(scale(corner(k), 2))).chain([13]) {
+                assert!(length(minus(small.slots[slot], exact.slots[slot])) < 1e-5);
+            }
+            assert_eq!(small.strain, exact.strain);
+            most = most.max(exact.strain);
+        }
+        assert!(most > 0.15, "{most}");
+    }
+
+    #[test]
     fn boxes_fill_what_is_left_of_a_body_however_it_lies() {
         let grid = VoxelGrid::<Dim3>::cube(8, 1.0).unwrap();
         let mut world = World::<Dim3>::new(Settings::default()).unwrap();
@@ -245,7 +251,14 @@ mod tests {
             let towards = [0.6, 0.0, 0.8];
             let (theme, cut) = (Theme::candy(), Some(Cut { towards, share }));
             let mut boxes = Boxes::default();
-            boxes.add(&world.bodies()[0], &theme, ElementColour::Level, &[], cut);
+            boxes.add(
+                0,
+                &world.bodies()[0],
+                &theme,
+                ElementColour::Level,
+                &[],
+                cut,
+            );
             let at = |k: &u32| boxes.vertices[*k as usize].at;
             let triangles = boxes.indices.chunks(3);
             let triangles = triangles.map(|t| (at(&t[0]), at(&t[1]), at(&t[2])));

@@ -83,15 +83,19 @@ impl Geometry {
                 Look::Elements { colour, ages, .. } => {
                     let ages = ages.get(place).map_or(&[][..], Vec::as_slice);
                     let cut = frame.camera.cut;
-                    self.boxes.add(body, theme, colour, ages, cut);
+                    self.boxes.add(place, body, theme, colour, ages, cut);
                 }
             }
         }
         self.crumbs = first..self.rounded.len() as u32;
-        for sticker in frame.stickers.iter().filter(|_| frame.look == Look::Skin) {
-            if let Some(body) = world.bodies().get(sticker.body) {
-                let (skin, eye) = (&self.skins[sticker.body], frame.camera.eye());
-                self.stickers.add(sticker, skin, body, eye);
+        // Elements have no skin that something could lie on.
+        if frame.look == Look::Skin {
+            let eye = frame.camera.eye();
+            for sticker in frame.stickers {
+                if let Some(body) = world.bodies().get(sticker.body) {
+                    let skin = &self.skins[sticker.body];
+                    self.stickers.add(sticker, skin, body, eye);
+                }
             }
         }
         let dust = frame.particles.iter().enumerate();
@@ -213,16 +217,7 @@ mod tests {
                 .moved([0.0, 2.0, 0.0]),
         );
         let theme = Theme::candy();
-        let mut frame = Frame {
-            camera: Camera::fit([-1.0; 3], [1.0; 3], [1, 1]),
-            theme: &theme,
-            look: Look::Skin,
-            basket: None,
-            particles: &[],
-            stickers: &[],
-            ghost: None,
-            seconds: 0.0,
-        };
+        let mut frame = Frame::new(Camera::fit([-1.0; 3], [1.0; 3], [1, 1]), &theme);
         let mut geometry = Geometry::default();
         for is_first in [true, false] {
             geometry.gather(&world, &frame);

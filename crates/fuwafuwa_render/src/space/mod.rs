@@ -2,13 +2,14 @@
 //!
 //! [`camera`] is what a caller says beside the rest of a [`crate::Frame`] → `rest` how a body is smooth
 //! before it moves → `faces` what of it is bare → [`skin`] its smooth surface now, `stickers` what lies on
-//! it; `boxes` its elements → `rounded` and `room` everything rigid → [`geometry`] all of them → `gpu`
+//! it; `cut` where it is opened → `boxes` its elements → `rounded` and `room` everything rigid → [`geometry`] all of them → `gpu`
 //! draws them: first what the light and the sky see, then the picture.
 //!
 //! Up is the second axis: the sky, the lines below hands and the floor go by it.
 
 mod boxes;
 pub mod camera;
+mod cut;
 mod faces;
 pub mod geometry;
 mod gpu;

@@ -1,21 +1,22 @@
 //! Vertices on the GPU: the shadow map, the picture, then the window's pass.
 
+mod meshes;
 mod pipelines;
 mod targets;
 
 use super::camera::{Camera, Matrix, product, seen_from};
 use super::geometry::Geometry;
 use super::rounded;
-use super::skin::Skin;
 use crate::frame::Frame;
 use crate::gpu::ImageError;
-use crate::gpu::buffer::{GrowingBuffer, drawable};
+use crate::gpu::buffer::GrowingBuffer;
 use crate::gpu::image::{Step, image};
 use crate::gpu::targets::bind;
 use crate::rigid::MOST_WALLS;
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::vector::{cross, length, scaled};
 use fuwafuwa::{Dim3, Vector, World};
+use meshes::{draw_mesh, mesh_buffers, write_mesh, write_skins};
 use pipelines::Pipelines;
 use std::ops::Range;
 use targets::{SHADOW_SIDES, Shadows, Targets};
@@ -357,59 +358,6 @@ fn seen_by(light: Vector, middle: Vector, half: f32) -> Matrix {
         [0.0, 0.0, 0.5, 1.0],
     ];
     product(flat, seen)
-}
-
-fn mesh_buffers(device: &Device, label: &'static str) -> [GrowingBuffer; 2] {
-    [BufferUsages::VERTEX, BufferUsages::INDEX]
-        .map(|usage| GrowingBuffer::new(device, label, usage))
-}
-
-/// Writes skins; those that were not renewed have the triangles that they had.
-fn write_skins(
-    device: &Device,
-    queue: &Queue,
-    buffers: &mut Vec<[GrowingBuffer; 2]>,
-    skins: &[Skin],
-    renewed: &[bool],
-) {
-    buffers.truncate(skins.len());
-    while buffers.len() < skins.len() {
-        buffers.push(mesh_buffers(device, "skin"));
-    }
-    for (place, is_new) in renewed.iter().enumerate() {
-        let (skin, [vertices, indices]) = (&skins[place], &mut buffers[place]);
-        vertices.write(device, queue, skin.vertices());
-        // A body that is gone leaves its buffers to the next one.
-        if *is_new || indices.count() as usize != skin.indices().len() {
-            let there = drawable(skin.indices(), skin.vertices(), vertices.count());
-            indices.write(device, queue, there);
-        }
-    }
-}
-
-fn write_mesh<T: Pod>(
-    device: &Device,
-    queue: &Queue,
-    [vertices, indices]: &mut [GrowingBuffer; 2],
-    corners: &[T],
-    triangles: &[u32],
-) {
-    vertices.write(device, queue, corners);
-    let there = drawable(triangles, corners, vertices.count());
-    indices.write(device, queue, there);
-}
-
-fn draw_mesh(
-    pass: &mut RenderPass<'_>,
-    [vertices, indices]: &[GrowingBuffer; 2],
-    instances: Range<u32>,
-) {
-    if indices.count() == 0 || instances.is_empty() {
-        return;
-    }
-    pass.set_vertex_buffer(0, vertices.all());
-    pass.set_index_buffer(indices.all(), IndexFormat::Uint32);
-    pass.draw_indexed(0..indices.count(), 0, instances);
 }
 
 fn depth_attachment(view: &TextureView, store: StoreOp) -> RenderPassDepthStencilAttachment<'_> {

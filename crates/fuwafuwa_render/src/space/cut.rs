@@ -1,0 +1,107 @@
+//! Where the pieces of a body are cut open, so that one looks into them.
+
+use super::camera::Cut;
+use fuwafuwa::vector::{dot, length, minus, plus, scaled, three};
+use fuwafuwa::{Body, Dim3, Vector};
+
+/// A piece is cut across another axis once that faces so much better, as a cosine: what trembles does not flicker.
+const BETTER: f32 = 0.15;
+/// What is thinner has no inside to be looked into [voxels].
+const THIN: f32 = 6.0;
+
+/// Where a piece is cut, in its body at rest [voxels].
+#[derive(Copy, Clone, Debug)]
+pub struct Plane {
+    /// Across which axis.
+    pub axis: usize,
+    /// 1 or −1: on which side it is cut off.
+    pub side: f32,
+    /// Where, along the axis towards that side.
+    at: f32,
+}
+
+impl Plane {
+    /// How far a place at rest is behind it [voxels].
+    pub fn depth(&self, rest: Vector) -> f32 {
+        self.at - self.side * rest[self.axis]
+    }
+}
+
+/// Where each piece of a body is cut; `before` has the axes and sides of the last time.
+pub fn planes(body: &Body<Dim3>, cut: Cut, before: &[(usize, f32)]) -> Vec<Plane> {
+    let nodes = || {
+        body.mesh().nodes().map(|(id, node)| {
+            let at = three(body.positions()[id as usize]);
+            (
+                body.pieces().of_node(id) as usize,
+                at,
+                node.at.map(|k| k as f32),
+            )
+        })
+    };
+    let none = ([f32::MAX; 3], [f32::MIN; 3], [0.0; 3], 0.0f32);
+    let mut spans = vec![none; body.pieces().list.len()];
+    for (piece, at, rest) in nodes() {
+        let (low, high, sum, count) = &mut spans[piece];
+        (0..3).for_each(|k| (low[k], high[k]) = (low[k].min(rest[k]), high[k].max(rest[k])));
+        (*sum, *count) = (plus(*sum, at), *count + 1.0);
+    }
+    // By piece and axis: in which direction, more or less, the axis leads now.
+    let mut axes = vec![[[0.0; 3]; 3]; spans.len()];
+    for (piece, at, rest) in nodes() {
+        let (low, high, sum, count) = spans[piece];
+        let by = minus(at, scaled(sum, 1.0 / count));
+        for k in 0..3 {
+            let along = rest[k] - 0.5 * (low[k] + high[k]);
+            axes[piece][k] = plus(axes[piece][k], scaled(by, along));
+        }
+    }
+    let plane = |(piece, (low, high, ..), axes): (usize, (Vector, Vector, _, _), [Vector; 3])| {
+        let facing = axes.map(|axis| dot(axis, cut.towards) / length(axis).max(1e-12));
+        let more = |a: &usize, b: &usize| facing[*a].abs().total_cmp(&facing[*b].abs());
+        let best = (0..3).max_by(more).unwrap_or(0);
+        let kept = before.get(piece).copied();
+        let kept = kept.filter(|&(axis, side)| side * facing[axis] > facing[best].abs() - BETTER);
+        let (axis, side) = kept.unwrap_or((best, 1.0f32.copysign(facing[best])));
+        let wide = high[axis] - low[axis];
+        let first = (side * low[axis]).min(side * high[axis]);
+        let share = if wide < THIN { 2.0 } else { cut.share };
+        Plane {
+            axis,
+            side,
+            at: first + share * wide,
+        }
+    };
+    let pieces = spans.into_iter().zip(axes).enumerate();
+    pieces
+        .map(|(piece, (span, axes))| plane((piece, span, axes)))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fuwafuwa::{Material, VoxelGrid};
+
+    #[test]
+    fn a_cut_keeps_its_axis_until_another_one_faces_clearly_better() {
+        let grid = VoxelGrid::<Dim3>::cube(8, 1.0).unwrap();
+        let body = Body::new(grid, &[Material::default()]).unwrap();
+        let mut before = Vec::new();
+        let mut axis = |degrees: f32| {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            let (towards, share) = ([sin, 0.0, cos], 0.5);
+            let plane = planes(&body, Cut { towards, share }, &before)[0];
+            before = vec![(plane.axis, plane.side)];
+            before[0]
+        };
+        let degrees = [
+            40.0, 46.0, 44.0, 49.0, 60.0, 46.0, 44.0, 41.0, 30.0, -60.0, 120.0,
+        ];
+        let (front, right, left) = ((2, 1.0), (0, 1.0), (0, -1.0));
+        let wanted = [
+            front, front, front, front, right, right, right, right, front, left, right,
+        ];
+        assert_eq!(degrees.map(&mut axis), wanted);
+    }
+}
