@@ -32,6 +32,12 @@ pub enum LevelError {
     /// The scene in it is wrong.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// A picture or a model that was to become a body cannot.
+    #[error("no body can be made of {0}")]
+    NoBody(
+        /// The file, where in it, and what was expected there.
+        String,
+    ),
     /// It can be watched, not played.
     #[error("{id}: {field}: {reason}")]
     NoGame {
@@ -115,7 +121,7 @@ impl Level {
         let ending = path.extension().and_then(|ending| ending.to_str());
         let ending = ending.unwrap_or_default().to_ascii_lowercase();
         match FRAMES.iter().find(|(made_from, _)| *made_from == ending) {
-            Some((_, frame)) => Self::framed(frame, path),
+            Some((_, frame)) => Self::framed(frame, path).map_err(|error| blame(id, error)),
             None => Self::of(id, Scene::open(id, &[])?),
         }
     }
@@ -240,6 +246,18 @@ impl Level {
             }
         };
         Ok(known.downcast_ref().expect("a level has one dimension"))
+    }
+}
+
+/// What is wrong with a body that is made from a file is wrong with the file: of the level around it nobody
+/// has heard.
+fn blame(file: &str, error: LevelError) -> LevelError {
+    match error {
+        LevelError::Scene(SceneError::Shape { error, .. }) => LevelError::NoBody(error.to_string()),
+        LevelError::Scene(SceneError::Build { reason, .. }) => {
+            LevelError::NoBody(format!("{file}: {reason}"))
+        }
+        error => error,
     }
 }
 

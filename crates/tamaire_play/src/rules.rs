@@ -1,6 +1,7 @@
 //! What counts as won, and by which route.
 
 use crate::{Level, Route, Wish};
+use fuwafuwa::vector::minus;
 use fuwafuwa::world::TICK;
 use fuwafuwa::{Body, Dim, PieceView, Shape, World};
 use serde::{Deserialize, Serialize};
@@ -32,9 +33,9 @@ pub struct Progress {
     pub pieces: usize,
     /// For how long enough has rested in the basket [s].
     pub held: f32,
-    /// The least mean strain of what is in the basket since enough rests there: how much the bars
-    /// hold it squeezed when nobody pushes.
-    pub squeezed: f32,
+    /// Whether nothing squeezed what is in the basket at some moment since enough rests there: then the
+    /// bars do not hold it when nobody pushes.
+    pub relaxed: bool,
     /// How it ended, if it has.
     pub outcome: Option<Outcome>,
     bodies: usize,
@@ -88,7 +89,7 @@ impl Progress {
                 .map(|body| body.pieces().list.len())
                 .sum(),
             held: 0.0,
-            squeezed: f32::INFINITY,
+            relaxed: false,
             outcome: None,
             bodies: world.bodies().len(),
             whole: greatest(&views_of(world)),
@@ -113,10 +114,10 @@ impl Progress {
         self.within = all / self.mass;
         let enough = self.inside >= level.game().share;
         self.held = if enough { self.held + TICK } else { 0.0 };
-        if !enough {
-            self.squeezed = f32::INFINITY;
-        } else if self.squeezed.is_infinite() || world.ticks().is_multiple_of(LOOK) {
-            self.squeezed = self.squeezed.min(strain_inside(world, &views, basket));
+        self.relaxed &= enough;
+        let looks = self.held == TICK || world.ticks().is_multiple_of(LOOK);
+        if enough && looks && !self.relaxed {
+            self.relaxed = strain_inside(world, &views, basket) <= SQUEEZED;
         }
         if enough && self.held >= level.game().hold {
             let all = views.iter().flatten();
@@ -138,10 +139,10 @@ impl Progress {
     /// Named from what happened, not from what was meant.
     fn route(&self, lost: usize) -> Route {
         let is_whole = self.kept >= WHOLE && lost == 0;
-        match (is_whole, self.squeezed > SQUEEZED) {
+        match (is_whole, self.relaxed) {
             (true, _) => Route::Squeeze,
-            (false, false) => Route::Shave,
-            (false, true) => Route::Mix,
+            (false, true) => Route::Shave,
+            (false, false) => Route::Mix,
         }
     }
 }
@@ -171,13 +172,14 @@ fn masses_inside<D: Dim>(world: &World<D>, region: &Shape) -> (f32, f32) {
     let inside = |body: &Body<D>| {
         let (mut resting, mut all) = (0.0, 0.0);
         for (id, _) in body.mesh().nodes() {
-            let (at, velocity, mass) = body.node_state(id);
-            if region.distance(at).0 < 0.0 {
-                all += mass;
-                let square: f32 = velocity.iter().map(|k| k * k).sum();
-                if square < RESTING * RESTING {
-                    resting += mass;
-                }
+            if !is_inside(region, body.positions()[id as usize]) {
+                continue;
+            }
+            let (_, velocity, mass) = body.node_state(id);
+            all += mass;
+            let square: f32 = velocity.iter().map(|k| k * k).sum();
+            if square < RESTING * RESTING {
+                resting += mass;
             }
         }
         (resting, all)
@@ -190,28 +192,56 @@ fn masses_inside<D: Dim>(world: &World<D>, region: &Shape) -> (f32, f32) {
 fn strain_inside<D: Dim>(world: &World<D>, views: &[Vec<PieceView>], region: &Shape) -> f32 {
     let (mut sum, mut volume) = (0.0, 0.0);
     for (body, pieces) in world.bodies().iter().zip(views) {
-        let counts = |piece: u32| {
-            let view = &pieces[piece as usize];
+        let counts = |id: u32| {
+            let view = &pieces[body.pieces().of_element(id) as usize];
             region.distance(view.centre).0 < 0.0 && view.element_count > 50
         };
-        for element in body.element_views().filter(|element| counts(element.piece)) {
-            let children = match element.level {
+        for (id, element) in body.mesh().elements().filter(|(id, _)| counts(*id)) {
+            let children = match element.cell.level {
                 0 => D::CORNERS as u32,
                 _ => element.children.count_ones(),
             };
-            let share = children as f32 * (D::CORNERS as f32).powi(i32::from(element.level) - 1);
-            sum += share * element.strain;
-            volume += share;
+            let child = (D::CORNERS as f32).powi(i32::from(element.cell.level) - 1);
+            let strain = body.strain(id).expect("the mesh lists live elements");
+            sum += children as f32 * child * strain;
+            volume += children as f32 * child;
         }
     }
     if volume > 0.0 { sum / volume } else { 0.0 }
 }
 
+/// Whether a place is in a region. Of a box, as all baskets are, this is told without a root.
+fn is_inside(region: &Shape, [x, y, z, _]: [f32; 4]) -> bool {
+    match *region {
+        Shape::Box { centre, half } => {
+            let at = minus([x, y, z], centre);
+            (0..3).all(|axis| at[axis].abs() < half[axis])
+        }
+        _ => region.distance([x, y, z]).0 < 0.0,
+    }
+}
+
 #[cfg(test)]
 mod tests {
+    use super::is_inside;
     use crate::{Bot, BotKind, Level, Round};
-    use fuwafuwa::Dim2;
+    use fuwafuwa::{Dim2, Shape};
     use std::sync::Arc;
+
+    #[test]
+    fn what_is_inside_is_so_by_its_distance() {
+        let (centre, half) = ([1.05, 0.3, 0.0], [0.43, 0.3, 0.425]);
+        let basket = Shape::Box { centre, half };
+        let mut count = 0;
+        for place in 0..11_usize.pow(3) {
+            let steps = [place % 11, place / 11 % 11, place / 121];
+            let at = [0, 1, 2].map(|k| centre[k] + (0.25 * steps[k] as f32 - 1.25) * half[k]);
+            let inside = is_inside(&basket, [at[0], at[1], at[2], 0.0]);
+            assert_eq!(inside, basket.distance(at).0 < 0.0, "{at:?}");
+            count += usize::from(inside);
+        }
+        assert!((343..729).contains(&count), "{count}");
+    }
 
     #[test]
     fn what_moves_in_the_basket_is_within_and_what_rests_is_inside() {

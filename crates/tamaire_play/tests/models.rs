@@ -90,7 +90,12 @@ fn a_model_of_any_colours_becomes_the_body_of_a_level() {
     let wide = refused(&model([65, 64, 64], &[[0, 0, 0, 79]], &[[0; 4]; 256]));
     assert!(wide.contains("expected 262144 voxels at most"), "{wide}");
     let torn = refused(&pudding()[..1000]);
-    assert!(torn.contains("wide.VOX"), "{torn}");
+    let file = path.display();
+    for (said, place) in [(&wide, ": "), (&torn, ", byte 20: expected ")] {
+        let begin = format!("no body can be made of {file}{place}");
+        assert!(said.starts_with(&begin), "{said}");
+        assert!(!said.contains("classic"), "nobody asked for it: {said}");
+    }
     std::fs::remove_dir_all(folder).unwrap();
 }
 

@@ -4,21 +4,20 @@
 //! thread takes it, and goes on with what it has while the game is just writing; a keeper opens the
 //! device, and goes on trying while there is none.
 
+mod device;
+
 use crate::cue::Cue;
 use crate::soundscape::{Hush, Soundscape, Volumes};
 use crate::synth::Synth;
-use cpal::traits::{DeviceTrait, HostTrait, StreamTrait};
-use cpal::{Device, ErrorKind, FromSample, I24, SampleFormat, SizedSample, StreamConfig, U24};
-use std::sync::mpsc::{self, RecvTimeoutError, Sender};
+use cpal::{FromSample, SizedSample};
+use device::{keep_open, open_stream};
+use std::sync::mpsc;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError, Weak};
 use std::thread;
 use std::time::Duration;
 
 /// Until a device that does not answer counts as none.
 const PATIENCE: Duration = Duration::from_secs(3);
-
-/// Between two attempts to open a device.
-const PAUSE: Duration = Duration::from_secs(2);
 
 /// As many cues may wait for the device; a tick of heavy tearing has some hundred.
 const MOST_CUES: usize = 256;
@@ -195,111 +194,9 @@ impl Source {
     }
 }
 
-/// Keeps a device open until the speaker is gone, and drops `opened` after the first attempt.
-fn keep_open<Stream>(
-    mailbox: &Weak<Mutex<Mailbox>>,
-    opened: Sender<()>,
-    open: impl Fn(Sender<NoSound>) -> Result<Stream, NoSound>,
-) {
-    let mut opened = Some(opened);
-    while mailbox.strong_count() > 0 {
-        let (lost, losses) = mpsc::channel();
-        let stream = open(lost);
-        report(mailbox, stream.as_ref().err().cloned());
-        drop(opened.take());
-        while stream.is_ok() && mailbox.strong_count() > 0 {
-            match losses.recv_timeout(PAUSE) {
-                Err(RecvTimeoutError::Timeout) => {}
-                Ok(why) => {
-                    report(mailbox, Some(why));
-                    break;
-                }
-                Err(RecvTimeoutError::Disconnected) => {
-                    report(mailbox, Some(NoSound::NoAnswer));
-                    break;
-                }
-            }
-        }
-        drop(stream);
-        thread::sleep(PAUSE);
-    }
-}
-
-fn report(mailbox: &Weak<Mutex<Mailbox>>, trouble: Option<NoSound>) {
-    if let Some(mailbox) = mailbox.upgrade() {
-        let mut mailbox = lock(&mailbox);
-        mailbox.cues.clear();
-        mailbox.trouble = trouble;
-    }
-}
-
-/// Plays on the device that the system prefers, until dropped; tells `lost` when it no longer can.
-fn open_stream(
-    mailbox: &Weak<Mutex<Mailbox>>,
-    lost: Sender<NoSound>,
-) -> Result<cpal::Stream, NoSound> {
-    // ALSA would write to the terminal what it tries in vain; what matters comes back as an error.
-    #[cfg(target_os = "linux")]
-    let _ = alsa::Output::local_error_handler();
-    let device = cpal::default_host()
-        .default_output_device()
-        .ok_or(NoSound::NoDevice)?;
-    let supported = device.default_output_config()?;
-    // With the buffer that the system prefers: ALSA's way to PulseAudio stalls with a size of our choice.
-    let config = supported.config();
-    let source = Source::new(mailbox.clone(), config.sample_rate);
-    let build = match supported.sample_format() {
-        SampleFormat::I8 => build::<i8>,
-        SampleFormat::I16 => build::<i16>,
-        SampleFormat::I24 => build::<I24>,
-        SampleFormat::I32 => build::<i32>,
-        SampleFormat::I64 => build::<i64>,
-        SampleFormat::U8 => build::<u8>,
-        SampleFormat::U16 => build::<u16>,
-        SampleFormat::U24 => build::<U24>,
-        SampleFormat::U32 => build::<u32>,
-        SampleFormat::U64 => build::<u64>,
-        SampleFormat::F32 => build::<f32>,
-        SampleFormat::F64 => build::<f64>,
-        other => return Err(NoSound::Refused(format!("its samples are {other}"))),
-    };
-    let stream = build(&device, config, source, lost)?;
-    stream.play()?;
-    Ok(stream)
-}
-
-fn build<T: SizedSample + FromSample<f32>>(
-    device: &Device,
-    config: StreamConfig,
-    mut source: Source,
-    lost: Sender<NoSound>,
-) -> Result<cpal::Stream, cpal::Error> {
-    let channels = usize::from(config.channels);
-    device.build_output_stream(
-        config,
-        move |out: &mut [T], _| source.fill(out, channels),
-        move |error| match error.kind() {
-            // It plays on.
-            ErrorKind::DeviceChanged | ErrorKind::Xrun | ErrorKind::RealtimeDenied => {}
-            // The keeper may have heard of it already, and be gone from the channel.
-            _ => drop(lost.send(error.into())),
-        },
-        Some(PATIENCE),
-    )
-}
-
-impl From<cpal::Error> for NoSound {
-    fn from(error: cpal::Error) -> Self {
-        match error.kind() {
-            ErrorKind::DeviceNotAvailable | ErrorKind::HostUnavailable => Self::NoDevice,
-            ErrorKind::DeviceBusy => Self::Busy,
-            _ => Self::Refused(error.to_string()),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::device::{PAUSE, report};
     use super::*;
     use crate::cue::{Menu, Route};
     use crate::soundscape::Press;
