@@ -190,7 +190,7 @@ impl App {
                 _ => {}
             }
         }
-        point(game, ctx);
+        point(game, ctx, &self.fingers);
         game.devices.keys = ctx.input(|input| input.keys_down.iter().copied().collect());
         if game.screen == Screen::Play && game.turn().is_some() && game.session.is_played() {
             look_around(game, ctx, &mut self.fingers);

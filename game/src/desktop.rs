@@ -32,6 +32,7 @@ struct Arguments {
 const AFTER_HELP: &str = "\
 Examples:
   tamaire drawing.png
+  tamaire --level hoop
   tamaire --headless --bot shave --seed 7 --film shave.gif --save shave.tamaire
   tamaire --headless --replay shave.tamaire --json
 
@@ -49,6 +50,9 @@ pub fn main() -> ExitCode {
         Some(file) => arguments.options.with_file(file),
         None => arguments.options,
     };
+    let shown = arguments
+        .file
+        .or_else(|| options.level.clone().map(PathBuf::from));
     if arguments.headless {
         return headless::play(&options);
     }
@@ -58,7 +62,7 @@ pub fn main() -> ExitCode {
     let mut is_open = false;
     // A library of the window system that is not installed makes it panic.
     let opened = catch_unwind(AssertUnwindSafe(|| {
-        show(arguments.file, arguments.mute, &mut is_open)
+        show(shown, arguments.mute, &mut is_open)
     }));
     match opened {
         Ok(Ok(())) => ExitCode::SUCCESS,

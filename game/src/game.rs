@@ -261,7 +261,8 @@ impl Game {
         self.go(Screen::Play);
     }
 
-    /// A file was dropped onto the window or named on the command line: a level, a picture or a replay.
+    /// A file was dropped onto the window or named on the command line: a level, a picture, a model or a replay. A level
+    /// that comes along may be named too.
     pub fn open(&mut self, path: &Path) {
         let ending = path
             .extension()
@@ -290,9 +291,13 @@ impl Game {
     }
 
     fn offer(&mut self, level: Level) {
-        self.levels.retain(|known| known.id != level.id);
-        self.levels.push(Arc::new(level));
-        self.start(self.levels.len() - 1);
+        let known = self.levels.iter().position(|known| **known == level);
+        let place = known.unwrap_or_else(|| {
+            self.levels.retain(|known| known.id != level.id);
+            self.levels.push(Arc::new(level));
+            self.levels.len() - 1
+        });
+        self.start(place);
     }
 
     /// Keeps the settings; what cannot be written is said and lost only at the end of the game.

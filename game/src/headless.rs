@@ -10,6 +10,7 @@ use clap::builder::PossibleValuesParser;
 use film::Film;
 use force_log::ForceLog;
 use fuwafuwa_painter::PaintError;
+use indicatif::{ProgressBar, ProgressFinish, ProgressStyle};
 use report::{Refusal, Report};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -29,13 +30,13 @@ const REPLAY: &str = "tamaire";
 const RATE: f32 = 60.0;
 
 /// What is played without a window, and what is told of it. The command line has a flag `headless`,
-/// without which none of this counts.
+/// without which only the level counts.
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Without a window")]
 pub struct Options {
-    /// The level, by name (see --list) or in a file (.toml, .png or .vox)
-    #[arg(long, requires = "headless", default_value = NAMED[0].0, value_name = "NAME or FILE")]
-    pub level: String,
+    /// The level, by name (see --list) or in a file (.toml, .png or .vox); without a window classic if none is given
+    #[arg(long, help_heading = None::<&'static str>, value_name = "NAME or FILE")]
+    pub level: Option<String>,
     /// Which bot plays
     #[arg(long, requires = "headless", default_value = "squeeze", value_parser = PossibleValuesParser::new(BotKind::NAMED.map(|(name, _)| name)))]
     pub bot: String,
@@ -68,7 +69,7 @@ impl Options {
     pub fn with_file(mut self, file: &Path) -> Self {
         match file.extension() {
             Some(ending) if ending == REPLAY => self.replay = Some(file.into()),
-            _ => self.level = file.to_string_lossy().into(),
+            _ => self.level = Some(file.to_string_lossy().into()),
         }
         self
     }
@@ -138,7 +139,8 @@ pub fn list() {
 
 /// Lets a bot play.
 fn try_bot(options: &Options) -> Result<String, Trouble> {
-    let level = Arc::new(Level::open(&options.level)?);
+    let level = options.level.as_deref().unwrap_or(NAMED[0].0);
+    let level = Arc::new(Level::open(level)?);
     for path in options.film.iter().chain(&options.save) {
         can_be_written(path)?;
     }
@@ -200,11 +202,13 @@ fn tell(played: &Played, by: report::Player, options: &Options) -> Result<String
 fn of_bot(level: Arc<Level>, mut bot: Bot, most_ticks: u64, log: &mut Option<ForceLog>) -> Played {
     let mut round = AnyRound::new(level);
     let mut times = Vec::new();
+    let bar = progress("playing", most_ticks);
     while round.progress().outcome.is_none() && round.ticks() < most_ticks {
         let frame = round.ask(&mut bot);
         let start = Instant::now();
         round.step(frame);
         times.push(start.elapsed());
+        bar.inc(1);
         if let Some(log) = log {
             log.note(&round);
         }
@@ -213,18 +217,29 @@ fn of_bot(level: Arc<Level>, mut bot: Bot, most_ticks: u64, log: &mut Option<For
 }
 
 fn of_replay(replay: Arc<Replay>, log: &mut Option<ForceLog>) -> Result<Played, ReplayError> {
+    let bar = progress("playing", replay.ticks() as u64);
     let mut playback = Playback::new(replay)?;
     let mut times = Vec::new();
     while !playback.is_over() {
         let start = Instant::now();
         playback.step()?;
         times.push(start.elapsed());
+        bar.inc(1);
         if let Some(log) = log {
             log.note(playback.round());
         }
     }
     let round = playback.round().clone();
     Ok(Played { round, times })
+}
+
+/// A bar for whoever waits at a terminal, until it is dropped; into a file or a pipe it writes nothing.
+fn progress(what: &'static str, ticks: u64) -> ProgressBar {
+    let style = ProgressStyle::with_template("{msg} {wide_bar} {percent} %  {elapsed}");
+    ProgressBar::new(ticks)
+        .with_style(style.expect("the template is well formed"))
+        .with_message(what)
+        .with_finish(ProgressFinish::AndClear)
 }
 
 /// The table of forces, if it was asked for.

@@ -17,7 +17,7 @@ tasks:
   soak [MINUTES [LEVEL …]]
                    ten minutes of two hands that do anything, on every level, unless told otherwise
   rapier           whether crates/against_rapier, a workspace of its own, still compiles
-  help             this text
+  help             this text, as does --help after any task; that of the game: play -- --help
 
 On Debian and Ubuntu, `play`, `test` and `check` install the system packages that are missing, as
 root or through sudo, after asking if there is a terminal. With --no-install they only name them.
@@ -48,6 +48,9 @@ impl Task {
         let words: Vec<&str> = own.iter().map(String::as_str).collect();
         let has_separator = own.len() < arguments.len();
         let for_game = arguments.iter().skip(own.len() + 1).cloned().collect();
+        if words.iter().any(|word| matches!(*word, "--help" | "-h")) {
+            return Ok(Task::Help);
+        }
         let task = match words[..] {
             [] => return Err("no task given".to_string()),
             ["play"] => return Ok(Task::Play(IfMissing::Install, for_game)),
@@ -68,7 +71,7 @@ impl Task {
             ["kernel", "--install"] => Task::Kernel(IfMissing::Install),
             ["soak", ..] => Task::Soak(own[1..].to_vec()),
             ["rapier"] => Task::Rapier,
-            ["help" | "--help" | "-h"] => Task::Help,
+            ["help"] => Task::Help,
             _ => return Err(format!("there is no task `{}`", arguments.join(" "))),
         };
         if has_separator {
@@ -109,7 +112,16 @@ mod tests {
             "soak 2 hoop",
             Ok(Task::Soak(vec!["2".into(), "hoop".into()])),
         );
-        check("--help", Ok(Task::Help));
+        for line in [
+            "help",
+            "--help",
+            "soak --help",
+            "play -h",
+            "kernel --help",
+            "check --help",
+        ] {
+            check(line, Ok(Task::Help));
+        }
         check("", Err("no task given"));
         check("chekc", Err("there is no task `chekc`"));
         check("test fast", Err("there is no task `test fast`"));
@@ -133,6 +145,7 @@ mod tests {
             "play -- --level classic",
             play(IfMissing::Install, &["--level", "classic"]),
         );
+        check("play -- --help", play(IfMissing::Install, &["--help"]));
         check(
             "play --no-install -- a.png",
             play(IfMissing::Say, &["a.png"]),

@@ -10,8 +10,8 @@ const DECIDED: f32 = 10.0;
 /// whichever it begins with.
 #[derive(Debug, Default)]
 pub(super) struct Fingers {
-    /// The one that points.
-    first: Option<Finger>,
+    /// The one that points, and where.
+    first: Option<(Finger, Pos2)>,
     others: BTreeMap<Finger, Drag>,
     drawn: Drawn,
 }
@@ -61,6 +61,17 @@ impl Fingers {
         }
     }
 
+    /// Whether there is a finger. Then no mouse counts: of the fingers that are left when the first one lifts, a browser
+    /// takes one for the mouse.
+    pub(super) fn are_down(&self) -> bool {
+        self.first.is_some() || !self.others.is_empty()
+    }
+
+    /// Where the first one points.
+    pub(super) fn first(&self) -> Option<Pos2> {
+        self.first.map(|(_, at)| at)
+    }
+
     /// How far they went since this was asked last.
     pub(super) fn take(&mut self) -> Drawn {
         std::mem::take(&mut self.drawn)
@@ -68,18 +79,23 @@ impl Fingers {
 
     fn touch(&mut self, finger: Finger, phase: TouchPhase, at: Pos2) {
         match phase {
-            TouchPhase::Start if self.first.is_none_or(|first| first == finger) => {
-                self.first = Some(finger);
+            TouchPhase::Start if self.first.is_none() || self.is_first(finger) => {
+                self.first = Some((finger, at));
             }
             TouchPhase::Start => {
                 self.others.insert(finger, Drag { at, way: None });
             }
+            TouchPhase::Move if self.is_first(finger) => self.first = Some((finger, at)),
             TouchPhase::Move => self.draw(finger, at),
             TouchPhase::End | TouchPhase::Cancel => {
                 self.others.remove(&finger);
-                self.first = self.first.filter(|first| *first != finger);
+                self.first = self.first.filter(|(first, _)| *first != finger);
             }
         }
+    }
+
+    fn is_first(&self, finger: Finger) -> bool {
+        self.first.is_some_and(|(first, _)| first == finger)
     }
 
     fn draw(&mut self, finger: Finger, at: Pos2) {
@@ -168,5 +184,27 @@ mod tests {
             ),
             [0.0; 2]
         );
+    }
+
+    #[test]
+    fn a_finger_that_is_left_alone_does_not_point_and_the_next_one_does() {
+        use TouchPhase::{End, Move, Start};
+        let mut fingers = Fingers::default();
+        assert!(!fingers.are_down());
+        drawn(
+            &mut fingers,
+            &[(1, Start, [9.0, 9.0]), (1, Move, [5.0, 6.0])],
+        );
+        drawn(&mut fingers, &[(2, Start, [70.0, 80.0])]);
+        assert_eq!(fingers.first(), Some(pos2(5.0, 6.0)));
+        drawn(
+            &mut fingers,
+            &[(1, End, [5.0, 6.0]), (2, Move, [71.0, 80.0])],
+        );
+        assert_eq!((fingers.are_down(), fingers.first()), (true, None));
+        drawn(&mut fingers, &[(3, Start, [30.0, 30.0])]);
+        assert_eq!(fingers.first(), Some(pos2(30.0, 30.0)));
+        drawn(&mut fingers, &[(2, End, [0.0; 2]), (3, End, [0.0; 2])]);
+        assert!(!fingers.are_down());
     }
 }

@@ -2,33 +2,30 @@
 
 use super::fingers::Fingers;
 use crate::game::{Game, Screen};
-use egui::{Context, Event, PointerButton};
+use egui::{Context, Event, PointerButton, Pos2};
 
 /// How far the wheel raises the hand [m/point].
 const WHEEL: f32 = 0.002;
-/// What share of a body it cuts off [1/point].
+/// What share of a body it cuts off [1/point], and a key that is held [1/s].
 const CUT: f32 = 0.0012;
+const CUTTING: f32 = 0.4;
 /// How far a mouse or a finger turns the camera [rad/point].
 const DRAG: f32 = 0.006;
 /// How fast a key or a stick that leans fully turns it [rad/s].
 const TURN: f32 = 1.5;
 
-/// Notes where the mouse points, which counts until a tick has heard of it; on a button it does not mean the hand, nor
-/// while it turns the camera.
-pub(super) fn point(game: &mut Game, ctx: &Context) {
+/// Notes where the mouse or the first finger points, which counts until a tick has heard of it; on a button it does not
+/// mean the hand, nor while it turns the camera.
+pub(super) fn point(game: &mut Game, ctx: &Context, fingers: &Fingers) {
     let is_on_button = ctx.interaction_snapshot(|seen| !seen.hovered.is_empty());
     if game.screen != Screen::Play || is_on_button {
         game.devices.pointer = None;
         return;
     }
-    let at = ctx.input(|input| {
-        let pointer = &input.pointer;
-        let has_moved = |event: &Event| matches!(event, Event::PointerMoved(_));
-        let points =
-            pointer.button_down(PointerButton::Primary) || input.events.iter().any(has_moved);
-        let turns = pointer.button_down(PointerButton::Secondary);
-        pointer.latest_pos().filter(|_| points && !turns)
-    });
+    let at = match fingers.are_down() {
+        true => fingers.first(),
+        false => mouse_at(ctx),
+    };
     let (Some(view), Some(at)) = (game.view, at) else {
         return;
     };
@@ -42,8 +39,20 @@ pub(super) fn point(game: &mut Game, ctx: &Context) {
     game.devices.pointer = Some(place);
 }
 
-/// In space the wheel and a second finger raise the hand, or the wheel cuts bodies open where their elements are seen;
-/// mouse, second finger, keys, sticks and pads turn the camera.
+/// Where the mouse points, if it does.
+fn mouse_at(ctx: &Context) -> Option<Pos2> {
+    ctx.input(|input| {
+        let pointer = &input.pointer;
+        let has_moved = |event: &Event| matches!(event, Event::PointerMoved(_));
+        let points =
+            pointer.button_down(PointerButton::Primary) || input.events.iter().any(has_moved);
+        let turns = pointer.button_down(PointerButton::Secondary);
+        pointer.latest_pos().filter(|_| points && !turns)
+    })
+}
+
+/// In space the wheel and a second finger raise the hand; where elements are seen, the wheel, keys and pads cut bodies open;
+/// mouse, second finger, keys, sticks and pads turn the camera, a double click with the right button brings it back.
 pub(super) fn look_around(game: &mut Game, ctx: &Context, fingers: &mut Fingers) {
     let (wheel, mouse, seconds) = ctx.input(|input| {
         let turns = input.pointer.button_down(PointerButton::Secondary);
@@ -54,18 +63,27 @@ pub(super) fn look_around(game: &mut Game, ctx: &Context, fingers: &mut Fingers)
         };
         (input.smooth_scroll_delta.y, mouse, input.stable_dt.min(0.1))
     });
+    let twice = ctx.input(|input| {
+        input
+            .pointer
+            .button_double_clicked(PointerButton::Secondary)
+    });
     let fingers = fingers.take();
     // The hand rises as far as the finger does.
     let metres = game.view.map_or(0.0, |view| 1.0 / view.scale);
     game.devices.lift += metres * fingers.up;
+    let deeper = CUT * wheel + CUTTING * seconds * game.devices.deeper(&game.settings.bindings);
     if game.elements.is_none() {
         game.devices.lift += WHEEL * wheel;
-    } else if wheel != 0.0 {
+    } else if deeper != 0.0 {
         let still = game.settings.reduced_motion;
-        game.opening.cut(CUT * wheel, game.time, still);
+        game.opening.cut(deeper, game.time, still);
     }
     game.camera
         .orbit(-DRAG * (mouse.x + fingers.right), DRAG * mouse.y);
     let turn = TURN * seconds * game.devices.turn(&game.settings.bindings);
     game.camera.orbit(turn.x, turn.y);
+    if twice {
+        game.camera.go_home();
+    }
 }

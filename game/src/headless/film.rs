@@ -3,6 +3,7 @@
 //! The round is played a second time: the same input gives the same world, and painting disturbs
 //! no timing.
 
+use super::progress;
 use super::report::by_route;
 use crate::look::{Camera, Effects, Mood};
 use fuwafuwa::vector::{plus, scaled};
@@ -88,7 +89,9 @@ fn pass(
 ) -> Result<(), PaintError> {
     let mut round = AnyRound::new(played.level().clone());
     let mut effects = Effects::default();
+    let bar = progress("filming", ticks as u64);
     for tick in 0..=ticks {
+        bar.inc(u64::from(tick > 0));
         if tick > 0 {
             let frame = played.frames().get(tick - 1).copied();
             round.step(frame.unwrap_or_default());

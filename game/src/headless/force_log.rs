@@ -7,7 +7,7 @@ use force_feedback::{Ability, Feel, Mail, Manner, Output, State, Watchdog};
 use fuwafuwa::Vector;
 use fuwafuwa::world::TICK;
 use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::path::Path;
 use std::time::Duration;
 use tamaire_play::{AnyRound, PLAYERS};
@@ -23,7 +23,9 @@ const COLUMNS: &str = "seconds,row,player,\
 /// A table that grows tick by tick: the substeps of a tick, then the updates from its end to that of the next. Sticks in it
 /// point at the goals of the hands, as those do that push back.
 pub struct ForceLog {
-    file: BufWriter<File>,
+    file: File,
+    /// Those of a tick, which go into the file at once: of a run that is killed there is all up to a tick.
+    rows: Vec<u8>,
     /// Each player's stick and pad.
     feels: [[Feel; 2]; PLAYERS],
     /// Where each stick pointed at the end of the tick before.
@@ -39,10 +41,11 @@ pub struct ForceLog {
 impl ForceLog {
     /// An empty table in a new file.
     pub fn create(path: &Path) -> io::Result<Self> {
-        let mut file = BufWriter::new(File::create(path)?);
+        let mut file = File::create(path)?;
         writeln!(file, "{COLUMNS}")?;
         Ok(Self {
             file,
+            rows: Vec::new(),
             feels: Default::default(),
             aims: Default::default(),
             settings: Settings::default().force("").unwrap_or_default(),
@@ -55,16 +58,21 @@ impl ForceLog {
     pub fn note(&mut self, round: &AnyRound) {
         if self.written.is_ok() {
             self.written = self.write(round);
+            self.rows.clear();
         }
     }
 
     /// Whether all of it is in the file.
-    pub fn finish(mut self) -> io::Result<()> {
-        self.written?;
-        self.file.flush()
+    pub fn finish(self) -> io::Result<()> {
+        self.written
     }
 
     fn write(&mut self, round: &AnyRound) -> io::Result<()> {
+        self.collect(round)?;
+        self.file.write_all(&self.rows)
+    }
+
+    fn collect(&mut self, round: &AnyRound) -> io::Result<()> {
         let hands = round.hands();
         let tick = f64::from(TICK);
         let end = round.ticks() as f64 * tick;
@@ -79,7 +87,7 @@ impl ForceLog {
                 let contact = numbers(&reaction.contact);
                 let coupling = numbers(&reaction.coupling);
                 writeln!(
-                    self.file,
+                    self.rows,
                     "{seconds:.6},substep,{player},{contact},{coupling},,,,,,,,,"
                 )?;
             }
@@ -151,7 +159,7 @@ impl ForceLog {
         let (pushed, shaken) = (numbers(&both(stick.output)), numbers(&both(pad.output)));
         let silent = stick.silent.map_or(String::new(), |why| why.to_string());
         writeln!(
-            self.file,
+            self.rows,
             "{seconds:.6},device,{player},{contact},,,,{aim},{felt},{pushed},{shaken},{silent}"
         )
     }
@@ -179,4 +187,30 @@ fn aim_at(place: Vector, round: &AnyRound) -> [f32; 2] {
         (place[axis] - middle) / half.max(1e-3)
     });
     felt::on_stick(share, turn(round))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Arc;
+    use tamaire_play::{InputFrame, Level};
+
+    #[test]
+    fn after_each_tick_all_of_it_is_in_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("forces.csv");
+        let mut log = ForceLog::create(&path).unwrap();
+        let mut round = AnyRound::new(Arc::new(Level::open("classic").unwrap()));
+        for tick in 1..=3 {
+            round.step(InputFrame::default());
+            log.note(&round);
+            // Nobody gets to say that this is the end.
+            let table = std::fs::read_to_string(&path).unwrap();
+            let last = format!("\n{:.6},substep,0,", f64::from(tick) * f64::from(TICK));
+            assert!(table.contains(&last), "tick {tick}: {table}");
+            let commas = COLUMNS.matches(',').count();
+            let is_whole = |line: &str| line.matches(',').count() == commas;
+            assert!(table.ends_with('\n') && table.lines().all(is_whole));
+        }
+    }
 }

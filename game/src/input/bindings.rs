@@ -54,6 +54,8 @@ impl Default for Bindings {
             (Action::Lower, vec![Key::Z, Key::PageDown]),
             (Action::TurnLeft, vec![Key::OpenBracket]),
             (Action::TurnRight, vec![Key::CloseBracket]),
+            (Action::Deeper, vec![Key::X]),
+            (Action::Shallower, vec![Key::C]),
             (Action::CutForces, vec![Key::F12]),
         ];
         let pad = |button| PadKey::of(Control::Pad(button));
@@ -71,12 +73,15 @@ impl Default for Bindings {
             (Action::Pause, vec![pad(PadButton::Start), stick(2)]),
             (Action::Elements, vec![pad(PadButton::West), stick(4)]),
             (Action::Slow, vec![pad(PadButton::RightShoulder), stick(5)]),
-            (Action::Step, vec![pad(PadButton::LeftShoulder), stick(6)]),
-            (Action::Join, vec![pad(PadButton::Back), stick(7)]),
+            (Action::TurnLeft, vec![stick(6)]),
+            (Action::TurnRight, vec![stick(7)]),
             (Action::Raise, vec![stick(9)]),
             (Action::Lower, vec![stick(10)]),
-            (Action::TurnLeft, vec![stick(11)]),
-            (Action::TurnRight, vec![stick(12)]),
+            (Action::Join, vec![pad(PadButton::Back), stick(11)]),
+            // Few sticks have more than twelve: what one can play without comes last.
+            (Action::Step, vec![pad(PadButton::LeftShoulder), stick(12)]),
+            (Action::Deeper, vec![pad(PadButton::RightStick)]),
+            (Action::Shallower, vec![pad(PadButton::LeftStick)]),
             // On a pad a child would press it by accident, and a pad does nothing worse than hum.
             (Action::CutForces, vec![stick(8)]),
         ];
@@ -232,6 +237,20 @@ mod tests {
         assert_eq!(bindings.of_button(start), Some(Action::Retry));
         assert_eq!(bindings.of_button(Control::Button(3)), Some(Action::Retry));
         assert_eq!(bindings.of_button(Control::Button(2)), Some(Action::Pause));
+    }
+
+    #[test]
+    fn a_stick_with_twelve_buttons_can_do_all_that_a_round_needs() {
+        let bindings = Bindings::default();
+        let is_there = |action: &Action| {
+            let buttons = bindings.buttons[action].iter();
+            let hat = buttons.clone().any(|button| button.0.starts_with("hat "));
+            let mut numbers = buttons.filter_map(|button| button.0.parse::<u8>().ok());
+            hat || numbers.any(|number| number <= 12)
+        };
+        let missing: Vec<Action> = Action::ALL.into_iter().filter(|k| !is_there(k)).collect();
+        let rest = [Action::Step, Action::Deeper, Action::Shallower];
+        assert_eq!(missing, rest, "what one looks at bodies with");
     }
 
     #[test]

@@ -59,6 +59,18 @@ impl Devices {
         most.clamp(Vec2::splat(-1.0), Vec2::splat(1.0))
     }
 
+    /// How fast bodies whose elements are seen are to be opened further, from -1 to 1.
+    pub fn deeper(&self, bindings: &Bindings) -> f32 {
+        let deeper =
+            |held: &dyn Fn(Action) -> bool| opposed(held, Action::Deeper, Action::Shallower);
+        let keys = deeper(&|action| self.holds(bindings, action));
+        let sticks = self.sticks.devices.iter().map(|device| {
+            let held = held_on(device, bindings);
+            deeper(&|action| held.contains(&action))
+        });
+        (keys + sticks.sum::<f32>()).clamp(-1.0, 1.0)
+    }
+
     /// Whether a key that means this is held.
     pub(super) fn holds(&self, bindings: &Bindings, action: Action) -> bool {
         let means = |&key| bindings.of_key(key) == Some(action);
@@ -136,7 +148,7 @@ mod tests {
         assert_eq!(turn(vec![pad(1, [f32::NAN, 1.0], [0.0; 2])], &[]), [0.0; 2]);
         let mut stick = pad(1, [0.0; 2], [0.0; 2]);
         stick.pad = None;
-        stick.buttons[11].press();
+        stick.buttons[6].press();
         assert_eq!(
             turn(vec![stick], &[]),
             [-1.0, 0.0],

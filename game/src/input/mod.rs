@@ -60,13 +60,17 @@ pub enum Action {
     TurnLeft,
     /// In space the camera around to the right.
     TurnRight,
+    /// In space, where elements are seen, further into bodies.
+    Deeper,
+    /// Less far into them.
+    Shallower,
     /// An end to all that sticks and pads do to hands.
     CutForces,
 }
 
 impl Action {
     /// All of them, in the order in which settings list them.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 17] = [
         Self::Up,
         Self::Down,
         Self::Left,
@@ -81,6 +85,8 @@ impl Action {
         Self::Lower,
         Self::TurnLeft,
         Self::TurnRight,
+        Self::Deeper,
+        Self::Shallower,
         Self::CutForces,
     ];
 }

@@ -4,6 +4,7 @@ use egui::{Pos2, Rect, Vec2, pos2, vec2};
 use fuwafuwa::Vector;
 use fuwafuwa::vector::{length, minus, plus, scaled};
 use fuwafuwa_render::space;
+use std::f32::consts::TAU;
 use tamaire_play::Level;
 
 /// So much is seen around the arena [m]: room for the lean, so that nothing of the arena goes out of sight.
@@ -20,6 +21,10 @@ const LOWEST: f32 = 0.35;
 const HIGHEST: f32 = 1.5;
 /// Of the distance from which a whole arena in space is seen from all sides it keeps this: its corners are of no interest.
 const CLOSE: f32 = 0.66;
+/// It looks so far below the middle of the arena [m]: what there is lies on the floor.
+const LOWER: f32 = 0.12;
+/// How fast it goes back to where it began [1/s].
+const HOME: f32 = 7.0;
 /// Farther away than any level is large [m].
 const FAR: f32 = 100.0;
 const SWING: f32 = 60.0;
@@ -34,6 +39,7 @@ pub struct Camera {
     /// In space by how much it went around to the right, and up from where it began [rad].
     turn: f32,
     rise: f32,
+    goes_home: bool,
 }
 
 /// The camera on a part of the screen.
@@ -52,6 +58,15 @@ pub struct View {
 impl Camera {
     /// Lets `seconds` pass while the hand is at a place [m]; `still` = with reduced motion.
     pub fn follow(&mut self, hand: Vector, arena: [Vector; 2], seconds: f32, still: bool) {
+        if self.goes_home {
+            let left = match still {
+                true => 0.0,
+                false => (1.0 - HOME * seconds).max(0.0),
+            };
+            // The shorter way around.
+            self.turn = left * (self.turn - TAU * (self.turn / TAU).round());
+            self.rise *= left;
+        }
         if still {
             (self.lean, self.shake) = (Vec2::ZERO, 0.0);
             return;
@@ -70,13 +85,19 @@ impl Camera {
 
     /// In space it goes around what it looks at, to the right and up [rad].
     pub fn orbit(&mut self, right: f32, up: f32) {
+        self.goes_home &= right == 0.0 && up == 0.0;
         self.turn += right;
         self.rise = (self.rise + up).clamp(LOWEST - RISE, HIGHEST - RISE);
     }
 
-    /// In space it goes back to where it began.
+    /// In space it is back where it began.
     pub fn face_front(&mut self) {
-        (self.turn, self.rise) = (0.0, 0.0);
+        (self.turn, self.rise, self.goes_home) = (0.0, 0.0, false);
+    }
+
+    /// In space it goes back to where it began, so that one sees the way.
+    pub fn go_home(&mut self) {
+        self.goes_home = true;
     }
 
     /// By how much it went around to the right and up [rad].
@@ -106,7 +127,7 @@ impl Camera {
         let fitted = space::Camera::fit(arena[0], arena[1], size);
         let swing = self.shake * vec2(self.phase.sin(), (1.3 * self.phase).cos());
         space::Camera {
-            target: plus(fitted.target, [self.lean.x, self.lean.y, 0.0]),
+            target: plus(fitted.target, [self.lean.x, self.lean.y - LOWER, 0.0]),
             distance: CLOSE * fitted.distance,
             turn: self.turn,
             rise: RISE + self.rise,
@@ -225,6 +246,26 @@ mod tests {
         assert!((place[0] - 0.7).abs() < 1e-4 && (place[1] + 0.3).abs() < 1e-4);
         camera.follow([1.0, 0.5, 0.0], arena, 0.05, true);
         assert_eq!(camera.view_of_plane(view.rect, arena).centre, [0.0, 0.0]);
+    }
+
+    #[test]
+    fn it_goes_home_the_shorter_way_unless_it_is_turned_again() {
+        let mut camera = Camera::default();
+        let follow = |camera: &mut Camera, ticks: usize| {
+            (0..ticks).for_each(|_| camera.follow([0.0; 3], [[0.0; 3]; 2], 0.02, false));
+        };
+        camera.orbit(TAU + 1.0, 0.3);
+        camera.go_home();
+        follow(&mut camera, 1);
+        let [right, up] = camera.gone_around();
+        assert!((0.5..1.0).contains(&right) && (0.1..0.3).contains(&up));
+        camera.orbit(0.2, 0.0);
+        follow(&mut camera, 60);
+        assert!(camera.turn() > 0.7, "somebody turned it: {}", camera.turn());
+        camera.go_home();
+        camera.orbit(0.0, 0.0);
+        follow(&mut camera, 120);
+        assert!(length([camera.turn(), camera.rise]) < 1e-3);
     }
 
     #[test]

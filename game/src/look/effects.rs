@@ -116,8 +116,10 @@ impl Effects {
         let world = round.world();
         if world.ticks() <= self.tick || self.feelings.len() != world.bodies().len() {
             // Another round.
+            let bodies = world.bodies().iter();
+            let eye = (D::N == 3).then(|| camera.eye(round.level().arena()));
             *self = Self {
-                feelings: world.bodies().iter().map(Feeling::of).collect(),
+                feelings: bodies.map(|body| Feeling::of(body, eye)).collect(),
                 gravity: round.level().scene().gravity,
                 room: round.level().arena(),
                 axes: D::N,
@@ -157,7 +159,7 @@ impl Effects {
         let progress = round.progress();
         let is_in = progress.outcome.is_some() || progress.held > 0.2;
         for (place, feeling) in self.feelings.iter_mut().enumerate() {
-            let in_basket = |region: &fuwafuwa::Shape| region.distance(feeling.at).0 < 0.0;
+            let in_basket = |region: &fuwafuwa::Shape| region.distance(feeling.middle).0 < 0.0;
             let fate = Fate {
                 eye: (D::N == 3).then(|| camera.eye(self.room)),
                 tick: world.ticks(),

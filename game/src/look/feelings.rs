@@ -1,7 +1,8 @@
 //! How a body feels, and where on it that is seen.
 
 use super::Mood;
-use fuwafuwa::vector::{cross, dot, length, minus, plus, scaled};
+use super::perch::Perch;
+use fuwafuwa::vector::{cross, length, minus, plus, scaled};
 use fuwafuwa::world::TICK;
 use fuwafuwa::{Body, Dim, Vector};
 use fuwafuwa_render::anchor;
@@ -18,19 +19,14 @@ const LOOK: u64 = 5;
 const LAZY: f32 = 2.0;
 /// So many distances are worked out to find a seat.
 const MOST_LOOKS: usize = 4_000_000;
+/// Of so many elements the strain tells how all are strained.
+const MOST_ELEMENTS: usize = 1500;
 /// A smaller face is not to be read [m].
 const LEAST: f32 = 0.03;
 /// How fast a face goes to a new seat, takes another size, turns [1/s].
 const GLIDE: f32 = 7.0;
 const GROW: f32 = 6.0;
 const TURN: f32 = 25.0;
-/// In space a face looks at who looks, and so much above: bars stand low. One that is turned farther away than the first,
-/// as a cosine, wanders over the body until it is as close as the second. How fast it does so [1/s].
-const ABOVE: f32 = 0.4;
-const LOST: f32 = 0.8;
-const FOUND: f32 = 0.98;
-const WANDER: f32 = 7.0;
-
 /// How a body feels, and where on it that is seen.
 #[derive(Clone, Debug)]
 pub struct Feeling {
@@ -38,17 +34,18 @@ pub struct Feeling {
     pub mood: Mood,
     /// For how long [s].
     pub age: f32,
-    /// Middle of its face [m].
+    /// Middle of its face, in space inside the body [m].
     pub at: Vector,
+    /// Middle of the piece, nearly [m].
+    pub middle: Vector,
     /// To the right in the face as it is seen, up, and out of it; of length 1.
     pub axes: [Vector; 3],
     /// Half of the face's width [m], nearly; 0 when the body is dust.
     pub size: f32,
     /// The piece that it is on.
     pub piece: u32,
-    /// The same axes in the body at rest.
-    worn: [Vector; 3],
-    wanders: bool,
+    /// In space where on the skin it sticks.
+    perch: Option<Perch>,
     seat: Option<Seat>,
     /// From the seat to where the face still is [m].
     behind: Vector,
@@ -84,8 +81,8 @@ pub struct Fate {
 }
 
 impl Feeling {
-    /// How a body feels before anything happens to it.
-    pub fn of<D: Dim>(body: &Body<D>) -> Self {
+    /// How a body feels before anything happens to it; in space, for whom its face is to be seen [m].
+    pub fn of<D: Dim>(body: &Body<D>, eye: Option<Vector>) -> Self {
         let mut feeling = Self {
             mood: Mood::Calm,
             age: 9.0,
@@ -93,15 +90,18 @@ impl Feeling {
             axes: UPRIGHT,
             size: 0.0,
             piece: 0,
-            worn: UPRIGHT,
-            wanders: false,
+            middle: [0.0; 3],
+            perch: (D::N == 3).then(|| Perch::new(body, eye)),
             seat: None,
             behind: [0.0; 3],
             strain: 0.0,
             shock: 0.0,
             whole: CALMED,
         };
-        feeling.sit(body, 1.0e9);
+        match feeling.perch.is_some() {
+            true => feeling.stick(),
+            false => feeling.sit(body, 1.0e9),
+        }
         feeling
     }
 
@@ -110,37 +110,26 @@ impl Feeling {
         if fate.tick.is_multiple_of(LOOK) {
             self.strain = strain(body);
         }
-        let still_there = self.seat.is_some_and(|seat| is_there(body, seat));
-        if !still_there || fate.tick.is_multiple_of(LOOK) {
-            self.choose_seat(body);
-        }
-        self.sit(body, TICK);
-        if let Some(eye) = fate.eye {
-            self.wander(eye, TICK);
+        let looks = fate.tick.is_multiple_of(LOOK);
+        if let Some(perch) = &mut self.perch {
+            perch.follow(body, fate.eye, looks, TICK);
+            self.stick();
+        } else {
+            if looks || !self.seat.is_some_and(|seat| is_there(body, seat)) {
+                self.choose_seat(body);
+            }
+            self.sit(body, TICK);
         }
         self.feel(fate);
     }
 
-    /// Goes over the body to where the camera sees it, once it has been turned away.
-    fn wander(&mut self, eye: Vector, seconds: f32) {
-        let by = minus(eye, self.at);
-        let high = plus(by, [0.0, ABOVE * length(by), 0.0]);
-        let [_, up, out] = square([[0.0; 3], UPRIGHT[1], high]);
-        let least = if self.wanders { FOUND } else { LOST };
-        self.wanders = dot(self.axes[2], out).min(dot(self.axes[1], up)) < least;
-        if !self.wanders {
-            return;
+    /// In space it is where it sticks.
+    fn stick(&mut self) {
+        if let Some(perch) = &self.perch {
+            (self.at, self.axes, self.piece) = (perch.at, perch.axes, perch.piece);
+            self.middle = perch.middle;
+            self.size = if perch.size < LEAST { 0.0 } else { perch.size };
         }
-        let in_body = |of: Vector| {
-            let along = |k: usize| scaled(self.worn[k], dot(self.axes[k], of));
-            plus(plus(along(0), along(1)), along(2))
-        };
-        // Straight from behind any way is right.
-        let out = plus(in_body(out), scaled(self.worn[0], 0.05));
-        let share = WANDER * seconds;
-        let mixed = |from: Vector, to: Vector| plus(from, scaled(minus(to, from), share));
-        let [right, own_up, own_out] = self.worn;
-        self.worn = square([right, mixed(own_up, in_body(up)), mixed(own_out, out)]);
     }
 
     fn feel(&mut self, fate: Fate) {
@@ -183,17 +172,14 @@ impl Feeling {
         let at = body.node_state(seat.node).0;
         self.behind = self.behind.map(|k| towards(k, 0.0, GLIDE));
         self.at = plus(at, self.behind);
+        self.middle = self.at;
         self.piece = body.pieces().of_node(seat.node);
-        let now = self.worn.map(|axis| {
-            let along = |k: usize| scaled(frame.axes[k], axis[k]);
-            plus(plus(along(0), along(1)), along(2))
-        });
         let turned = [0, 1, 2]
-            .map(|k| [0, 1, 2].map(|axis| towards(self.axes[k][axis], now[k][axis], TURN)));
+            .map(|k| [0, 1, 2].map(|axis| towards(self.axes[k][axis], frame.axes[k][axis], TURN)));
         // Half a turn has no middle.
         self.axes = match length(turned[2]).min(length(turned[1])) > 0.1 {
             true => square(turned),
-            false => now,
+            false => frame.axes,
         };
         let room = 1.1 * seat.depth * body.grid().voxel_size();
         let size = (0.55 * frame.scale).min(room);
@@ -216,10 +202,10 @@ impl Feeling {
 }
 
 /// To the right, up and towards who looks.
-const UPRIGHT: [Vector; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+pub(super) const UPRIGHT: [Vector; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// Axes of length 1 and square to each other: the third as it is, the second nearly, the first as it must be.
-fn square([_, up, out]: [Vector; 3]) -> [Vector; 3] {
+pub(super) fn square([_, up, out]: [Vector; 3]) -> [Vector; 3] {
     let unit = |of: Vector| scaled(of, 1.0 / length(of).max(1e-9));
     let out = unit(out);
     let right = unit(cross(up, out));
@@ -233,12 +219,18 @@ fn is_there<D: Dim>(body: &Body<D>, seat: Seat) -> bool {
         && mesh.node(seat.node).at == seat.rest
 }
 
-/// The piece with the most nodes' mass.
-fn largest_piece<D: Dim>(body: &Body<D>) -> u32 {
+/// The mass of each piece [kg].
+pub(super) fn masses<D: Dim>(body: &Body<D>) -> Vec<f32> {
     let mut masses = vec![0.0f32; body.pieces().list.len()];
     for (id, _) in body.mesh().nodes() {
         masses[body.pieces().of_node(id) as usize] += body.node_state(id).2;
     }
+    masses
+}
+
+/// The piece with the most mass.
+fn largest_piece<D: Dim>(body: &Body<D>) -> u32 {
+    let masses = masses(body);
     let largest =
         (0..masses.len()).fold(0, |best, k| if masses[k] > masses[best] { k } else { best });
     largest as u32
@@ -263,7 +255,7 @@ fn best_seat<D: Dim>(body: &Body<D>, now: Option<u32>) -> Option<Seat> {
     }
     let middle = sum.map(|k| k / count.max(1e-9));
     let mut best: Option<(f32, Seat)> = None;
-    // In space there are too many to look at all of them.
+    // There may be too many to look at all of them.
     let stride = 1 + own().count() * skin.len() / MOST_LOOKS;
     let seated = now.and_then(|now| own().find(|(id, _)| *id == now));
     for (id, node) in seated.into_iter().chain(own().step_by(stride)) {
@@ -289,16 +281,18 @@ fn best_seat<D: Dim>(body: &Body<D>, now: Option<u32>) -> Option<Seat> {
     best.map(|(_, seat)| seat)
 }
 
-/// The mean strain of the largest piece, by volume.
+/// The mean strain of the largest piece, by volume; of a body with many elements a part of them is asked.
 fn strain<D: Dim>(body: &Body<D>) -> f32 {
     let piece = largest_piece(body);
     let (mut sum, mut volume) = (0.0, 0.0);
-    for element in body
-        .element_views()
-        .filter(|element| element.piece == piece)
-    {
-        let share = (D::CORNERS as f32).powi(i32::from(element.level));
-        sum += share * element.strain;
+    let own = || {
+        let elements = body.mesh().elements();
+        elements.filter(|&(id, _)| body.pieces().of_element(id) == piece)
+    };
+    let stride = 1 + own().count() / MOST_ELEMENTS;
+    for (id, element) in own().step_by(stride) {
+        let share = (D::CORNERS as f32).powi(i32::from(element.cell.level));
+        sum += share * body.strain(id).unwrap_or(0.0);
         volume += share;
     }
     if volume > 0.0 { sum / volume } else { 0.0 }
@@ -325,7 +319,7 @@ mod tests {
             u8::from(hole([voxel[0] as f32 + 0.5, voxel[1] as f32 + 0.5]))
         });
         let world = alone(grid.expect("a ring"));
-        let feeling = Feeling::of(&world.bodies()[0]);
+        let feeling = Feeling::of(&world.bodies()[0], None);
         let away = [feeling.at[0] - 0.5, feeling.at[1] - 0.5];
         let radius = length(away);
         assert!((0.25..0.45).contains(&radius), "{feeling:?}");
@@ -338,7 +332,7 @@ mod tests {
     #[test]
     fn the_face_glides_to_what_is_left_and_dust_has_none() {
         let mut world = alone(VoxelGrid::ball(32, 1.0).expect("a ball"));
-        let mut feeling = Feeling::of(&world.bodies()[0]);
+        let mut feeling = Feeling::of(&world.bodies()[0], None);
         let (before, size) = (feeling.at, feeling.size);
         world.cut(0, &Blade::segment([0.375, -1.0], [0.375, 2.0]));
         let fate = Fate {
@@ -353,7 +347,7 @@ mod tests {
         }
         assert!(feeling.at[0] > before[0] + 0.05 && feeling.size < size);
         let dust = alone(VoxelGrid::ball(4, 0.05).expect("a crumb"));
-        assert_eq!(Feeling::of(&dust.bodies()[0]).size, 0.0);
+        assert_eq!(Feeling::of(&dust.bodies()[0], None).size, 0.0);
     }
 
     #[test]
@@ -361,7 +355,7 @@ mod tests {
         let mut world = World::<Dim3>::new(Settings::default()).expect("usual");
         let grid = VoxelGrid::ball(12, 1.0).expect("a ball");
         world.add_body(Body::new(grid, &[Material::default()]).expect("usual"));
-        let mut feeling = Feeling::of(&world.bodies()[0]);
+        let mut feeling = Feeling::of(&world.bodies()[0], None);
         assert!(feeling.axes[2][2] > 0.99, "{feeling:?}");
         // The body turns its back.
         let body = world.body_mut(0);
@@ -388,7 +382,7 @@ mod tests {
     fn a_tear_shocks_once_and_then_hurts() {
         let world = alone(VoxelGrid::ball(16, 1.0).expect("a ball"));
         let body = &world.bodies()[0];
-        let mut feeling = Feeling::of(body);
+        let mut feeling = Feeling::of(body, None);
         let torn = Fate {
             tick: 1,
             torn: true,

@@ -12,38 +12,33 @@ const ROUND_TRIP: f32 = 3.2;
 
 /// Draws it.
 pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &Look) {
-    if let Some(hand) = hand_to_show(painter, round, look)
-        && look.hint == Hint::Way
-    {
+    let Some(hand) = hand_to_show(round, look) else {
+        return;
+    };
+    draw_ring(painter, hand, look);
+    if look.hint == Hint::Way {
         draw_way(painter, round, hand.position(), hand.radius, look);
     }
 }
 
 /// In space it is told in words what else it could do.
 pub(super) fn draw_ring_of_space(painter: &Painter, round: &Round<Dim3>, look: &Look) {
-    hand_to_show(painter, round, look);
+    if let Some(hand) = hand_to_show(round, look) {
+        draw_ring(painter, hand, look);
+    }
 }
 
-/// The first hand, with a ring around it, until it has moved.
-fn hand_to_show<'a, D: Dim>(
-    painter: &Painter,
-    round: &'a Round<D>,
-    look: &Look,
-) -> Option<&'a Manipulator> {
-    let strength = look.effects.hint;
-    let hand = round.world().manipulators().first()?;
-    if look.hint == Hint::None || strength == 0.0 {
-        return None;
-    }
-    let at = look.view.on_screen(hand.position());
-    let radius = hand.radius * look.view.scale_at(hand.position());
-    let tone = look.theme.hand(0);
-    draw_ring(painter, at, radius, tone.gamma_multiply(strength), look);
-    Some(hand)
+/// The first hand, until it has moved.
+fn hand_to_show<'a, D: Dim>(round: &'a Round<D>, look: &Look) -> Option<&'a Manipulator> {
+    let is_shown = look.hint != Hint::None && look.effects.hint != 0.0;
+    round.world().manipulators().first().filter(|_| is_shown)
 }
 
 /// A ring that opens around the hand.
-fn draw_ring(painter: &Painter, at: Pos2, radius: f32, tone: Color32, look: &Look) {
+fn draw_ring(painter: &Painter, hand: &Manipulator, look: &Look) {
+    let at = look.view.on_screen(hand.position());
+    let radius = hand.radius * look.view.scale_at(hand.position());
+    let tone = look.theme.hand(0).gamma_multiply(look.effects.hint);
     let wave = if look.still {
         0.4
     } else {

@@ -5,7 +5,7 @@ use super::stage::{camera, face_of, frame};
 use super::{Camera, Face, Theme, View};
 use eframe::egui_wgpu::RenderState;
 use egui::{Color32, Painter, Rect, TextureId, pos2};
-use fuwafuwa::Dim;
+use fuwafuwa::{Dim, Vector};
 use fuwafuwa_render::{Frame, Renderer, Sticker, space};
 use std::sync::Arc;
 use tamaire_play::{AnyRound, Level, Round};
@@ -103,13 +103,16 @@ impl Maps {
                 let frame = frame(camera(&view), &round, theme);
                 renderer.prepare(device, queue, &mut encoder, round.world(), &frame, SIZE);
                 renderer.paint(&mut pass(&mut encoder, &target));
-                faces(&round)
+                faces(&round, None)
             }
             AnyRound::Space(round) => {
                 let new = || space::Renderer::new(device, FORMAT);
                 let renderer = self.space.get_or_insert_with(new);
                 let camera = view.space.expect("the view of a level in space has it");
-                let stickers: Vec<Sticker> = faces(&round).iter().map(Face::sticker).collect();
+                let stickers: Vec<Sticker> = faces(&round, Some(camera.eye()))
+                    .iter()
+                    .map(Face::sticker)
+                    .collect();
                 let frame = Frame {
                     stickers: &stickers,
                     ..frame(camera, &round, theme)
@@ -129,10 +132,10 @@ impl Maps {
     }
 }
 
-fn faces<D: Dim>(round: &Round<D>) -> Vec<Face> {
+fn faces<D: Dim>(round: &Round<D>, eye: Option<Vector>) -> Vec<Face> {
     let bodies = round.world().bodies().iter().enumerate();
     bodies
-        .map(|(number, body)| face_of(number, &Feeling::of(body), 1.0))
+        .map(|(number, body)| face_of(number, &Feeling::of(body, eye), 1.0))
         .collect()
 }
 

@@ -9,6 +9,7 @@ mod glow;
 mod hint;
 mod maps;
 mod opening;
+mod perch;
 mod stage;
 mod theme;
 

@@ -281,7 +281,8 @@ fn faces<D: Dim>(round: &Round<D>, look: &Look) -> Vec<Face> {
     let feelings = match look.effects.feelings.len() == bodies.len() {
         true => &look.effects.feelings,
         false => {
-            fresh = bodies.iter().map(Feeling::of).collect();
+            let eye = look.view.space.map(|camera| camera.eye());
+            fresh = bodies.iter().map(|body| Feeling::of(body, eye)).collect();
             &fresh
         }
     };

@@ -153,7 +153,11 @@ fn draw_chips(row: &mut Row, theme: &Theme, game: &Game) {
         chip("×", said.forces_cut);
     }
     if game.elements.is_some() && game.turn().is_some() && game.session.is_played() {
-        chip("↕", said.look_inside);
+        let ways = [Action::Deeper, Action::Shallower];
+        let keys = ways.map(|way| game.settings.bindings.first_names(&[way], false));
+        if let Some(how) = (said.look_inside)(game.means, &keys) {
+            chip("↕", &how);
+        }
     }
     if let Some(colour) = game.elements {
         draw_legend(row, theme, colour);

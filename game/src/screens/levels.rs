@@ -73,6 +73,9 @@ fn tile(ui: &mut Ui, game: &Game, maps: &Maps, place: usize, size: Vec2) -> Resp
     // Round corners on what has none.
     let frame = Stroke::new(6.0, theme.card);
     painter.rect_stroke(map.expand(3.0), 17.0, frame, egui::StrokeKind::Middle);
+    if level.scene().dim == 3 {
+        marks::space(ui, map.min + vec2(8.0, 8.0), &theme);
+    }
     let galley = fitted(painter, name, 21.0, rect.width() - 24.0, theme.ink);
     let at = pos2(rect.center().x, map.bottom() + 23.0) - 0.5 * galley.size();
     painter.galley(at, galley, theme.ink);

@@ -1,7 +1,7 @@
 //! Signs that say something without a word.
 
 use crate::look::Theme;
-use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, pos2, vec2};
+use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Ui, pos2, vec2};
 use tamaire_play::Route;
 
 /// Part of a circle, clockwise from its top.
@@ -27,6 +27,13 @@ pub(super) fn tick(painter: &Painter, middle: Pos2, size: f32, stroke: Stroke) {
     for end in [points[0], points[1], points[2]] {
         painter.circle_filled(end, 0.5 * stroke.width, stroke.color);
     }
+}
+
+/// In space: on a dark ground, from its upper left corner.
+pub(super) fn space(ui: &Ui, corner: Pos2, theme: &Theme) {
+    let ground = Rect::from_min_size(corner, vec2(38.0, 24.0));
+    ui.painter().rect_filled(ground, 12.0, theme.ink);
+    super::words(ui, ground.center(), "3D", 16.0, theme.card);
 }
 
 /// A route: a body pressed into a square, or one that bits are off, or both; pale until it was gone.

@@ -143,6 +143,8 @@ pub(super) const WORDS: Words = Words {
         Action::Lower => "下げる（3D）",
         Action::TurnLeft => "左から見る（3D）",
         Action::TurnRight => "右から見る（3D）",
+        Action::Deeper => "要素のおくを見る（3D）",
+        Action::Shallower => "要素の手前を見る（3D）",
         Action::CutForces => "手ごたえを切る",
     },
     on: "オン",
@@ -177,7 +179,12 @@ pub(super) const WORDS: Words = Words {
             format!("見まわす：ボタン {around}"),
         ],
     },
-    look_inside: "ホイール：もっとおくを見る",
+    look_inside: |means, [deeper, back]| match means {
+        Means::Mouse => Some(format!("ホイールを上へ、または {deeper}：もっとおくを見る")),
+        Means::Keys | Means::Stick => Some(format!("{deeper}：もっとおく、{back}：もっと手前")),
+        Means::Pad => Some("右スティックをおす：もっとおく、左：もっと手前".into()),
+        Means::Fingers => None,
+    },
     watching: "リプレイ",
     settings_kept: "のこしたものが読めませんでした。もとのファイル：",
     not_written: "書きこめませんでした：",
@@ -189,6 +196,9 @@ pub(super) const WORDS: Words = Words {
 fn level_error(error: &LevelError) -> String {
     match error {
         LevelError::Scene(scene) => format!("このステージは読めませんでした。{scene}"),
+        LevelError::NoBody(reason) => {
+            format!("このファイルからは からだを作れませんでした。{reason}")
+        }
         LevelError::NoGame { id, field, reason } => {
             format!("「{id}」は、このままでは あそべません。{field}: {reason}")
         }
@@ -229,6 +239,12 @@ mod tests {
         let broken = level_error(&Level::open(&path.to_string_lossy()).unwrap_err());
         std::fs::remove_file(path).unwrap();
         assert!(broken.contains("読めません") && broken.contains("line 2"));
+        let path = std::env::temp_dir().join(format!("tamaire-ja-{}.vox", std::process::id()));
+        std::fs::write(&path, "VOX").unwrap();
+        let model = level_error(&Level::open(&path.to_string_lossy()).unwrap_err());
+        std::fs::remove_file(&path).unwrap();
+        let begin = format!("からだを作れませんでした。{}", path.display());
+        assert!(model.contains(&begin), "{model}");
         let old = replay_error(&ReplayError::Version { found: 7 });
         assert!(old.contains("バージョン（7）"), "{old}");
     }

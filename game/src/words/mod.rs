@@ -116,7 +116,7 @@ pub struct Words {
     pub join_hint: &'static str,
     pub how_in_space: fn(Means, &[String; 3]) -> [String; 3],
     /// How one looks deeper into bodies in space.
-    pub look_inside: &'static str,
+    pub look_inside: fn(Means, &[String; 2]) -> Option<String>,
     pub watching: &'static str,
     pub settings_kept: &'static str,
     pub not_written: &'static str,

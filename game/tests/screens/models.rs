@@ -43,6 +43,29 @@ fn a_model_dropped_onto_any_round_is_played_in_space() {
 }
 
 #[test]
+fn what_the_command_line_names_is_played() {
+    let mut window = window(Files::nowhere());
+    let levels = window.state().game.levels.len();
+    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join(MODEL);
+    for (named, expected, more) in [
+        (Path::new("hoop"), "Through the hoop", 0),
+        (&model, "pudding", 1),
+        (&model, "pudding", 1),
+    ] {
+        window.state_mut().game.open(named);
+        frames(&mut window, 3);
+        let game = &window.state().game;
+        assert_eq!(screen(&window), Screen::Play, "{named:?}");
+        assert_eq!(game.levels.len(), levels + more, "{named:?}");
+        let name = &game.session.round().level().game().name.en;
+        assert_eq!(
+            (name.as_str(), name),
+            (expected, &game.levels[game.chosen].game().name.en)
+        );
+    }
+}
+
+#[test]
 fn a_damaged_model_is_named_and_nothing_is_lost() {
     let folder = folder("vox");
     let whole =

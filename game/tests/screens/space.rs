@@ -108,6 +108,16 @@ fn the_right_mouse_button_turns_the_camera_and_leaves_the_hand_alone() {
     let [right, up] = turned(&window);
     assert!(right > 0.5 && up > 0.2, "{right} {up}");
     assert_near(goal(&window, 0), before);
+    // A double click brings it back, and a retry leaves it where a player put it.
+    game(&mut window).retry();
+    frames(&mut window, 1);
+    assert_eq!(turned(&window), [right, up]);
+    for pressed in [true, false, true, false] {
+        window.event(button(pressed, at));
+        frames(&mut window, 1);
+    }
+    frames(&mut window, 60);
+    assert!(length(turned(&window)) < 0.01, "{:?}", turned(&window));
 }
 
 #[test]
@@ -285,6 +295,58 @@ fn one_finger_moves_the_hand_and_a_second_one_raises_it_or_turns_the_camera() {
     assert!((right - 0.6).abs() < 0.05 && up == 0.0, "{right} {up}");
     assert!((goal(&window, 0)[1] - raised[1]).abs() < 0.01);
     assert_eq!(window.state().game.means, Means::Fingers);
+}
+
+#[test]
+fn the_finger_that_is_left_when_the_first_one_lifts_does_not_move_the_hand() {
+    let mut window = in_space();
+    let view = window.state().game.view.expect("it is seen");
+    let [here, there] = [-0.9, 0.3].map(|x| view.on_screen([x, 0.0, 0.6]));
+    touch(&mut window, 0, TouchPhase::Start, here);
+    touch(&mut window, 1, TouchPhase::Start, there);
+    wait(&mut window, 60);
+    let before = goal(&window, 0);
+    touch(&mut window, 0, TouchPhase::End, here);
+    // A browser takes it for the mouse now.
+    window.event(Event::PointerMoved(there));
+    touch(&mut window, 1, TouchPhase::Move, there);
+    wait(&mut window, 60);
+    assert_near(goal(&window, 0), before);
+}
+
+#[test]
+fn keys_and_a_pad_look_deeper_into_elements_and_back_and_it_is_told_how() {
+    let mut table = Table::with(vec![pad(1)]);
+    start(&mut table.window, "classic-3d");
+    let share = |table: &mut Table| {
+        let game = game(&mut table.window);
+        game.opening.share(game.time, true)
+    };
+    press(&mut table.window, Key::E);
+    game(&mut table.window).opening.cut(0.0, 0.0, true);
+    let before = share(&mut table);
+    let hold = |table: &mut Table, key| {
+        table.window.key_down(key);
+        table.frames(15);
+        table.window.key_up(key);
+        table.frames(1);
+    };
+    hold(&mut table, Key::X);
+    let deeper = share(&mut table);
+    assert!(
+        (0.05..0.15).contains(&(before - deeper)),
+        "{before} {deeper}"
+    );
+    assert!(tells(&table.window, "X: look deeper, C: back"));
+    hold(&mut table, Key::C);
+    assert!((share(&mut table) - before).abs() < 0.02);
+    let height = goal(&table.window, 0)[1];
+    table.tap(PadButton::RightStick);
+    assert!(share(&mut table) < before);
+    assert!(tells(&table.window, "Press the right stick: look deeper"));
+    wheel(&mut table.window, 100.0);
+    assert!(share(&mut table) < before - 0.05, "up is deeper");
+    assert!((goal(&table.window, 0)[1] - height).abs() < 1e-3);
 }
 
 #[test]
