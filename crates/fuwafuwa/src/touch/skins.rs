@@ -18,7 +18,8 @@ use crate::vector::{dot, minus, plus, scaled};
 pub const MARGIN: f32 = 0.3;
 /// How far a skin may stray from its anchor, in voxels: more makes longer lists, less more lists.
 const SLACK: f32 = 0.3;
-/// The share of its slack that a skin may have used up when others look for new pairs.
+/// The share of its slack that a skin may have used up when others look for new pairs, unless all
+/// must look again after the next substep anyway.
 const SPARE: f32 = 0.5;
 
 /// The place of a skin that is no more.
@@ -69,8 +70,10 @@ pub struct Skins {
     /// skins have on the average, while none sleeps: falling together changes no pair.
     anchors: Vec<Row>,
     frame: Row,
-    /// How far anything may still come before one may have strayed [m].
+    /// How far anything may still come before one may have strayed, and how far the fastest came in
+    /// the last substep [m].
     spare: f32,
+    pace: f32,
     is_good: bool,
     rest_is_good: bool,
     /// What was torn since: body and element.
@@ -108,6 +111,7 @@ impl Skins {
     /// Something has moved, nothing further than by `distance` [m].
     pub fn pass(&mut self, distance: f32) {
         self.spare -= distance;
+        self.pace = distance;
     }
 
     /// Follows the bodies: where the skins are now, and which pairs are close; `size` [m] is that
@@ -312,11 +316,13 @@ impl Skins {
             self.spare = slack - furthest.sqrt();
             return strayed.contains(&true);
         }
-        let bearable = SPARE * slack * SPARE * slack;
+        let kept = (1.0 - SPARE) * slack;
+        let spare = if self.pace < kept { kept } else { 0.0 };
+        let bearable = slack - spare;
         for (&place, stray) in self.awake.iter().zip(strays) {
-            strayed[place as usize] |= stray > bearable;
+            strayed[place as usize] |= stray > bearable * bearable;
         }
-        self.spare = (1.0 - SPARE) * slack;
+        self.spare = spare;
         true
     }
 
