@@ -11,6 +11,7 @@ use crate::piece::Pieces;
 use crate::pyramid::{Grading, Pyramid};
 use crate::sharing::Sharing;
 use crate::solve::{Blocks, Kick, Row};
+use crate::threads;
 use crate::vector::{as_row, dot, minus, plus, scaled, three};
 
 /// One soft thing, whole or in pieces.
@@ -349,28 +350,36 @@ impl<D: Dim> Body<D> {
     /// No node moves by more than a voxel: faster ones would turn elements inside out, and the
     /// forces would grow from substep to substep. Returns how far the fastest has come [m].
     pub(crate) fn drift(&mut self, duration: f32, lead: f32) -> f32 {
-        let mut fastest = 0.0f32;
         let top_speed = self.grid.voxel_size() / duration;
         // Pieces born since the last round of damping have no motion yet.
         self.rigid
             .resize(self.pieces.list.len(), RoughMotion::default());
-        for &id in &self.awake {
-            let node = id as usize;
-            let mut velocity = self.velocity[node];
-            let squared = dot(velocity, velocity);
-            // Not `max`, which would have every node wait for the one before.
-            if squared > fastest {
-                fastest = squared;
+        let (rigid, pieces) = (&self.rigid, &self.pieces);
+        let lists = [&mut self.position, &mut self.velocity, &mut self.ahead];
+        let rows = threads::rows(&self.awake, lists.map(Vec::as_mut_slice));
+        let fastest = threads::map(rows, |rows| {
+            let [positions, velocities, ahead] = rows.lists;
+            let mut fastest = 0.0f32;
+            for &id in rows.nodes {
+                let node = id as usize - rows.first;
+                let mut velocity = velocities[node];
+                let squared = dot(velocity, velocity);
+                // Not `max`, which would have every node wait for the one before.
+                if squared > fastest {
+                    fastest = squared;
+                }
+                if squared > top_speed * top_speed {
+                    velocity = scaled(velocity, top_speed / squared.sqrt());
+                    velocities[node] = velocity;
+                }
+                let position = plus(positions[node], scaled(velocity, duration));
+                positions[node] = position;
+                let whole = rigid[pieces.of_node(id) as usize].at::<D>(position);
+                ahead[node] = plus(position, scaled(minus(velocity, whole), lead));
             }
-            if squared > top_speed * top_speed {
-                velocity = scaled(velocity, top_speed / squared.sqrt());
-                self.velocity[node] = velocity;
-            }
-            let position = plus(self.position[node], scaled(velocity, duration));
-            self.position[node] = position;
-            let whole = self.rigid[self.pieces.of_node(id) as usize].at::<D>(position);
-            self.ahead[node] = plus(position, scaled(minus(velocity, whole), lead));
-        }
+            fastest
+        });
+        let fastest = fastest.into_iter().fold(0.0, f32::max);
         fastest.sqrt().min(top_speed) * duration
     }
 

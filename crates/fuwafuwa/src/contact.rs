@@ -14,6 +14,7 @@ use crate::body::Body;
 use crate::dim::Dim;
 use crate::manipulator::Manipulator;
 use crate::solve::Row;
+use crate::threads::{self, SHARE};
 use crate::touch::{Collider, Impulse, MARGIN, Nearby, Skin, Skins};
 use crate::vector::{as_row, minus, scaled, three};
 use exit::Exit;
@@ -162,55 +163,66 @@ impl Contacts {
         let waking = WAKE_SPEED * duration;
         let frictions: Vec<f32> = bodies.iter().map(Body::friction).collect();
         let mut pairs = std::mem::take(&mut skins.pairs);
-        for (place, pair) in pairs.iter_mut().enumerate() {
-            let [a, b] = [pair.skins[0] as usize, pair.skins[1] as usize];
-            let apart = minus(skins.centres[a], skins.centres[b]);
-            let squared = inner::<D>(apart, apart);
-            if squared > furthest * furthest {
-                pair.met_in_front = false;
-                pair.impulse.release();
-                continue;
-            }
-            if skins.is_inside(a, b) {
-                // What came out is not to be drawn in again.
-                pair.met_in_front = true;
-                pair.impulse.release();
-                continue;
-            }
-            let touching = skins.list[a].radius + skins.list[b].radius;
-            let distance = squared.sqrt().max(1e-9);
-            let (mut normal, mut gap) = (scaled(apart, 1.0 / distance), distance - touching);
-            if gap < 0.0 {
-                let both = [&skins.list[a], &skins.list[b]];
-                let behind = behind_skin(bodies, both, scaled(normal, distance));
-                pair.met_in_front |= behind.is_none();
-                if let Some((out, ahead)) = behind.filter(|_| pair.met_in_front) {
-                    (normal, gap) = (out, ahead - touching);
+        let all = &*skins;
+        let shares = pairs.chunks_mut(SHARE).zip(0..);
+        let found = threads::map(shares, |(pairs, share)| {
+            let (mut contacts, mut hits) = (Vec::new(), Vec::new());
+            for (pair, place) in pairs.iter_mut().zip(share * SHARE..) {
+                let [a, b] = pair.skins.map(|skin| skin as usize);
+                let apart = minus(all.centres[a], all.centres[b]);
+                let squared = inner::<D>(apart, apart);
+                if squared > furthest * furthest {
+                    pair.met_in_front = false;
+                    pair.impulse.release();
+                    continue;
                 }
+                if all.is_inside(a, b) {
+                    // What came out is not to be drawn in again.
+                    pair.met_in_front = true;
+                    pair.impulse.release();
+                    continue;
+                }
+                let touching = all.list[a].radius + all.list[b].radius;
+                let distance = squared.sqrt().max(1e-9);
+                let (mut normal, mut gap) = (scaled(apart, 1.0 / distance), distance - touching);
+                if gap < 0.0 {
+                    let both = [&all.list[a], &all.list[b]];
+                    let behind = behind_skin(bodies, both, scaled(normal, distance));
+                    pair.met_in_front |= behind.is_none();
+                    if let Some((out, ahead)) = behind.filter(|_| pair.met_in_front) {
+                        (normal, gap) = (out, ahead - touching);
+                    }
+                }
+                let relative = minus(all.velocities[a], all.velocities[b]);
+                if gap > MARGIN * touching
+                    || !is_close(gap, inner::<D>(relative, normal), touching, duration)
+                {
+                    pair.impulse.release();
+                    continue;
+                }
+                let lightness = all.lightness[a] + all.lightness[b];
+                if lightness == 0.0 {
+                    continue;
+                }
+                let moved = all.moved[a].max(all.moved[b]);
+                let (a, b) = (&all.list[a], &all.list[b]);
+                if gap < 0.05 * touching && moved > waking * waking {
+                    let sleepers = [a, b].into_iter().filter(|skin| skin.asleep);
+                    hits.extend(sleepers.map(|skin| (skin.body, skin.piece)));
+                }
+                let friction = 0.5 * (frictions[a.body as usize] + frictions[b.body as usize]);
+                let contact = Contact::new(normal, gap, duration, 1.0 / lightness, friction);
+                contacts.push((contact.known_as::<D>(place, &pair.impulse), [a, b]));
             }
-            let relative = minus(skins.velocities[a], skins.velocities[b]);
-            if gap > MARGIN * touching
-                || !is_close(gap, inner::<D>(relative, normal), touching, duration)
-            {
-                pair.impulse.release();
-                continue;
-            }
-            let lightness = skins.lightness[a] + skins.lightness[b];
-            if lightness == 0.0 {
-                continue;
-            }
-            let moved = skins.moved[a].max(skins.moved[b]);
-            let (a, b) = (&skins.list[a], &skins.list[b]);
-            if gap < 0.05 * touching && moved > waking * waking {
-                let sleepers = [a, b].into_iter().filter(|skin| skin.asleep);
-                hits.extend(sleepers.map(|skin| (skin.body, skin.piece)));
-            }
-            let friction = 0.5 * (frictions[a.body as usize] + frictions[b.body as usize]);
-            let contact = Contact::new(normal, gap, duration, 1.0 / lightness, friction);
-            self.skins.push(SkinContact {
-                contact: contact.known_as::<D>(place, &pair.impulse),
-                grips: [a, b].map(|skin| self.motion.grip::<D>(skin)),
-            });
+            (contacts, hits)
+        });
+        for (contacts, hit) in found {
+            hits.extend(hit);
+            self.skins
+                .extend(contacts.into_iter().map(|(contact, both)| SkinContact {
+                    contact,
+                    grips: both.map(|skin| self.motion.grip::<D>(skin)),
+                }));
         }
         skins.pairs = pairs;
     }

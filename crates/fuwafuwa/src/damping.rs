@@ -8,6 +8,7 @@
 use crate::body::Body;
 use crate::dim::Dim;
 use crate::momentum::RigidMotion;
+use crate::threads;
 use crate::vector::{cross, dot, minus, plus, scaled, three};
 
 /// The motion of one piece.
@@ -139,14 +140,19 @@ pub fn slow_down<D: Dim>(body: &mut Body<D>, motions: &[PieceMotion], slowing: &
             (kept * (1.0 - swing), pace.roughly())
         })
         .collect();
-    for &id in &body.awake {
-        let node = id as usize;
-        if body.lightness[node] != 0.0 {
-            let (kept, pace) = &paces[body.pieces.of_node(id) as usize];
-            let velocity = &mut body.velocity[node];
-            *velocity = plus(scaled(*velocity, *kept), pace.at::<D>(body.position[node]));
+    let (lightness, position, pieces) = (&body.lightness, &body.position, &body.pieces);
+    let rows = threads::rows(&body.awake, [&mut body.velocity]);
+    threads::map(rows, |rows| {
+        let [velocities] = rows.lists;
+        for &id in rows.nodes {
+            let node = id as usize;
+            if lightness[node] != 0.0 {
+                let (kept, pace) = &paces[pieces.of_node(id) as usize];
+                let velocity = &mut velocities[node - rows.first];
+                *velocity = plus(scaled(*velocity, *kept), pace.at::<D>(position[node]));
+            }
         }
-    }
+    });
 }
 
 #[inline(always)]

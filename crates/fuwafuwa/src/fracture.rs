@@ -16,6 +16,7 @@ use crate::body::Body;
 use crate::dim::{Dim, Point};
 use crate::front::{Cut, Front};
 use crate::solve::Row;
+use crate::threads::{self, SHARE};
 use crate::vector::{dot, length, minus, plus, scaled};
 
 /// A node that gives way.
@@ -80,26 +81,32 @@ pub fn failures<D: Dim>(body: &mut Body<D>, rests: &mut Rests, duration: f32) ->
         return Vec::new();
     }
     let size = body.grid.voxel_size();
-    let mut found: Vec<Failure> = Vec::new();
     let mut damage = std::mem::take(&mut body.damage);
-    for (id, front) in body.fronts.iter() {
-        let damage = &mut damage[id as usize];
-        // What is not damaged yet is looked at in every other round.
-        if body.pieces.sleeps(id) || *damage == 0.0 && (id ^ rests.rounds) & 1 == 1 {
-            continue;
+    let shares = damage.chunks_mut(SHARE).zip(0..);
+    let found = threads::map(shares, |(damage, share)| {
+        let mut found: Vec<Failure> = Vec::new();
+        let first = share * SHARE;
+        for (id, front) in body.fronts.among(first..first + damage.len()) {
+            let damage = &mut damage[id as usize - first];
+            // What is not damaged yet is looked at in every other round.
+            if body.pieces.sleeps(id) || *damage == 0.0 && (id ^ rests.rounds) & 1 == 1 {
+                continue;
+            }
+            let Some(failure) = worst_cut(body, id, front) else {
+                let healed = *damage - duration / (4.0 * DAMAGE_TIME);
+                *damage = healed.max(0.0);
+                continue;
+            };
+            let over = (failure.excess - 1.0).min(3.0);
+            *damage += duration / DAMAGE_TIME * 2.0 * over;
+            if *damage >= 1.0 && !rests.covers(failure.at) {
+                found.push(failure);
+            }
         }
-        let Some(failure) = worst_cut(body, id, front) else {
-            let healed = *damage - duration / (4.0 * DAMAGE_TIME);
-            *damage = healed.max(0.0);
-            continue;
-        };
-        let over = (failure.excess - 1.0).min(3.0);
-        *damage += duration / DAMAGE_TIME * 2.0 * over;
-        if *damage >= 1.0 && !rests.covers(failure.at) {
-            found.push(failure);
-        }
-    }
+        found
+    });
     body.damage = damage;
+    let mut found = found.concat();
     found.sort_by(|a, b| b.excess.total_cmp(&a.excess).then(a.node.cmp(&b.node)));
     let rest = (REST_VOXELS * f64::from(size) / body.fastest_wave()) as f32;
     let chosen = undisturbed(found);

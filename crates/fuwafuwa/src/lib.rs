@@ -46,6 +46,7 @@ pub mod sharing;
 pub mod snapshot;
 pub mod solve;
 pub mod stencil;
+mod threads;
 mod touch;
 pub mod vector;
 pub mod view;

@@ -15,6 +15,7 @@ mod seating;
 
 use crate::dim::Dim;
 use crate::law::{Elasticity, Law};
+use crate::threads::{self, Rows};
 use crate::vector::{plus, scaled};
 use kernel::{
     Eight, Mixed, Moduli, Same, Scratch, Seats, forces, gradient, plain_forces, plain_gradient,
@@ -124,7 +125,7 @@ impl Home {
 /// What changes velocities in a substep, beside the elastic forces.
 #[derive(Copy, Clone, Debug)]
 pub struct Kick<'a> {
-    /// The nodes that move.
+    /// The nodes that move, ascending.
     pub nodes: &'a [u32],
     /// One over the mass of each node [1/kg], by id; 0 where it is held.
     pub lightness: &'a [f32],
@@ -414,31 +415,35 @@ impl<D: Dim> Blocks<D> {
 
     /// Adds a substep's worth of elastic force and of gravity to velocities [m/s].
     pub fn kick(&self, kick: &Kick, velocity: &mut [Row]) {
-        #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the machine has AVX2; the function is safe code otherwise.
-            #[allow(unsafe_code)]
-            return unsafe { self.kick_wide(kick, velocity) };
-        }
-        self.kick_by::<Portable>(kick, velocity);
+        threads::map(threads::rows(kick.nodes, [velocity]), |rows| {
+            #[cfg(target_arch = "x86_64")]
+            if std::arch::is_x86_feature_detected!("avx2") {
+                // SAFETY: the machine has AVX2; the function is safe code otherwise.
+                #[allow(unsafe_code)]
+                return unsafe { self.kick_wide(kick, rows) };
+            }
+            self.kick_by::<Portable>(kick, rows);
+        });
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
-    fn kick_wide(&self, kick: &Kick, velocity: &mut [Row]) {
-        self.kick_by::<lanes::Wide>(kick, velocity);
+    fn kick_wide(&self, kick: &Kick, rows: Rows<1>) {
+        self.kick_by::<lanes::Wide>(kick, rows);
     }
 
     #[inline(always)]
-    fn kick_by<L: Lanes>(&self, kick: &Kick, velocity: &mut [Row]) {
-        for &id in kick.nodes {
+    fn kick_by<L: Lanes>(&self, kick: &Kick, rows: Rows<1>) {
+        let [velocity] = rows.lists;
+        for &id in rows.nodes {
             let node = id as usize;
             let lightness = kick.lightness[node];
             if lightness == 0.0 {
                 continue;
             }
             let acceleration = plus(scaled(self.force_by::<L>(id), lightness), kick.gravity);
-            velocity[node] = plus(velocity[node], scaled(acceleration, kick.duration));
+            let velocity = &mut velocity[node - rows.first];
+            *velocity = plus(*velocity, scaled(acceleration, kick.duration));
         }
     }
 
@@ -508,7 +513,9 @@ mod tests {
         let mut velocities = [position.clone(), position];
         let [by_best, by_portable] = &mut velocities;
         wide.kick(&kick, by_best);
-        portable.kick_by::<Portable>(&kick, by_portable);
+        for rows in threads::rows(&nodes, [by_portable]) {
+            portable.kick_by::<Portable>(&kick, rows);
+        }
         let [by_best, by_portable] = velocities.map(|rows| {
             let bits = rows.iter().flatten().map(|value| value.to_bits());
             bits.collect::<Vec<u32>>()

@@ -2,6 +2,7 @@
 
 use crate::dim::{Dim, Point};
 use crate::solve::Row;
+use crate::threads::SHARE;
 use std::ops::Range;
 
 /// 1.5 · 2²³: to it and to what is up to 2²² greater or smaller only whole numbers can be added.
@@ -74,17 +75,25 @@ impl Bins {
         (self.numbers[place], [x, y, z, 0.0])
     }
 
+    /// All bins, in shares.
+    pub fn shares(&self) -> impl Iterator<Item = Range<usize>> + use<> {
+        let bins = self.start.len() - 1;
+        let firsts = (0..bins).step_by(SHARE);
+        firsts.map(move |first| first..bins.min(first + SHARE))
+    }
+
     /// Calls `visit` once with the numbers of any two points that are no further apart than `reach`
-    /// [m], which may be no more than a bin is wide.
+    /// [m], which may be no more than a bin is wide, and of which one lies in these `bins`: all shares
+    /// together make all pairs.
     #[inline]
-    pub fn pairs<D: Dim>(&self, reach: f32, mut visit: impl FnMut(u32, u32)) {
+    pub fn pairs<D: Dim>(&self, bins: Range<usize>, reach: f32, mut visit: impl FnMut(u32, u32)) {
         // Of two bins side by side one looks at the other.
         let ahead: &[[i32; 2]] = match D::N {
             2 => &[[1, 0]],
             _ => &[[1, 0], [-1, 1], [0, 1], [1, 1]],
         };
         let mut others: Vec<Range<usize>> = Vec::new();
-        for bin in 0..self.start.len() - 1 {
+        for bin in bins {
             let own = self.range(bin, bin);
             if own.is_empty() {
                 continue;
@@ -213,9 +222,11 @@ mod tests {
             dot(apart, apart) <= reach * reach
         };
         let mut found = Vec::new();
-        bins.pairs::<D>(reach, |a, b| {
-            found.push((a.min(b) as usize, a.max(b) as usize));
-        });
+        for share in bins.shares() {
+            bins.pairs::<D>(share, reach, |a, b| {
+                found.push((a.min(b) as usize, a.max(b) as usize));
+            });
+        }
         found.sort_unstable();
         let all = (0..points.len()).flat_map(|a| (a + 1..points.len()).map(move |b| (a, b)));
         let expected: Vec<_> = all.filter(|&(a, b)| is_near(a, b)).collect();

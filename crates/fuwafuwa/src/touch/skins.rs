@@ -12,6 +12,7 @@ use super::skin::{Site, Skin, skin_of, skins_of};
 use crate::body::Body;
 use crate::dim::{Dim, Point};
 use crate::solve::Row;
+use crate::threads;
 use crate::vector::{dot, minus, plus, scaled};
 
 /// Contacts are looked for out to this many voxels, so that none comes as a surprise.
@@ -21,6 +22,9 @@ const SLACK: f32 = 0.3;
 /// The share of its slack that a skin may have used up when others look for new pairs, unless all
 /// must look again after the next substep anyway.
 const SPARE: f32 = 0.5;
+
+/// Skins whose pairs one thread looks for at a time.
+const LOOKS: usize = 256;
 
 /// The place of a skin that is no more.
 const GONE: u32 = u32::MAX;
@@ -340,26 +344,37 @@ impl Skins {
         }
         let reach = (1.0 + MARGIN + 2.0 * SLACK) * size;
         let bins = Bins::new::<D>(&self.anchors, reach);
-        let mut found: Vec<[u32; 2]> = Vec::with_capacity(2 * self.pairs.len());
-        let mut meet = |a: u32, b: u32| {
-            let [first, second] = [a, b].map(|skin| &self.sites[skin as usize]);
-            let sleeps = |skin: u32| self.list[skin as usize].asleep;
-            if !(first.is_bound_to(second) || sleeps(a) && sleeps(b)) {
-                found.push([a.min(b), a.max(b)]);
-            }
-        };
-        if all {
-            bins.pairs::<D>(reach, meet);
+        let found = if all {
+            threads::map(bins.shares(), |share| {
+                let mut found = Vec::new();
+                bins.pairs::<D>(share, reach, |a, b| self.meet(a, b, &mut found));
+                found
+            })
         } else {
-            for place in places() {
-                bins.near::<D>(self.anchors[place], reach, |other| {
-                    if !strayed[other as usize] || other as usize > place {
-                        meet(place as u32, other);
-                    }
-                });
-            }
+            let places: Vec<u32> = places().map(|place| place as u32).collect();
+            threads::map(places.chunks(LOOKS), |places| {
+                let mut found = Vec::new();
+                for &place in places {
+                    bins.near::<D>(self.anchors[place as usize], reach, |other| {
+                        if !strayed[other as usize] || other > place {
+                            self.meet(place, other, &mut found);
+                        }
+                    });
+                }
+                found
+            })
+        };
+        self.merge(&sorted(&found.concat(), self.list.len()), strayed);
+    }
+
+    /// Adds two skins that are close to each other to those found, if they may touch.
+    #[inline(always)]
+    fn meet(&self, a: u32, b: u32, found: &mut Vec<[u32; 2]>) {
+        let [first, second] = [a, b].map(|skin| &self.sites[skin as usize]);
+        let sleeps = |skin: u32| self.list[skin as usize].asleep;
+        if !(first.is_bound_to(second) || sleeps(a) && sleeps(b)) {
+            found.push([a.min(b), a.max(b)]);
         }
-        self.merge(&sorted(&found, self.list.len()), strayed);
     }
 
     /// Notes which skins matter to contact in the next substeps.

@@ -1,0 +1,89 @@
+//! Work shared out among threads, as far as the feature `parallel` and the caller's pool of them
+//! allow. Shares write nothing that another one reads or writes, and their results come in order: on
+//! any number of threads the same bits come out.
+
+use crate::solve::Row;
+
+/// Items in a share: with fewer, handing them over takes longer than they do.
+pub const SHARE: usize = 2048;
+
+/// Does the work of each share; returns what came of them, in their order.
+pub fn map<T: Send, R: Send>(
+    shares: impl Iterator<Item = T>,
+    work: impl Fn(T) -> R + Sync,
+) -> Vec<R> {
+    #[cfg(feature = "parallel")]
+    if rayon::current_num_threads() > 1 {
+        use rayon::prelude::*;
+        let shares: Vec<T> = shares.collect();
+        if shares.len() > 1 {
+            return shares.into_par_iter().map(&work).collect();
+        }
+        return shares.into_iter().map(work).collect();
+    }
+    shares.map(work).collect()
+}
+
+/// Some nodes and their rows of several lists that go by node id.
+pub struct Rows<'a, const N: usize> {
+    /// Ascending.
+    pub nodes: &'a [u32],
+    /// The id that the first rows belong to.
+    pub first: usize,
+    /// Those of all ids from there to beyond the last of the nodes.
+    pub lists: [&'a mut [Row]; N],
+}
+
+/// The rows of nodes, whose ids ascend, in shares.
+pub fn rows<'a, const N: usize>(
+    nodes: &'a [u32],
+    mut lists: [&'a mut [Row]; N],
+) -> impl Iterator<Item = Rows<'a, N>> {
+    let mut first = 0;
+    nodes.chunks(SHARE).map(move |nodes| {
+        let end = nodes[nodes.len() - 1] as usize + 1;
+        let lists = lists.each_mut().map(|list| {
+            let (own, rest) = std::mem::take(list).split_at_mut(end - first);
+            *list = rest;
+            own
+        });
+        let share = Rows {
+            nodes,
+            first,
+            lists,
+        };
+        first = end;
+        share
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_node_is_in_one_share_with_its_rows() {
+        let nodes: Vec<u32> = (0..5 * SHARE as u32).map(|k| 3 * k + k % 2).collect();
+        let count = 20 * SHARE;
+        let (mut a, mut b) = (vec![[0.0; 4]; count], vec![[0.0; 4]; count]);
+        let shares = rows(&nodes, [&mut a, &mut b]);
+        let counts = map(shares, |share| {
+            let Rows {
+                nodes,
+                first,
+                lists: [a, b],
+            } = share;
+            for &id in nodes {
+                a[id as usize - first][0] += 1.0;
+                b[id as usize - first][1] += id as f32;
+            }
+            nodes.len()
+        });
+        assert_eq!(counts, [SHARE; 5]);
+        for id in 0..count {
+            let is_one = nodes.binary_search(&(id as u32)).is_ok();
+            let expected = if is_one { [1.0, id as f32] } else { [0.0; 2] };
+            assert_eq!([a[id][0], b[id][1]], expected);
+        }
+    }
+}
