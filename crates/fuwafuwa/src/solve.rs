@@ -428,12 +428,12 @@ impl<D: Dim> Blocks<D> {
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
-    fn kick_wide(&self, kick: &Kick, rows: Rows<1>) {
+    fn kick_wide(&self, kick: &Kick, rows: Rows<Row, 1>) {
         self.kick_by::<lanes::Wide>(kick, rows);
     }
 
     #[inline(always)]
-    fn kick_by<L: Lanes>(&self, kick: &Kick, rows: Rows<1>) {
+    fn kick_by<L: Lanes>(&self, kick: &Kick, rows: Rows<Row, 1>) {
         let [velocity] = rows.lists;
         for &id in rows.nodes {
             let node = id as usize;

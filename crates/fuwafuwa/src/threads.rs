@@ -2,8 +2,6 @@
 //! allow. Shares write nothing that another one reads or writes, and their results come in order: on
 //! any number of threads the same bits come out.
 
-use crate::solve::Row;
-
 /// Items in a share: with fewer, handing them over takes longer than they do.
 pub const SHARE: usize = 2048;
 
@@ -25,20 +23,20 @@ pub fn map<T: Send, R: Send>(
 }
 
 /// Some nodes and their rows of several lists that go by node id.
-pub struct Rows<'a, const N: usize> {
+pub struct Rows<'a, T, const N: usize> {
     /// Ascending.
     pub nodes: &'a [u32],
     /// The id that the first rows belong to.
     pub first: usize,
     /// Those of all ids from there to beyond the last of the nodes.
-    pub lists: [&'a mut [Row]; N],
+    pub lists: [&'a mut [T]; N],
 }
 
 /// The rows of nodes, whose ids ascend, in shares.
-pub fn rows<'a, const N: usize>(
+pub fn rows<'a, T, const N: usize>(
     nodes: &'a [u32],
-    mut lists: [&'a mut [Row]; N],
-) -> impl Iterator<Item = Rows<'a, N>> {
+    mut lists: [&'a mut [T]; N],
+) -> impl Iterator<Item = Rows<'a, T, N>> {
     let mut first = 0;
     nodes.chunks(SHARE).map(move |nodes| {
         let end = nodes[nodes.len() - 1] as usize + 1;

@@ -12,7 +12,7 @@ use super::skin::{Site, Skin, skin_of, skins_of};
 use crate::body::Body;
 use crate::dim::{Dim, Point};
 use crate::solve::Row;
-use crate::threads;
+use crate::threads::{self, SHARE};
 use crate::vector::{dot, minus, plus, scaled};
 
 /// Contacts are looked for out to this many voxels, so that none comes as a surprise.
@@ -35,8 +35,6 @@ const GONE: u32 = u32::MAX;
 pub struct SkinPair {
     /// Places among the skins, ascending.
     pub skins: [u32; 2],
-    /// Body and element of both, in one number each: what the pair is known by.
-    key: [u64; 2],
     /// What passed between them.
     pub impulse: Impulse,
     /// Whether they met face to face: if one is behind the other now, it was forced there.
@@ -364,7 +362,7 @@ impl Skins {
                 found
             })
         };
-        self.merge(&sorted(&found.concat(), self.list.len()), strayed);
+        self.merge(&found, strayed);
     }
 
     /// Adds two skins that are close to each other to those found, if they may touch.
@@ -394,32 +392,60 @@ impl Skins {
 
     /// Makes the new list of pairs from those just found and the old ones of which neither has
     /// strayed. Pairs that were known keep their impulses.
-    fn merge(&mut self, found: &[[u32; 2]], strayed: &[bool]) {
+    fn merge(&mut self, found: &[Vec<[u32; 2]>], strayed: &[bool]) {
         let list = &self.list;
         let stays = |pair: &SkinPair| {
             let [a, b] = pair.skins.map(|skin| skin as usize);
             !(strayed[a] || strayed[b] || list[a].asleep && list[b].asleep)
         };
-        let old = std::mem::take(&mut self.pairs);
-        self.pairs.reserve(old.len().max(found.len()));
-        let mut old = old.into_iter().peekable();
-        for &skins in found {
-            let key = skins.map(|skin| list[skin as usize].key());
-            while let Some(pair) = old.next_if(|pair| pair.key < key) {
-                if stays(&pair) {
-                    self.pairs.push(pair);
-                }
+        let mut found = by_first(found, list.len());
+        let merged = threads::map(shares(&mut found, &self.pairs), |(found, old)| {
+            for same in found.chunk_by_mut(|a, b| a[0] == b[0]) {
+                same.sort_unstable();
             }
-            let known = old.next_if(|pair| pair.key == key);
-            self.pairs.push(SkinPair {
-                skins,
-                key,
-                impulse: known.map_or(Impulse::default(), |pair| pair.impulse),
-                met_in_front: known.is_some_and(|pair| pair.met_in_front),
-            });
-        }
-        self.pairs.extend(old.filter(stays));
+            let mut pairs = Vec::with_capacity(old.len().max(found.len()));
+            let mut old = old.iter().peekable();
+            for &mut skins in found {
+                while let Some(pair) = old.next_if(|pair| pair.skins < skins) {
+                    if stays(pair) {
+                        pairs.push(*pair);
+                    }
+                }
+                let known = old.next_if(|pair| pair.skins == skins);
+                pairs.push(SkinPair {
+                    skins,
+                    impulse: known.map_or(Impulse::default(), |pair| pair.impulse),
+                    met_in_front: known.is_some_and(|pair| pair.met_in_front),
+                });
+            }
+            pairs.extend(old.filter(|pair| stays(pair)));
+            pairs
+        });
+        self.pairs = merged.concat();
     }
+}
+
+/// Both lists of pairs, which ascend by their first skins, cut at the same skins.
+fn shares<'a>(
+    mut found: &'a mut [[u32; 2]],
+    mut old: &'a [SkinPair],
+) -> impl Iterator<Item = (&'a mut [[u32; 2]], &'a [SkinPair])> {
+    let mut is_done = false;
+    std::iter::from_fn(move || {
+        if is_done {
+            return None;
+        }
+        let next = found.get(SHARE).map(|pair| pair[0] + 1);
+        is_done = next.is_none();
+        let next = next.unwrap_or(u32::MAX);
+        let end = found.partition_point(|pair| pair[0] < next);
+        let own;
+        (own, found) = std::mem::take(&mut found).split_at_mut(end);
+        let end = old.partition_point(|pair| pair.skins[0] < next);
+        let known;
+        (known, old) = old.split_at(end);
+        Some((own, known))
+    })
 }
 
 impl SkinPair {
@@ -429,25 +455,21 @@ impl SkinPair {
     }
 }
 
-/// Pairs of numbers below `count` in ascending order: by the first numbers at one go, and the few
-/// that have the same by comparison.
-fn sorted(pairs: &[[u32; 2]], count: usize) -> Vec<[u32; 2]> {
+/// Pairs of numbers below `count`, ascending by the first.
+fn by_first(pairs: &[Vec<[u32; 2]>], count: usize) -> Vec<[u32; 2]> {
     let mut end = vec![0u32; count];
-    for pair in pairs {
+    for pair in pairs.iter().flatten() {
         end[pair[0] as usize] += 1;
     }
     let mut sum = 0;
     for end in &mut end {
         sum += std::mem::replace(end, sum);
     }
-    let mut sorted = vec![[0; 2]; pairs.len()];
-    for pair in pairs {
+    let mut sorted = vec![[0; 2]; sum as usize];
+    for pair in pairs.iter().flatten() {
         let place = &mut end[pair[0] as usize];
         sorted[*place as usize] = *pair;
         *place += 1;
-    }
-    for same in sorted.chunk_by_mut(|a, b| a[0] == b[0]) {
-        same.sort_unstable();
     }
     sorted
 }
