@@ -145,18 +145,20 @@ impl Bins {
                 [four[0], four[1], four[2], four[3]]
             };
             let [x, y, z] = [four(xs), four(ys), four(zs)];
-            let mut is_near = [false; LANES];
+            let mut near = 0;
             for lane in 0..LANES {
                 let apart = [x[lane] - at[0], y[lane] - at[1], z[lane] - at[2]];
                 let squared = apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2];
-                is_near[lane] = squared <= reach * reach;
+                near |= u32::from(squared <= reach * reach) << lane;
             }
-            if is_near != [false; LANES] {
-                for (lane, place) in (first..range.end).take(LANES).enumerate() {
-                    if is_near[lane] {
-                        visit(self.numbers[place]);
-                    }
-                }
+            // The last lanes may be of another bin.
+            let left = range.end - first;
+            if left < LANES {
+                near &= (1 << left) - 1;
+            }
+            while near != 0 {
+                visit(self.numbers[first + near.trailing_zeros() as usize]);
+                near &= near - 1;
             }
             first += LANES;
         }
