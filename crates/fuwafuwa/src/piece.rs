@@ -258,7 +258,14 @@ impl Pieces {
                     }
                     *seen = mark;
                     sides.running[turn].found.push(near);
-                    sides.running[turn].next.push_back(near);
+                    let next = &mut sides.running[turn].next;
+                    // Through the coarse inside the sides meet soonest.
+                    let level = |id| mesh.element(id).map(|element| element.cell.level);
+                    if level(near) > level(id) {
+                        next.push_front(near);
+                    } else {
+                        next.push_back(near);
+                    }
                 }
             }
             turn += 1;
