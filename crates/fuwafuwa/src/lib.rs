@@ -12,7 +12,7 @@
 //! # Features
 //! None is on unless asked for.
 //! - `serde`: saving and loading worlds, in the module `snapshot`
-//! - `parallel`: the forces of large bodies on several threads, to the same bits
+//! - `parallel`: large bodies on several threads, to the same bits
 // One exception, in `solve`: calling code compiled for AVX2 after asking for AVX2.
 #![deny(unsafe_code)]
 #![warn(missing_docs)]
