@@ -24,7 +24,7 @@ const SLACK: f32 = 0.3;
 const SPARE: f32 = 0.5;
 
 /// Skins whose pairs one thread looks for at a time.
-const LOOKS: usize = 256;
+const LOOKS: usize = SHARE / 8;
 
 /// The place of a skin that is no more.
 const GONE: u32 = u32::MAX;
