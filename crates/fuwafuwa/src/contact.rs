@@ -107,46 +107,56 @@ impl Contacts {
         let obstacles = colliders.iter().filter(|collider| !collider.is_hand);
         let first_hand = obstacles.count() as u32;
         let travel = nearby.travel;
-        for (place, pair) in nearby.node_pairs.iter_mut().enumerate() {
-            let body = &bodies[pair.body as usize];
-            let collider = &colliders[pair.collider as usize];
-            let node = pair.node as usize;
-            // What sleeps is touched by hands alone.
-            if body.lightness[node] == 0.0 && !collider.is_hand {
-                pair.impulse.release();
-                continue;
+        let shares = nearby.node_pairs.chunks_mut(SHARE).zip(0..);
+        let found = threads::map(shares, |(pairs, share)| {
+            let (mut contacts, mut hits) = (Vec::new(), Vec::new());
+            for (pair, place) in pairs.iter_mut().zip(share * SHARE..) {
+                let body = &bodies[pair.body as usize];
+                let collider = &colliders[pair.collider as usize];
+                let node = pair.node as usize;
+                // What sleeps is touched by hands alone.
+                if body.lightness[node] == 0.0 && !collider.is_hand {
+                    pair.impulse.release();
+                    continue;
+                }
+                let (at, velocity) = (body.position[node], body.velocity[node]);
+                // Most are so far from a wall that they could not come to it at any direction.
+                let reachable = (pair.clear - travel).max(0.0) / (AHEAD * duration);
+                if !collider.is_hand && inner::<D>(velocity, velocity) < reachable * reachable {
+                    continue;
+                }
+                let (gap, normal) = collider.shape.distance(three(at));
+                let normal = as_row(normal);
+                let relative = minus(velocity, collider.velocity);
+                let size = body.grid.voxel_size();
+                if !is_close(gap, inner::<D>(relative, normal), size, duration) {
+                    pair.impulse.release();
+                    // With a little for rounding.
+                    pair.clear = travel + gap - 1.1 * CLOSE * size;
+                    continue;
+                }
+                pair.clear = 0.0;
+                if collider.is_hand && gap < 0.1 * size && body.pieces.sleeps(pair.node) {
+                    hits.push((pair.body, body.pieces.of_node(pair.node)));
+                }
+                let lightness = body.lightness[node] + collider.lightness;
+                if body.lightness[node] == 0.0 {
+                    continue;
+                }
+                let friction = collider.friction;
+                let contact = Contact::new(normal, gap, duration, 1.0 / lightness, friction);
+                contacts.push((contact.known_as::<D>(place, &pair.impulse), &*pair));
             }
-            let (at, velocity) = (body.position[node], body.velocity[node]);
-            // Most are so far from a wall that they could not come to it at any direction.
-            let reachable = (pair.clear - travel).max(0.0) / (AHEAD * duration);
-            if !collider.is_hand && inner::<D>(velocity, velocity) < reachable * reachable {
-                continue;
-            }
-            let (gap, normal) = collider.shape.distance(three(at));
-            let normal = as_row(normal);
-            let relative = minus(velocity, collider.velocity);
-            let size = body.grid.voxel_size();
-            if !is_close(gap, inner::<D>(relative, normal), size, duration) {
-                pair.impulse.release();
-                // With a little for rounding.
-                pair.clear = travel + gap - 1.1 * CLOSE * size;
-                continue;
-            }
-            pair.clear = 0.0;
-            if collider.is_hand && gap < 0.1 * size && body.pieces.sleeps(pair.node) {
-                hits.push((pair.body, body.pieces.of_node(pair.node)));
-            }
-            let lightness = body.lightness[node] + collider.lightness;
-            if body.lightness[node] == 0.0 {
-                continue;
-            }
-            let friction = collider.friction;
-            let contact = Contact::new(normal, gap, duration, 1.0 / lightness, friction);
-            self.nodes.push(NodeContact {
-                contact: contact.known_as::<D>(place, &pair.impulse),
-                node: self.motion.place(pair.body, pair.node),
-                hand: pair.collider.checked_sub(first_hand),
-            });
+            (contacts, hits)
+        });
+        for (contacts, hit) in found {
+            hits.extend(hit);
+            self.nodes
+                .extend(contacts.into_iter().map(|(contact, pair)| NodeContact {
+                    contact,
+                    node: self.motion.place(pair.body, pair.node),
+                    hand: pair.collider.checked_sub(first_hand),
+                }));
         }
     }
 

@@ -14,7 +14,10 @@ use crate::shape::Vector;
 use crate::solve::Row;
 use crate::stencil::slot_at;
 use crate::vector::{cross, dot, minus, plus, scaled, three};
+use std::collections::BTreeMap;
 
+/// Exits are looked for so many voxels around first.
+const EXIT_REACH: f32 = 2.0;
 /// An element that is flatter than this holds nobody: its volume over that at rest.
 const FLAT: f32 = 0.01;
 
@@ -78,30 +81,18 @@ impl Skins {
                 });
             }
         }
+        let mut exits: BTreeMap<(u32, u32), Exits> = BTreeMap::new();
         for skin in small {
             let Some(captor) = self.captors[skin as usize] else {
                 continue;
             };
-            match self.exit(self.centres[skin as usize], captor) {
+            let exits = exits.entry(captor);
+            let exits = exits.or_insert_with(|| Exits::of::<D>(captor, self, bodies));
+            match exits.nearest::<D>(self.centres[skin as usize]) {
                 Some(exit) => self.captives.push(Captive { skin, exit }),
                 None => self.captors[skin as usize] = None,
             }
         }
-    }
-
-    /// The skin of a piece that is nearest to a place [m] and leads out.
-    fn exit(&self, at: Row, captor: (u32, u32)) -> Option<u32> {
-        let skins = self.list.iter().enumerate();
-        let exits = skins.filter(|(_, skin)| (skin.body, skin.piece) == captor && skin.leads_out());
-        let mut nearest = (f32::INFINITY, None);
-        for (place, _) in exits {
-            let apart = minus(self.centres[place], at);
-            let squared = dot(apart, apart);
-            if squared < nearest.0 {
-                nearest = (squared, Some(place as u32));
-            }
-        }
-        nearest.1
     }
 
     /// Whether one of two skins is inside the piece of the other.
@@ -112,6 +103,52 @@ impl Skins {
             captor.is_some_and(|captor| captor == (skin.body, skin.piece))
         };
         inside(a, b) || inside(b, a)
+    }
+}
+
+/// The skins of a piece that lead out.
+struct Exits {
+    /// Their places among all skins, ascending.
+    skins: Vec<u32>,
+    centres: Vec<Row>,
+    bins: Bins,
+    /// How far the bins are looked through [m].
+    reach: f32,
+}
+
+impl Exits {
+    fn of<D: Dim>((body, piece): (u32, u32), skins: &Skins, bodies: &[Body<D>]) -> Self {
+        let all = skins.list.iter().zip(0..);
+        let exits =
+            all.filter(|(skin, _)| (skin.body, skin.piece) == (body, piece) && skin.leads_out());
+        let exits: Vec<u32> = exits.map(|(_, place)| place).collect();
+        let centres = exits.iter().map(|&place| skins.centres[place as usize]);
+        let centres: Vec<Row> = centres.collect();
+        let reach = EXIT_REACH * bodies[body as usize].grid.voxel_size();
+        Self {
+            bins: Bins::new::<D>(&centres, reach),
+            skins: exits,
+            centres,
+            reach,
+        }
+    }
+
+    /// The one that is nearest to a place [m], of equals the first.
+    fn nearest<D: Dim>(&self, at: Row) -> Option<u32> {
+        let nearer = |nearest: (f32, u32), number: u32| {
+            let apart = minus(self.centres[number as usize], at);
+            let found = (dot(apart, apart), number);
+            if found < nearest { found } else { nearest }
+        };
+        let none = (f32::INFINITY, u32::MAX);
+        let mut nearest = none;
+        self.bins.near::<D>(at, self.reach, |number| {
+            nearest = nearer(nearest, number);
+        });
+        if nearest == none {
+            nearest = (0..self.skins.len() as u32).fold(none, nearer);
+        }
+        self.skins.get(nearest.1 as usize).copied()
     }
 }
 
@@ -198,5 +235,44 @@ impl<D: Dim> Body<D> {
             child |= usize::from(along > 1.0) << axis;
         }
         Some(child)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dim::Dim3;
+
+    #[test]
+    fn the_nearest_exit_is_found_near_and_far() {
+        let mut seed = 7u32;
+        let mut random = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) as f32 / (1 << 24) as f32
+        };
+        let centres: Vec<Row> = (0..400)
+            .map(|_| [random(), random(), random(), 0.0])
+            .collect();
+        let reach = 0.1;
+        let exits = Exits {
+            skins: (0..400).map(|number| 3 * number).collect(),
+            bins: Bins::new::<Dim3>(&centres, reach),
+            centres,
+            reach,
+        };
+        let (mut near, mut far) = (0, 0);
+        for _ in 0..400 {
+            let at = [2.0 * random(), random(), random(), 0.0];
+            let apart = |number: &usize| {
+                let apart = minus(exits.centres[*number], at);
+                dot(apart, apart)
+            };
+            let all = 0..exits.centres.len();
+            let nearest = all.min_by(|a, b| apart(a).total_cmp(&apart(b))).unwrap();
+            assert_eq!(exits.nearest::<Dim3>(at), Some(3 * nearest as u32));
+            let is_near = apart(&nearest) <= reach * reach;
+            (near, far) = (near + u32::from(is_near), far + u32::from(!is_near));
+        }
+        assert!(near > 100 && far > 100, "{near} near, {far} far");
     }
 }
