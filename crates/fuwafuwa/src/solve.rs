@@ -34,9 +34,10 @@ pub const LANES: usize = 8;
 /// Blocks that go through the three loops of the kernel together: their scratch fits the L1 cache.
 const GROUP: usize = 8;
 
-/// Blocks from which on several threads are worth their meeting.
+/// Blocks from which on several threads are worth their meeting: about as many as make shares enough
+/// in [`threads`].
 #[cfg(feature = "parallel")]
-const LEAST_PARALLEL: usize = 256;
+const LEAST_PARALLEL: usize = 1024;
 
 /// Numbers after the last force, so that four can be read from where it begins.
 const PAD: usize = 4;

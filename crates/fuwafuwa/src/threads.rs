@@ -6,6 +6,11 @@
 /// bodies, and are to see several shares all the same.
 pub const SHARE: usize = if cfg!(test) { 32 } else { 2048 };
 
+/// Shares from which on several threads take part: where other programs want the machine too, each
+/// meeting of threads can last as long as a tick, and small bodies have nothing to win.
+#[cfg(feature = "parallel")]
+const LEAST: usize = if cfg!(test) { 2 } else { 8 };
+
 /// Does the work of each share; returns what came of them, in their order.
 pub fn map<T: Send, R: Send>(
     shares: impl Iterator<Item = T>,
@@ -15,7 +20,7 @@ pub fn map<T: Send, R: Send>(
     if rayon::current_num_threads() > 1 {
         use rayon::prelude::*;
         let shares: Vec<T> = shares.collect();
-        if shares.len() > 1 {
+        if shares.len() >= LEAST {
             return shares.into_par_iter().map(&work).collect();
         }
         return shares.into_iter().map(work).collect();

@@ -40,8 +40,8 @@ pub static SCENES: [Scene; 6] = [
     },
     Scene {
         name: "ball large enough for several threads",
-        run: || hash_of_torn_world::<Dim3>(28, 40),
-        golden: 0x3cf6_9c0b_613e_279d,
+        run: || hash_of_torn_world::<Dim3>(44, 40),
+        golden: 0xef4d_f7a6_8450_f652,
     },
     Scene {
         name: "ball in pieces that lie on each other, few substeps",
