@@ -490,3 +490,35 @@ fn another_body_in_the_place_of_one_is_taken_for_what_it_is() {
         "its neighbouring voxels push each other {touches} times"
     );
 }
+
+/// Two bars that fly at each other, with nothing else.
+fn about_to_meet() -> World<Dim2> {
+    let settings = Settings {
+        gravity: [0.0; 3],
+        ..Settings::default()
+    };
+    let mut world = World::new(settings).unwrap();
+    world.add_body(bar([6, 6]).thrown([1.0, 0.0, 0.0]));
+    let other = bar([6, 6]).moved([0.4, 0.0, 0.0]);
+    world.add_body(other.thrown([-1.0, 0.0, 0.0]));
+    world
+}
+
+fn assert_they_meet(mut world: World<Dim2>) {
+    step(&mut world, 40);
+    let [left, right] = [0, 1].map(|body| world.bodies()[body].piece_views()[0].centre[0]);
+    assert!(
+        left < right,
+        "they went through each other: {left}, {right}"
+    );
+}
+
+#[test]
+fn small_voxels_still_meet_when_large_ones_came() {
+    let mut world = about_to_meet();
+    world.step();
+    let grid = VoxelGrid::from_fn([2, 2, 1], 1.0, |_| 1).unwrap();
+    let large = Body::new(grid, &[Material::default()]).unwrap();
+    world.add_body(large.moved([0.0, -9.0, 0.0]));
+    assert_they_meet(world);
+}

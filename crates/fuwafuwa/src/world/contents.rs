@@ -19,7 +19,8 @@ impl<D: Dim> World<D> {
         body.soften_for(shortest);
         self.bodies.push(body);
         self.rests.push(Rests::default());
-        self.nearby.expire();
+        // Its voxels may be larger, and lists made for small ones do not bear as much.
+        self.nearby.doubt();
         let place = self.bodies.len() - 1;
         // It may have fallen asleep elsewhere.
         let pieces = self.pieces_of(place);
