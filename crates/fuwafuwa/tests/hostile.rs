@@ -514,6 +514,16 @@ fn assert_they_meet(mut world: World<Dim2>) {
 }
 
 #[test]
+fn others_still_meet_when_one_was_quarantined() {
+    for nowhere in [f32::NAN, f32::INFINITY] {
+        let mut world = about_to_meet();
+        world.add_body(bar([2, 2]).moved([nowhere, -3.0, 0.0]));
+        assert_eq!(world.step().quarantined, 1);
+        assert_they_meet(world);
+    }
+}
+
+#[test]
 fn small_voxels_still_meet_when_large_ones_came() {
     let mut world = about_to_meet();
     world.step();

@@ -129,7 +129,8 @@ impl Skins {
         if !is_same {
             for (skin, strayed) in self.list.iter_mut().zip(&mut strayed) {
                 let asleep = skin.sleeps(bodies);
-                *strayed |= skin.asleep && !asleep;
+                // Nobody looks after how far a sleeper has strayed: it starts with nothing.
+                *strayed |= skin.asleep != asleep;
                 skin.asleep = asleep;
             }
             self.note_rest(bodies);
@@ -300,7 +301,11 @@ impl Skins {
             }
         }
         if self.awake.len() == self.list.len() && !self.awake.is_empty() {
-            self.frame = scaled(sum, 1.0 / self.awake.len() as f32);
+            let frame = scaled(sum, 1.0 / self.awake.len() as f32);
+            // What is no place is quarantined after the tick, but nothing would bring the frame back.
+            if frame.iter().all(|along| along.is_finite()) {
+                self.frame = frame;
+            }
         }
     }
 
@@ -574,6 +579,56 @@ mod tests {
     fn skins_and_their_neighbours_are_known_after_every_tear() {
         check_bound::<Dim2>(14);
         check_bound::<Dim3>(8);
+    }
+
+    /// Crumbs come along, and the frame with them, but for one that falls asleep; then another one
+    /// goes to it.
+    #[test]
+    fn who_falls_asleep_is_met() {
+        let grid = VoxelGrid::<Dim2>::ball(14, 1.0).unwrap();
+        let mut body = Body::new(grid, &[Material::default()]).unwrap();
+        body.crumble().unwrap();
+        let size = body.grid.voxel_size();
+        let mut skins = Skins::default();
+        skins.follow(std::slice::from_ref(&body), size);
+        let all = skins.list.clone();
+        // Moves skins along the first axis, each as far as a rule says [voxels].
+        let shift = |body: &mut Body<Dim2>, way: &dyn Fn(usize) -> f32| {
+            for (place, skin) in all.iter().enumerate() {
+                for &node in &skin.nodes[..Dim2::CORNERS] {
+                    body.position[node as usize][0] += way(place) * size;
+                }
+            }
+        };
+        // Just out of reach of each other, the rest far away.
+        let before = skins.centres.clone();
+        shift(&mut body, &|place| {
+            let goal = if place == 1 {
+                1.95
+            } else {
+                10.0 * place as f32
+            };
+            goal - before[place][0] / size
+        });
+        for distance in [1000.0 * size, 0.0] {
+            skins.pass(distance);
+            skins.follow(std::slice::from_ref(&body), size);
+        }
+        assert!(skins.pairs.is_empty());
+        shift(&mut body, &|place| if place == 0 { 0.29 } else { -0.29 });
+        skins.pass(0.29 * size);
+        skins.start_tick();
+        skins.follow(std::slice::from_ref(&body), size);
+        let pieces = 0..body.pieces.list.len() as u32;
+        let marked: Vec<bool> = pieces.map(|piece| piece == all[0].piece).collect();
+        body.set_asleep(&marked, true);
+        skins.expire_rest();
+        skins.follow(std::slice::from_ref(&body), size);
+        shift(&mut body, &|place| if place == 1 { -0.29 } else { 0.0 });
+        skins.pass(0.29 * size);
+        skins.follow(std::slice::from_ref(&body), size);
+        let pairs: Vec<[u32; 2]> = skins.pairs.iter().map(|pair| pair.skins).collect();
+        assert_eq!(pairs, [[0, 1]]);
     }
 
     #[test]
