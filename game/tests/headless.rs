@@ -210,7 +210,7 @@ fn a_replay_is_genuine_until_someone_changes_it() {
         "level in this replay was changed",
     );
     check(
-        replay.replacen("version = 2", "version = 77", 1),
+        replay.replacen("version = 3", "version = 77", 1),
         "version 77",
     );
     check("hello".into(), "no replay");

@@ -114,7 +114,7 @@ fn a_replay_goes_as_it_went_and_a_changed_one_is_found_out() {
         matches!(differs, ReplayError::Differs { second: 2 }),
         "{differs}"
     );
-    let other = changed("version = 2", "version = 99");
+    let other = changed("version = 3", "version = 99");
     assert!(
         matches!(other, ReplayError::Version { found: 99 }),
         "{other}"

@@ -108,7 +108,7 @@ fn a_round_is_won_kept_watched_raced_and_deleted() {
 
     // Somebody else's, or none at all.
     let path = files.replays()[0].path.clone();
-    fs::write(&path, saved.replacen("version = 2", "version = 999", 1)).unwrap();
+    fs::write(&path, saved.replacen("version = 3", "version = 999", 1)).unwrap();
     frames(&mut window, 2);
     click(&mut window, "Watch");
     assert!(
