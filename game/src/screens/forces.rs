@@ -31,7 +31,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, from: Screen) {
         let response = header(ui, &theme, said.back, said.forces);
         super::play::focus_first(ui, &response);
         back |= response.clicked();
-        page(ui, 860.0, |ui| {
+        page(ui, "forces", 860.0, |ui| {
             card(ui, &theme, |ui| {
                 ui.set_width(ui.available_width());
                 let strength = &mut chosen.haptics;

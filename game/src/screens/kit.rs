@@ -302,9 +302,11 @@ pub fn place_of_page(ui: &Ui) -> Rect {
 }
 
 /// The rest of a screen: a column of so many points at most, which scrolls and fades where it goes
-/// on. There is room for the ring around what has the focus.
-pub fn page(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui)) {
-    let area = egui::ScrollArea::vertical().auto_shrink(false);
+/// on. There is room for the ring around what has the focus. How far it is scrolled is remembered under its name.
+pub fn page(ui: &mut Ui, name: &str, width: f32, contents: impl FnOnce(&mut Ui)) {
+    let area = egui::ScrollArea::vertical()
+        .id_salt(name)
+        .auto_shrink(false);
     let output = area.show(ui, |ui| {
         let all = ui.available_width();
         let inner = (all - 2.0 * (RING + 2.0)).min(width);

@@ -22,7 +22,7 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     let mut back = ui.input(|input| input.key_pressed(egui::Key::Escape));
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
         back |= header(ui, &theme, said.back, said.levels).clicked();
-        page(ui, f32::INFINITY, |ui| {
+        page(ui, "levels", f32::INFINITY, |ui| {
             ui.spacing_mut().item_spacing = vec2(GAP, GAP);
             let width = ui.available_width();
             let columns = ((width + GAP) / (WIDE + GAP)).round().max(2.0);

@@ -35,7 +35,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
         let response = header(ui, &theme, said.back, said.replays);
         super::play::focus_first(ui, &response);
         back |= response.clicked();
-        page(ui, 960.0, |ui| {
+        page(ui, "replays", 960.0, |ui| {
             if game.replays.is_empty() {
                 ui.vertical_centered(|ui| {
                     ui.add_space(60.0);

@@ -23,7 +23,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, from: Screen) {
         let response = header(ui, &theme, said.back, said.settings);
         super::play::focus_first(ui, &response);
         back |= response.clicked();
-        page(ui, 820.0, |ui| {
+        page(ui, "settings", 820.0, |ui| {
             let options = [(false, said.off), (true, said.on)];
             card(ui, &theme, |ui| {
                 ui.set_width(ui.available_width());

@@ -194,6 +194,21 @@ fn settings_are_kept_and_the_language_changes_at_once() {
 }
 
 #[test]
+fn how_far_the_levels_are_scrolled_is_nothing_to_the_settings() {
+    let mut window = window(Files::nowhere());
+    let language = |window: &Window| window.get_by_label("Language: English").rect();
+    click(&mut window, "Settings");
+    let before = language(&window);
+    click(&mut window, "Back");
+    click(&mut window, "Play");
+    button(&window, "Playground 3D").scroll_to_me();
+    frames(&mut window, 30);
+    click(&mut window, "Back");
+    click(&mut window, "Settings");
+    assert_eq!(language(&window), before);
+}
+
+#[test]
 fn any_key_can_mean_anything() {
     let mut window = window(Files::nowhere());
     click(&mut window, "Settings");
