@@ -3,6 +3,8 @@
 use super::fingers::Fingers;
 use crate::game::{Game, Screen};
 use egui::{Context, Event, PointerButton, Pos2};
+use fuwafuwa::Dim3;
+use tamaire_play::{AnyRound, Round};
 
 /// How far the wheel raises the hand [m/point].
 const WHEEL: f32 = 0.002;
@@ -11,6 +13,8 @@ const CUT: f32 = 0.0012;
 const CUTTING: f32 = 0.4;
 /// How far a mouse or a finger turns the camera [rad/point].
 const DRAG: f32 = 0.006;
+/// So near to an obstacle is on it [m].
+const NEAR: f32 = 1e-3;
 /// How fast a key or a stick that leans fully turns it [rad/s].
 const TURN: f32 = 1.5;
 
@@ -29,14 +33,35 @@ pub(super) fn point(game: &mut Game, ctx: &Context, fingers: &Fingers) {
     let (Some(view), Some(at)) = (game.view, at) else {
         return;
     };
-    // In space it points at the floor, where the hand's shadow is: so nothing jumps when the hand has risen.
     let round = game.session.round();
-    let mut place = view.in_world(at, round.level().arena()[0][1]);
-    if view.space.is_some() {
-        let goal = game.players.wanted(0);
-        place[1] = goal.unwrap_or(round.hands()[0].goal())[1];
-    }
+    let place = match round {
+        AnyRound::Plane(_) => view.in_world(at, 0.0),
+        // In space it points at the floor, where the hand's shadow is: so nothing jumps when the hand has risen.
+        AnyRound::Space(in_space) => {
+            let goal = game.players.wanted(0).unwrap_or(round.hands()[0].goal());
+            let [x, _, z] = view.in_world(at, floor(in_space));
+            [x, goal[1], z]
+        }
+    };
     game.devices.pointer = Some(place);
+}
+
+/// How high what the first hand begins above is [m]: the floor, or a shelf. It stays the same when the hand comes past
+/// an edge, so that nothing jumps there.
+fn floor(round: &Round<Dim3>) -> f32 {
+    let lowest = round.level().arena()[0][1];
+    let mut at = round.start(0);
+    while at[1] > lowest {
+        // So far down there is nothing.
+        let obstacles = round.world().obstacles().iter();
+        let free = obstacles.map(|obstacle| obstacle.shape.distance(at).0);
+        let free = free.fold(f32::MAX, f32::min);
+        if free < NEAR {
+            return at[1];
+        }
+        at[1] -= free;
+    }
+    lowest
 }
 
 /// Where the mouse points, if it does.

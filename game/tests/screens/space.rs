@@ -85,6 +85,21 @@ fn the_mouse_points_at_the_floor_and_the_wheel_raises_the_hand() {
 }
 
 #[test]
+fn on_a_shelf_the_mouse_points_at_the_shelf() {
+    let mut window = window(Files::nowhere());
+    start(&mut window, "hoop");
+    let height = goal(&window, 0)[1];
+    // On the shelf, over the hole in it, and on the shelf behind the hole.
+    for [x, z] in [[-1.3, 0.3], [0.7, 0.1], [0.7, -0.7]] {
+        let view = window.state().game.view.expect("it is seen");
+        window.hover_at(view.on_screen([x, 0.55, z]));
+        frames(&mut window, 1);
+        wait(&mut window, 90);
+        assert_near(goal(&window, 0), [x, height, z]);
+    }
+}
+
+#[test]
 fn the_right_mouse_button_turns_the_camera_and_leaves_the_hand_alone() {
     let mut window = in_space();
     point_at(&mut window, -1.2, 0.6);
