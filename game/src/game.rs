@@ -46,8 +46,10 @@ pub enum Screen {
     Replays,
 }
 
-/// How long a notice stays [s].
+/// How long a notice stays at least [s].
 const NOTICE: f32 = 6.0;
+/// How fast it can be read, at leisure [letters/s].
+const READING: f32 = 15.0;
 
 /// The state of the game.
 pub struct Game {
@@ -185,7 +187,8 @@ impl Game {
     /// Tells the player something; what is still to be read is not said twice.
     pub fn notify(&mut self, text: String) {
         self.notices.retain(|(known, _)| *known != text);
-        self.notices.push((text, NOTICE));
+        let reading = text.chars().count() as f32 / READING;
+        self.notices.push((text, reading.max(NOTICE)));
     }
 
     /// A sound of the menus.

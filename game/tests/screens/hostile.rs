@@ -94,6 +94,22 @@ fn a_picture_is_played_and_what_is_broken_is_named() {
 }
 
 #[test]
+fn a_long_notice_stays_until_it_can_be_read() {
+    let mut window = window(Files::nowhere());
+    let game = game(&mut window);
+    game.notices.clear();
+    game.notify("short".into());
+    game.notify("a level with many words ".repeat(8));
+    let left = |game: &Game| game.notices.len();
+    game.pass(5.9);
+    assert_eq!(left(game), 2);
+    game.pass(0.2);
+    assert_eq!(left(game), 1);
+    game.pass(7.0);
+    assert_eq!(left(game), 0);
+}
+
+#[test]
 fn a_round_waits_while_the_window_is_not_looked_at() {
     let mut window = window(Files::nowhere());
     let focus = |window: &mut Window, focused| {
