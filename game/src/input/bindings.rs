@@ -31,6 +31,16 @@ impl PadKey {
         })
     }
 
+    /// The same for people to read: `left shoulder` for `leftshoulder`.
+    fn in_words(&self) -> String {
+        let mut sides = ["left", "right"].into_iter();
+        let part = sides.find_map(|side| Some((side, self.0.strip_prefix(side)?)));
+        match part {
+            Some((side, rest)) if !rest.is_empty() => format!("{side} {rest}"),
+            _ => self.0.clone(),
+        }
+    }
+
     /// Whether it is on a plain stick: who holds a pad has none of those.
     fn is_of_stick(&self) -> bool {
         self.0.starts_with("hat ") || self.0.parse::<u8>().is_ok()
@@ -112,7 +122,7 @@ impl Bindings {
                 .collect::<Vec<_>>()
                 .join(" / "),
             buttons
-                .map(|button| button.0.as_str())
+                .map(PadKey::in_words)
                 .collect::<Vec<_>>()
                 .join(" / "),
         ]
@@ -237,6 +247,14 @@ mod tests {
         assert_eq!(bindings.of_button(start), Some(Action::Retry));
         assert_eq!(bindings.of_button(Control::Button(3)), Some(Action::Retry));
         assert_eq!(bindings.of_button(Control::Button(2)), Some(Action::Pause));
+    }
+
+    #[test]
+    fn names_of_buttons_can_be_read() {
+        let bindings = Bindings::default();
+        assert_eq!(bindings.names(Action::Slow)[1], "right shoulder / 6");
+        assert_eq!(bindings.names(Action::Shallower)[1], "left stick");
+        assert_eq!(bindings.names(Action::Left)[1], "left / hat left");
     }
 
     #[test]
