@@ -44,7 +44,7 @@ pub struct Options {
     #[arg(long, requires = "headless", default_value_t = 1)]
     pub seed: u64,
     /// The bot gives up after so many seconds of the game
-    #[arg(long, requires = "headless", default_value_t = 60.0, value_parser = seconds)]
+    #[arg(long, requires = "headless", default_value_t = 60.0, value_parser = seconds, allow_negative_numbers = true)]
     pub seconds: f32,
     /// Play a replay (.tamaire) instead, and say whether it is genuine
     #[arg(long, requires = "headless", value_name = "FILE", conflicts_with_all = ["level", "bot", "seed", "seconds"])]

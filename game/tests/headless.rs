@@ -240,6 +240,7 @@ fn what_makes_no_sense_is_refused_with_a_reason() {
     );
     check_refused("--headless --bot cheat", 2, &["cheat", "squeeze", "idle"]);
     check_refused("--headless --seconds 0", 2, &["1 to 3600 seconds"]);
+    check_refused("--headless --seconds -3", 2, &["1 to 3600 seconds"]);
     check_refused("--headless --film film.mp4", 2, &[".png or .gif"]);
     check_refused("--headless --film no/folder.png", 2, &["no such folder"]);
     check_refused("--headless --save it.txt", 2, &[".tamaire"]);
