@@ -8,6 +8,7 @@ use clap::Parser;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use tamaire_play::Level;
 
 /// Push a soft body into a basket that is too small for it.
 #[derive(Parser)]
@@ -50,6 +51,13 @@ pub fn main() -> ExitCode {
         Some(file) => arguments.options.with_file(file),
         None => arguments.options,
     };
+    // A file that was clicked on gets a window; a level that was typed gets an answer where it was typed.
+    if let (None, Some(level)) = (&arguments.file, &options.level)
+        && let Err(mistake) = Level::open(level)
+    {
+        eprintln!("tamaire: {mistake}");
+        return ExitCode::from(headless::BAD_USAGE);
+    }
     let shown = arguments
         .file
         .or_else(|| options.level.clone().map(PathBuf::from));

@@ -23,7 +23,7 @@ use tamaire_play::{AnyRound, Bot, BotKind, Level, Playback, Replay, ReplayError}
 /// Exit status when a replay is refused.
 const REFUSED: u8 = 1;
 /// Exit status when what was asked for cannot be done; clap's for bad arguments.
-const BAD_USAGE: u8 = 2;
+pub const BAD_USAGE: u8 = 2;
 /// How the name of a replay's file ends.
 const REPLAY: &str = "tamaire";
 /// Ticks in a second.

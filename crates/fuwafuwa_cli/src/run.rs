@@ -195,7 +195,7 @@ fn run_in<D: Filmed>(scene: &Scene, arguments: &Arguments) -> Result<ExitCode> {
         println!("{}", serde_json::to_string_pretty(&summary)?);
     } else {
         println!(
-            "{}: {} ticks of {} substeps, {} releases, {} pieces ({} crumbs, {} asleep), hash {}",
+            "{}: ticks: {}, substeps: {}, releases: {}, pieces: {} (crumbs: {}, asleep: {}), hash {}",
             summary.scene,
             summary.ticks,
             summary.substeps,

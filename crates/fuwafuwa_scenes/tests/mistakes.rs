@@ -294,7 +294,7 @@ fn a_mistake_in_a_change_names_the_change() {
         ),
         (
             "body.3.n=4",
-            "toy.toml with body.3.n=4: \"body.3.n=4\": there are 1 entries, no number 3",
+            "toy.toml with body.3.n=4: \"body.3.n=4\": there is no number 3, the last one is 1",
         ),
         (
             "body.n=0",

@@ -154,7 +154,7 @@ pub(super) const WORDS: Words = Words {
     },
     on: "On",
     off: "Off",
-    no_sound: "There is no sound device: the game is silent.",
+    no_sound: "The game is silent",
     no_sticks: "Sticks and pads cannot be read here.",
     join_hint: "2 players",
     how_in_space: |means, [ways, up, around]| match means {

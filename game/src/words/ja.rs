@@ -149,7 +149,7 @@ pub(super) const WORDS: Words = Words {
     },
     on: "オン",
     off: "オフ",
-    no_sound: "音の出る機器がありません。",
+    no_sound: "音が出ません",
     no_sticks: "スティックやパッドは使えません。",
     join_hint: "ふたりで",
     how_in_space: |means, [ways, up, around]| match means {

@@ -30,8 +30,9 @@ fn put(value: &mut toml::Value, fields: &[&str], new: &toml::Value) -> Result<()
                 let entry = number
                     .checked_sub(1)
                     .and_then(|index| entries.get_mut(index));
-                let entry =
-                    entry.ok_or(format!("there are {count} entries, no number {number}"))?;
+                let entry = entry.ok_or(format!(
+                    "there is no number {number}, the last one is {count}"
+                ))?;
                 put(entry, rest, new)
             }
             Err(_) if entries.is_empty() => Err(format!(
