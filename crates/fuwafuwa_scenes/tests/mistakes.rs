@@ -41,6 +41,11 @@ fn a_mistake_is_told_with_file_line_field_and_what_was_expected() {
             "dim = 2 3",
             ", line 1: dim = 2 3: string values must be quoted, expected literal string",
         ),
+        (
+            "young = 5000.0",
+            "young",
+            ", line 3: young: key with no value, expected `=`",
+        ),
         ("dim = 2", "", ": missing field `dim`"),
         (
             "dim = 2",

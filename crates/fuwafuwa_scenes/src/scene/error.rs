@@ -67,7 +67,8 @@ impl SceneError {
         for (type_name, words) in IN_WORDS {
             message = message.replace(type_name, words);
         }
-        let span = error.span().filter(|span| !span.is_empty());
+        // What is missing from the text as a whole is nowhere; what is missing in a line is between letters.
+        let span = error.span().filter(|span| span.end > 0);
         let line = span.map(|span| line_of(&line_starts(text), span.start));
         let reason = match line.and_then(|line| text.lines().nth(line - 1)) {
             Some(found) => format!("{}: {message}", shortened(found.trim(), 80)),
