@@ -14,7 +14,7 @@ use crate::body::Body;
 use crate::dim::Dim;
 use crate::manipulator::Manipulator;
 use crate::solve::Row;
-use crate::threads::{self, SHARE};
+use crate::threads;
 use crate::touch::{Collider, Impulse, MARGIN, Nearby, Skin, Skins};
 use crate::vector::{as_row, minus, scaled, three};
 use exit::Exit;
@@ -107,10 +107,10 @@ impl Contacts {
         let obstacles = colliders.iter().filter(|collider| !collider.is_hand);
         let first_hand = obstacles.count() as u32;
         let travel = nearby.travel;
-        let shares = nearby.node_pairs.chunks_mut(SHARE).zip(0..);
-        let found = threads::map(shares, |(pairs, share)| {
+        let shares = threads::shares(&mut nearby.node_pairs);
+        let found = threads::map(shares, |(first, pairs)| {
             let (mut contacts, mut hits) = (Vec::new(), Vec::new());
-            for (pair, place) in pairs.iter_mut().zip(share * SHARE..) {
+            for (pair, place) in pairs.iter_mut().zip(first..) {
                 let body = &bodies[pair.body as usize];
                 let collider = &colliders[pair.collider as usize];
                 let node = pair.node as usize;
@@ -174,10 +174,9 @@ impl Contacts {
         let frictions: Vec<f32> = bodies.iter().map(Body::friction).collect();
         let mut pairs = std::mem::take(&mut skins.pairs);
         let all = &*skins;
-        let shares = pairs.chunks_mut(SHARE).zip(0..);
-        let found = threads::map(shares, |(pairs, share)| {
+        let found = threads::map(threads::shares(&mut pairs), |(first, pairs)| {
             let (mut contacts, mut hits) = (Vec::new(), Vec::new());
-            for (pair, place) in pairs.iter_mut().zip(share * SHARE..) {
+            for (pair, place) in pairs.iter_mut().zip(first..) {
                 let [a, b] = pair.skins.map(|skin| skin as usize);
                 let apart = minus(all.centres[a], all.centres[b]);
                 let squared = inner::<D>(apart, apart);

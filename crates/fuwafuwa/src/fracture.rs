@@ -16,7 +16,7 @@ use crate::body::Body;
 use crate::dim::{Dim, Point};
 use crate::front::{Cut, Front};
 use crate::solve::Row;
-use crate::threads::{self, SHARE};
+use crate::threads;
 use crate::vector::{dot, length, minus, plus, scaled};
 
 /// A node that gives way.
@@ -82,10 +82,8 @@ pub fn failures<D: Dim>(body: &mut Body<D>, rests: &mut Rests, duration: f32) ->
     }
     let size = body.grid.voxel_size();
     let mut damage = std::mem::take(&mut body.damage);
-    let shares = damage.chunks_mut(SHARE).zip(0..);
-    let found = threads::map(shares, |(damage, share)| {
+    let found = threads::map(threads::shares(&mut damage), |(first, damage)| {
         let mut found: Vec<Failure> = Vec::new();
-        let first = share * SHARE;
         for (id, front) in body.fronts.among(first..first + damage.len()) {
             let damage = &mut damage[id as usize - first];
             // What is not damaged yet is looked at in every other round.

@@ -17,15 +17,21 @@ pub fn map<T: Send, R: Send>(
     work: impl Fn(T) -> R + Sync,
 ) -> Vec<R> {
     #[cfg(feature = "parallel")]
-    if rayon::current_num_threads() > 1 {
+    let shares = {
         use rayon::prelude::*;
         let shares: Vec<T> = shares.collect();
-        if shares.len() >= LEAST {
+        if shares.len() >= LEAST && rayon::current_num_threads() > 1 {
             return shares.into_par_iter().map(&work).collect();
         }
-        return shares.into_iter().map(work).collect();
-    }
+        shares.into_iter()
+    };
     shares.map(work).collect()
+}
+
+/// A list in shares, each with the place of its first item.
+pub fn shares<T>(list: &mut [T]) -> impl Iterator<Item = (usize, &mut [T])> {
+    let firsts = (0..).step_by(SHARE);
+    firsts.zip(list.chunks_mut(SHARE))
 }
 
 /// Some nodes and their rows of several lists that go by node id.
