@@ -6,7 +6,7 @@ use fuwafuwa::{Body, Dim, Material, Settings, Shape, VoxelGrid, World};
 use crate::world::{Falling, Span};
 use crate::{Drop, Result, WIDTH};
 
-/// So many that nothing is softened, see [`Body::softening`].
+/// So many that nothing is softened, see [`Body::stiffness_scale`].
 const MOST_SUBSTEPS: u32 = 1024;
 
 /// A body without damping and strong enough for anything, above a half-space.
@@ -62,8 +62,8 @@ impl<D: Dim> Falling for World<D> {
         World::substeps(self) as usize
     }
 
-    fn softening(&self) -> f64 {
-        self.bodies()[0].softening()
+    fn stiffness_scale(&self) -> f64 {
+        self.bodies()[0].stiffness_scale()
     }
 
     fn pieces(&self) -> usize {

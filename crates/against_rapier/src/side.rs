@@ -15,7 +15,7 @@ pub struct Side {
     /// Substeps of the solver in each frame. Rapier adds up to 4 while a body hits fast.
     pub substeps: usize,
     /// Factor by which the engine itself lowered Young's modulus.
-    pub softening: f64,
+    pub stiffness_scale: f64,
     /// Pieces at the start.
     pub pieces: usize,
     /// Share of the pieces that sleeps in the end.
@@ -76,7 +76,7 @@ impl Watched {
             side: Side {
                 engine: world.engine(),
                 substeps: world.substeps(),
-                softening: world.softening(),
+                stiffness_scale: world.stiffness_scale(),
                 pieces: world.pieces(),
                 asleep: world.asleep(),
                 peak_squash: 0.0,

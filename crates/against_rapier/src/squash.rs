@@ -95,7 +95,7 @@ mod tests {
             let [ours, theirs] = compare_drop(&scene, |_| ()).expect("the scene makes sense");
             for side in [&ours, &theirs] {
                 assert!(side.milliseconds.len() >= 40);
-                assert!(side.finite && side.softening == 1.0);
+                assert!(side.finite && side.stiffness_scale == 1.0);
                 assert!((0.01..0.15).contains(&side.peak_squash), "{side:?}");
             }
             assert!(ours.equals(&theirs), "{ours:?} {theirs:?}");

@@ -100,7 +100,7 @@ pub trait Falling {
     fn substeps(&self) -> usize;
 
     /// Factor by which the engine itself lowered Young's modulus.
-    fn softening(&self) -> f64 {
+    fn stiffness_scale(&self) -> f64 {
         1.0
     }
 

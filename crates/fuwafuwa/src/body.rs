@@ -1,7 +1,7 @@
 //! One soft thing: its voxels, how they hang together, and the state of its nodes.
 
+use crate::breakable::BreakableNodes;
 use crate::dim::{Dim, Point, voxel_around};
-use crate::front::Fronts;
 use crate::grid::VoxelGrid;
 use crate::law::{Elasticity, Law};
 use crate::material::{BodyError, Material};
@@ -28,19 +28,19 @@ pub struct Body<D: Dim> {
     materials: Vec<Material>,
     blend: Blend,
     /// By what its stiffness was lowered so that the substep bears it; 1 = not at all.
-    softening: f64,
+    stiffness_scale: f64,
     /// Position [m], velocity [m/s] and mass [kg] of each node, by id.
     pub(crate) position: Vec<Row>,
     pub(crate) velocity: Vec<Row>,
     mass: Vec<f32>,
     /// One over the mass [1/kg]; 0 while a node is held or sleeps.
-    pub(crate) lightness: Vec<f32>,
+    pub(crate) inverse_mass: Vec<f32>,
     held: Vec<bool>,
     /// The nodes that move, ascending; stale after a remodelling.
     pub(crate) awake: Vec<u32>,
     pub(crate) awake_is_stale: bool,
     /// Nodes where a crack can start or go on, and how far each is overstrained.
-    pub(crate) fronts: Fronts,
+    pub(crate) breakable: BreakableNodes,
     pub(crate) damage: Vec<f32>,
     /// Which faces of an element of level 0 are bare: bit 2 · axis + side; by element id.
     pub(crate) bare: Vec<u8>,
@@ -102,15 +102,15 @@ impl<D: Dim> Body<D> {
             pieces: Pieces::new(&mesh),
             blend: Blend::of(&grid, materials),
             materials: materials.to_vec(),
-            softening: 1.0,
+            stiffness_scale: 1.0,
             position: Vec::new(),
             velocity: Vec::new(),
             mass: Vec::new(),
-            lightness: Vec::new(),
+            inverse_mass: Vec::new(),
             held: Vec::new(),
             awake: Vec::new(),
             awake_is_stale: true,
-            fronts: Fronts::default(),
+            breakable: BreakableNodes::default(),
             damage: Vec::new(),
             bare: Vec::new(),
             ahead: Vec::new(),
@@ -133,7 +133,7 @@ impl<D: Dim> Body<D> {
         let voxels: Vec<Point> = body.grid.voxels().collect();
         body.expose(&voxels);
         if grading != Grading::Coarse {
-            body.find_fronts(&all);
+            body.find_breakable(&all);
         }
         Ok(body)
     }
@@ -169,7 +169,7 @@ impl<D: Dim> Body<D> {
     /// When the id was never used.
     pub fn hold(&mut self, id: u32) {
         self.held[id as usize] = true;
-        self.lightness[id as usize] = 0.0;
+        self.inverse_mass[id as usize] = 0.0;
     }
 
     /// Ends what [`Body::hold`] began.
@@ -179,7 +179,7 @@ impl<D: Dim> Body<D> {
     pub fn let_go(&mut self, id: u32) {
         self.held[id as usize] = false;
         if !self.pieces.sleeps(id) {
-            self.lightness[id as usize] = 1.0 / self.mass[id as usize];
+            self.inverse_mass[id as usize] = 1.0 / self.mass[id as usize];
         }
     }
 
@@ -287,8 +287,8 @@ impl<D: Dim> Body<D> {
     /// Ω²h (h + 2τ) < 4, that is τ < (4/Ω² − h²) / 2h, of which a part is kept back.
     pub(crate) fn damping(&self, duration: f32) -> (f32, f32) {
         let ratio = self.blend.damping;
-        let slow = self.blend.slow * self.softening.sqrt();
-        let fast = self.blend.fastest_swing * self.softening.sqrt();
+        let slow = self.blend.slow * self.stiffness_scale.sqrt();
+        let fast = self.blend.fastest_swing * self.stiffness_scale.sqrt();
         let step = f64::from(duration);
         let most = 0.7 * (4.0 / (fast * fast) - step * step) / (2.0 * step);
         let lead = (2.0 * ratio / slow).min(most).max(0.0);
@@ -303,25 +303,25 @@ impl<D: Dim> Body<D> {
 
     /// The longest substep that its stiffest material bears [s]: 0.6 s / c.
     pub fn longest_substep(&self) -> f64 {
-        let fastest = self.blend.fastest_wave * self.softening.sqrt();
+        let fastest = self.blend.fastest_wave * self.stiffness_scale.sqrt();
         0.6 * f64::from(self.grid.voxel_size()) / fastest
     }
 
     /// The factor by which its Young's modulus was lowered so that its substep bears it.
-    pub fn softening(&self) -> f64 {
-        self.softening
+    pub fn stiffness_scale(&self) -> f64 {
+        self.stiffness_scale
     }
 
     /// Lowers the stiffness so far that a substep of `duration` [s] is stable, and no further.
-    pub(crate) fn soften_for(&mut self, duration: f64) {
+    pub(crate) fn scale_stiffness_for(&mut self, duration: f64) {
         let size = f64::from(self.grid.voxel_size());
         let ratio = 0.6 * size / self.blend.fastest_wave / duration;
-        let softening = (ratio * ratio).min(1.0);
-        if softening == self.softening {
+        let stiffness_scale = (ratio * ratio).min(1.0);
+        if stiffness_scale == self.stiffness_scale {
             return;
         }
-        self.softening = softening;
-        let elasticities = elasticities(&self.materials, softening);
+        self.stiffness_scale = stiffness_scale;
+        let elasticities = elasticities(&self.materials, stiffness_scale);
         self.blocks.set_elasticities(&elasticities);
     }
 
@@ -338,7 +338,7 @@ impl<D: Dim> Body<D> {
         gravity[D::N..].fill(0.0);
         let kick = Kick {
             nodes: &self.awake,
-            lightness: &self.lightness,
+            inverse_mass: &self.inverse_mass,
             duration,
             gravity,
         };
@@ -397,7 +397,7 @@ impl<D: Dim> Body<D> {
                     self.ahead[node] = self.position[node];
                 }
                 let free = !asleep && !self.held[node];
-                self.lightness[node] = if free { 1.0 / self.mass[node] } else { 0.0 };
+                self.inverse_mass[node] = if free { 1.0 / self.mass[node] } else { 0.0 };
             }
         }
         for (piece, _) in self
@@ -487,7 +487,7 @@ impl<D: Dim> Body<D> {
         self.ahead.resize(capacity, [0.0; 4]);
         self.velocity.resize(capacity, [0.0; 4]);
         self.mass.resize(capacity, 0.0);
-        self.lightness.resize(capacity, 0.0);
+        self.inverse_mass.resize(capacity, 0.0);
         self.held.resize(capacity, false);
         self.damage.resize(capacity, 0.0);
         self.bare.resize(self.mesh.element_capacity(), 0);
@@ -521,7 +521,7 @@ impl<D: Dim> Body<D> {
             let node = id as usize;
             self.mass[node] = mass as f32;
             let free = !self.held[node] && !self.pieces.sleeps(id);
-            self.lightness[node] = if free { 1.0 / self.mass[node] } else { 0.0 };
+            self.inverse_mass[node] = if free { 1.0 / self.mass[node] } else { 0.0 };
         }
     }
 
@@ -545,8 +545,8 @@ impl<D: Dim> Body<D> {
         }
     }
 
-    /// Looks again which of `nodes` are front nodes.
-    pub(crate) fn find_fronts(&mut self, nodes: &[u32]) {
+    /// Looks again which of `nodes` are breakable nodes.
+    pub(crate) fn find_breakable(&mut self, nodes: &[u32]) {
         let Self {
             grid,
             sharing,
@@ -554,7 +554,7 @@ impl<D: Dim> Body<D> {
             materials,
             ..
         } = self;
-        self.fronts.look(nodes, grid, sharing, mesh, materials);
+        self.breakable.look(nodes, grid, sharing, mesh, materials);
     }
 
     fn is_face_closed(&self, voxel: Point, axis: usize, side: usize) -> bool {
@@ -568,9 +568,9 @@ impl<D: Dim> Body<D> {
     }
 }
 
-fn elasticities(materials: &[Material], softening: f64) -> Vec<Elasticity> {
+fn elasticities(materials: &[Material], stiffness_scale: f64) -> Vec<Elasticity> {
     let soft = |material: &Material| Elasticity {
-        young: material.elasticity.young * softening,
+        young: material.elasticity.young * stiffness_scale,
         ..material.elasticity
     };
     materials.iter().map(soft).collect()

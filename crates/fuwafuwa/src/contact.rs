@@ -115,7 +115,7 @@ impl Contacts {
                 let collider = &colliders[pair.collider as usize];
                 let node = pair.node as usize;
                 // What sleeps is touched by hands alone.
-                if body.lightness[node] == 0.0 && !collider.is_hand {
+                if body.inverse_mass[node] == 0.0 && !collider.is_hand {
                     pair.impulse.release();
                     continue;
                 }
@@ -139,12 +139,12 @@ impl Contacts {
                 if collider.is_hand && gap < 0.1 * size && body.pieces.sleeps(pair.node) {
                     hits.push((pair.body, body.pieces.of_node(pair.node)));
                 }
-                let lightness = body.lightness[node] + collider.lightness;
-                if body.lightness[node] == 0.0 {
+                let inverse_mass = body.inverse_mass[node] + collider.inverse_mass;
+                if body.inverse_mass[node] == 0.0 {
                     continue;
                 }
                 let friction = collider.friction;
-                let contact = Contact::new(normal, gap, duration, 1.0 / lightness, friction);
+                let contact = Contact::new(normal, gap, duration, 1.0 / inverse_mass, friction);
                 contacts.push((contact.known_as::<D>(place, &pair.impulse), &*pair));
             }
             (contacts, hits)
@@ -209,8 +209,8 @@ impl Contacts {
                     pair.impulse.release();
                     continue;
                 }
-                let lightness = all.lightness[a] + all.lightness[b];
-                if lightness == 0.0 {
+                let inverse_mass = all.inverse_mass[a] + all.inverse_mass[b];
+                if inverse_mass == 0.0 {
                     continue;
                 }
                 let moved = all.moved[a].max(all.moved[b]);
@@ -220,7 +220,7 @@ impl Contacts {
                     hits.extend(sleepers.map(|skin| (skin.body, skin.piece)));
                 }
                 let friction = 0.5 * (frictions[a.body as usize] + frictions[b.body as usize]);
-                let contact = Contact::new(normal, gap, duration, 1.0 / lightness, friction);
+                let contact = Contact::new(normal, gap, duration, 1.0 / inverse_mass, friction);
                 contacts.push((contact.known_as::<D>(place, &pair.impulse), [a, b]));
             }
             (contacts, hits)
@@ -241,11 +241,11 @@ impl Contacts {
     pub fn find_hands(&mut self, hands: &[Manipulator], obstacles: &[Collider], duration: f32) {
         self.hands.clear();
         for (index, hand) in hands.iter().enumerate() {
-            let mut add = |gap: f32, normal: [f32; 3], lightness: f32, other: Option<usize>| {
-                if lightness > 0.0 && gap < hand.radius {
+            let mut add = |gap: f32, normal: [f32; 3], inverse_mass: f32, other: Option<usize>| {
+                if inverse_mass > 0.0 && gap < hand.radius {
                     let normal = as_row(normal);
                     let friction = hand.friction;
-                    let contact = Contact::new(normal, gap, duration, 1.0 / lightness, friction);
+                    let contact = Contact::new(normal, gap, duration, 1.0 / inverse_mass, friction);
                     let hand = index;
                     self.hands.push(HandContact {
                         contact,
@@ -256,12 +256,12 @@ impl Contacts {
             };
             for obstacle in obstacles {
                 let (gap, normal) = obstacle.shape.distance(hand.position);
-                add(gap - hand.radius, normal, hand.lightness(), None);
+                add(gap - hand.radius, normal, hand.inverse_mass(), None);
             }
             for (other, second) in hands.iter().enumerate().take(index) {
                 let (gap, normal) = second.shape().distance(hand.position);
-                let lightness = hand.lightness() + second.lightness();
-                add(gap - hand.radius, normal, lightness, Some(other));
+                let inverse_mass = hand.inverse_mass() + second.inverse_mass();
+                add(gap - hand.radius, normal, inverse_mass, Some(other));
             }
         }
     }
@@ -399,9 +399,9 @@ fn for_each<T>(rows: &mut [T], backwards: bool, mut solve: impl FnMut(&mut T)) {
 }
 
 fn push_hand(hand: &mut Manipulator, impulse: Row, duration: f32) {
-    let lightness = hand.lightness();
+    let inverse_mass = hand.inverse_mass();
     for axis in 0..3 {
-        hand.velocity[axis] += impulse[axis] * lightness;
+        hand.velocity[axis] += impulse[axis] * inverse_mass;
         if let Some(reaction) = hand.reactions.last_mut() {
             reaction.contact[axis] += impulse[axis] / duration;
         }

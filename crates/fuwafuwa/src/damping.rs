@@ -88,7 +88,7 @@ pub fn motions<D: Dim>(body: &Body<D>) -> Vec<PieceMotion> {
             *origin = x;
         }
         motion.add::<D>(minus(x, *origin), wide(velocity), f64::from(mass));
-        motion.is_driven |= body.lightness[id as usize] == 0.0 && velocity != [0.0; 4];
+        motion.is_driven |= body.inverse_mass[id as usize] == 0.0 && velocity != [0.0; 4];
     }
     for (motion, origin) in motions.iter_mut().zip(origins) {
         if motion.nodes > 0 {
@@ -140,13 +140,13 @@ pub fn slow_down<D: Dim>(body: &mut Body<D>, motions: &[PieceMotion], slowing: &
             (kept * (1.0 - swing), pace.roughly())
         })
         .collect();
-    let (lightness, position, pieces) = (&body.lightness, &body.position, &body.pieces);
+    let (inverse_mass, position, pieces) = (&body.inverse_mass, &body.position, &body.pieces);
     let rows = threads::rows(&body.awake, [&mut body.velocity]);
     threads::map(rows, |rows| {
         let [velocities] = rows.lists;
         for &id in rows.nodes {
             let node = id as usize;
-            if lightness[node] != 0.0 {
+            if inverse_mass[node] != 0.0 {
                 let (kept, pace) = &paces[pieces.of_node(id) as usize];
                 let velocity = &mut velocities[node - rows.first];
                 *velocity = plus(scaled(*velocity, *kept), pace.at::<D>(position[node]));

@@ -1,6 +1,6 @@
 //! Where a body is pulled apart: which shared nodes are to be released next.
 //!
-//! A cut through a front node parts the voxels that share it into two sides A and B. The elements
+//! A cut through a breakable node parts the voxels that share it into two sides A and B. The elements
 //! of either side pull at the node with F_A and F_B:
 //!
 //! ```text
@@ -13,8 +13,8 @@
 //! tip of a crack. A node gives way when it was overstrained for some milliseconds.
 
 use crate::body::Body;
+use crate::breakable::{BreakableNode, Cut};
 use crate::dim::{Dim, Point};
-use crate::front::{Cut, Front};
 use crate::solve::Row;
 use crate::threads;
 use crate::vector::{dot, length, minus, plus, scaled};
@@ -36,11 +36,11 @@ pub struct Failure {
     pub energy: f32,
 }
 
-/// Where releases happened a short while ago: their surroundings rest.
+/// Where releases happened a short while ago: their surroundings cool down.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Rests {
-    /// Lattice points and for how much longer they rest [s].
+pub struct Cooldowns {
+    /// Lattice points and for how much longer they cool down [s].
     points: Vec<(Point, f32)>,
     /// Rounds so far.
     rounds: u32,
@@ -51,12 +51,12 @@ pub struct Rests {
 const DAMAGE_TIME: f32 = 0.004;
 /// How much more it takes to set a single voxel free: else a crack leaves a trail of crumbs.
 const CRUMB_FACTOR: f32 = 1.3;
-/// Lattice steps around a release that rest after it.
-const REST_REACH: i32 = 2;
+/// Lattice steps around a release that cool down after it.
+const COOLDOWN_REACH: i32 = 2;
 /// How many voxels a wave travels before the surroundings of a release are judged again.
-const REST_VOXELS: f64 = 4.0;
+const COOLDOWN_VOXELS: f64 = 4.0;
 
-impl Rests {
+impl Cooldowns {
     /// Lets a round of some time pass [s].
     pub fn pass(&mut self, duration: f32) {
         self.rounds = self.rounds.wrapping_add(1);
@@ -71,10 +71,14 @@ impl Rests {
     }
 }
 
-/// Looks at all front nodes after a time of `duration` [s]: adds up their damage, and picks those
+/// Looks at all breakable nodes after a time of `duration` [s]: adds up their damage, and picks those
 /// that give way now, the worst first, no two of them near each other but along a crack's front.
-pub fn failures<D: Dim>(body: &mut Body<D>, rests: &mut Rests, duration: f32) -> Vec<Failure> {
-    rests.pass(duration);
+pub fn failures<D: Dim>(
+    body: &mut Body<D>,
+    cooldowns: &mut Cooldowns,
+    duration: f32,
+) -> Vec<Failure> {
+    cooldowns.pass(duration);
     let weakest = body.materials().iter().map(|material| material.strength);
     let weakest = weakest.fold(f32::INFINITY, f32::min);
     if weakest == f32::INFINITY {
@@ -84,20 +88,20 @@ pub fn failures<D: Dim>(body: &mut Body<D>, rests: &mut Rests, duration: f32) ->
     let mut damage = std::mem::take(&mut body.damage);
     let found = threads::map(threads::shares(&mut damage), |(first, damage)| {
         let mut found: Vec<Failure> = Vec::new();
-        for (id, front) in body.fronts.among(first..first + damage.len()) {
+        for (id, node) in body.breakable.among(first..first + damage.len()) {
             let damage = &mut damage[id as usize - first];
             // What is not damaged yet is looked at in every other round.
-            if body.pieces.sleeps(id) || *damage == 0.0 && (id ^ rests.rounds) & 1 == 1 {
+            if body.pieces.sleeps(id) || *damage == 0.0 && (id ^ cooldowns.rounds) & 1 == 1 {
                 continue;
             }
-            let Some(failure) = worst_cut(body, id, front) else {
+            let Some(failure) = worst_cut(body, id, node) else {
                 let healed = *damage - duration / (4.0 * DAMAGE_TIME);
                 *damage = healed.max(0.0);
                 continue;
             };
             let over = (failure.excess - 1.0).min(3.0);
             *damage += duration / DAMAGE_TIME * 2.0 * over;
-            if *damage >= 1.0 && !rests.covers(failure.at) {
+            if *damage >= 1.0 && !cooldowns.covers(failure.at) {
                 found.push(failure);
             }
         }
@@ -106,10 +110,10 @@ pub fn failures<D: Dim>(body: &mut Body<D>, rests: &mut Rests, duration: f32) ->
     body.damage = damage;
     let mut found = found.concat();
     found.sort_by(|a, b| b.excess.total_cmp(&a.excess).then(a.node.cmp(&b.node)));
-    let rest = (REST_VOXELS * f64::from(size) / body.fastest_wave()) as f32;
+    let cooldown = (COOLDOWN_VOXELS * f64::from(size) / body.fastest_wave()) as f32;
     let chosen = undisturbed(found);
-    let resting = chosen.iter().map(|failure| (failure.at, rest));
-    rests.points.extend(resting);
+    let cooling = chosen.iter().map(|failure| (failure.at, cooldown));
+    cooldowns.points.extend(cooling);
     chosen
 }
 
@@ -131,36 +135,36 @@ fn undisturbed(found: Vec<Failure>) -> Vec<Failure> {
 }
 
 fn is_near(a: Point, b: Point) -> bool {
-    (0..3).all(|axis| (a[axis] - b[axis]).abs() <= REST_REACH)
+    (0..3).all(|axis| (a[axis] - b[axis]).abs() <= COOLDOWN_REACH)
 }
 
-/// The cut through a front node that is overstrained most, if one is.
-fn worst_cut<D: Dim>(body: &Body<D>, id: u32, front: &Front) -> Option<Failure> {
+/// The cut through a breakable node that is overstrained most, if one is.
+fn worst_cut<D: Dim>(body: &Body<D>, id: u32, node: &BreakableNode) -> Option<Failure> {
     let size = body.grid.voxel_size();
     let mut forces = [[0.0; 4]; 8];
     let mut squared = 0.0;
-    for (octant, force) in octants(front.group).zip(body.blocks.parts_on(id)) {
+    for (octant, force) in octants(node.group).zip(body.blocks.parts_on(id)) {
         forces[octant] = force;
         squared += dot(force, force);
     }
     // No pull is greater than half of all forces together, (Σ|f|)² ≤ n Σ|f|², with a little for
     // rounding; and no cut opens less than a face. Most nodes are far from giving way.
-    let borne = face_area::<D>(size) * front.borne;
-    if 0.2501 * front.group.count_ones() as f32 * squared <= borne * borne {
+    let threshold = face_area::<D>(size) * node.threshold;
+    if 0.2501 * node.group.count_ones() as f32 * squared <= threshold * threshold {
         return None;
     }
     let total = forces.into_iter().fold([0.0; 4], plus);
     // What its voxels have turned by together: found when it is asked for.
     let mut turn: Option<[[f32; 3]; 3]> = None;
     let mut worst: Option<(f32, f32, Cut)> = None;
-    for cut in body.fronts.cuts(front) {
+    for cut in body.breakable.cuts(node) {
         let far = octants(cut.side).fold([0.0; 4], |sum, octant| plus(sum, forces[octant]));
         let near = minus(total, far);
         let pull = scaled(minus(far, near), 0.5);
         let area = f32::from(cut.faces) * face_area::<D>(size);
-        let is_crumb = cut.lone & front.crumbs != 0;
-        let borne = front.borne * if is_crumb { CRUMB_FACTOR } else { 1.0 };
-        let least = area * borne * worst.map_or(1.0, |(excess, ..)| excess);
+        let is_crumb = cut.lone & node.crumbs != 0;
+        let threshold = node.threshold * if is_crumb { CRUMB_FACTOR } else { 1.0 };
+        let least = area * threshold * worst.map_or(1.0, |(excess, ..)| excess);
         // No tension is greater than the pull.
         if dot(pull, pull) <= least * least {
             continue;
@@ -174,11 +178,11 @@ fn worst_cut<D: Dim>(body: &Body<D>, id: u32, front: &Front) -> Option<Failure> 
         }
         let tension = tension(pull, normal);
         if tension > least {
-            worst = Some((tension / (area * borne), tension / area, *cut));
+            worst = Some((tension / (area * threshold), tension / area, *cut));
         }
     }
     let (excess, stress, cut) = worst?;
-    let young = body.materials()[front.material as usize - 1]
+    let young = body.materials()[node.material as usize - 1]
         .elasticity
         .young as f32;
     let volume = (0..D::N).fold(1.0, |volume, _| volume * size);

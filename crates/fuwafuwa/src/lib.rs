@@ -23,13 +23,13 @@
 
 pub mod blade;
 pub mod body;
+mod breakable;
 mod chains;
 mod contact;
 mod damping;
 pub mod dim;
 pub mod event;
 mod fracture;
-mod front;
 pub mod grid;
 pub mod law;
 pub mod manipulator;
@@ -39,9 +39,9 @@ pub mod momentum;
 pub mod piece;
 pub mod pyramid;
 mod release;
-mod rest;
 pub mod shape;
 pub mod sharing;
+mod sleep;
 #[cfg(feature = "serde")]
 pub mod snapshot;
 pub mod solve;

@@ -192,7 +192,7 @@ impl Manipulator {
     }
 
     /// One over its mass as contact sees it [1/kg]; 0 when nothing can push it.
-    pub(crate) fn lightness(&self) -> f32 {
+    pub(crate) fn inverse_mass(&self) -> f32 {
         match self.drive {
             Drive::Kinematic => 0.0,
             Drive::Coupled { mass, .. } => 1.0 / mass,

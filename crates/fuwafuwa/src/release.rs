@@ -56,7 +56,7 @@ impl<D: Dim> Body<D> {
         self.expose(&beside::<D>(&changed));
         let places = self.places_around(&changed);
         let beside = places.concat();
-        self.refresh_fronts(&beside, &remodelled);
+        self.refresh_breakable(&beside, &remodelled);
         self.awake_is_stale = true;
         let new = remodelled.inherited.iter().map(|new| new.node);
         Ok(Torn {
@@ -97,7 +97,7 @@ impl<D: Dim> Body<D> {
         new.sort_unstable();
         let is_new = |id: u32| new.binary_search(&id).is_ok();
         // Held nodes keep their velocity; the rest of each piece keeps its momentum.
-        let free = |id: &u32| self.lightness[*id as usize] > 0.0;
+        let free = |id: &u32| self.inverse_mass[*id as usize] > 0.0;
         let stay = touched.iter().copied().filter(|&id| !is_new(id));
         let old = stay.chain(remodelled.abandoned.iter().copied());
         let old = self.by_piece(old.filter(free));
@@ -130,7 +130,7 @@ impl<D: Dim> Body<D> {
         let fresh: Vec<Point> = fresh.map(|element| element.cell.at).collect();
         self.expose(&fresh);
         self.weigh(&touched);
-        let free = |id: &u32| self.lightness[*id as usize] > 0.0;
+        let free = |id: &u32| self.inverse_mass[*id as usize] > 0.0;
         let now = self.by_piece(touched.iter().copied().filter(free));
         for (piece, nodes) in &now {
             if let Some(&(centre, momentum)) = before.get(piece) {
@@ -139,7 +139,7 @@ impl<D: Dim> Body<D> {
         }
     }
 
-    fn refresh_fronts(&mut self, elements: &[u32], remodelled: &Remodelled) {
+    fn refresh_breakable(&mut self, elements: &[u32], remodelled: &Remodelled) {
         let mut nodes = self.touched_by(remodelled);
         for &id in elements {
             let element = self.mesh.element(id).expect("owners are alive");
@@ -148,7 +148,7 @@ impl<D: Dim> Body<D> {
         nodes.extend(&remodelled.abandoned);
         nodes.sort_unstable();
         nodes.dedup();
-        self.find_fronts(&nodes);
+        self.find_breakable(&nodes);
     }
 
     fn by_piece(&self, nodes: impl Iterator<Item = u32>) -> BTreeMap<u32, Vec<u32>> {

@@ -212,7 +212,7 @@ impl<D: Dim> Sharing<D> {
 
     /// Whether a crack can start or go on at a point: some side is empty, it has more than one
     /// group, or one of the faces around it is open.
-    pub fn is_front(&self, at: Point) -> bool {
+    pub fn is_open(&self, at: Point) -> bool {
         let groups = self.groups(at);
         if groups == Groups::NONE {
             return false;
@@ -306,20 +306,20 @@ mod tests {
     }
 
     #[test]
-    fn an_open_face_makes_its_far_corners_fronts() {
+    fn an_open_face_makes_its_far_corners_open() {
         let grid = VoxelGrid::<Dim3>::cube(6, 1.0).unwrap();
         let mut sharing = Sharing::new(&grid);
-        assert!(!sharing.is_front([3, 3, 3]));
+        assert!(!sharing.is_open([3, 3, 3]));
         sharing.release([3, 3, 3], 0b1010_1010);
         sharing.normalise(neighbourhood::<Dim3>([3, 3, 3], 1).collect());
         assert_eq!(sharing.groups([3, 3, 3]).iter().count(), 2);
         // The four faces across x are open, so the points in that plane are the crack's front.
-        assert!(sharing.is_front([3, 4, 4]) && sharing.is_front([3, 2, 3]));
+        assert!(sharing.is_open([3, 4, 4]) && sharing.is_open([3, 2, 3]));
         assert_eq!(
             sharing.groups([3, 4, 4]),
             Groups::joined(255),
             "still together there"
         );
-        assert!(!sharing.is_front([4, 3, 3]));
+        assert!(!sharing.is_open([4, 3, 3]));
     }
 }

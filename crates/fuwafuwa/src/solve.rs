@@ -129,7 +129,7 @@ pub struct Kick<'a> {
     /// The nodes that move, ascending.
     pub nodes: &'a [u32],
     /// One over the mass of each node [1/kg], by id; 0 where it is held.
-    pub lightness: &'a [f32],
+    pub inverse_mass: &'a [f32],
     /// The substep [s].
     pub duration: f32,
     /// [m/s²]
@@ -438,11 +438,11 @@ impl<D: Dim> Blocks<D> {
         let [velocity] = rows.lists;
         for &id in rows.nodes {
             let node = id as usize;
-            let lightness = kick.lightness[node];
-            if lightness == 0.0 {
+            let inverse_mass = kick.inverse_mass[node];
+            if inverse_mass == 0.0 {
                 continue;
             }
-            let acceleration = plus(scaled(self.force_by::<L>(id), lightness), kick.gravity);
+            let acceleration = plus(scaled(self.force_by::<L>(id), inverse_mass), kick.gravity);
             let velocity = &mut velocity[node - rows.first];
             *velocity = plus(*velocity, scaled(acceleration, kick.duration));
         }
@@ -504,10 +504,10 @@ mod tests {
             assert_eq!(bits(&wide), bits(&portable));
         }
         let nodes: Vec<u32> = mesh.nodes().map(|(id, _)| id).collect();
-        let lightness: Vec<f32> = (0..position.len()).map(|id| (id % 7) as f32).collect();
+        let inverse_mass: Vec<f32> = (0..position.len()).map(|id| (id % 7) as f32).collect();
         let kick = Kick {
             nodes: &nodes,
-            lightness: &lightness,
+            inverse_mass: &inverse_mass,
             duration: 0.001,
             gravity: [0.0, -9.81, 0.0, 0.0],
         };

@@ -30,7 +30,7 @@ pub struct Collider {
     /// [m/s]
     pub velocity: Row,
     /// One over its mass [1/kg]; 0 when nothing can push it.
-    pub lightness: f32,
+    pub inverse_mass: f32,
     /// Coulomb friction with nodes.
     pub friction: f32,
     /// Whether it wakes what it touches.
@@ -328,7 +328,7 @@ mod tests {
         let wall = |normal, offset| Collider {
             shape: Shape::HalfSpace { normal, offset },
             velocity: [0.0; 4],
-            lightness: 0.0,
+            inverse_mass: 0.0,
             friction: 0.0,
             is_hand: false,
         };

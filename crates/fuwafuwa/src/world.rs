@@ -7,10 +7,10 @@ use crate::contact::{Contacts, Hit};
 use crate::damping::{PieceMotion, Slowing, motions, slow_down};
 use crate::dim::{Dim, Point};
 use crate::event::{Event, StepReport, With};
-use crate::fracture::{Failure, Rests, failures};
+use crate::fracture::{Cooldowns, Failure, failures};
 use crate::manipulator::{BadManipulator, Manipulator};
-use crate::rest::{fall_asleep, wake};
 use crate::shape::{BadShape, Shape, Vector};
+use crate::sleep::{fall_asleep, wake};
 use crate::solve::Row;
 use crate::touch::{Collider, Nearby};
 use crate::vector::{as_row, three};
@@ -47,7 +47,7 @@ pub struct Settings {
     /// gravity and about 1, bodies float.
     pub drag: f32,
     /// Substeps in a tick at most, 8 to 1024; 64 if speed matters. A body too stiff for so many is
-    /// softened until it is not, see [`Body::softening`]. Fewer than 16 make large soft bodies cheap.
+    /// softened until it is not, see [`Body::stiffness_scale`]. Fewer than 16 make large soft bodies cheap.
     pub most_substeps: u32,
 }
 
@@ -117,7 +117,7 @@ pub struct World<D: Dim> {
     manipulators: Vec<Manipulator>,
     ticks: u64,
     nearby: Nearby,
-    rests: Vec<Rests>,
+    cooldowns: Vec<Cooldowns>,
     events: Vec<Event>,
     #[cfg_attr(feature = "serde", serde(skip))]
     contacts: Contacts,
@@ -155,7 +155,7 @@ impl<D: Dim> World<D> {
             manipulators: Vec::new(),
             ticks: 0,
             nearby: Nearby::default(),
-            rests: Vec::new(),
+            cooldowns: Vec::new(),
             events: Vec::new(),
             contacts: Contacts::default(),
         })
@@ -185,7 +185,7 @@ impl<D: Dim> World<D> {
         }
         report.inverted = self.bodies.iter().map(Body::inverted_count).sum();
         self.quarantine(&before, &mut report);
-        self.rest();
+        self.sleep();
         self.end_tick();
         report
     }
@@ -218,7 +218,7 @@ impl<D: Dim> World<D> {
     fn fracture(&mut self, report: &mut StepReport) {
         let duration = TICK / FRACTURE_ROUNDS as f32;
         for (place, body) in self.bodies.iter_mut().enumerate() {
-            let failures = failures(body, &mut self.rests[place], duration);
+            let failures = failures(body, &mut self.cooldowns[place], duration);
             if failures.is_empty() {
                 continue;
             }
@@ -323,7 +323,7 @@ impl<D: Dim> World<D> {
     }
 
     /// Lets pieces that have been slow fall asleep.
-    fn rest(&mut self) {
+    fn sleep(&mut self) {
         let motions: Vec<Vec<PieceMotion>> = self
             .bodies
             .iter_mut()
@@ -374,14 +374,14 @@ impl<D: Dim> World<D> {
         let fixed = |obstacle: &Obstacle| Collider {
             shape: obstacle.shape,
             velocity: [0.0; 4],
-            lightness: 0.0,
+            inverse_mass: 0.0,
             friction: obstacle.friction,
             is_hand: false,
         };
         let moving = |hand: &Manipulator| Collider {
             shape: hand.shape(),
             velocity: as_row(hand.velocity),
-            lightness: hand.lightness(),
+            inverse_mass: hand.inverse_mass(),
             friction: hand.friction,
             is_hand: true,
         };

@@ -353,12 +353,12 @@ fn a_body_is_as_stiff_as_the_world_that_it_is_in_bears() {
     };
     let (mut poor, mut rich) = (world_of(16), world_of(1024));
     poor.add_body(Body::new(VoxelGrid::ball(16, 1.0).unwrap(), &[stiff]).unwrap());
-    let softening = poor.bodies()[0].softening();
-    assert!(softening < 0.2);
+    let stiffness_scale = poor.bodies()[0].stiffness_scale();
+    assert!(stiffness_scale < 0.2);
     rich.add_body(poor.remove_body(0));
-    assert_eq!(rich.bodies()[0].softening(), 1.0);
+    assert_eq!(rich.bodies()[0].stiffness_scale(), 1.0);
     poor.add_body(rich.remove_body(0));
-    assert_eq!(poor.bodies()[0].softening(), softening);
+    assert_eq!(poor.bodies()[0].stiffness_scale(), stiffness_scale);
 }
 
 #[test]
@@ -418,7 +418,7 @@ fn a_material_that_no_voxel_has_changes_nothing() {
     let hash_with = |materials: &[Material]| {
         let mut world = world::<Dim2>();
         world.add_body(Body::new(VoxelGrid::ball(16, 1.0).unwrap(), materials).unwrap());
-        assert_eq!(world.bodies()[0].softening(), 1.0);
+        assert_eq!(world.bodies()[0].stiffness_scale(), 1.0);
         let hand = Manipulator::new([0.5, 1.1, 0.0], 0.1).driven(Drive::Kinematic);
         let hand = world.add_manipulator(hand).unwrap();
         let mut released = 0;

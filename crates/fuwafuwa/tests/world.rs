@@ -273,7 +273,7 @@ fn a_body_too_stiff_is_softened() {
     let mut steel = unbreakable();
     steel.elasticity.young = 1e9;
     world.add_body(ball::<Dim2>(24, steel).moved([0.0, 0.1, 0.0]));
-    assert!(world.bodies()[0].softening() < 0.1);
+    assert!(world.bodies()[0].stiffness_scale() < 0.1);
     assert_eq!(world.substeps(), 64);
     for _ in 0..60 {
         assert_eq!(world.step().quarantined, 0);
@@ -378,7 +378,7 @@ fn eight_substeps_squash_a_soft_ball_as_sixteen_do() {
             assert_eq!(world.step().substeps, most_substeps);
             lowest = lowest.min(world.bodies()[0].piece_views()[0].low[1]);
         }
-        assert_eq!(world.bodies()[0].softening(), 1.0);
+        assert_eq!(world.bodies()[0].stiffness_scale(), 1.0);
         (world.manipulators()[0].position()[1], lowest)
     });
     assert!(

@@ -36,10 +36,10 @@ impl Exit {
         let goal = plus(skins.centres[b], scaled(out, ahead));
         let way = minus(goal, skins.centres[a]);
         let speed = PUSH_OUT_SPEED.min(length(way) / duration);
-        let lightness = skins.lightness[a] + skins.lightness[b];
-        (lightness > 0.0).then(|| Self {
+        let inverse_mass = skins.inverse_mass[a] + skins.inverse_mass[b];
+        (inverse_mass > 0.0).then(|| Self {
             grips: both.map(|skin| motion.grip::<D>(skin)),
-            inertia: 1.0 / lightness,
+            inertia: 1.0 / inverse_mass,
             velocity: scaled(way, speed / length(way)),
         })
     }

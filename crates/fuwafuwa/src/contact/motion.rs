@@ -60,14 +60,14 @@ impl Motion {
     pub fn load<D: Dim>(&mut self, bodies: &[Body<D>]) {
         for (body, &first) in bodies.iter().zip(&self.first) {
             let nodes = body.velocity.chunks(STRETCH);
-            let nodes = nodes.zip(body.lightness.chunks(STRETCH));
+            let nodes = nodes.zip(body.inverse_mass.chunks(STRETCH));
             let own = self.rows[first as usize..].chunks_mut(STRETCH).zip(nodes);
             let touched = &self.is_touched[first as usize / STRETCH..];
-            for ((rows, (velocities, lightness)), _) in own.zip(touched).filter(|(_, is)| **is) {
-                for (row, (velocity, &lightness)) in
-                    rows.iter_mut().zip(velocities.iter().zip(lightness))
+            for ((rows, (velocities, inverse_mass)), _) in own.zip(touched).filter(|(_, is)| **is) {
+                for (row, (velocity, &inverse_mass)) in
+                    rows.iter_mut().zip(velocities.iter().zip(inverse_mass))
                 {
-                    *row = with_fourth(*velocity, lightness);
+                    *row = with_fourth(*velocity, inverse_mass);
                 }
             }
         }

@@ -95,7 +95,7 @@ impl<D: Dim> Mesh<D> {
             }
         }
         for (id, node) in self.nodes() {
-            let inner = node.group == D::ALL_CORNERS && !sharing.is_front(node.at);
+            let inner = node.group == D::ALL_CORNERS && !sharing.is_open(node.at);
             let sum = sums[id as usize];
             if inner && sum.iter().any(|&component: &f64| component.abs() > 1e-9) {
                 let at = node.at;

@@ -102,8 +102,8 @@ impl Skin {
     }
 
     /// One over the mass that a push on it meets [1/kg].
-    pub fn lightness<D: Dim>(&self, bodies: &[Body<D>]) -> f32 {
-        let all = &bodies[self.body as usize].lightness;
+    pub fn inverse_mass<D: Dim>(&self, bodies: &[Body<D>]) -> f32 {
+        let all = &bodies[self.body as usize].inverse_mass;
         let nodes = self.nodes[..D::CORNERS].iter();
         let sum: f32 = nodes.map(|&node| all[node as usize]).sum();
         sum / (D::CORNERS * D::CORNERS) as f32

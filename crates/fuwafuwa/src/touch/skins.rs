@@ -58,7 +58,7 @@ pub struct Skins {
     pub moved: Vec<f32>,
     pub velocities: Vec<Row>,
     /// One over the mass that a push on a skin meets [1/kg].
-    pub lightness: Vec<f32>,
+    pub inverse_mass: Vec<f32>,
     /// Those inside another piece, ascending, and by skin the body and number of that piece.
     pub captives: Vec<Captive>,
     pub(super) captors: Vec<Option<(u32, u32)>>,
@@ -265,9 +265,9 @@ impl Skins {
         self.velocities.resize(list.len(), [0.0; 4]);
         self.moved.clear();
         self.moved.resize(list.len(), 0.0);
-        self.lightness.clear();
-        self.lightness
-            .extend(list.iter().map(|skin| skin.lightness(bodies)));
+        self.inverse_mass.clear();
+        self.inverse_mass
+            .extend(list.iter().map(|skin| skin.inverse_mass(bodies)));
     }
 
     /// Moves those that are in pairs along with the bodies.

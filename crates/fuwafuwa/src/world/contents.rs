@@ -6,19 +6,19 @@ use crate::body::Body;
 use crate::contact::Hit;
 use crate::dim::Dim;
 use crate::event::Event;
-use crate::fracture::Rests;
+use crate::fracture::Cooldowns;
 use crate::manipulator::{Manipulator, is_place};
 use crate::shape::{Shape, Vector};
 use crate::touch::Nearby;
 
 impl<D: Dim> World<D> {
     /// Puts a body into the world; returns its place among the bodies. A body that is too stiff
-    /// for the most substeps allowed is softened: see [`Body::softening`].
+    /// for the most substeps allowed is softened: see [`Body::stiffness_scale`].
     pub fn add_body(&mut self, mut body: Body<D>) -> usize {
         let shortest = f64::from(TICK) / f64::from(self.settings.most_substeps);
-        body.soften_for(shortest);
+        body.scale_stiffness_for(shortest);
         self.bodies.push(body);
-        self.rests.push(Rests::default());
+        self.cooldowns.push(Cooldowns::default());
         // Its voxels may be larger, and lists made for small ones do not bear as much.
         self.nearby.doubt();
         let place = self.bodies.len() - 1;
@@ -123,7 +123,7 @@ impl<D: Dim> World<D> {
     /// # Panics
     /// When there is no such body.
     pub fn remove_body(&mut self, body: usize) -> Body<D> {
-        self.rests.remove(body);
+        self.cooldowns.remove(body);
         let removed = self.bodies.remove(body);
         self.start_contacts_anew();
         removed

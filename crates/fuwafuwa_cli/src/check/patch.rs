@@ -96,7 +96,7 @@ fn residual<D: Dim>(mesh: &Mesh<D>, sharing: &Sharing<D>, law: Law) -> Result<f6
     let stress = 0.2 * elasticity.young;
     let mut worst = 0.0f64;
     for (id, node) in mesh.nodes() {
-        if node.group == D::ALL_CORNERS && !sharing.is_front(node.at) {
+        if node.group == D::ALL_CORNERS && !sharing.is_open(node.at) {
             for force in sums[id as usize] {
                 // f64::max would drop a NaN.
                 let force = if force.is_nan() { f64::INFINITY } else { force };

@@ -1,6 +1,6 @@
 //! Where a crack can start or go on, and which ways it can take there.
 //!
-//! A crack can start or go on at a *front node*: one that several voxels share where connection is
+//! A crack can start or go on at a *breakable node*: one that several voxels share where connection is
 //! not complete. The voxels hang together there by closed faces; a *cut* opens some of the faces
 //! across one axis so that they fall into two sides.
 //!
@@ -24,10 +24,10 @@ const SCATTER: f32 = 0.4;
 /// The octants on the far side of each axis.
 const FAR: [u8; 3] = [0b1010_1010, 0b1100_1100, 0b1111_0000];
 
-/// A front node.
+/// A breakable node.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Front {
+pub struct BreakableNode {
     /// The octants that share the node.
     pub group: u8,
     /// The octants whose voxel would be set free, or left hanging by one face, if it came off alone.
@@ -35,7 +35,7 @@ pub struct Front {
     /// The number of the weakest material around.
     pub material: u8,
     /// Tension that the node bears [Pa].
-    pub borne: f32,
+    pub threshold: f32,
     /// Which list of cuts is its own.
     cuts: u32,
 }
@@ -57,29 +57,29 @@ pub struct Cut {
 /// For each octant on the near side of each axis: whether its face across is closed.
 type Closed = [u8; 3];
 
-/// The front nodes of a body.
+/// The breakable nodes of a body.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Fronts {
+pub struct BreakableNodes {
     /// By node id.
-    of_node: Vec<Option<Front>>,
+    of_node: Vec<Option<BreakableNode>>,
     /// The cuts of each pattern of closed faces, in the order in which the patterns came up.
     cuts: Vec<Vec<Cut>>,
     known: BTreeMap<Closed, u32>,
 }
 
-impl Fronts {
-    /// The front nodes among those of some ids, ascending.
-    pub fn among(&self, ids: Range<usize>) -> impl Iterator<Item = (u32, &Front)> {
+impl BreakableNodes {
+    /// The breakable nodes among those of some ids, ascending.
+    pub fn among(&self, ids: Range<usize>) -> impl Iterator<Item = (u32, &BreakableNode)> {
         let end = ids.end.min(self.of_node.len());
         let first = ids.start.min(end);
         let all = self.of_node[first..end].iter().zip(first as u32..);
-        all.filter_map(|(front, id)| Some((id, front.as_ref()?)))
+        all.filter_map(|(node, id)| Some((id, node.as_ref()?)))
     }
 
-    /// All ways to part the voxels at a front node.
-    pub fn cuts(&self, front: &Front) -> &[Cut] {
-        &self.cuts[front.cuts as usize]
+    /// All ways to part the voxels at a breakable node.
+    pub fn cuts(&self, node: &BreakableNode) -> &[Cut] {
+        &self.cuts[node.cuts as usize]
     }
 
     /// Looks again at `nodes`: all those whose elements or whose connection may have changed.
@@ -95,19 +95,19 @@ impl Fronts {
         for &id in nodes {
             let node = mesh.node(id);
             let several = node.group & node.group.wrapping_sub(1) != 0;
-            let is_front = several && mesh.is_alive(id) && sharing.is_front(node.at);
-            let front = is_front.then(|| self.front(node, grid, sharing, materials));
-            self.of_node[id as usize] = front;
+            let is_open = several && mesh.is_alive(id) && sharing.is_open(node.at);
+            let judged = is_open.then(|| self.judge(node, grid, sharing, materials));
+            self.of_node[id as usize] = judged;
         }
     }
 
-    fn front<D: Dim>(
+    fn judge<D: Dim>(
         &mut self,
         node: Node,
         grid: &VoxelGrid<D>,
         sharing: &Sharing<D>,
         materials: &[Material],
-    ) -> Front {
+    ) -> BreakableNode {
         let Node { at, group } = node;
         let mut closed = [0; 3];
         // A crack ends where some voxels still share a node, but no longer a face.
@@ -127,7 +127,7 @@ impl Fronts {
             .min_by(|a, b| strength(a).total_cmp(&strength(b)))
             .expect("a group has voxels");
         let weakest = &materials[material as usize - 1];
-        let borne = if is_tip {
+        let threshold = if is_tip {
             weakest.toughness / grid.voxel_size().sqrt()
         } else {
             weakest.strength * (1.0 + SCATTER * chance(at))
@@ -140,11 +140,11 @@ impl Fronts {
             .filter(|octant| lone >> octant & 1 == 1)
             .filter(|&octant| would_crumble(sharing, at, octant))
             .fold(0, |crumbs, octant| crumbs | 1 << octant);
-        Front {
+        BreakableNode {
             group,
             crumbs,
             material,
-            borne,
+            threshold,
             cuts,
         }
     }
@@ -248,7 +248,7 @@ mod tests {
     use crate::body::Body;
     use crate::dim::{Dim2, Dim3};
 
-    /// What is kept about front nodes must be what a fresh look finds, after any releases.
+    /// What is kept about breakable nodes must be what a fresh look finds, after any releases.
     fn check_upkeep<D: Dim>(n: usize) {
         let grid = VoxelGrid::<D>::ball(n, 1.0).expect("a ball is not empty");
         let mut body = Body::new(grid, &[Material::default()]).expect("the material is good");
@@ -262,28 +262,24 @@ mod tests {
             let side = random(254) as u8 + 1;
             body.release(&[(at, side)]).expect("the mesh stays whole");
         }
-        let mut fresh = Fronts::default();
+        let mut fresh = BreakableNodes::default();
         let nodes: Vec<u32> = body.mesh.nodes().map(|(id, _)| id).collect();
         let materials = body.materials();
         fresh.look(&nodes, &body.grid, &body.sharing, &body.mesh, materials);
-        let listed = |fronts: &Fronts| -> Vec<_> {
-            let all = fronts.among(0..usize::MAX);
-            all.map(|(id, front)| {
-                let cuts = fronts.cuts(front).to_vec();
-                (id, front.group, front.crumbs, front.borne, cuts)
+        let listed = |breakable: &BreakableNodes| -> Vec<_> {
+            let all = breakable.among(0..usize::MAX);
+            all.map(|(id, node)| {
+                let cuts = breakable.cuts(node).to_vec();
+                (id, node.group, node.crumbs, node.threshold, cuts)
             })
             .collect()
         };
-        assert_eq!(listed(&body.fronts), listed(&fresh));
-        assert!(
-            fresh
-                .among(0..usize::MAX)
-                .any(|(_, front)| front.crumbs != 0)
-        );
+        assert_eq!(listed(&body.breakable), listed(&fresh));
+        assert!(fresh.among(0..usize::MAX).any(|(_, node)| node.crumbs != 0));
     }
 
     #[test]
-    fn front_nodes_are_kept_up_to_date() {
+    fn breakable_nodes_are_kept_up_to_date() {
         check_upkeep::<Dim2>(24);
         check_upkeep::<Dim3>(10);
     }
