@@ -44,6 +44,8 @@ pub struct Body<D: Dim> {
     pub(crate) damage: Vec<f32>,
     /// Which faces of an element of level 0 are bare: bit 2 · axis + side; by element id.
     pub(crate) bare: Vec<u8>,
+    /// Of those with bare faces, the voxels around that share a node: see [`Sharing::bound`].
+    pub(crate) bound: Vec<u32>,
     /// Positions a moment ahead, where damped forces are evaluated.
     pub(crate) ahead: Vec<Row>,
     /// The rigid motion of each piece, as of the last round of damping.
@@ -113,6 +115,7 @@ impl<D: Dim> Body<D> {
             breakable: BreakableNodes::default(),
             damage: Vec::new(),
             bare: Vec::new(),
+            bound: Vec::new(),
             ahead: Vec::new(),
             rigid: Vec::new(),
             grid,
@@ -491,6 +494,7 @@ impl<D: Dim> Body<D> {
         self.held.resize(capacity, false);
         self.damage.resize(capacity, 0.0);
         self.bare.resize(self.mesh.element_capacity(), 0);
+        self.bound.resize(self.mesh.element_capacity(), 0);
         self.pieces.make_room(&self.mesh);
     }
 
@@ -542,6 +546,9 @@ impl<D: Dim> Body<D> {
                 }
             }
             self.bare[owner as usize] = bare;
+            if bare != 0 {
+                self.bound[owner as usize] = self.sharing.bound(voxel);
+            }
         }
     }
 

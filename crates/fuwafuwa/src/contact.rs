@@ -15,13 +15,13 @@ use crate::dim::Dim;
 use crate::manipulator::Manipulator;
 use crate::solve::Row;
 use crate::threads;
-use crate::touch::{Collider, Impulse, MARGIN, Nearby, Skin, Skins};
+use crate::touch::{Collider, ContactSphere, Impulse, MARGIN, Nearby, NodePairs};
 use crate::vector::{as_row, minus, scaled, three};
 use exit::Exit;
 use motion::Motion;
 use row::{Contact, inner};
 
-/// A crumb is behind a skin when the way to it goes this far inwards (cosine).
+/// A crumb is behind a sphere when the way to it goes this far inwards (cosine).
 const BEHIND: f32 = 0.3;
 /// A sleeper wakes when what touches it moves at this speed [m/s]: what it did move, since deep in
 /// a heap the forces of a substep alone would give as much to what rests.
@@ -40,15 +40,15 @@ struct NodeContact {
     hand: Option<u32>,
 }
 
-/// Two skins against each other.
+/// Two spheres against each other.
 #[derive(Copy, Clone, Debug)]
-struct SkinContact {
+struct SphereContact {
     contact: Contact,
     /// Places of their nodes among those of all bodies.
     grips: [Grip; 2],
 }
 
-/// The corner nodes of a skin; the first four in 2D.
+/// The corner nodes of a sphere; the first four in 2D.
 type Grip = [u32; 8];
 
 /// A manipulator against an obstacle or against another manipulator.
@@ -63,7 +63,7 @@ struct HandContact {
 #[derive(Clone, Debug, Default)]
 pub struct Contacts {
     nodes: Vec<NodeContact>,
-    skins: Vec<SkinContact>,
+    spheres: Vec<SphereContact>,
     exits: Vec<Exit>,
     hands: Vec<HandContact>,
     motion: Motion,
@@ -83,12 +83,13 @@ impl Contacts {
     ) -> Vec<Hit> {
         let mut hits = Vec::new();
         self.motion.clear(bodies);
-        self.find_nodes(bodies, colliders, nearby, duration, &mut hits);
-        self.find_skins(bodies, &mut nearby.skins, duration, &mut hits);
+        self.find_nodes(bodies, colliders, &mut nearby.nodes, duration, &mut hits);
+        self.find_spheres(bodies, nearby, duration, &mut hits);
         self.exits.clear();
-        let (skins, motion) = (&nearby.skins, &mut self.motion);
-        let exits = skins.captives.iter();
-        let exits = exits.filter_map(|captive| Exit::new(captive, bodies, skins, motion, duration));
+        let (spheres, motion) = (&nearby.spheres, &mut self.motion);
+        let exits = nearby.captives.list.iter();
+        let exits =
+            exits.filter_map(|captive| Exit::new(captive, bodies, spheres, motion, duration));
         self.exits.extend(exits);
         hits.sort_unstable();
         hits.dedup();
@@ -99,15 +100,15 @@ impl Contacts {
         &mut self,
         bodies: &[Body<D>],
         colliders: &[Collider],
-        nearby: &mut Nearby,
+        pairs: &mut NodePairs,
         duration: f32,
         hits: &mut Vec<Hit>,
     ) {
         self.nodes.clear();
         let obstacles = colliders.iter().filter(|collider| !collider.is_hand);
         let first_hand = obstacles.count() as u32;
-        let travel = nearby.travel;
-        let shares = threads::shares(&mut nearby.node_pairs);
+        let travel = pairs.travel;
+        let shares = threads::shares(&mut pairs.list);
         let found = threads::map(shares, |(first, pairs)| {
             let (mut contacts, mut hits) = (Vec::new(), Vec::new());
             for (pair, place) in pairs.iter_mut().zip(first..) {
@@ -160,80 +161,77 @@ impl Contacts {
         }
     }
 
-    fn find_skins<D: Dim>(
+    fn find_spheres<D: Dim>(
         &mut self,
         bodies: &[Body<D>],
-        skins: &mut Skins,
+        nearby: &mut Nearby,
         duration: f32,
         hits: &mut Vec<Hit>,
     ) {
-        self.skins.clear();
-        let sizes = bodies.iter().map(|body| body.grid.voxel_size());
-        let furthest = (1.0 + MARGIN) * sizes.fold(0.0, f32::max);
+        self.spheres.clear();
         let waking = WAKE_SPEED * duration;
         let frictions: Vec<f32> = bodies.iter().map(Body::friction).collect();
-        let mut pairs = std::mem::take(&mut skins.pairs);
-        let all = &*skins;
-        let found = threads::map(threads::shares(&mut pairs), |(first, pairs)| {
+        let (all, captives) = (&nearby.spheres, &nearby.captives);
+        let shares = threads::shares(&mut nearby.pairs.list);
+        let found = threads::map(shares, |(first, pairs)| {
             let (mut contacts, mut hits) = (Vec::new(), Vec::new());
             for (pair, place) in pairs.iter_mut().zip(first..) {
-                let [a, b] = pair.skins.map(|skin| skin as usize);
+                let [a, b] = pair.spheres.map(|place| place as usize);
+                let both = pair.both(&all.list);
                 let apart = minus(all.centres[a], all.centres[b]);
                 let squared = inner::<D>(apart, apart);
+                let touching = both[0].radius + both[1].radius;
+                let furthest = (1.0 + MARGIN) * touching;
                 if squared > furthest * furthest {
                     pair.met_in_front = false;
                     pair.impulse.release();
                     continue;
                 }
-                if all.is_inside(a, b) {
+                if captives.is_inside(pair.spheres, both) {
                     // What came out is not to be drawn in again.
                     pair.met_in_front = true;
                     pair.impulse.release();
                     continue;
                 }
-                let touching = all.list[a].radius + all.list[b].radius;
                 let distance = squared.sqrt().max(1e-9);
                 let (mut normal, mut gap) = (scaled(apart, 1.0 / distance), distance - touching);
                 if gap < 0.0 {
-                    let both = [&all.list[a], &all.list[b]];
-                    let behind = behind_skin(bodies, both, scaled(normal, distance));
+                    let behind = behind_surface(bodies, both, scaled(normal, distance));
                     pair.met_in_front |= behind.is_none();
                     if let Some((out, ahead)) = behind.filter(|_| pair.met_in_front) {
                         (normal, gap) = (out, ahead - touching);
                     }
                 }
                 let relative = minus(all.velocities[a], all.velocities[b]);
-                if gap > MARGIN * touching
-                    || !is_close(gap, inner::<D>(relative, normal), touching, duration)
-                {
+                if !is_close(gap, inner::<D>(relative, normal), touching, duration) {
                     pair.impulse.release();
                     continue;
                 }
-                let inverse_mass = all.inverse_mass[a] + all.inverse_mass[b];
-                if inverse_mass == 0.0 {
+                let moved = all.moved[a].max(all.moved[b]);
+                if gap < 0.05 * touching && moved > waking * waking {
+                    let sleepers = both.into_iter().filter(|sphere| sphere.asleep);
+                    hits.extend(sleepers.map(|sphere| (sphere.body, sphere.piece)));
+                }
+                let [first, second] = both.map(|sphere| sphere.inverse_mass(bodies));
+                if first + second == 0.0 {
                     continue;
                 }
-                let moved = all.moved[a].max(all.moved[b]);
-                let (a, b) = (&all.list[a], &all.list[b]);
-                if gap < 0.05 * touching && moved > waking * waking {
-                    let sleepers = [a, b].into_iter().filter(|skin| skin.asleep);
-                    hits.extend(sleepers.map(|skin| (skin.body, skin.piece)));
-                }
-                let friction = 0.5 * (frictions[a.body as usize] + frictions[b.body as usize]);
-                let contact = Contact::new(normal, gap, duration, 1.0 / inverse_mass, friction);
-                contacts.push((contact.known_as::<D>(place, &pair.impulse), [a, b]));
+                let inertia = 1.0 / (first + second);
+                let [first, second] = both.map(|sphere| frictions[sphere.body as usize]);
+                let friction = 0.5 * (first + second);
+                let contact = Contact::new(normal, gap, duration, inertia, friction);
+                contacts.push((contact.known_as::<D>(place, &pair.impulse), both));
             }
             (contacts, hits)
         });
         for (contacts, hit) in found {
             hits.extend(hit);
-            self.skins
-                .extend(contacts.into_iter().map(|(contact, both)| SkinContact {
+            self.spheres
+                .extend(contacts.into_iter().map(|(contact, both)| SphereContact {
                     contact,
-                    grips: both.map(|skin| self.motion.grip::<D>(skin)),
+                    grips: both.map(|sphere| self.motion.grip::<D>(sphere)),
                 }));
         }
-        skins.pairs = pairs;
     }
 
     /// Finds the contacts of the hands with obstacles, the first `obstacles` of the colliders, and
@@ -279,19 +277,19 @@ impl Contacts {
         for row in &self.nodes {
             motion.push_node(row, hands, row.contact.start(), duration);
         }
-        for row in self.skins.iter().filter(|row| row.contact.pressed > 0.0) {
-            motion.push_skins::<D>(&row.grips, row.contact.start());
+        for row in self.spheres.iter().filter(|row| row.contact.pressed > 0.0) {
+            motion.push_spheres::<D>(&row.grips, row.contact.start());
         }
         // Once only: what is held fast inside must not pull its way out.
         for exit in &self.exits {
             exit.solve::<D>(motion);
         }
         for backwards in [false, true] {
-            for_each(&mut self.skins, backwards, |row| {
+            for_each(&mut self.spheres, backwards, |row| {
                 let relative = motion.between::<D>(&row.grips);
                 if !row.contact.is_idle::<D>(relative) {
                     let change = row.contact.solve::<D>(relative);
-                    motion.push_skins::<D>(&row.grips, change);
+                    motion.push_spheres::<D>(&row.grips, change);
                 }
             });
             for_each(&mut self.nodes, backwards, |row| {
@@ -312,12 +310,12 @@ impl Contacts {
         }
         motion.store(bodies);
         for NodeContact { contact, .. } in &self.nodes {
-            nearby.node_pairs[contact.pair as usize]
+            nearby.nodes.list[contact.pair as usize]
                 .impulse
                 .note(contact);
         }
-        for SkinContact { contact, .. } in &self.skins {
-            nearby.skins.pairs[contact.pair as usize]
+        for SphereContact { contact, .. } in &self.spheres {
+            nearby.pairs.list[contact.pair as usize]
                 .impulse
                 .note(contact);
         }
@@ -335,10 +333,10 @@ impl Contacts {
         for exit in &self.exits {
             exit.relax::<D>(motion);
         }
-        for row in &mut self.skins {
+        for row in &mut self.spheres {
             if row.contact.was_pushed_out() {
                 let change = row.contact.relax::<D>(motion.between::<D>(&row.grips));
-                motion.push_skins::<D>(&row.grips, change);
+                motion.push_spheres::<D>(&row.grips, change);
             }
         }
         for row in &mut self.nodes {
@@ -368,9 +366,13 @@ impl Impulse {
     }
 }
 
-/// For a crumb whose middle is behind a skin: the direction out of the skin's body, as it pushes
-/// the first of both, and how far in front of the skin the crumb is [m], less than 0.
-fn behind_skin<D: Dim>(bodies: &[Body<D>], [a, b]: [&Skin; 2], apart: Row) -> Option<(Row, f32)> {
+/// For a crumb whose middle is behind a sphere of a surface: the direction out of the surface, as it
+/// pushes the first of both, and how far in front of it the crumb is [m], less than 0.
+fn behind_surface<D: Dim>(
+    bodies: &[Body<D>],
+    [a, b]: [&ContactSphere; 2],
+    apart: Row,
+) -> Option<(Row, f32)> {
     let (wall, sign) = match (a.is_crumb::<D>(), b.is_crumb::<D>()) {
         (true, false) => (b, 1.0),
         (false, true) => (a, -1.0),

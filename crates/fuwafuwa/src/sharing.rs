@@ -189,6 +189,24 @@ impl<D: Dim> Sharing<D> {
         }
     }
 
+    /// The voxels around a solid voxel that share a node with it, itself included: bit x + 3 y + 9 z,
+    /// each from 0 to 2.
+    pub fn bound(&self, voxel: Point) -> u32 {
+        let mut bound = 0;
+        for octant in 0..D::CORNERS {
+            // The lattice point that sees the voxel in this octant.
+            let mut at = voxel;
+            (0..D::N).for_each(|axis| at[axis] += 1 - (octant >> axis & 1) as i32);
+            let group = self.groups(at).group_of(octant);
+            for other in (0..D::CORNERS).filter(|other| group >> other & 1 == 1) {
+                let near = voxel_around::<D>(at, other);
+                let [x, y, z] = [0, 1, 2].map(|axis: usize| near[axis] - voxel[axis] + 1);
+                bound |= 1 << (x + 3 * y + 9 * z);
+            }
+        }
+        bound
+    }
+
     /// Whether the face between `octant` and its neighbour across `axis`, seen from the lattice
     /// point `at`, is closed: both voxels exist and share a node at all of its corners.
     pub fn is_closed(&self, at: Point, octant: usize, axis: usize) -> bool {

@@ -203,7 +203,7 @@ impl<D: Dim> World<D> {
         for hand in &mut self.manipulators {
             hand.start_tick(TICK);
         }
-        self.nearby.start_tick();
+        self.nearby.start_tick(&self.bodies, TICK);
     }
 
     fn end_tick(&mut self) {
@@ -237,7 +237,7 @@ impl<D: Dim> World<D> {
             let parts = torn.parted.iter();
             let events = parts.map(|&piece| Event::Parted { body: index, piece });
             self.events.extend(events);
-            self.nearby.tear(index, &torn);
+            self.nearby.tear(index, body, &torn);
         }
     }
 
@@ -274,24 +274,16 @@ impl<D: Dim> World<D> {
     /// Changes velocities so that nothing goes through anything else.
     fn touch(&mut self, duration: f32) {
         let colliders = self.colliders();
-        let obstacles = self.obstacles.len();
-        self.nearby.refresh(&self.bodies, &colliders, duration);
-        let nearby = &mut self.nearby;
-        let hits = self
-            .contacts
-            .find(&self.bodies, &colliders, nearby, duration);
-        // Who wakes is no wall any more, and rests on what did not count while it slept: look again.
-        if self.wake(&hits) {
-            self.nearby.refresh(&self.bodies, &colliders, 0.0);
-            let nearby = &mut self.nearby;
-            self.contacts
-                .find(&self.bodies, &colliders, nearby, duration);
-        }
+        let obstacles = &colliders[..self.obstacles.len()];
+        let (bodies, nearby) = (&self.bodies, &mut self.nearby);
+        nearby.follow(bodies, &colliders, duration);
+        let hits = self.contacts.find(bodies, &colliders, nearby, duration);
         let hands = &mut self.manipulators;
-        self.contacts
-            .find_hands(hands, &colliders[..obstacles], duration);
-        let (bodies, nearby) = (&mut self.bodies, &mut self.nearby);
+        self.contacts.find_hands(hands, obstacles, duration);
+        let bodies = &mut self.bodies;
         self.contacts.solve(bodies, hands, nearby, duration);
+        // Who is hit is a wall in this substep still, and awake from the next one on.
+        self.wake(&hits);
     }
 
     /// Moves everything by its velocity, and takes back what only pushed overlaps out.
@@ -301,7 +293,7 @@ impl<D: Dim> World<D> {
             let (lead, _) = body.damping(duration);
             furthest = furthest.max(body.drift(duration, lead));
         }
-        self.nearby.pass(furthest);
+        self.nearby.pass(duration, furthest);
         for hand in &mut self.manipulators {
             hand.drift(duration);
         }
@@ -317,7 +309,6 @@ impl<D: Dim> World<D> {
                 report.quarantined += 1;
                 let body = place as u32;
                 self.events.push(Event::Quarantined { body, piece });
-                self.nearby.expire();
             }
         }
     }
@@ -333,40 +324,35 @@ impl<D: Dim> World<D> {
             })
             .collect();
         let first_hand = self.obstacles.len() as u32;
-        let pairs = self.nearby.node_pairs.iter();
+        let pairs = self.nearby.nodes.list.iter();
         let handled =
             pairs.filter(|pair| pair.collider >= first_hand && pair.impulse.pressed > 0.0);
-        let piece = |body: u32, node| self.bodies[body as usize].pieces.of_node(node);
-        let handled = handled.map(|pair| (pair.body, piece(pair.body, pair.node)));
-        let captives = self.nearby.skins.captives.iter();
-        let captives = captives.map(|captive| &self.nearby.skins.list[captive.skin as usize]);
-        let captives = captives.map(|skin| (skin.body, skin.piece));
+        let handled = handled.filter_map(|pair| Some((pair.body, pair.piece(&self.bodies)?)));
+        let captives = self.nearby.captives.list.iter();
+        let captives = captives.map(|captive| &self.nearby.spheres.list[captive.sphere as usize]);
+        let captives = captives.map(|sphere| (sphere.body, sphere.piece));
         let handled: Vec<Hit> = handled.chain(captives).collect();
         let fallen = fall_asleep(&mut self.bodies, &motions, &handled, TICK);
-        if !fallen.is_empty() {
-            self.nearby.expire_rest();
-        }
         let events = fallen
             .iter()
             .map(|&(body, piece)| Event::FellAsleep { body, piece });
         self.events.extend(events);
     }
 
-    /// Wakes the sleepers that were hit; returns whether there were any.
-    fn wake(&mut self, hits: &[Hit]) -> bool {
+    /// Wakes the sleepers that were hit.
+    fn wake(&mut self, hits: &[Hit]) {
         let woken = wake(&mut self.bodies, hits);
         if woken.is_empty() {
-            return false;
+            return;
         }
         for body in &mut self.bodies {
             body.refresh_awake();
         }
-        self.nearby.expire_rest();
+        self.nearby.wake(&woken, &self.bodies);
         let events = woken
             .iter()
             .map(|&(body, piece)| Event::Woke { body, piece });
         self.events.extend(events);
-        true
     }
 
     /// Everything rigid as nodes meet it: obstacles first, then hands.
@@ -393,21 +379,10 @@ impl<D: Dim> World<D> {
     fn touching(&self) -> Vec<Vec<bool>> {
         let none = |body: &Body<D>| vec![false; body.pieces.list.len()];
         let mut touching: Vec<Vec<bool>> = self.bodies.iter().map(none).collect();
-        let mut mark = |body: u32, piece: Option<u32>| {
+        for (body, piece) in self.nearby.pressed(&self.bodies) {
             // The lists are of the last substep: another body may stand here since.
-            let piece = piece.and_then(|piece| touching[body as usize].get_mut(piece as usize));
-            piece.into_iter().for_each(|touches| *touches = true);
-        };
-        let nodes = self.nearby.node_pairs.iter();
-        for pair in nodes.filter(|pair| pair.impulse.pressed > 0.0) {
-            let body = &self.bodies[pair.body as usize];
-            let is_known = (pair.node as usize) < body.mesh.node_capacity();
-            mark(pair.body, is_known.then(|| body.pieces.of_node(pair.node)));
-        }
-        let skins = self.nearby.skins.pairs.iter();
-        for pair in skins.filter(|pair| pair.impulse.pressed > 0.0) {
-            for skin in pair.both(&self.nearby.skins.list) {
-                mark(skin.body, Some(skin.piece));
+            if let Some(touches) = touching[body as usize].get_mut(piece as usize) {
+                *touches = true;
             }
         }
         touching
@@ -426,12 +401,8 @@ impl<D: Dim> World<D> {
             }
         };
         let first_hand = self.obstacles.len() as u32;
-        for pair in self
-            .nearby
-            .node_pairs
-            .iter()
-            .filter(|pair| pair.impulse.total > 0.0)
-        {
+        let pairs = self.nearby.nodes.list.iter();
+        for pair in pairs.filter(|pair| pair.impulse.total > 0.0) {
             let with = match pair.collider.checked_sub(first_hand) {
                 Some(hand) => With::Manipulator(hand),
                 None => With::Obstacle(pair.collider),
@@ -441,23 +412,14 @@ impl<D: Dim> World<D> {
             let at = body.position[pair.node as usize];
             add(pair.body, piece, with, pair.impulse.total, at);
         }
-        for pair in self
-            .nearby
-            .skins
-            .pairs
-            .iter()
-            .filter(|pair| pair.impulse.total > 0.0)
-        {
-            let [a, b] = pair.both(&self.nearby.skins.list);
+        let spheres = &self.nearby.spheres;
+        let pairs = self.nearby.pairs.list.iter();
+        for pair in pairs.filter(|pair| pair.impulse.total > 0.0) {
+            let [a, b] = pair.both(&spheres.list);
             let (body, piece) = (b.body, b.piece);
             let with = With::Piece { body, piece };
-            add(
-                a.body,
-                a.piece,
-                with,
-                pair.impulse.total,
-                self.nearby.skins.centres[pair.skins[0] as usize],
-            );
+            let at = spheres.centres[pair.spheres[0] as usize];
+            add(a.body, a.piece, with, pair.impulse.total, at);
         }
         for ((body, piece, with), (impulse, _, at)) in sums {
             self.events.push(Event::Touched {

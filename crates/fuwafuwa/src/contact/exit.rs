@@ -6,7 +6,7 @@ use super::{Grip, inner};
 use crate::body::Body;
 use crate::dim::Dim;
 use crate::solve::Row;
-use crate::touch::{Captive, Skins};
+use crate::touch::{Captive, Spheres};
 use crate::vector::{minus, plus, scaled};
 
 /// A captive and its exit, in one substep.
@@ -24,21 +24,22 @@ impl Exit {
     pub fn new<D: Dim>(
         captive: &Captive,
         bodies: &[Body<D>],
-        skins: &Skins,
+        spheres: &Spheres,
         motion: &mut Motion,
         duration: f32,
     ) -> Option<Self> {
-        let [a, b] = [captive.skin, captive.exit].map(|place| place as usize);
-        let both = [&skins.list[a], &skins.list[b]];
+        let [a, b] = [captive.sphere, captive.exit].map(|place| place as usize);
+        let both = [&spheres.list[a], &spheres.list[b]];
         let length = |way: Row| inner::<D>(way, way).sqrt().max(1e-9);
         let out = both[1].outward::<D>(&bodies[both[1].body as usize].position);
         let ahead = (both[0].radius + both[1].radius) / length(out);
-        let goal = plus(skins.centres[b], scaled(out, ahead));
-        let way = minus(goal, skins.centres[a]);
+        let goal = plus(spheres.centres[b], scaled(out, ahead));
+        let way = minus(goal, spheres.centres[a]);
         let speed = PUSH_OUT_SPEED.min(length(way) / duration);
-        let inverse_mass = skins.inverse_mass[a] + skins.inverse_mass[b];
+        let [first, second] = both.map(|sphere| sphere.inverse_mass(bodies));
+        let inverse_mass = first + second;
         (inverse_mass > 0.0).then(|| Self {
-            grips: both.map(|skin| motion.grip::<D>(skin)),
+            grips: both.map(|sphere| motion.grip::<D>(sphere)),
             inertia: 1.0 / inverse_mass,
             velocity: scaled(way, speed / length(way)),
         })
@@ -56,6 +57,6 @@ impl Exit {
 
     fn push<D: Dim>(&self, velocity: Row, motion: &mut Motion) {
         let change = minus(velocity, motion.between::<D>(&self.grips));
-        motion.push_skins::<D>(&self.grips, scaled(change, self.inertia));
+        motion.push_spheres::<D>(&self.grips, scaled(change, self.inertia));
     }
 }

@@ -5,7 +5,7 @@ use crate::body::Body;
 use crate::dim::Dim;
 use crate::manipulator::Manipulator;
 use crate::solve::Row;
-use crate::touch::{Skin, mean};
+use crate::touch::{ContactSphere, mean};
 use crate::vector::{as_row, minus, plus, scaled};
 
 /// Nodes whose velocities are copied together: more copies more in vain, less asks more often.
@@ -45,11 +45,11 @@ impl Motion {
         place
     }
 
-    /// The places of the corner nodes of a skin that something touches.
+    /// The places of the corner nodes of a sphere that something touches.
     #[inline(always)]
-    pub fn grip<D: Dim>(&mut self, skin: &Skin) -> Grip {
-        let first = self.first[skin.body as usize];
-        let grip = skin.nodes.map(|node| first + node);
+    pub fn grip<D: Dim>(&mut self, sphere: &ContactSphere) -> Grip {
+        let first = self.first[sphere.body as usize];
+        let grip = sphere.nodes.map(|node| first + node);
         for &place in &grip[..D::CORNERS] {
             self.is_touched[place as usize / STRETCH] = true;
         }
@@ -87,16 +87,16 @@ impl Motion {
         }
     }
 
-    /// How fast the first skin moves as seen from the second.
+    /// How fast the first sphere moves as seen from the second.
     #[inline(always)]
     pub fn between<D: Dim>(&self, grips: &[Grip; 2]) -> Row {
         let [first, second] = grips.each_ref().map(|grip| mean::<D>(&self.rows, grip));
         with_fourth(minus(first, second), 0.0)
     }
 
-    /// Pushes the first skin, and the second the other way.
+    /// Pushes the first sphere, and the second the other way.
     #[inline(always)]
-    pub fn push_skins<D: Dim>(&mut self, grips: &[Grip; 2], impulse: Row) {
+    pub fn push_spheres<D: Dim>(&mut self, grips: &[Grip; 2], impulse: Row) {
         let share = scaled(impulse, 1.0 / D::CORNERS as f32);
         for (grip, share) in [(&grips[0], share), (&grips[1], scaled(share, -1.0))] {
             for &node in &grip[..D::CORNERS] {

@@ -2,7 +2,6 @@
 
 use crate::dim::{Dim, Point};
 use crate::solve::Row;
-use crate::threads::SHARE;
 use std::ops::Range;
 
 /// 1.5 · 2²³: to it and to what is up to 2²² greater or smaller only whole numbers can be added.
@@ -13,6 +12,7 @@ const LANES: usize = 4;
 
 /// Points in the bins of a grid that goes round and round: what lies a multiple of the grid's
 /// extent apart shares a bin, so bodies may fly off, for two million bins.
+#[derive(Clone, Debug)]
 pub struct Bins {
     /// One over the width of a bin [1/m].
     inverse: f32,
@@ -75,58 +75,21 @@ impl Bins {
         (self.numbers[place], [x, y, z, 0.0])
     }
 
-    /// All bins, in shares.
-    pub fn shares(&self) -> impl Iterator<Item = Range<usize>> + use<> {
-        let bins = self.start.len() - 1;
-        let firsts = (0..bins).step_by(SHARE);
-        firsts.map(move |first| first..bins.min(first + SHARE))
-    }
-
-    /// Calls `visit` once with the numbers of any two points that are no further apart than `reach`
-    /// [m], which may be no more than a bin is wide, and of which one lies in these `bins`: all shares
-    /// together make all pairs.
-    #[inline]
-    pub fn pairs<D: Dim>(&self, bins: Range<usize>, reach: f32, mut visit: impl FnMut(u32, u32)) {
-        // Of two bins side by side one looks at the other.
-        let ahead: &[[i32; 2]] = match D::N {
-            2 => &[[1, 0]],
-            _ => &[[1, 0], [-1, 1], [0, 1], [1, 1]],
-        };
-        let mut others: Vec<Range<usize>> = Vec::new();
-        for bin in bins {
-            let own = self.range(bin, bin);
-            if own.is_empty() {
-                continue;
-            }
-            let along = |axis: usize| bin as i32 >> (axis * self.bits) & self.mask;
-            let (x, y, z) = (along(0), along(1), along(2));
-            let next = self.bin([x + 1, y, z]) as usize;
-            others.clear();
-            others.push(self.range(next, next));
-            for [dy, dz] in ahead {
-                others.extend(self.row([x, y + dy, z + dz]));
-            }
-            others.retain(|range| !range.is_empty());
-            for place in own.clone() {
-                let (number, at) = self.point(place);
-                let mut visit = |other| visit(number, other);
-                self.look(place + 1..own.end, at, reach, &mut visit);
-                for range in &others {
-                    self.look(range.clone(), at, reach, &mut visit);
-                }
-            }
-        }
-    }
-
-    /// Calls `visit` with the number of each point that is no further from `at` than `reach` [m],
-    /// which may be no more than a bin is wide.
+    /// Calls `visit` with the number of each point that is no further from `at` than `reach` [m].
     #[inline]
     pub fn near<D: Dim>(&self, at: Row, reach: f32, mut visit: impl FnMut(u32)) {
+        let steps = (reach * self.inverse).ceil();
+        // So far around the grid meets itself.
+        if steps.is_nan() || 2.0 * steps >= self.mask as f32 {
+            self.look(0..self.numbers.len(), at, reach, visit);
+            return;
+        }
+        let steps = steps as i32;
         let [x, y, z] = self.square(&at);
-        let layers = if D::N == 3 { -1..=1 } else { 0..=0 };
+        let layers = if D::N == 3 { -steps..=steps } else { 0..=0 };
         for dz in layers {
-            for dy in -1..=1 {
-                for range in self.row([x, y.wrapping_add(dy), z.wrapping_add(dz)]) {
+            for dy in -steps..=steps {
+                for range in self.row([x, y.wrapping_add(dy), z.wrapping_add(dz)], steps) {
                     self.look(range, at, reach, &mut visit);
                 }
             }
@@ -164,17 +127,20 @@ impl Bins {
         }
     }
 
-    /// Where the points in the bin of a square and in those before and after it on the first axis
-    /// begin and end: one stretch, and another where the grid goes round.
+    /// Where the points in the bin of a square and in those so many steps before and after it on the
+    /// first axis begin and end: one stretch, and another where the grid goes round.
     #[inline]
-    fn row(&self, [x, y, z]: Point) -> [Range<usize>; 2] {
+    fn row(&self, [x, y, z]: Point, steps: i32) -> [Range<usize>; 2] {
         let (x, start) = (x & self.mask, self.bin([0, y, z]) as usize);
         let from =
             |first: i32, last: i32| self.range(start + first as usize, start + last as usize);
-        match x {
-            0 => [from(0, 1), from(self.mask, self.mask)],
-            x if x == self.mask => [from(x - 1, x), from(0, 0)],
-            x => [from(x - 1, x + 1), 0..0],
+        let (first, last, count) = (x - steps, x + steps, self.mask + 1);
+        if first < 0 {
+            [from(0, last), from(first + count, self.mask)]
+        } else if last >= count {
+            [from(first, self.mask), from(0, last - count)]
+        } else {
+            [from(first, last), 0..0]
         }
     }
 
@@ -219,22 +185,15 @@ mod tests {
         let points: Vec<Row> = (0..900).map(point).collect();
         let reach = 0.4;
         let bins = Bins::new::<D>(&points, reach);
-        let is_near = |a: usize, b: usize| {
-            let apart = minus(points[a], points[b]);
-            dot(apart, apart) <= reach * reach
-        };
-        let mut found = Vec::new();
-        for share in bins.shares() {
-            bins.pairs::<D>(share, reach, |a, b| {
-                found.push((a.min(b) as usize, a.max(b) as usize));
-            });
-        }
-        found.sort_unstable();
-        let all = (0..points.len()).flat_map(|a| (a + 1..points.len()).map(move |b| (a, b)));
-        let expected: Vec<_> = all.filter(|&(a, b)| is_near(a, b)).collect();
-        assert_eq!(found, expected);
         let mut total = 0;
-        for (place, &at) in points.iter().enumerate() {
+        // A bin, several, and so many that they meet around the grid.
+        let reaches = [0.5, 1.0, 2.7, 40.0].into_iter().cycle();
+        for ((place, &at), steps) in points.iter().enumerate().zip(reaches) {
+            let reach = steps * reach;
+            let is_near = |a: usize, b: usize| {
+                let apart = minus(points[a], points[b]);
+                dot(apart, apart) <= reach * reach
+            };
             let mut found = Vec::new();
             bins.near::<D>(at, reach, |number| found.push(number));
             found.sort_unstable();

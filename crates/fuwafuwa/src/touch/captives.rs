@@ -1,12 +1,14 @@
-//! Skins that were forced into another piece, and the way out.
+//! Contact spheres that were forced into another piece, and the way out.
 //!
-//! There is no skin inside a piece that would hold anything off: a crumb that was pressed through a
-//! stretched skin would stay. So once a tick the elements of the larger pieces are asked whose
-//! middle lies in them. Such a skin is a *captive*: it no longer touches the skins of the piece around
-//! it, but for the nearest, its *exit*, which lets it out.
+//! Inside a piece there is none that would hold anything off: a crumb that was pressed through a
+//! stretched surface would stay. So once a tick the elements of the larger pieces are asked whose
+//! middle lies in them. Such a sphere is a *captive*: it no longer touches the spheres of the piece
+//! around it, but for the nearest, its *exit*, which lets it out.
 
 use super::bins::Bins;
-use super::skins::Skins;
+use super::pairs::SpherePair;
+use super::sphere::ContactSphere;
+use super::spheres::Spheres;
 use crate::body::Body;
 use crate::dim::Dim;
 use crate::mesh::Element;
@@ -21,95 +23,134 @@ const EXIT_REACH: f32 = 2.0;
 /// An element that is flatter than this holds nobody: its volume over that at rest.
 const FLAT: f32 = 0.01;
 
-/// A skin whose middle is inside another piece.
+/// A sphere whose middle is inside another piece.
 #[derive(Copy, Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Captive {
-    /// Its place among the skins.
-    pub skin: u32,
-    /// The nearest skin of the piece around it.
+    /// Its place among the spheres.
+    pub sphere: u32,
+    /// The nearest sphere of the piece around it.
     pub exit: u32,
 }
 
-impl Skins {
+/// Who is inside another piece.
+#[derive(Clone, Debug, Default)]
+pub struct Captives {
+    /// Ascending.
+    pub list: Vec<Captive>,
+    /// By sphere the body and number of the piece that it is inside.
+    captors: Vec<Option<(u32, u32)>>,
+}
+
+impl Captives {
     /// Finds out who is inside a piece that is larger than its own.
-    pub(super) fn find_captives<D: Dim>(&mut self, bodies: &[Body<D>]) {
-        self.captives.clear();
+    pub fn find<D: Dim>(&mut self, spheres: &Spheres, pairs: &[SpherePair], bodies: &[Body<D>]) {
+        self.list.clear();
         self.captors.clear();
-        self.captors.resize(self.list.len(), None);
-        let counts: Vec<Vec<u32>> = bodies.iter().map(element_counts).collect();
-        let largest = counts.iter().flatten().copied().max().unwrap_or(0);
-        let own = |skin: u32| {
-            let skin = &self.list[skin as usize];
-            counts[skin.body as usize][skin.piece as usize]
+        self.captors.resize(spheres.list.len(), None);
+        let mut pieces: Vec<Vec<Extent>> = bodies.iter().map(extents).collect();
+        let largest = { pieces.iter().flatten() }.map(|piece| piece.count).max();
+        let own = |pieces: &[Vec<Extent>], place: u32| {
+            let sphere = &spheres.list[place as usize];
+            pieces[sphere.body as usize][sphere.piece as usize].count
         };
-        let small = self.awake.iter().copied();
-        let small: Vec<u32> = small.filter(|&skin| own(skin) < largest).collect();
+        let small = spheres.awake.iter().copied();
+        let small: Vec<u32> = small
+            .filter(|&place| Some(own(&pieces, place)) < largest)
+            .collect();
         if small.is_empty() {
             return;
         }
-        // Surface elements hold skins that are close to their own.
-        for pair in &self.pairs {
-            let [a, b] = pair.skins.map(|skin| &self.list[skin as usize]);
-            let [at, other] = pair.skins.map(|skin| self.centres[skin as usize]);
+        // Surface elements hold spheres that are close to their own.
+        for pair in pairs {
+            let [a, b] = pair.both(&spheres.list);
+            let [at, other] = pair.spheres.map(|place| spheres.centres[place as usize]);
             let (apart, reach) = (minus(at, other), a.radius + b.radius);
             if dot(apart, apart) > reach * reach {
                 continue;
             }
             for (inner, outer, at) in [(0, b, at), (1, a, other)] {
-                let skin = pair.skins[inner];
+                let place = pair.spheres[inner];
                 let captor = (outer.body, outer.piece);
-                let is_smaller = own(skin) < own(pair.skins[1 - inner]);
+                let is_smaller = own(&pieces, place) < own(&pieces, pair.spheres[1 - inner]);
                 let body = &bodies[outer.body as usize];
                 if is_smaller && body.holds(outer.element, three(at)) {
-                    self.captors[skin as usize] = Some(captor);
+                    self.captors[place as usize] = Some(captor);
                 }
             }
         }
-        let centres = small.iter().map(|&skin| self.centres[skin as usize]);
+        // Inner elements hold whoever is deeper inside; few pieces have anybody in their box.
+        for (sphere, &centre) in spheres.list.iter().zip(&spheres.centres) {
+            let piece = &mut pieces[sphere.body as usize][sphere.piece as usize];
+            piece.low = [0, 1, 2, 3].map(|axis: usize| piece.low[axis].min(centre[axis]));
+            piece.high = [0, 1, 2, 3].map(|axis: usize| piece.high[axis].max(centre[axis]));
+        }
+        let placed = |&place: &u32| (place, own(&pieces, place), spheres.centres[place as usize]);
+        let placed: Vec<(u32, u32, Row)> = small.iter().map(placed).collect();
+        let mut near: Vec<u32> = Vec::new();
+        for piece in { pieces.iter_mut().flatten() }.filter(|piece| piece.has_inner) {
+            piece.has_inner = false;
+            for &(place, count, centre) in &placed {
+                if count < piece.count && piece.encloses(centre) {
+                    piece.has_inner = true;
+                    near.push(place);
+                }
+            }
+        }
+        near.sort_unstable();
+        near.dedup();
+        let centres = near.iter().map(|&place| spheres.centres[place as usize]);
         let centres: Vec<Row> = centres.collect();
-        for same in inner_elements(bodies, &counts).chunk_by(|a, b| a.level == b.level) {
+        for same in inner_elements(bodies, &pieces).chunk_by(|a, b| a.level == b.level) {
             let widest = same.iter().map(|inner| inner.radius).fold(0.0, f32::max);
             let bins = Bins::new::<D>(&centres, widest);
             for inner in same {
-                bins.near::<D>(inner.centre, inner.radius, |place| {
-                    let (skin, at) = (small[place as usize], three(centres[place as usize]));
+                bins.near::<D>(inner.centre, inner.radius, |number| {
+                    let (place, at) = (near[number as usize], three(centres[number as usize]));
                     let body = &bodies[inner.captor.0 as usize];
-                    if own(skin) < inner.count && body.holds(inner.element, at) {
-                        self.captors[skin as usize] = Some(inner.captor);
+                    if own(&pieces, place) < inner.count && body.holds(inner.element, at) {
+                        self.captors[place as usize] = Some(inner.captor);
                     }
                 });
             }
         }
         let mut exits: BTreeMap<(u32, u32), Exits> = BTreeMap::new();
-        for skin in small {
-            let Some(captor) = self.captors[skin as usize] else {
+        for sphere in small {
+            let Some(captor) = self.captors[sphere as usize] else {
                 continue;
             };
             let exits = exits.entry(captor);
-            let exits = exits.or_insert_with(|| Exits::of::<D>(captor, self, bodies));
-            match exits.nearest::<D>(self.centres[skin as usize]) {
-                Some(exit) => self.captives.push(Captive { skin, exit }),
-                None => self.captors[skin as usize] = None,
+            let exits = exits.or_insert_with(|| Exits::of(captor, spheres, bodies));
+            match exits.nearest::<D>(spheres.centres[sphere as usize]) {
+                Some(exit) => self.list.push(Captive { sphere, exit }),
+                None => self.captors[sphere as usize] = None,
             }
         }
     }
 
-    /// Whether one of two skins is inside the piece of the other.
+    /// Something came off somewhere: where the exit went with it, the rest is a stranger until the next
+    /// tick.
+    pub fn tear(&mut self, spheres: &Spheres) {
+        for captive in &self.list {
+            let exit = &spheres.list[captive.exit as usize];
+            self.captors[captive.sphere as usize] = Some((exit.body, exit.piece));
+        }
+    }
+
+    /// Whether one of two spheres is inside the piece of the other.
     #[inline(always)]
-    pub fn is_inside(&self, a: usize, b: usize) -> bool {
-        let inside = |a: usize, b: usize| {
-            let (captor, skin) = (self.captors[a], &self.list[b]);
-            captor.is_some_and(|captor| captor == (skin.body, skin.piece))
+    pub fn is_inside(&self, places: [u32; 2], [a, b]: [&ContactSphere; 2]) -> bool {
+        let inside = |place: u32, other: &ContactSphere| {
+            let captor = self.captors.get(place as usize).copied().flatten();
+            captor.is_some_and(|captor| captor == (other.body, other.piece))
         };
-        inside(a, b) || inside(b, a)
+        inside(places[0], b) || inside(places[1], a)
     }
 }
 
-/// The skins of a piece that lead out.
+/// The spheres of a piece that lead out.
 struct Exits {
-    /// Their places among all skins, ascending.
-    skins: Vec<u32>,
+    /// Their places among all, ascending.
+    places: Vec<u32>,
     centres: Vec<Row>,
     bins: Bins,
     /// How far the bins are looked through [m].
@@ -117,17 +158,18 @@ struct Exits {
 }
 
 impl Exits {
-    fn of<D: Dim>((body, piece): (u32, u32), skins: &Skins, bodies: &[Body<D>]) -> Self {
-        let all = skins.list.iter().zip(0..);
-        let exits =
-            all.filter(|(skin, _)| (skin.body, skin.piece) == (body, piece) && skin.leads_out());
+    fn of<D: Dim>((body, piece): (u32, u32), spheres: &Spheres, bodies: &[Body<D>]) -> Self {
+        let all = spheres.list.iter().zip(0..);
+        let exits = all.filter(|(sphere, _)| {
+            (sphere.body, sphere.piece) == (body, piece) && sphere.leads_out()
+        });
         let exits: Vec<u32> = exits.map(|(_, place)| place).collect();
-        let centres = exits.iter().map(|&place| skins.centres[place as usize]);
+        let centres = exits.iter().map(|&place| spheres.centres[place as usize]);
         let centres: Vec<Row> = centres.collect();
         let reach = EXIT_REACH * bodies[body as usize].grid.voxel_size();
         Self {
             bins: Bins::new::<D>(&centres, reach),
-            skins: exits,
+            places: exits,
             centres,
             reach,
         }
@@ -146,9 +188,9 @@ impl Exits {
             nearest = nearer(nearest, number);
         });
         if nearest == none {
-            nearest = (0..self.skins.len() as u32).fold(none, nearer);
+            nearest = (0..self.places.len() as u32).fold(none, nearer);
         }
-        self.skins.get(nearest.1 as usize).copied()
+        self.places.get(nearest.1 as usize).copied()
     }
 }
 
@@ -163,16 +205,17 @@ struct Inner {
     radius: f32,
 }
 
-/// The elements without a bare face, by level.
-fn inner_elements<D: Dim>(bodies: &[Body<D>], counts: &[Vec<u32>]) -> Vec<Inner> {
+/// The elements without a bare face of the pieces that count as having any, by level.
+fn inner_elements<D: Dim>(bodies: &[Body<D>], pieces: &[Vec<Extent>]) -> Vec<Inner> {
     let mut found = Vec::new();
     for (place, body) in bodies.iter().enumerate() {
         for (id, element) in body.mesh.elements() {
             let level = element.cell.level;
-            if level == 0 && body.bare[id as usize] != 0 {
+            let piece = body.pieces.of_element(id);
+            let extent = &pieces[place][piece as usize];
+            if !extent.has_inner || level == 0 && body.bare[id as usize] != 0 {
                 continue;
             }
-            let piece = body.pieces.of_element(id);
             let nodes = element.nodes.iter();
             let places = nodes.map(|&node| body.position[node as usize]);
             let sum = places.clone().fold([0.0; 4], plus);
@@ -182,7 +225,7 @@ fn inner_elements<D: Dim>(bodies: &[Body<D>], counts: &[Vec<u32>]) -> Vec<Inner>
                 level,
                 element: id,
                 captor: (place as u32, piece),
-                count: counts[place][piece as usize],
+                count: extent.count,
                 centre,
                 radius: furthest.fold(0.0, f32::max).sqrt(),
             });
@@ -192,13 +235,39 @@ fn inner_elements<D: Dim>(bodies: &[Body<D>], counts: &[Vec<u32>]) -> Vec<Inner>
     found
 }
 
-/// The number of elements of each piece.
-fn element_counts<D: Dim>(body: &Body<D>) -> Vec<u32> {
-    let mut counts = vec![0; body.pieces.list.len()];
-    for (id, _) in body.mesh.elements() {
-        counts[body.pieces.of_element(id) as usize] += 1;
+/// How large a piece is.
+#[derive(Copy, Clone, Debug)]
+struct Extent {
+    /// Number of its elements.
+    count: u32,
+    /// Whether some of them have no bare face.
+    has_inner: bool,
+    /// The box around the middles of its contact spheres [m].
+    low: Row,
+    high: Row,
+}
+
+impl Extent {
+    fn encloses(&self, at: Row) -> bool {
+        (0..3).all(|axis| (self.low[axis]..=self.high[axis]).contains(&at[axis]))
     }
-    counts
+}
+
+/// The pieces of a body, by number, without their boxes.
+fn extents<D: Dim>(body: &Body<D>) -> Vec<Extent> {
+    let none = Extent {
+        count: 0,
+        has_inner: false,
+        low: [f32::MAX; 4],
+        high: [f32::MIN; 4],
+    };
+    let mut extents = vec![none; body.pieces.list.len()];
+    for (id, element) in body.mesh.elements() {
+        let extent = &mut extents[body.pieces.of_element(id) as usize];
+        extent.count += 1;
+        extent.has_inner |= element.cell.level > 0 || body.bare[id as usize] == 0;
+    }
+    extents
 }
 
 impl<D: Dim> Body<D> {
@@ -255,7 +324,7 @@ mod tests {
             .collect();
         let reach = 0.1;
         let exits = Exits {
-            skins: (0..400).map(|number| 3 * number).collect(),
+            places: (0..400).map(|number| 3 * number).collect(),
             bins: Bins::new::<Dim3>(&centres, reach),
             centres,
             reach,

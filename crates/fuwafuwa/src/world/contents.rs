@@ -18,9 +18,8 @@ impl<D: Dim> World<D> {
         let shortest = f64::from(TICK) / f64::from(self.settings.most_substeps);
         body.scale_stiffness_for(shortest);
         self.bodies.push(body);
+        self.nearby.spheres.forget();
         self.cooldowns.push(Cooldowns::default());
-        // Its voxels may be larger, and lists made for small ones do not bear as much.
-        self.nearby.doubt();
         let place = self.bodies.len() - 1;
         // It may have fallen asleep elsewhere.
         let pieces = self.pieces_of(place);
@@ -41,7 +40,7 @@ impl<D: Dim> World<D> {
         }
         self.obstacles.push(Obstacle { shape, friction });
         // Places of the hands among the colliders move up.
-        self.nearby.forget_node_pairs();
+        self.nearby.nodes.list.clear();
         Ok(self.obstacles.len() - 1)
     }
 
@@ -56,7 +55,6 @@ impl<D: Dim> World<D> {
             vector[D::N..].fill(0.0);
         }
         self.manipulators.push(manipulator);
-        self.nearby.expire();
         Ok(self.manipulators.len() - 1)
     }
 
@@ -83,6 +81,7 @@ impl<D: Dim> World<D> {
     pub fn cut(&mut self, body: usize, blade: &Blade) -> usize {
         let pieces = self.pieces_of(body);
         self.wake(&pieces);
+        self.nearby.spheres.forget();
         let cut = self.bodies[body].cut(blade);
         let CutReport { released, parted } = cut.expect("a release leaves the mesh whole");
         let (body, energy) = (body as u32, 0.0);
@@ -91,7 +90,6 @@ impl<D: Dim> World<D> {
         self.events.extend(releases);
         let parts = parted.iter().map(|&piece| Event::Parted { body, piece });
         self.events.extend(parts);
-        self.nearby.expire();
         released.len()
     }
 
@@ -113,7 +111,7 @@ impl<D: Dim> World<D> {
     pub fn body_mut(&mut self, body: usize) -> &mut Body<D> {
         let pieces = self.pieces_of(body);
         self.wake(&pieces);
-        self.nearby.doubt();
+        self.nearby.spheres.forget();
         &mut self.bodies[body]
     }
 

@@ -1,0 +1,421 @@
+//! Which nodes may touch rigid shapes. Every node counts, so that an element squashed flat lets none
+//! through.
+
+use super::bins::Bins;
+use super::pairs::MARGIN;
+use super::{Collider, Impulse};
+use crate::body::Body;
+use crate::dim::Dim;
+use crate::shape::Shape;
+use crate::solve::Row;
+use crate::vector::{dot, length, minus, plus, scaled, three};
+use std::ops;
+
+/// How far a node and how far a hand may come beyond what their speed says, in voxels, before they are
+/// looked for again: larger means longer lists, smaller more looks. What pulls a hand is stronger.
+const SLACK: f32 = 0.4;
+const HAND_SLACK: f32 = 1.0;
+
+/// Nodes in a square of so many voxels are tested against a rigid shape together, before each is on
+/// its own.
+const SQUARE: f32 = 4.0;
+
+/// A node that may touch a rigid shape.
+#[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct NodePair {
+    /// Place among the colliders.
+    pub collider: u32,
+    /// Place among the bodies.
+    pub body: u32,
+    /// Node id.
+    pub node: u32,
+    /// What passed between them.
+    pub impulse: Impulse,
+    /// How far any node must have come, since all were looked for, before this one may be where it
+    /// touches a shape that stands still [m].
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub clear: f32,
+}
+
+/// The nodes that may touch rigid shapes in this tick.
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct NodePairs {
+    /// By collider, body and node, asleep or not.
+    pub list: Vec<NodePair>,
+    /// How far the fastest nodes have come since all were looked for [m].
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub travel: f32,
+    /// Where each node was when it was last looked for, and as the fourth number how far it may come
+    /// from there, by body and node [m].
+    #[cfg_attr(feature = "serde", serde(skip))]
+    anchors: Vec<Vec<Row>>,
+    /// How far nodes may still come before one may have come too far [m].
+    #[cfg_attr(feature = "serde", serde(skip))]
+    spare: f32,
+    /// How far each collider may come from where it was, and how far it has come [m]; nothing while all
+    /// must be looked for.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    ranges: Vec<Range>,
+    /// Nodes that are gone, new or awake since: body and node.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    changed: Vec<(u32, u32)>,
+}
+
+/// How far a collider may come, and how far it has come [m].
+#[derive(Copy, Clone, Debug)]
+struct Range {
+    most: f32,
+    come: f32,
+}
+
+impl NodePairs {
+    /// What passed in the last tick is settled. All will be looked for.
+    pub fn start_tick(&mut self) {
+        for pair in &mut self.list {
+            pair.impulse.total = 0.0;
+        }
+        self.ranges.clear();
+        self.changed.clear();
+    }
+
+    /// Nodes of a body are gone or new.
+    pub fn tear(&mut self, body: u32, nodes: &[u32]) {
+        self.changed.extend(nodes.iter().map(|&node| (body, node)));
+    }
+
+    /// Pieces woke, given by body and number in ascending order: they meet walls again.
+    pub fn wake<D: Dim>(&mut self, pieces: &[(u32, u32)], bodies: &[Body<D>]) {
+        for (body, place) in bodies.iter().zip(0..) {
+            if pieces.iter().all(|&(body, _)| body != place) {
+                continue;
+            }
+            let woke = |node| {
+                pieces
+                    .binary_search(&(place, body.pieces.of_node(node)))
+                    .is_ok()
+            };
+            let woken = body.awake.iter().filter(|&&node| woke(node));
+            self.changed.extend(woken.map(|&node| (place, node)));
+        }
+    }
+
+    /// The bodies have moved, no node of them further than by `distance` [m].
+    pub fn pass(&mut self, distance: f32) {
+        self.travel += distance;
+        self.spare -= distance;
+    }
+
+    /// Brings the list up to date; a substep takes `duration` [s], and `left` [s] of the tick are to
+    /// come.
+    pub fn follow<D: Dim>(
+        &mut self,
+        bodies: &[Body<D>],
+        colliders: &[Collider],
+        duration: f32,
+        left: f32,
+    ) {
+        for (range, collider) in self.ranges.iter_mut().zip(colliders) {
+            range.come += length(collider.velocity) * duration;
+        }
+        let outrun = self.ranges.iter().any(|range| range.come > range.most);
+        if outrun || self.ranges.len() != colliders.len() {
+            self.find_all(bodies, colliders, left);
+            return;
+        }
+        if self.spare <= 0.0 {
+            self.find_strayed(bodies);
+        }
+        if self.changed.is_empty() {
+            return;
+        }
+        let mut changed = std::mem::take(&mut self.changed);
+        changed.sort_unstable();
+        changed.dedup();
+        let mut found = Vec::new();
+        for &(place, node) in &changed {
+            self.anchor(place, node, bodies, left);
+        }
+        for (index, (collider, range)) in colliders.iter().zip(&self.ranges).enumerate() {
+            let is_near = |&&(place, node): &&(u32, u32)| {
+                let body = &bodies[place as usize];
+                let reach = self.reach(place, node, body.grid.voxel_size());
+                let at = three(body.position[node as usize]);
+                body.mesh.is_alive(node) && collider.shape.distance(at).0 <= reach + range.most
+            };
+            let near = changed.iter().filter(is_near);
+            found.extend(near.map(|&(body, node)| (index as u32, body, node)));
+        }
+        self.merge(&found, |pair| {
+            changed.binary_search(&(pair.body, pair.node)).is_err()
+        });
+        self.spare = 0.0;
+    }
+
+    /// Looks for all nodes that may come to a collider in what is `left` of the tick [s]. Those that
+    /// sleep meet hands only.
+    fn find_all<D: Dim>(&mut self, bodies: &[Body<D>], colliders: &[Collider], left: f32) {
+        self.changed.clear();
+        (self.travel, self.spare) = (0.0, 0.0);
+        let sizes = bodies.iter().map(|body| body.grid.voxel_size());
+        let size = sizes.fold(0.0, f32::max);
+        let range = |collider: &Collider| {
+            let slack = if collider.is_hand {
+                HAND_SLACK * size
+            } else {
+                0.0
+            };
+            let most = slack + length(collider.velocity) * left;
+            Range { most, come: 0.0 }
+        };
+        self.ranges.clear();
+        self.ranges.extend(colliders.iter().map(range));
+        self.anchors.resize(bodies.len(), Vec::new());
+        let mut squares = Vec::new();
+        for (body, place) in bodies.iter().zip(0..) {
+            for &node in &body.awake {
+                self.anchor(place, node, bodies, left);
+            }
+            squares.push(Squares::of(body, |node| {
+                self.reach(place, node, body.grid.voxel_size())
+            }));
+        }
+        let mut found = Vec::new();
+        let mut near: Vec<u32> = Vec::new();
+        for (index, (collider, range)) in colliders.iter().zip(&self.ranges).enumerate() {
+            for (place, (squares, body)) in squares.iter().zip(bodies).enumerate() {
+                near.clear();
+                squares.within(range.most, &collider.shape, &mut near);
+                if collider.is_hand && body.awake.len() < body.mesh.node_count() {
+                    let reach = range.most + MARGIN * body.grid.voxel_size();
+                    let is_near = |&node: &u32| {
+                        let at = three(body.position[node as usize]);
+                        body.pieces.sleeps(node) && collider.shape.distance(at).0 <= reach
+                    };
+                    near.extend(body.mesh.nodes().map(|(node, _)| node).filter(is_near));
+                }
+                // What is near comes square by square.
+                near.sort_unstable();
+                found.extend(near.iter().map(|&node| (index as u32, place as u32, node)));
+            }
+        }
+        self.merge(&found, |_| false);
+    }
+
+    /// Adds the nodes that came further than they might to the changed ones; notes what the others have
+    /// to spare.
+    fn find_strayed<D: Dim>(&mut self, bodies: &[Body<D>]) {
+        let mut spare = f32::INFINITY;
+        for ((body, place), anchors) in bodies.iter().zip(0..).zip(&self.anchors) {
+            for &node in &body.awake {
+                let Some(&[x, y, z, most]) = anchors.get(node as usize) else {
+                    continue;
+                };
+                let come = minus(body.position[node as usize], [x, y, z, 0.0]);
+                let come = dot(come, come);
+                if come > most * most {
+                    self.changed.push((place, node));
+                } else {
+                    let left = most - come.sqrt();
+                    spare = if left < spare { left } else { spare };
+                }
+            }
+        }
+        self.spare = spare;
+    }
+
+    /// Notes where a node is, and how far it may come until the end of the tick.
+    fn anchor<D: Dim>(&mut self, place: u32, node: u32, bodies: &[Body<D>], left: f32) {
+        let (body, node) = (&bodies[place as usize], node as usize);
+        let anchors = &mut self.anchors[place as usize];
+        anchors.resize(body.position.len(), [0.0; 4]);
+        let [x, y, z, _] = body.position[node];
+        let speed = length(body.velocity[node]);
+        anchors[node] = [x, y, z, SLACK * body.grid.voxel_size() + speed * left];
+    }
+
+    /// How close to a wall a node is listed [m]; `size` [m] is that of its voxels.
+    fn reach(&self, body: u32, node: u32, size: f32) -> f32 {
+        self.anchors[body as usize][node as usize][3] + MARGIN * size
+    }
+
+    /// Makes the new list of those just found and those of the old ones that stay. Pairs that were
+    /// known keep their impulses.
+    fn merge(&mut self, found: &[Key], stays: impl Fn(&NodePair) -> bool) {
+        let old = std::mem::take(&mut self.list);
+        let mut old = old.into_iter().peekable();
+        for &key in found {
+            while let Some(pair) = old.next_if(|pair| pair.key() < key) {
+                if stays(&pair) {
+                    self.list.push(pair);
+                }
+            }
+            let known = old.next_if(|pair| pair.key() == key);
+            let (collider, body, node) = key;
+            self.list.push(NodePair {
+                collider,
+                body,
+                node,
+                impulse: known.map_or(Impulse::default(), |pair| pair.impulse),
+                clear: 0.0,
+            });
+        }
+        self.list.extend(old.filter(stays));
+    }
+}
+
+/// What a pair is known by, and sorted by: collider, body and node.
+type Key = (u32, u32, u32);
+
+impl NodePair {
+    fn key(&self) -> Key {
+        (self.collider, self.body, self.node)
+    }
+
+    /// The number of the piece; nothing when another body stands here since.
+    pub fn piece<D: Dim>(&self, bodies: &[Body<D>]) -> Option<u32> {
+        let body = bodies.get(self.body as usize)?;
+        let is_known = (self.node as usize) < body.mesh.node_capacity();
+        is_known.then(|| body.pieces.of_node(self.node))
+    }
+}
+
+/// The nodes of a body that are awake, those in a square of space together: most squares are out of
+/// reach as a whole, however the body is torn.
+struct Squares {
+    /// By their numbers in the bins; each with how close to a wall it is listed [m].
+    nodes: Vec<(u32, f32)>,
+    bins: Bins,
+    list: Vec<Square>,
+}
+
+/// The places of nodes in the bins, a ball around them, and how close the first of them are listed [m].
+struct Square {
+    points: ops::Range<usize>,
+    centre: Row,
+    radius: f32,
+    reach: f32,
+}
+
+impl Squares {
+    fn of<D: Dim>(body: &Body<D>, reach: impl Fn(u32) -> f32) -> Self {
+        let nodes = body.awake.iter().map(|&node| (node, reach(node)));
+        let nodes: Vec<(u32, f32)> = nodes.collect();
+        let points = nodes.iter().map(|&(node, _)| body.position[node as usize]);
+        let points: Vec<Row> = points.collect();
+        let bins = Bins::new::<D>(&points, SQUARE * body.grid.voxel_size());
+        let squares = { bins.filled() }.map(|range| Square::around(&bins, range, &nodes));
+        Self {
+            list: squares.collect(),
+            nodes,
+            bins,
+        }
+    }
+
+    /// Adds the nodes that are no further from a shape than their reach and `range` [m].
+    fn within(&self, range: f32, shape: &Shape, near: &mut Vec<u32>) {
+        let is_near = |at: Row, reach: f32| shape.distance(three(at)).0 <= reach;
+        for square in &self.list {
+            if !is_near(square.centre, square.radius + square.reach + range) {
+                continue;
+            }
+            for (number, at) in square.points.clone().map(|place| self.bins.point(place)) {
+                let (node, reach) = self.nodes[number as usize];
+                if is_near(at, reach + range) {
+                    near.push(node);
+                }
+            }
+        }
+    }
+}
+
+impl Square {
+    fn around(bins: &Bins, points: ops::Range<usize>, nodes: &[(u32, f32)]) -> Self {
+        let (mut low, mut high, mut furthest) = ([f32::MAX; 4], [f32::MIN; 4], 0.0f32);
+        for (number, at) in points.clone().map(|place| bins.point(place)) {
+            for axis in 0..4 {
+                low[axis] = low[axis].min(at[axis]);
+                high[axis] = high[axis].max(at[axis]);
+            }
+            furthest = furthest.max(nodes[number as usize].1);
+        }
+        let centre = scaled(plus(low, high), 0.5);
+        Self {
+            points,
+            centre,
+            radius: length(minus(high, centre)),
+            reach: furthest,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dim::{Dim2, Dim3};
+    use crate::grid::VoxelGrid;
+    use crate::material::Material;
+    use std::collections::BTreeSet;
+
+    /// A body is torn at random between two walls; the list against all nodes there are.
+    fn check<D: Dim>(n: usize) {
+        let grid = VoxelGrid::<D>::ball(n, 1.0).expect("a ball is not empty");
+        let mut body = Body::new(grid, &[Material::default()]).expect("the material is good");
+        let size = body.grid.voxel_size();
+        let wall = |normal, offset| Collider {
+            shape: Shape::HalfSpace { normal, offset },
+            velocity: [0.0; 4],
+            inverse_mass: 0.0,
+            friction: 0.0,
+            is_hand: false,
+        };
+        let walls = [wall([0.0, 1.0, 0.0], 0.3), wall([-1.0, 0.0, 0.0], -0.8)];
+        let mut seed = 5u32;
+        let mut random = |below: usize| {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) as usize % below
+        };
+        let mut pairs = NodePairs::default();
+        body.refresh_awake();
+        let (mut gone, mut new) = (0, 0);
+        for _ in 0..60 {
+            pairs.follow(std::slice::from_ref(&body), &walls, 0.001, 0.016);
+            let listed: BTreeSet<Key> = pairs.list.iter().map(NodePair::key).collect();
+            assert_eq!(listed.len(), pairs.list.len());
+            assert!(pairs.list.is_sorted_by_key(NodePair::key));
+            assert!(listed.iter().all(|&(.., node)| body.mesh.is_alive(node)));
+            for (node, _) in body.mesh.nodes() {
+                let at = three(body.position[node as usize]);
+                for (wall, index) in walls.iter().zip(0..) {
+                    let is_close = wall.shape.distance(at).0 <= MARGIN * size;
+                    assert!(!is_close || listed.contains(&(index, 0, node)));
+                }
+            }
+            let sides = (0..4).map(|_| {
+                let mut at = [0; 3];
+                (0..D::N).for_each(|axis| at[axis] = random(n + 1) as i32);
+                (at, 1 + random((1 << D::CORNERS) - 2) as u8)
+            });
+            let before = body.mesh.node_count();
+            let torn = body.tear(&sides.collect::<Vec<_>>());
+            let torn = torn.expect("a release leaves the mesh whole");
+            let alive = |&&node: &&u32| body.mesh.is_alive(node);
+            new += torn.nodes.iter().filter(alive).count();
+            gone += torn.nodes.len() - torn.nodes.iter().filter(alive).count();
+            assert!(body.mesh.node_count() == before || !torn.nodes.is_empty());
+            body.refresh_awake();
+            pairs.tear(0, &torn.nodes);
+        }
+        assert!(
+            new > 50 && (gone > 0 || D::N == 2),
+            "{new} new, {gone} gone"
+        );
+    }
+
+    #[test]
+    fn nodes_near_a_wall_are_known_after_every_tear() {
+        check::<Dim2>(16);
+        check::<Dim3>(10);
+    }
+}

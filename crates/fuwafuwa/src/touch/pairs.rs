@@ -1,0 +1,648 @@
+//! Which contact spheres may touch each other.
+//!
+//! They are looked for once a tick, along the way that each is going to take: a straight *path*, from
+//! which it may stray a little. Only those that have strayed further, woke or came to the surface
+//! are looked for again; so no pair can be missed, whatever moves.
+//!
+//! ```text
+//!    ●──────────┤        two paths make a pair when their spheres, widened by what they may stray,
+//!      ╲                 come close enough at the same time
+//!    ●──╲───────┤
+//! ```
+
+use super::Impulse;
+use super::bins::Bins;
+use super::sphere::ContactSphere;
+use super::spheres::{NONE, Spheres};
+use crate::body::Body;
+use crate::dim::Dim;
+use crate::solve::Row;
+use crate::threads::{self, SHARE};
+use crate::vector::{dot, length, minus, plus, scaled};
+
+/// Contacts are looked for out to this many voxels, so that none comes as a surprise.
+pub const MARGIN: f32 = 0.3;
+/// How far a sphere may stray from its path, in voxels: more makes longer lists, less more looks.
+const STRAY: f32 = 0.35;
+/// The share of spheres whose paths are long, and how long those of the rest may be at the most, as a
+/// share of the reach: who strays compares its path with all long ones, and looks around for short ones.
+const LONG_SHARE: usize = 64;
+const LONGEST_SHORT: f32 = 0.25;
+/// Width of the bins, as a share of the reach: most find all they look for in the bins next to theirs.
+const BIN_WIDTH: f32 = 1.15;
+/// Looking for all pairs takes, for each sphere that is awake, as long as comparing so many paths.
+const COMPARED: usize = 64;
+
+/// Spheres whose pairs one thread looks for at a time.
+const LOOKS: usize = SHARE / 8;
+
+/// Two spheres that may touch.
+#[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct SpherePair {
+    /// Places among the spheres, ascending.
+    pub spheres: [u32; 2],
+    /// What passed between them.
+    pub impulse: Impulse,
+    /// Whether they met face to face: if one is behind the other now, it was forced there.
+    pub met_in_front: bool,
+}
+
+/// The way of a sphere while its pairs hold.
+#[derive(Copy, Clone, Debug, Default)]
+struct Path {
+    /// Where it was, or would have been, when all were looked for [m].
+    from: Row,
+    /// [m/s]
+    velocity: Row,
+}
+
+impl Path {
+    /// Where it is so long [s] after all were looked for [m].
+    #[inline(always)]
+    fn at(&self, time: f32) -> Row {
+        plus(self.from, scaled(self.velocity, time))
+    }
+}
+
+/// A stretch of time since all were looked for: its middle and half its length [s].
+#[derive(Copy, Clone, Debug, Default)]
+struct Span {
+    middle: f32,
+    half: f32,
+}
+
+/// The pairs of spheres that may touch in this tick.
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct SpherePairs {
+    /// Ascending.
+    pub list: Vec<SpherePair>,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    paths: Vec<Path>,
+    /// Where the middles of all paths are; nothing while all must be looked for.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    bins: Option<Bins>,
+    /// The mean velocity of what moves, as seen from which paths are short or long [m/s], and half the
+    /// length of the longest of the short ones [m].
+    #[cfg_attr(feature = "serde", serde(skip))]
+    frame: Row,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    short: f32,
+    /// Spheres that bins do not find: with long paths, or with other ones than they began with.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    loose: Vec<u32>,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    is_loose: Vec<bool>,
+    /// Spheres to be looked for again, beside those that stray.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub changed: Vec<u32>,
+    /// Since all were looked for, and from then to the end of the tick [s].
+    #[cfg_attr(feature = "serde", serde(skip))]
+    elapsed: f32,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    duration: f32,
+    /// How far anything may still come before one may have strayed [m], and the greatest speed along
+    /// a path [m/s].
+    #[cfg_attr(feature = "serde", serde(skip))]
+    spare: f32,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pace: f32,
+}
+
+impl SpherePairs {
+    /// All pairs will be looked for.
+    pub fn start_tick(&mut self) {
+        self.bins = None;
+        self.changed.clear();
+        for pair in &mut self.list {
+            pair.impulse.total = 0.0;
+        }
+    }
+
+    /// The spheres have new places in their list: each that had one before is told its place now.
+    pub fn renumber(&mut self, places: &[u32]) {
+        self.list.retain_mut(|pair| {
+            let place = |old: u32| places.get(old as usize).copied().unwrap_or(NONE);
+            let [a, b] = pair.spheres.map(place);
+            pair.spheres = [a.min(b), a.max(b)];
+            if a > b {
+                pair.impulse.dragged = scaled(pair.impulse.dragged, -1.0);
+            }
+            pair.spheres[1] != NONE
+        });
+        self.list.sort_unstable_by_key(|pair| pair.spheres);
+    }
+
+    /// So much time has passed [s], in which no node came further than by `distance` [m].
+    pub fn pass(&mut self, duration: f32, distance: f32) {
+        self.elapsed += duration;
+        self.spare -= distance + self.pace * duration;
+    }
+
+    /// Follows the spheres, and brings the list up to date; `left` [s] of the tick are to come. Returns
+    /// whether it changed.
+    pub fn follow<D: Dim>(&mut self, spheres: &mut Spheres, bodies: &[Body<D>], left: f32) -> bool {
+        if self.bins.is_none() {
+            spheres.move_all(bodies);
+            self.find_all(spheres, bodies, left);
+            return true;
+        }
+        if self.spare > 0.0 && self.changed.is_empty() {
+            spheres.move_close(bodies);
+        } else {
+            spheres.move_all(bodies);
+            self.find_strayed(spheres);
+        }
+        let mut changed = std::mem::take(&mut self.changed);
+        if changed.is_empty() {
+            return false;
+        }
+        changed.sort_unstable();
+        changed.dedup();
+        let compared = changed.len() * (self.loose.len() + changed.len());
+        if compared > COMPARED * spheres.awake.len() {
+            self.find_all(spheres, bodies, left);
+        } else {
+            self.find_again(&changed, spheres, bodies);
+        }
+        true
+    }
+
+    /// Adds those that have strayed from their paths to the changed ones; notes what the others have
+    /// to spare.
+    fn find_strayed(&mut self, spheres: &Spheres) {
+        let mut spare = f32::INFINITY;
+        for &place in &spheres.awake {
+            let Some(path) = self.paths.get(place as usize) else {
+                continue;
+            };
+            let strayed = minus(spheres.centres[place as usize], path.at(self.elapsed));
+            let (strayed, most) = (dot(strayed, strayed), most_stray(spheres, place));
+            if strayed > most * most {
+                self.changed.push(place);
+            } else {
+                let left = most - strayed.sqrt();
+                spare = if left < spare { left } else { spare };
+            }
+        }
+        self.spare = spare;
+    }
+
+    /// Lays the path of a sphere anew from where it is.
+    fn lay<D: Dim>(&mut self, place: u32, spheres: &Spheres, bodies: &[Body<D>]) {
+        let mut velocity = [0.0; 4];
+        if !spheres.list[place as usize].asleep {
+            velocity = spheres.velocity(place, bodies);
+        }
+        let now = spheres.centres[place as usize];
+        let from = minus(now, scaled(velocity, self.elapsed));
+        self.paths[place as usize] = Path { from, velocity };
+        let speed = length(velocity);
+        self.pace = if speed > self.pace { speed } else { self.pace };
+    }
+
+    /// Looks for all pairs.
+    fn find_all<D: Dim>(&mut self, spheres: &Spheres, bodies: &[Body<D>], left: f32) {
+        let count = spheres.list.len();
+        self.changed.clear();
+        (self.elapsed, self.duration) = (0.0, left);
+        (self.spare, self.pace) = (0.0, 0.0);
+        self.paths.resize(count, Path::default());
+        (0..count as u32).for_each(|place| self.lay(place, spheres, bodies));
+        self.loose.clear();
+        self.is_loose.clear();
+        self.is_loose.resize(count, false);
+        let mut found = Vec::new();
+        if !spheres.awake.is_empty() {
+            self.set_frame(spheres);
+            let span = self.span();
+            let largest = spheres.list.iter().map(|sphere| sphere.radius);
+            let reach = widened(2.0 * largest.fold(0.0, f32::max));
+            // Half the length of each path; sleepers have none.
+            let sweep = |(path, sphere): (&Path, &ContactSphere)| match sphere.asleep {
+                true => -1.0,
+                false => length(minus(path.velocity, self.frame)) * span.half,
+            };
+            let sweeps: Vec<f32> = self.paths.iter().zip(&spheres.list).map(sweep).collect();
+            self.short = longest_short(&sweeps, LONGEST_SHORT * reach);
+            for (place, &sweep) in (0..).zip(&sweeps) {
+                if sweep > self.short {
+                    self.loose.push(place);
+                    self.is_loose[place as usize] = true;
+                }
+            }
+            let middles: Vec<Row> = self.paths.iter().map(|path| path.at(span.middle)).collect();
+            let bins = Bins::new::<D>(&middles, BIN_WIDTH * reach);
+            let this = &*self;
+            found = threads::map(spheres.awake.chunks(LOOKS), |places| {
+                let mut found = Vec::new();
+                for &place in places {
+                    // Of two the one with the longer path looks for the other.
+                    let rank = |place: u32| (sweeps[place as usize], place);
+                    let (at, sweep) = (middles[place as usize], sweeps[place as usize]);
+                    bins.near::<D>(at, reach + 2.0 * sweep, |other| {
+                        if rank(other) < rank(place) {
+                            this.meet(place, other, span, spheres, &mut found);
+                        }
+                    });
+                }
+                found
+            });
+            self.bins = Some(bins);
+        }
+        self.merge(&found, &vec![true; count]);
+    }
+
+    /// Looks again for the pairs of some, given in ascending order; those of the others stay.
+    fn find_again<D: Dim>(&mut self, changed: &[u32], spheres: &Spheres, bodies: &[Body<D>]) {
+        let count = spheres.list.len();
+        self.paths.resize(count, Path::default());
+        self.is_loose.resize(count, false);
+        let mut is_changed = vec![false; count];
+        for &place in changed {
+            self.lay(place, spheres, bodies);
+            is_changed[place as usize] = true;
+            if !std::mem::replace(&mut self.is_loose[place as usize], true) {
+                self.loose.push(place);
+            }
+        }
+        let span = Span {
+            middle: 0.5 * (self.elapsed + self.duration),
+            half: 0.5 * (self.duration - self.elapsed).max(0.0),
+        };
+        let bins = self.bins.as_ref().expect("all were looked for before");
+        let largest = spheres.list.iter().map(|sphere| sphere.radius);
+        let reach = widened(2.0 * largest.fold(0.0, f32::max));
+        let this = &*self;
+        let found = threads::map(changed.chunks(LOOKS), |places| {
+            let mut found = Vec::new();
+            for &place in places {
+                let path = &this.paths[place as usize];
+                // In the frame, where the others hardly move.
+                let shift = scaled(this.frame, span.middle - this.span().middle);
+                let at = minus(path.at(span.middle), shift);
+                let sweep = length(minus(path.velocity, this.frame)) * span.half;
+                bins.near::<D>(at, reach + this.short + sweep, |other| {
+                    if !this.is_loose[other as usize] {
+                        this.meet(place, other, span, spheres, &mut found);
+                    }
+                });
+                for &other in &this.loose {
+                    if !is_changed[other as usize] || other > place {
+                        this.meet(place, other, span, spheres, &mut found);
+                    }
+                }
+            }
+            found
+        });
+        self.merge(&found, &is_changed);
+        self.spare = 0.0;
+    }
+
+    /// From when all were looked for to the end of the tick.
+    fn span(&self) -> Span {
+        let half = 0.5 * self.duration;
+        Span { middle: half, half }
+    }
+
+    /// What all have in common does not count, while none sleeps.
+    fn set_frame(&mut self, spheres: &Spheres) {
+        self.frame = [0.0; 4];
+        if spheres.awake.len() < spheres.list.len() {
+            return;
+        }
+        let sum = { self.paths.iter() }.fold([0.0; 4], |sum, path| plus(sum, path.velocity));
+        let mean = scaled(sum, 1.0 / self.paths.len() as f32);
+        // What is no velocity is quarantined after the tick.
+        if mean.iter().all(|along| along.is_finite()) {
+            self.frame = mean;
+        }
+    }
+
+    /// Adds two spheres to those found, if they may touch in a span of time.
+    #[inline(always)]
+    fn meet(&self, a: u32, b: u32, span: Span, spheres: &Spheres, found: &mut Vec<[u32; 2]>) {
+        let [own, other] = [a, b].map(|place| &spheres.list[place as usize]);
+        if own.asleep && other.asleep || own.is_held_to(other) {
+            return;
+        }
+        let [first, second] = [a, b].map(|place| &self.paths[place as usize]);
+        let closing = minus(first.velocity, second.velocity);
+        let apart = minus(first.from, second.from);
+        let apart = plus(apart, scaled(closing, span.middle));
+        let reach = widened(own.radius + other.radius) + length(closing) * span.half;
+        if dot(apart, apart) <= reach * reach {
+            found.push([a.min(b), a.max(b)]);
+        }
+    }
+
+    /// Makes the new list of pairs from those just found and the old ones of which neither has
+    /// changed. Pairs that were known keep their impulses.
+    fn merge(&mut self, found: &[Vec<[u32; 2]>], is_changed: &[bool]) {
+        let stays =
+            |pair: &SpherePair| !pair.spheres.iter().any(|&place| is_changed[place as usize]);
+        let mut found = by_first(found, is_changed.len());
+        let merged = threads::map(shares(&mut found, &self.list), |(found, old)| {
+            for same in found.chunk_by_mut(|a, b| a[0] == b[0]) {
+                same.sort_unstable();
+            }
+            let mut pairs = Vec::with_capacity(old.len().max(found.len()));
+            let mut old = old.iter().peekable();
+            for &mut spheres in found {
+                while let Some(pair) = old.next_if(|pair| pair.spheres < spheres) {
+                    if stays(pair) {
+                        pairs.push(*pair);
+                    }
+                }
+                let known = old.next_if(|pair| pair.spheres == spheres);
+                pairs.push(SpherePair {
+                    spheres,
+                    impulse: known.map_or(Impulse::default(), |pair| pair.impulse),
+                    met_in_front: known.is_some_and(|pair| pair.met_in_front),
+                });
+            }
+            pairs.extend(old.filter(|pair| stays(pair)));
+            pairs
+        });
+        self.list = merged.concat();
+    }
+}
+
+/// How far a sphere may stray from its path [m].
+#[inline(always)]
+fn most_stray(spheres: &Spheres, place: u32) -> f32 {
+    STRAY * 2.0 * spheres.list[place as usize].radius
+}
+
+/// How close two paths must come for a pair, whose spheres touch at this distance [m].
+#[inline(always)]
+fn widened(touching: f32) -> f32 {
+    (1.0 + MARGIN + 2.0 * STRAY) * touching
+}
+
+/// What all sweeps but those of a few long paths stay below [m], and `most` [m] at the most.
+fn longest_short(sweeps: &[f32], most: f32) -> f32 {
+    let mut sorted = sweeps.to_vec();
+    let place = sorted.len() - 1 - sorted.len() / LONG_SHARE;
+    let (_, &mut short, _) = sorted.select_nth_unstable_by(place, f32::total_cmp);
+    if short < most { short } else { most }
+}
+
+/// Both lists of pairs, which ascend by their first spheres, cut at the same ones.
+fn shares<'a>(
+    mut found: &'a mut [[u32; 2]],
+    mut old: &'a [SpherePair],
+) -> impl Iterator<Item = (&'a mut [[u32; 2]], &'a [SpherePair])> {
+    let mut is_done = false;
+    std::iter::from_fn(move || {
+        if is_done {
+            return None;
+        }
+        let next = found.get(SHARE).map(|pair| pair[0] + 1);
+        is_done = next.is_none();
+        let next = next.unwrap_or(u32::MAX);
+        let end = found.partition_point(|pair| pair[0] < next);
+        let own;
+        (own, found) = std::mem::take(&mut found).split_at_mut(end);
+        let end = old.partition_point(|pair| pair.spheres[0] < next);
+        let known;
+        (known, old) = old.split_at(end);
+        Some((own, known))
+    })
+}
+
+impl SpherePair {
+    /// Its spheres among all of them.
+    pub fn both<'a>(&self, spheres: &'a [ContactSphere]) -> [&'a ContactSphere; 2] {
+        self.spheres.map(|place| &spheres[place as usize])
+    }
+}
+
+/// Pairs of numbers below `count`, ascending by the first.
+fn by_first(pairs: &[Vec<[u32; 2]>], count: usize) -> Vec<[u32; 2]> {
+    let mut end = vec![0u32; count];
+    for pair in pairs.iter().flatten() {
+        end[pair[0] as usize] += 1;
+    }
+    let mut sum = 0;
+    for end in &mut end {
+        sum += std::mem::replace(end, sum);
+    }
+    let mut sorted = vec![[0; 2]; sum as usize];
+    for pair in pairs.iter().flatten() {
+        let place = &mut end[pair[0] as usize];
+        sorted[*place as usize] = *pair;
+        *place += 1;
+    }
+    sorted
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dim::{Dim2, Dim3};
+    use crate::grid::VoxelGrid;
+    use crate::material::Material;
+
+    const SUBSTEPS: u32 = 8;
+    const SUBSTEP: f32 = 1.0 / 480.0;
+
+    fn random(seed: &mut u32) -> f32 {
+        *seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (*seed >> 8) as f32 / (1 << 24) as f32 - 0.5
+    }
+
+    /// The list against all pairs that there are.
+    fn compare<D: Dim>(pairs: &SpherePairs, spheres: &Spheres, bodies: &[Body<D>], when: &str) {
+        assert!(pairs.list.is_sorted_by(|a, b| a.spheres < b.spheres));
+        let all = &spheres.list;
+        let centre =
+            |sphere: &ContactSphere| sphere.mean::<D>(&bodies[sphere.body as usize].position);
+        for (second, b) in all.iter().zip(0..) {
+            for (first, a) in all.iter().zip(0..b) {
+                let apart = minus(centre(first), centre(second));
+                let reach = (1.0 + MARGIN) * (first.radius + second.radius);
+                let is_close = dot(apart, apart) < reach * reach;
+                let is_found = pairs
+                    .list
+                    .binary_search_by(|pair| pair.spheres.cmp(&[a, b]))
+                    .is_ok();
+                let both_sleep = first.asleep && second.asleep;
+                let may_touch = is_close && !both_sleep && !first.is_held_to(second);
+                assert!(is_found || !may_touch, "{when}: {a} and {b} are missing");
+                assert!(!is_found || !both_sleep, "{when}: {a} and {b} sleep");
+            }
+        }
+    }
+
+    /// Crumbs fly about, some much faster than others, turn round on their way, and wake.
+    fn check<D: Dim>(n: usize) {
+        let grid = VoxelGrid::<D>::ball(n, 1.0).expect("a ball is not empty");
+        let mut body = Body::new(grid, &[Material::default()]).expect("the material is good");
+        body.crumble().expect("the mesh stays whole");
+        let (size, count) = (body.grid.voxel_size(), body.pieces.list.len());
+        let mut seed = 7;
+        let (mut spheres, mut pairs) = (Spheres::default(), SpherePairs::default());
+        let (mut again, mut whole) = (0, 0);
+        for tick in 0..20 {
+            let sleepers: Vec<bool> = (0..count).map(|_| random(&mut seed) > 0.2).collect();
+            body.set_asleep(&vec![true; count], false);
+            body.set_asleep(&sleepers, tick % 3 == 1);
+            // Up to 30 voxels a tick, most of them hardly one.
+            let speeds: Vec<Row> = (0..count)
+                .map(|_| {
+                    let fast = if random(&mut seed) > 0.45 {
+                        3600.0
+                    } else {
+                        60.0
+                    };
+                    let mut speed = [0.0; 4];
+                    (0..D::N).for_each(|axis| speed[axis] = fast * size * random(&mut seed));
+                    speed
+                })
+                .collect();
+            let velocity = |body: &mut Body<D>, sign: &dyn Fn(usize) -> f32| {
+                for node in 0..body.position.len() {
+                    let piece = body.pieces.of_node(node as u32) as usize;
+                    let moves = if body.pieces.list[piece].asleep {
+                        0.0
+                    } else {
+                        sign(piece)
+                    };
+                    body.velocity[node] = scaled(speeds[piece], moves);
+                }
+            };
+            velocity(&mut body, &|_| 1.0);
+            pairs.start_tick();
+            if let Some(places) = spheres.start_tick(std::slice::from_ref(&body)) {
+                pairs.renumber(&places);
+            }
+            for substep in 0..SUBSTEPS {
+                if substep == 3 {
+                    velocity(&mut body, &|piece| if piece % 3 == 0 { -1.0 } else { 1.0 });
+                }
+                if substep == 5 && tick % 3 == 1 {
+                    let marked: Vec<bool> = (0..count).map(|piece| piece % 2 == 0).collect();
+                    body.set_asleep(&marked, false);
+                    let woken: Vec<(u32, u32)> = (0..count as u32)
+                        .step_by(2)
+                        .map(|piece| (0, piece))
+                        .collect();
+                    spheres.wake(&woken, &mut pairs.changed);
+                }
+                let bodies = std::slice::from_ref(&body);
+                let left = (SUBSTEPS - substep) as f32 * SUBSTEP;
+                whole += u32::from(pairs.bins.is_none());
+                again += u32::from(pairs.follow(&mut spheres, bodies, left));
+                compare(
+                    &pairs,
+                    &spheres,
+                    bodies,
+                    &format!("tick {tick}, substep {substep}"),
+                );
+                spheres.note_close(pairs.list.iter().flat_map(|pair| pair.spheres));
+                let mut furthest = 0.0f32;
+                for node in 0..body.position.len() {
+                    let step = scaled(body.velocity[node], SUBSTEP);
+                    furthest = furthest.max(length(step));
+                    body.position[node] = plus(body.position[node], step);
+                }
+                pairs.pass(SUBSTEP, furthest);
+            }
+        }
+        assert!(
+            again > whole + 10,
+            "{again} lists: strays must have been looked for"
+        );
+    }
+
+    #[test]
+    fn no_pair_is_missed() {
+        check::<Dim2>(14);
+        check::<Dim3>(6);
+    }
+
+    /// A body is torn at random; the spheres kept up against those listed anew, and who is bound to whom
+    /// against the nodes they have.
+    fn check_tears<D: Dim>(n: usize) {
+        let grid = VoxelGrid::<D>::ball(n, 1.0).expect("a ball is not empty");
+        let mut body = Body::new(grid, &[Material::default()]).expect("the material is good");
+        let mut seed = 5;
+        let mut below = |count: usize| ((random(&mut seed) + 0.5) * count as f32) as usize % count;
+        let (mut spheres, mut pairs) = (Spheres::default(), SpherePairs::default());
+        for tick in 0..20 {
+            pairs.start_tick();
+            if let Some(places) = spheres.start_tick(std::slice::from_ref(&body)) {
+                pairs.renumber(&places);
+            }
+            for round in 0..4 {
+                let bodies = std::slice::from_ref(&body);
+                pairs.follow(&mut spheres, bodies, SUBSTEP);
+                compare(
+                    &pairs,
+                    &spheres,
+                    bodies,
+                    &format!("tick {tick}, round {round}"),
+                );
+                spheres.note_close(pairs.list.iter().flat_map(|pair| pair.spheres));
+                let count = 1 + below(12);
+                let sides = (0..count).map(|_| {
+                    let mut at = [0; 3];
+                    (0..D::N).for_each(|axis| at[axis] = below(n + 1) as i32);
+                    (at, 1 + below((1 << D::CORNERS) - 2) as u8)
+                });
+                let torn = body.tear(&sides.collect::<Vec<_>>());
+                let torn = torn.expect("a release leaves the mesh whole");
+                spheres.tear(0, &body, &torn.elements, &mut pairs.changed);
+                let mut kept = spheres.list.clone();
+                kept.sort_by_key(ContactSphere::key);
+                let mut anew = Spheres::default();
+                anew.start_tick(std::slice::from_ref(&body));
+                assert_eq!(kept, anew.list);
+            }
+            for b in 0..spheres.list.len() {
+                for a in 0..b {
+                    let [own, other] = [a, b].map(|place| &spheres.list[place]);
+                    let apart = own.way_to(other).map(i32::abs).into_iter().max();
+                    let [first, second] = [own, other].map(|sphere| &sphere.nodes[..D::CORNERS]);
+                    let shares = first.iter().any(|node| second.contains(node));
+                    if apart <= Some(1) {
+                        assert_eq!(own.is_held_to(other), shares);
+                    }
+                    assert_eq!(own.is_held_to(other), other.is_held_to(own));
+                }
+            }
+        }
+        assert!(body.pieces.list.len() > 10);
+    }
+
+    #[test]
+    fn spheres_and_their_neighbours_are_known_after_every_tear() {
+        check_tears::<Dim2>(14);
+        check_tears::<Dim3>(8);
+    }
+
+    #[test]
+    fn what_passed_between_two_is_known_when_they_have_new_places() {
+        let pair = |spheres, pressed| SpherePair {
+            spheres,
+            impulse: Impulse {
+                pressed,
+                dragged: [pressed; 4],
+                total: 0.0,
+            },
+            met_in_front: true,
+        };
+        let mut pairs = SpherePairs {
+            list: vec![pair([0, 1], 1.0), pair([0, 2], 2.0), pair([1, 3], 3.0)],
+            ..SpherePairs::default()
+        };
+        // The last one stands first now, and one is gone.
+        pairs.renumber(&[1, NONE, 0]);
+        assert_eq!(pairs.list.len(), 1);
+        let kept = pairs.list[0];
+        assert_eq!((kept.spheres, kept.impulse.pressed), ([0, 1], 2.0));
+        assert_eq!(kept.impulse.dragged, [-2.0; 4], "on the other one now");
+    }
+}
