@@ -67,6 +67,7 @@ impl<D: Dim> Body<D> {
     ///
     /// # Errors
     /// A [`Defect`] when the mesh breaks: a fault of this library.
+    #[inline(never)]
     pub fn cut(&mut self, blade: &Blade) -> Result<CutReport, Defect> {
         if self.pyramid.grading() == Grading::Coarse {
             return Ok(CutReport::default());
@@ -92,6 +93,7 @@ impl<D: Dim> Body<D> {
     ///
     /// # Errors
     /// A [`Defect`] when the mesh breaks: a fault of this library.
+    #[inline(never)]
     pub fn crumble(&mut self) -> Result<Vec<u32>, Defect> {
         let octants = |at: Point| (0..D::CORNERS).map(move |octant| (at, 1 << octant));
         let everything: Vec<(Point, u8)> = self.sharing.points().flat_map(octants).collect();

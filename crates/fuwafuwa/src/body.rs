@@ -82,6 +82,7 @@ impl<D: Dim> Body<D> {
     ///
     /// # Errors
     /// As [`Body::new`].
+    #[inline(never)]
     pub fn with(
         grid: VoxelGrid<D>,
         materials: &[Material],
@@ -142,6 +143,7 @@ impl<D: Dim> Body<D> {
     }
 
     /// The same body, moved `by` [m]. What is then no place is quarantined in its first tick.
+    #[inline(never)]
     pub fn moved(mut self, by: [f32; 3]) -> Self {
         for row in self.position.iter_mut().chain(&mut self.ahead) {
             for axis in 0..D::N {
@@ -152,6 +154,7 @@ impl<D: Dim> Body<D> {
     }
 
     /// The same body, every node moving at `velocity` [m/s].
+    #[inline(never)]
     pub fn thrown(mut self, velocity: [f32; 3]) -> Self {
         for row in &mut self.velocity {
             row[..D::N].copy_from_slice(&velocity[..D::N]);
@@ -161,6 +164,7 @@ impl<D: Dim> Body<D> {
 
     /// Moves a free body on by `duration` seconds under `gravity` [m/s²], without contact or
     /// damping: symplectic Euler, stable while `duration` ≤ 0.6 s / c (s the voxel, c the wave).
+    #[inline(never)]
     pub fn advance(&mut self, duration: f32, gravity: [f32; 3]) {
         self.push(duration, gravity);
         self.drift(duration, 0.0);
@@ -257,12 +261,14 @@ impl<D: Dim> Body<D> {
     }
 
     /// Linear and angular momentum of everything, about the origin.
+    #[inline(never)]
     pub fn momentum(&self) -> Momentum {
         let ids: Vec<u32> = self.mesh.nodes().map(|(id, _)| id).collect();
         Momentum::of(self.states(&ids), [0.0; 3])
     }
 
     /// Energy of motion [J].
+    #[inline(never)]
     pub fn kinetic_energy(&self) -> f64 {
         let states = self.mesh.nodes().map(|(id, _)| {
             let velocity = self.velocity[id as usize].map(f64::from);
@@ -278,6 +284,7 @@ impl<D: Dim> Body<D> {
     }
 
     /// Mass [kg].
+    #[inline(never)]
     pub fn total_mass(&self) -> f64 {
         let ids = self.mesh.nodes();
         ids.map(|(id, _)| f64::from(self.mass[id as usize])).sum()

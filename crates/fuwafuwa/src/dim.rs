@@ -9,8 +9,10 @@ use std::fmt::Debug;
 /// A lattice point, a voxel, or a cell, in units of the lattice. In 2D the third coordinate is 0.
 pub type Point = [i32; 3];
 
-/// The number of space dimensions, as a type.
-pub trait Dim: Copy + Clone + Debug + Default + PartialEq + Eq + Send + Sync + 'static {
+/// The number of space dimensions, as a type: [`Dim2`] or [`Dim3`], and no other.
+pub trait Dim:
+    sealed::Sealed + Copy + Clone + Debug + Default + PartialEq + Eq + Send + Sync + 'static
+{
     /// Number of axes: 2 or 3.
     const N: usize;
     /// Corners of a cell, children of a cell, and voxels around a lattice point: 2^N.
@@ -31,6 +33,13 @@ pub struct Dim2;
 /// Space.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub struct Dim3;
+
+/// Nobody else can name this, and so nobody else can be a [`Dim`].
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for super::Dim2 {}
+    impl Sealed for super::Dim3 {}
+}
 
 impl Dim for Dim2 {
     const N: usize = 2;

@@ -171,6 +171,7 @@ impl<D: Dim> VoxelGrid<D> {
     }
 
     /// Number of solid voxels.
+    #[inline(never)]
     pub fn solid_count(&self) -> usize {
         self.materials.iter().filter(|&&m| m != 0).count()
     }
@@ -218,6 +219,7 @@ impl<D: Dim> VoxelGrid<D> {
         Ok(size.map(|extent| extent as i32))
     }
 
+    #[inline(never)]
     fn checked(size: Point, voxel_size: f32, materials: Vec<u8>) -> Result<Self, BuildError> {
         if !VOXEL_SIZES.contains(&voxel_size) {
             return Err(BuildError::BadVoxelSize(voxel_size));

@@ -98,6 +98,7 @@ const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 ///
 /// # Panics
 /// When the number of positions is not the number of nodes of the stencil.
+#[inline(never)]
 pub fn forces<D: Dim>(
     law: Law,
     elasticity: Elasticity,

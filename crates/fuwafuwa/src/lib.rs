@@ -7,7 +7,12 @@
 //! → `touch` and `contact` what meets → [`world`] all of it, and time.
 //! Two and three dimensions are one program: [`dim`] holds all that differs.
 //!
-//! To use it, begin with [`World`], [`Body`] and [`VoxelGrid`]; `examples` has whole programs.
+//! To use it, begin with [`World`], [`Body`] and [`VoxelGrid`]; `examples` has whole programs. Your debug builds are a
+//! hundred times slower than they need be unless your `Cargo.toml` says
+//! ```toml
+//! [profile.dev.package.fuwafuwa]
+//! opt-level = 3
+//! ```
 //!
 //! # Features
 //! None is on unless asked for.
@@ -25,6 +30,8 @@ pub mod blade;
 pub mod body;
 mod breakable;
 mod chains;
+#[doc(hidden)]
+pub mod compiled;
 mod contact;
 mod damping;
 pub mod dim;

@@ -97,6 +97,7 @@ impl<D: Dim> Mesh<D> {
     ///
     /// # Errors
     /// A [`Defect`] when the pyramid does not belong to this grid and sharing.
+    #[inline(never)]
     pub fn grade(
         grid: &VoxelGrid<D>,
         sharing: &Sharing<D>,
@@ -207,6 +208,7 @@ impl<D: Dim> Mesh<D> {
     }
 
     /// Number of elements on each level, finest first.
+    #[inline(never)]
     pub fn elements_per_level(&self) -> Vec<usize> {
         let mut counts = Vec::new();
         for (_, element) in self.elements() {
@@ -218,6 +220,7 @@ impl<D: Dim> Mesh<D> {
     }
 
     /// Number of vertices when each element counts its own, as the paper does in §3.1.
+    #[inline(never)]
     pub fn independent_vertex_count(&self) -> usize {
         self.elements()
             .map(|(_, element)| element.nodes.len())
@@ -261,6 +264,7 @@ impl<D: Dim> Mesh<D> {
     }
 
     /// Whether two meshes are the same but for the numbering of their elements and nodes.
+    #[inline(never)]
     pub fn is_same_as(&self, other: &Self) -> bool {
         self.canonical() == other.canonical()
     }

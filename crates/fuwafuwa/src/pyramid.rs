@@ -163,6 +163,7 @@ pub struct Pyramid<D: Dim> {
 
 impl<D: Dim> Pyramid<D> {
     /// The cells of a body from scratch.
+    #[inline(never)]
     pub fn new(grid: &VoxelGrid<D>, sharing: &Sharing<D>, grading: Grading) -> Self {
         let places = Places::new(grid.size());
         let mut exists = vec![false; places.count()];

@@ -28,6 +28,7 @@ impl<D: Dim> Body<D> {
     ///
     /// # Errors
     /// A [`Defect`] when the mesh breaks: a fault of this library.
+    #[inline(never)]
     pub fn release(&mut self, at: &[(Point, u8)]) -> Result<Vec<u32>, Defect> {
         Ok(self.tear(at)?.parted)
     }

@@ -131,6 +131,7 @@ pub struct Sharing<D: Dim> {
 
 impl<D: Dim> Sharing<D> {
     /// The uncut body: voxels at a point are together when closed faces around it join them.
+    #[inline(never)]
     pub fn new(grid: &VoxelGrid<D>) -> Self {
         let mut size = grid.size();
         size.iter_mut().take(D::N).for_each(|extent| *extent += 1);
@@ -257,6 +258,7 @@ impl<D: Dim> Sharing<D> {
 
     /// Regroups the voxels at each point of `work`, and wherever that spreads, by closed faces
     /// alone. Returns the points that changed, in ascending order without repeats.
+    #[inline(never)]
     pub fn normalise(&mut self, mut work: Vec<Point>) -> Vec<Point> {
         let mut changed = Vec::new();
         while let Some(at) = work.pop() {

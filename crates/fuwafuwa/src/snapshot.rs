@@ -52,6 +52,7 @@ impl fmt::Display for BadSnapshot {
 impl std::error::Error for BadSnapshot {}
 
 /// The world as it is now, to be saved.
+#[inline(never)]
 pub fn save<D: Dim>(world: &World<D>) -> Vec<u8> {
     let state = postcard::to_stdvec(world).expect("a world has nothing that postcard cannot write");
     let mut bytes = Vec::with_capacity(HEADER + state.len());
@@ -67,6 +68,7 @@ pub fn save<D: Dim>(world: &World<D>) -> Vec<u8> {
 ///
 /// # Errors
 /// [`BadSnapshot`] when it is none, has another format or other dimensions, or was damaged.
+#[inline(never)]
 pub fn load<D: Dim>(bytes: &[u8]) -> Result<World<D>, BadSnapshot> {
     if bytes.len() < HEADER || bytes[..4] != MAGIC {
         return Err(BadSnapshot::NotOne);

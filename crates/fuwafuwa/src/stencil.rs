@@ -99,6 +99,7 @@ impl<D: Dim> Stencil<D> {
     ///
     /// # Errors
     /// [`MissingCorner`] when a share ends on a corner slot without a node.
+    #[inline(never)]
     pub fn new(children: u8, slots: u32) -> Result<Self, MissingCorner> {
         let mut gradients = [[0.0; 3]; 27];
         let mut volumes = [[0.0; 1]; 27];

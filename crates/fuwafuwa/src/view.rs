@@ -84,6 +84,7 @@ pub struct ElementView {
 
 impl<D: Dim> Body<D> {
     /// Its pieces as wholes, by number.
+    #[inline(never)]
     pub fn piece_views(&self) -> Vec<PieceView> {
         let none = |(number, piece): (usize, &crate::piece::Piece)| PieceView {
             number: number as u32,
@@ -119,6 +120,7 @@ impl<D: Dim> Body<D> {
     }
 
     /// The mass of all nodes inside a region [kg]; in the plane its third coordinates do not count.
+    #[inline(never)]
     pub fn mass_inside(&self, region: &Shape) -> f32 {
         let region = region.seen_in::<D>();
         self.mass_where(|at| region.distance(at).0 < 0.0)
@@ -164,6 +166,7 @@ impl<D: Dim> Body<D> {
     }
 
     /// The closed lines around all pieces of a body in the plane; nothing in space.
+    #[inline(never)]
     pub fn outlines(&self) -> Vec<Outline> {
         if D::N != 2 {
             return Vec::new();
@@ -205,10 +208,12 @@ impl<D: Dim> Body<D> {
     }
 
     /// An element, to be looked at, if it is alive.
+    #[inline(never)]
     pub fn element_view(&self, id: u32) -> Option<ElementView> {
         Some(self.view_of(id, self.mesh.element(id)?))
     }
 
+    #[inline(never)]
     fn view_of(&self, id: u32, element: &Element) -> ElementView {
         ElementView {
             id,
@@ -222,6 +227,7 @@ impl<D: Dim> Body<D> {
     }
 
     /// How far an element is strained, if it is alive: ‖F − R‖, where 0.1 is a stretch by a tenth.
+    #[inline(never)]
     pub fn strain(&self, id: u32) -> Option<f32> {
         Some(self.strain_of(id, self.mesh.element(id)?))
     }
@@ -298,6 +304,7 @@ impl<D: Dim> Body<D> {
         places.map(|place| place.unwrap_or(centre))
     }
 
+    #[inline(never)]
     fn facet(&self, id: u32, element: &Element, face: usize) -> Facet {
         let ring = face_corners::<D>(face);
         let mut nodes = [u32::MAX; 4];

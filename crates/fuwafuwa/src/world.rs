@@ -128,6 +128,7 @@ impl<D: Dim> World<D> {
     ///
     /// # Errors
     /// [`Refused::Setting`] when a setting is out of range.
+    #[inline(never)]
     pub fn new(settings: Settings) -> Result<Self, Refused> {
         let range = FEWEST_SUBSTEPS..=1024;
         let checks = [
@@ -162,6 +163,7 @@ impl<D: Dim> World<D> {
     }
 
     /// Lets a tick pass.
+    #[inline(never)]
     pub fn step(&mut self) -> StepReport {
         self.events.clear();
         let substeps = self.substeps();

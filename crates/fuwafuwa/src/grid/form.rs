@@ -14,6 +14,7 @@ impl<D: Dim> VoxelGrid<D> {
     ///
     /// # Errors
     /// As [`VoxelGrid::from_fn`]; `n` below 3 leaves nothing solid.
+    #[inline(never)]
     pub fn ball(n: usize, diameter: f32) -> Result<Self, BuildError> {
         let centre = n as f32 * 0.5;
         let radius = centre - 0.5;
@@ -30,6 +31,7 @@ impl<D: Dim> VoxelGrid<D> {
     ///
     /// # Errors
     /// As [`VoxelGrid::from_fn`].
+    #[inline(never)]
     pub fn cube(n: usize, width: f32) -> Result<Self, BuildError> {
         Self::from_fn(Self::cube_size(n), width / n as f32, |_| 1)
     }
@@ -39,6 +41,7 @@ impl<D: Dim> VoxelGrid<D> {
     ///
     /// # Errors
     /// As [`VoxelGrid::from_fn`]; a small `n` leaves nothing solid.
+    #[inline(never)]
     pub fn ring(n: usize, diameter: f32) -> Result<Self, BuildError> {
         let depth = if D::N == 3 { n.div_ceil(4) } else { 1 };
         let size = [n, n, depth];
@@ -59,6 +62,7 @@ impl<D: Dim> VoxelGrid<D> {
     ///
     /// # Errors
     /// As [`VoxelGrid::from_fn`].
+    #[inline(never)]
     pub fn heart(n: usize, width: f32) -> Result<Self, BuildError> {
         // The curve reaches from −1.14 to 1.14 in x and from −1 to 1.24 in y.
         const HALF_WIDTH: f32 = 1.2;
@@ -80,6 +84,7 @@ impl<D: Dim> VoxelGrid<D> {
     ///
     /// # Errors
     /// As [`VoxelGrid::from_fn`].
+    #[inline(never)]
     pub fn flower(n: usize, width: f32) -> Result<Self, BuildError> {
         let size = Self::cube_size(n);
         Self::from_fn(size, width / n as f32, |voxel| {

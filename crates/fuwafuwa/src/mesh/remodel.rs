@@ -43,6 +43,7 @@ impl<D: Dim> Mesh<D> {
     /// # Errors
     /// A [`Defect`] when sharing and pyramid do not follow from one another; the mesh must then be
     /// graded anew.
+    #[inline(never)]
     pub fn remodel(
         &mut self,
         grid: &VoxelGrid<D>,

@@ -12,6 +12,7 @@ impl<D: Dim> Mesh<D> {
     ///
     /// # Errors
     /// The first [`Defect`] found.
+    #[inline(never)]
     pub fn validate(&self, grid: &VoxelGrid<D>, sharing: &Sharing<D>) -> Result<(), Defect> {
         let levels = self.check_ownership(grid)?;
         check_grading(grid, &levels)?;

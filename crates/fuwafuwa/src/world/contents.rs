@@ -14,6 +14,7 @@ use crate::touch::Nearby;
 impl<D: Dim> World<D> {
     /// Puts a body into the world; returns its place among the bodies. A body that is too stiff
     /// for the most substeps allowed is softened: see [`Body::stiffness_scale`].
+    #[inline(never)]
     pub fn add_body(&mut self, mut body: Body<D>) -> usize {
         let shortest = f64::from(TICK) / f64::from(self.settings.most_substeps);
         body.scale_stiffness_for(shortest);
@@ -32,6 +33,7 @@ impl<D: Dim> World<D> {
     ///
     /// # Errors
     /// [`Refused`] when the shape is not one, or friction is negative or not finite.
+    #[inline(never)]
     pub fn add_obstacle(&mut self, shape: Shape, friction: f32) -> Result<usize, Refused> {
         let shape = shape.seen_in::<D>();
         shape.check().map_err(Refused::Shape)?;
@@ -48,6 +50,7 @@ impl<D: Dim> World<D> {
     ///
     /// # Errors
     /// [`Refused::Manipulator`] when a field of it is out of range.
+    #[inline(never)]
     pub fn add_manipulator(&mut self, mut manipulator: Manipulator) -> Result<usize, Refused> {
         manipulator.check().map_err(Refused::Manipulator)?;
         let hand = &mut manipulator;
@@ -78,6 +81,7 @@ impl<D: Dim> World<D> {
     ///
     /// # Panics
     /// When there is no such body.
+    #[inline(never)]
     pub fn cut(&mut self, body: usize, blade: &Blade) -> usize {
         let pieces = self.pieces_of(body);
         self.wake(&pieces);
@@ -108,6 +112,7 @@ impl<D: Dim> World<D> {
     ///
     /// # Panics
     /// When there is no such body.
+    #[inline(never)]
     pub fn body_mut(&mut self, body: usize) -> &mut Body<D> {
         let pieces = self.pieces_of(body);
         self.wake(&pieces);
@@ -120,6 +125,7 @@ impl<D: Dim> World<D> {
     ///
     /// # Panics
     /// When there is no such body.
+    #[inline(never)]
     pub fn remove_body(&mut self, body: usize) -> Body<D> {
         self.cooldowns.remove(body);
         let removed = self.bodies.remove(body);
@@ -131,6 +137,7 @@ impl<D: Dim> World<D> {
     ///
     /// # Panics
     /// When there is no such obstacle.
+    #[inline(never)]
     pub fn remove_obstacle(&mut self, obstacle: usize) -> Obstacle {
         let removed = self.obstacles.remove(obstacle);
         self.start_contacts_anew();
@@ -141,6 +148,7 @@ impl<D: Dim> World<D> {
     ///
     /// # Panics
     /// When there is no such manipulator.
+    #[inline(never)]
     pub fn remove_manipulator(&mut self, manipulator: usize) -> Manipulator {
         let removed = self.manipulators.remove(manipulator);
         self.start_contacts_anew();
@@ -169,6 +177,7 @@ impl<D: Dim> World<D> {
 
     /// A number that two worlds share only when every node and hand of them is in the same state,
     /// to the last bit; as [FNV-1a], with words of 64 bits in place of bytes.
+    #[inline(never)]
     pub fn hash(&self) -> u64 {
         let mut hash = 0xcbf2_9ce4_8422_2325u64;
         let mut add = |bits: u64| hash = (hash ^ bits).wrapping_mul(0x0100_0000_01b3);
