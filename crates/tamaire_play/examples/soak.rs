@@ -7,6 +7,7 @@
 use fuwafuwa::{Dim, Dim2, Dim3, Vector};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
+use std::io::{self, Write};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::thread;
@@ -101,10 +102,11 @@ fn parse(words: &[String]) -> Result<(usize, Vec<Level>), String> {
 
 /// Plays all at once; what was wrong with which.
 fn play_all(minutes: usize, levels: Vec<Level>) -> Vec<String> {
-    println!(
+    let heads = format!(
         "{:12} {:>6} {:>6} {:>6} {:>8} {:>7} {:>8} | {:>8} {:>8} | into walls",
         "level", "minute", "pieces", "awake", "elements", "MB", "B each", "ms, half", "worst"
     );
+    say(&heads);
     thread::scope(|scope| {
         let start = |level: Level| (level.id.clone(), scope.spawn(move || soak(level, minutes)));
         let threads: Vec<_> = levels.into_iter().map(start).collect();
@@ -215,12 +217,17 @@ fn held_each<D: Dim>(round: &Round<D>) -> f32 {
 fn tell<D: Dim>(id: &str, minute: usize, round: &Round<D>, [half, worst, deepest]: [f32; 3]) {
     let bodies = round.world().bodies().iter();
     let pieces = bodies.flat_map(|body| &body.pieces().list);
-    println!(
+    say(&format!(
         "{id:12} {minute:>6} {:>6} {:>6} {:>8} {:>7.1} {:>8.0} | {half:>8.1} {worst:>8.1} | {deepest:.1} mm",
         pieces.clone().count(),
         pieces.filter(|piece| !piece.asleep).count(),
         parts(round)[0],
         HELD.get() as f32 / 1e6,
         held_each(round),
-    );
+    ));
+}
+
+/// A line. Where nobody reads on, the rounds still have to be played to their end.
+fn say(line: &str) {
+    let _ = writeln!(io::stdout(), "{line}");
 }

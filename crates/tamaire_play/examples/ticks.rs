@@ -1,16 +1,49 @@
-//! What the ticks of a level cost, engine and rules apart.
+//! What the ticks of levels cost.
 //!
-//! `cargo run --release -p tamaire_play --example ticks -- [LEVEL [SEEDS]]` lets three bots play for 40 s
-//! at most by the seeds 1 to SEEDS, each round three times, and prints milliseconds. A round is the
-//! same every time: the least of three times of a tick is what it costs, the rest is the machine.
+//! `cargo run --release -p tamaire_play --example ticks -- all` lets three bots play every level for 60 s
+//! at most by the seeds 1 to 5, and prints milliseconds: a row a round, one a level, one for all. Each
+//! round is played three times (`--runs`) and is the same every time: the least of three times of a tick
+//! is what it costs, the rest is the machine. `--rules` tells engine and rules apart, in twice the time;
+//! `--json` prints an object a line in place of each row. `--help` tells the rest.
 
+use clap::Parser;
 use fuwafuwa::{Dim, Dim2, Dim3, StepReport, Vector};
+use serde::Serialize;
+use std::error::Error;
+use std::io::{self, Write};
+use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Instant;
+use tamaire_play::level::{NAMED, NAMED_3D};
 use tamaire_play::{Bot, BotKind, Level, Round};
 
-const RUNS: usize = 3;
-const MOST_TICKS: usize = 2400;
+const TICKS_A_SECOND: usize = 60;
+
+/// What the ticks of levels cost, in milliseconds.
+#[derive(Parser)]
+struct Options {
+    /// Levels or files of levels; `all` stands for all that come along.
+    #[arg(default_value = "classic")]
+    levels: Vec<String>,
+    /// Bots play by the seeds 1 to this.
+    #[arg(long, default_value_t = 5)]
+    seeds: u64,
+    /// How often each round is played: a tick takes the least of its times.
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u64).range(1..))]
+    runs: u64,
+    /// How long a round takes at most.
+    #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u64).range(1..=3600))]
+    seconds: u64,
+    /// Which bots play.
+    #[arg(long, value_delimiter = ',', default_value = "squeeze,shave,random")]
+    bots: Vec<String>,
+    /// Measures engine and rules apart, too.
+    #[arg(long)]
+    rules: bool,
+    /// Prints one JSON object a line.
+    #[arg(long)]
+    json: bool,
+}
 
 /// What happened in a tick, where the hands wanted to be, and what it took [ms]: as a whole, and the
 /// engine's part.
@@ -21,60 +54,193 @@ struct Tick {
     engine: f64,
 }
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let mut arguments = std::env::args().skip(1);
-    let name = arguments.next().unwrap_or("classic".into());
-    let seeds: u64 = arguments.next().map_or(Ok(5), |seeds| seeds.parse())?;
-    let level = Arc::new(Level::open(&name)?);
-    match level.scene().dim {
-        2 => measure::<Dim2>(&level, seeds),
-        _ => measure::<Dim3>(&level, seeds),
+/// What is told of a round, or of several.
+#[derive(Serialize)]
+struct Row {
+    level: String,
+    bot: String,
+    /// 0 for several.
+    seed: u64,
+    ticks: usize,
+    pieces: usize,
+    milliseconds: Ranks,
+    /// The part of the rules.
+    rules: Option<Ranks>,
+    /// Which tick was the worst, and how many nodes were released in it.
+    worst_tick: usize,
+    worst_released: u32,
+}
+
+/// The median of some times, what 99 % of them stay below, and the greatest [ms].
+#[derive(Serialize)]
+struct Ranks {
+    median: f64,
+    p99: f64,
+    worst: f64,
+}
+
+fn main() -> ExitCode {
+    match measure(&Options::parse()) {
+        // Who read may have seen enough.
+        Err(error) if !is_closed(&*error) => {
+            eprintln!("ticks: {error}");
+            ExitCode::FAILURE
+        }
+        _ => ExitCode::SUCCESS,
     }
+}
+
+fn is_closed(error: &(dyn Error + 'static)) -> bool {
+    let error = error.downcast_ref::<io::Error>();
+    error.is_some_and(|error| error.kind() == io::ErrorKind::BrokenPipe)
+}
+
+fn measure(options: &Options) -> Result<(), Box<dyn Error>> {
+    let named = NAMED.iter().chain(&NAMED_3D).map(|(id, _)| *id);
+    let mut levels = Vec::new();
+    for id in &options.levels {
+        match id.as_str() {
+            "all" => levels.extend(named.clone()),
+            id => levels.push(id),
+        }
+    }
+    let levels: Result<Vec<_>, _> = levels.into_iter().map(Level::open).collect();
+    let mut bots = Vec::new();
+    for name in &options.bots {
+        let bot = BotKind::NAMED.iter().find(|(known, _)| known == name);
+        bots.push(*bot.ok_or_else(|| format!("there is no bot {name:?}"))?);
+    }
+    if !options.json {
+        writeln!(
+            io::stdout(),
+            "{:>12} {:>12} {:>6} {:>6} | {:>6} {:>6} {:>6} | worst tick",
+            "level",
+            "bot, seed",
+            "ticks",
+            "pieces",
+            "median",
+            "99 %",
+            "worst",
+        )?;
+    }
+    let mut all = Vec::new();
+    for level in levels?.into_iter().map(Arc::new) {
+        let times = match level.scene().dim {
+            2 => measure_level::<Dim2>(&level, &bots, options)?,
+            _ => measure_level::<Dim3>(&level, &bots, options)?,
+        };
+        all.extend(times);
+    }
+    match options.levels.len() > 1 || options.levels[0] == "all" {
+        true => tell(&summary("all", &all), options),
+        false => Ok(()),
+    }
+}
+
+/// Returns what each tick of all rounds took [ms].
+fn measure_level<D: Dim>(
+    level: &Arc<Level>,
+    bots: &[(&str, BotKind)],
+    options: &Options,
+) -> Result<Vec<f64>, Box<dyn Error>> {
+    let mut all = Vec::new();
+    for &(bot, kind) in bots {
+        for seed in 1..=options.seeds {
+            let (ticks, pieces) = least::<D>(level, kind, seed, options);
+            let whole = || ticks.iter().map(|tick| tick.whole);
+            let rules = || ticks.iter().map(|tick| tick.whole - tick.engine);
+            let worst = (0..ticks.len()).max_by(|&a, &b| ticks[a].whole.total_cmp(&ticks[b].whole));
+            let worst = worst.ok_or("the round was over before it began")?;
+            let row = Row {
+                level: level.id.clone(),
+                bot: bot.into(),
+                seed,
+                ticks: ticks.len(),
+                pieces,
+                milliseconds: Ranks::of(whole()),
+                rules: options.rules.then(|| Ranks::of(rules())),
+                worst_tick: worst,
+                worst_released: ticks[worst].report.released,
+            };
+            tell(&row, options)?;
+            all.extend(whole());
+        }
+    }
+    tell(&summary(&level.id, &all), options)?;
+    Ok(all)
+}
+
+/// What is told of many rounds together.
+fn summary(level: &str, times: &[f64]) -> Row {
+    Row {
+        level: level.into(),
+        bot: "all".into(),
+        seed: 0,
+        ticks: times.len(),
+        pieces: 0,
+        milliseconds: Ranks::of(times.iter().copied()),
+        rules: None,
+        worst_tick: 0,
+        worst_released: 0,
+    }
+}
+
+fn tell(row: &Row, options: &Options) -> Result<(), Box<dyn Error>> {
+    if options.json {
+        return Ok(writeln!(io::stdout(), "{}", serde_json::to_string(row)?)?);
+    }
+    let Ranks { median, p99, worst } = row.milliseconds;
+    let (name, pieces, what) = match row.seed {
+        0 => (row.bot.clone(), String::new(), String::new()),
+        seed => (
+            format!("{} {seed}", row.bot),
+            row.pieces.to_string(),
+            format!("{}: {} nodes released", row.worst_tick, row.worst_released),
+        ),
+    };
+    let rules = row.rules.as_ref().map_or(String::new(), |rules| {
+        format!("; rules {:.3}, worst {:.3}", rules.median, rules.worst)
+    });
+    writeln!(
+        io::stdout(),
+        "{:>12} {name:>12} {:>6} {pieces:>6} | {median:>6.2} {p99:>6.2} {worst:>6.2} | {what}{rules}",
+        row.level,
+        row.ticks,
+    )?;
     Ok(())
 }
 
-fn measure<D: Dim>(level: &Arc<Level>, seeds: u64) {
-    println!(
-        "{:>12} {:>5} {:>6} | {:>6} {:>6} {:>6} | {:>6} {:>6} | worst tick",
-        "bot, seed", "ticks", "pieces", "median", "99 %", "worst", "rules", "worst"
-    );
-    let bots = [
-        ("squeeze", BotKind::Squeeze),
-        ("shave", BotKind::Shave),
-        ("random", BotKind::Random),
-    ];
-    for (bot, kind) in bots {
-        for seed in 1..=seeds {
-            let (mut ticks, pieces) = play::<D>(level, kind, seed);
-            run::<D>(level, &mut ticks);
-            for _ in 1..RUNS {
-                let (again, _) = play::<D>(level, kind, seed);
-                for (tick, again) in ticks.iter_mut().zip(again) {
-                    assert_eq!(tick.report, again.report, "rounds repeat");
-                    tick.whole = tick.whole.min(again.whole);
-                }
-                run::<D>(level, &mut ticks);
-            }
-            let [median, most, worst] = ranks(ticks.iter().map(|tick| tick.engine));
-            let [rules, _, worst_rules] = ranks(ticks.iter().map(|tick| tick.whole - tick.engine));
-            let slow = ticks.iter().position(|tick| tick.engine == worst);
-            let slow = slow.expect("a round has ticks");
-            println!(
-                "{:>12} {:>5} {pieces:>6} | {median:>6.2} {most:>6.2} {worst:>6.2} | {rules:>6.3} {worst_rules:>6.3} | {slow}: {} nodes released",
-                format!("{bot} {seed}"),
-                ticks.len(),
-                ticks[slow].report.released,
-            );
+/// A round, each tick with the least of its times, and in how many pieces it ends.
+fn least<D: Dim>(
+    level: &Arc<Level>,
+    kind: BotKind,
+    seed: u64,
+    options: &Options,
+) -> (Vec<Tick>, usize) {
+    let most = options.seconds as usize * TICKS_A_SECOND;
+    let (mut ticks, pieces) = play::<D>(level, kind, seed, most);
+    for run in 1..=options.runs {
+        if options.rules {
+            step_alone::<D>(level, &mut ticks);
+        }
+        if run == options.runs {
+            break;
+        }
+        let (again, _) = play::<D>(level, kind, seed, most);
+        for (tick, again) in ticks.iter_mut().zip(again) {
+            assert_eq!(tick.report, again.report, "rounds repeat");
+            tick.whole = tick.whole.min(again.whole);
         }
     }
+    (ticks, pieces)
 }
 
 /// A round, and in how many pieces it ends.
-fn play<D: Dim>(level: &Arc<Level>, kind: BotKind, seed: u64) -> (Vec<Tick>, usize) {
+fn play<D: Dim>(level: &Arc<Level>, kind: BotKind, seed: u64, most: usize) -> (Vec<Tick>, usize) {
     let mut round = Round::<D>::new(level.clone());
     let mut bot = Bot::new(kind, seed);
     let mut ticks = Vec::new();
-    while ticks.len() < MOST_TICKS && round.progress().outcome.is_none() {
+    while ticks.len() < most && round.progress().outcome.is_none() {
         let frame = bot.frame(&round);
         let start = Instant::now();
         let report = round.step(frame);
@@ -92,7 +258,7 @@ fn play<D: Dim>(level: &Arc<Level>, kind: BotKind, seed: u64) -> (Vec<Tick>, usi
 
 /// The world of a round alone, whose hands want what they wanted in it: what a tick of the round takes
 /// more goes to the rules. Not beside the round, where both would have to share the caches.
-fn run<D: Dim>(level: &Arc<Level>, ticks: &mut [Tick]) {
+fn step_alone<D: Dim>(level: &Arc<Level>, ticks: &mut [Tick]) {
     let mut world = Round::<D>::new(level.clone()).world().clone();
     for tick in ticks {
         for player in world.manipulators().len()..tick.goals.len() {
@@ -114,10 +280,18 @@ fn milliseconds(since: Instant) -> f64 {
     since.elapsed().as_secs_f64() * 1e3
 }
 
-/// The median, what 99 % stay below, and the greatest.
-fn ranks(values: impl Iterator<Item = f64>) -> [f64; 3] {
-    let mut sorted: Vec<f64> = values.collect();
-    sorted.sort_by(f64::total_cmp);
-    let last = sorted.len() - 1;
-    [last / 2, last * 99 / 100, last].map(|place| sorted[place])
+impl Ranks {
+    fn of(values: impl Iterator<Item = f64>) -> Self {
+        let mut sorted: Vec<f64> = values.collect();
+        sorted.sort_by(f64::total_cmp);
+        let part = |percent| match sorted.len() {
+            0 => 0.0,
+            count => sorted[(count - 1) * percent / 100],
+        };
+        Self {
+            median: part(50),
+            p99: part(99),
+            worst: part(100),
+        }
+    }
 }
