@@ -31,6 +31,7 @@ pub mod dim;
 pub mod event;
 mod fracture;
 pub mod grid;
+pub mod hash;
 pub mod law;
 pub mod manipulator;
 pub mod material;
