@@ -21,6 +21,7 @@
 // An axis indexes several vectors at once; zipping them would hide the formula.
 #![allow(clippy::needless_range_loop)]
 
+mod affine;
 pub mod blade;
 pub mod body;
 mod breakable;

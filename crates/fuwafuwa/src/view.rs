@@ -240,29 +240,6 @@ impl<D: Dim> Body<D> {
         sum.sqrt()
     }
 
-    /// The centre of an element [m] and its deformation gradient F, by rows.
-    pub(crate) fn deformation(&self, element: &Element) -> (Vector, [Vector; 3]) {
-        let stencil = self.mesh.stencil(element);
-        let half = 0.5 * self.grid.voxel_size() * element.cell.width() as f32;
-        let scale = 1.0 / (stencil.volume as f32 * half);
-        let (mut centre, mut gradient) = ([0.0; 3], [[0.0; 3]; 3]);
-        for (place, &node) in element.nodes.iter().enumerate() {
-            let at = three(self.position[node as usize]);
-            let share = (stencil.volumes[place] / stencil.volume) as f32;
-            centre = plus(centre, scaled(at, share));
-            let b = stencil.gradients[place].map(|k| k as f32);
-            for i in 0..D::N {
-                gradient[i] = plus(gradient[i], scaled(b, at[i] * scale));
-            }
-        }
-        gradient
-            .iter_mut()
-            .enumerate()
-            .skip(D::N)
-            .for_each(|(k, row)| row[k] = 1.0);
-        (centre, gradient)
-    }
-
     /// Where the slots of an element are: at its nodes, or between the nodes that stand for them.
     fn slot_positions(&self, element: &Element) -> [Vector; 27] {
         let centre = self.deformation(element).0;
