@@ -4,6 +4,7 @@
 mod feel;
 mod heard;
 mod lesson;
+mod teach;
 mod time;
 pub mod trial;
 

@@ -2,6 +2,7 @@
 
 mod film;
 mod force_log;
+mod played;
 mod report;
 
 use crate::platform::Files;
@@ -10,15 +11,14 @@ use clap::builder::PossibleValuesParser;
 use film::Film;
 use force_log::ForceLog;
 use fuwafuwa_painter::PaintError;
-use indicatif::{ProgressBar, ProgressFinish, ProgressStyle};
+use played::{Played, RATE, of_bot, of_replay};
 use report::{Refusal, Report};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
 use tamaire_play::level::{LevelError, NAMED, NAMED_3D};
-use tamaire_play::{AnyRound, Bot, BotKind, Level, Playback, Replay, ReplayError};
+use tamaire_play::{Bot, BotKind, Level, ReplayError};
 
 /// Exit status when a replay is refused.
 const REFUSED: u8 = 1;
@@ -26,8 +26,6 @@ const REFUSED: u8 = 1;
 pub const BAD_USAGE: u8 = 2;
 /// How the name of a replay's file ends.
 const REPLAY: &str = "tamaire";
-/// Ticks in a second.
-const RATE: f32 = 60.0;
 
 /// What is played without a window, and what is told of it. The command line has a flag `headless`,
 /// without which only the level counts.
@@ -86,12 +84,6 @@ enum Trouble {
     File { path: PathBuf, reason: io::Error },
     #[error("the film: {0}")]
     Film(#[from] PaintError),
-}
-
-/// A round that was played, and how long each tick took.
-struct Played {
-    round: AnyRound,
-    times: Vec<Duration>,
 }
 
 /// Plays, and tells how it went.
@@ -197,49 +189,6 @@ fn tell(played: &Played, by: report::Player, options: &Options) -> Result<String
     } else {
         report.to_string()
     })
-}
-
-fn of_bot(level: Arc<Level>, mut bot: Bot, most_ticks: u64, log: &mut Option<ForceLog>) -> Played {
-    let mut round = AnyRound::new(level);
-    let mut times = Vec::new();
-    let bar = progress("playing", most_ticks);
-    while round.progress().outcome.is_none() && round.ticks() < most_ticks {
-        let frame = round.ask(&mut bot);
-        let start = Instant::now();
-        round.step(frame);
-        times.push(start.elapsed());
-        bar.inc(1);
-        if let Some(log) = log {
-            log.note(&round);
-        }
-    }
-    Played { round, times }
-}
-
-fn of_replay(replay: Arc<Replay>, log: &mut Option<ForceLog>) -> Result<Played, ReplayError> {
-    let bar = progress("playing", replay.ticks() as u64);
-    let mut playback = Playback::new(replay)?;
-    let mut times = Vec::new();
-    while !playback.is_over() {
-        let start = Instant::now();
-        playback.step()?;
-        times.push(start.elapsed());
-        bar.inc(1);
-        if let Some(log) = log {
-            log.note(playback.round());
-        }
-    }
-    let round = playback.round().clone();
-    Ok(Played { round, times })
-}
-
-/// A bar for whoever waits at a terminal, until it is dropped; into a file or a pipe it writes nothing.
-fn progress(what: &'static str, ticks: u64) -> ProgressBar {
-    let style = ProgressStyle::with_template("{msg} {wide_bar} {percent} %  {elapsed}");
-    ProgressBar::new(ticks)
-        .with_style(style.expect("the template is well formed"))
-        .with_message(what)
-        .with_finish(ProgressFinish::AndClear)
 }
 
 /// The table of forces, if it was asked for.

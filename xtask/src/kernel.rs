@@ -5,7 +5,9 @@
 //! Ubuntu's, and lies in the target folder, with busybox to start the test: neither is installed.
 
 use crate::packages::{self, IfMissing, Lack, Purpose, apt_get, install_arguments, list_lacks};
-use crate::{CANNOT, FAILED, Failure, answers, cargo, execute, output_of, root, show, target};
+use crate::shell::{
+    CANNOT, FAILED, Failure, answers, cargo, execute, output_of, root, show, target,
+};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};

@@ -1,6 +1,6 @@
 //! The Debian packages behind the tasks: which of them this machine lacks, and how they get there.
 
-use crate::{Failure, answers, execute};
+use crate::shell::{Failure, answers, execute};
 use std::env;
 use std::io::{self, IsTerminal, Write};
 use std::process::{Command, Stdio};

@@ -6,7 +6,7 @@
 //! sources of its standard library, which cargo then builds too, and a linker.
 
 use crate::packages::{IfMissing, Lack, apt_get, install_arguments, list_lacks};
-use crate::{CANNOT, Failure, answers, cargo, execute, output_of, root, target};
+use crate::shell::{CANNOT, Failure, answers, cargo, execute, output_of, root, target};
 use std::env;
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -18,7 +18,7 @@
 //! force, is convex and holds zero; the pull is the nearest to what the spring wants.)
 //!
 //! **Why the damper.** From a push to its being felt pass up to T ≈ 20 ms of driver and wire, and half an update. A
-//! spring that answers T late has a damper of −K T in it. B = `LEAD` · K makes up for that, and K ends at [`HARDEST`],
+//! spring that answers T late has a damper of −K T in it. B = `LEAD` · K makes up for that, and K ends at [`HARDEST`](crate::HARDEST),
 //! where what is left is less than what hinge and hand take out, and where a damper that answers late does not yet swing
 //! by itself. `tests/hand/closed_loop.rs` has the sticks that this is good for; one that takes out less than they do by
 //! hinge and hand (damping × travel / full force below 8 ms) and answers 20 ms late can still swing a little.
@@ -31,8 +31,6 @@
 
 use crate::Settings;
 
-/// The stiffest that a coupling may be [full forces for the way of the stick from its middle to its rim].
-pub const HARDEST: f32 = 0.4;
 /// The damper of the coupling over its spring [s]; about what lies between a push and its being felt.
 const LEAD: f32 = 0.03;
 /// Over this time the speed of the stick is taken [s]. Longer lags, shorter feels the steps of a coarse axis.

@@ -53,10 +53,10 @@ mod thread;
 mod watchdog;
 
 pub use chain::Chain;
-pub use coupling::{Coupling, Give, HARDEST, Manner, State};
+pub use coupling::{Coupling, Give, Manner, State};
 pub use feel::{Feel, Felt};
 pub use measurement::{Measured, Measurement};
-pub use settings::{Calibration, Settings};
+pub use settings::{Calibration, HARDEST, Settings};
 pub use sink::{Ability, Gone, LENGTH, Nothing, Output, Played, Recording, Sink};
 pub use thread::{Force, Line, RATES, Report};
 pub use watchdog::{Mail, OLDEST, Stop, Watchdog};

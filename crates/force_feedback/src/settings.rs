@@ -1,7 +1,9 @@
 //! What people and games may choose about one device.
 
-use crate::HARDEST;
 use std::ops::RangeInclusive;
+
+/// The stiffest that a coupling may be [full forces for the way of the stick from its middle to its rim].
+pub const HARDEST: f32 = 0.4;
 
 /// How strongly and how quickly a device may push.
 #[derive(Clone, Copy, Debug, PartialEq)]

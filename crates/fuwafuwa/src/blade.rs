@@ -5,11 +5,10 @@
 
 use crate::body::Body;
 use crate::dim::{Dim, Point, voxel_around};
-use crate::mesh::{Defect, Element};
+use crate::mesh::Defect;
 use crate::pyramid::Grading;
 use crate::shape::Vector;
 use crate::sharing::faces_around;
-use crate::stencil::slot_at;
 use crate::vector::{cross, dot, minus, plus, scaled};
 use std::collections::BTreeSet;
 
@@ -135,29 +134,6 @@ impl<D: Dim> Body<D> {
         let voxels = (0..D::CORNERS).map(|octant| voxel_around::<D>(at, octant));
         let owner = { voxels }.find_map(|voxel| self.mesh.owner(voxel))?;
         Some(self.carry(self.mesh.element(owner)?)(at.map(|k| k as f32)))
-    }
-
-    /// Where an element takes a place of the undeformed body, given in voxels: its affine motion [m].
-    fn carry(&self, element: &Element) -> impl Fn(Vector) -> Vector + use<D> {
-        let (centre, gradient) = self.deformation(element);
-        let stencil = self.mesh.stencil(element);
-        let size = self.grid.voxel_size();
-        let half = 0.5 * size * element.cell.width() as f32;
-        // The slot in the low corner of the cell, as seen from the volume centroid at rest.
-        let steps = slot_at(stencil.slots[0] as usize).map(|k| k as f32 * half);
-        let origin = minus(scaled(stencil.offsets[0].map(|k| k as f32), half), steps);
-        let low = element.cell.first_voxel().map(|k| k as f32);
-        move |place| {
-            let mut rest = origin;
-            for axis in 0..D::N {
-                rest[axis] += (place[axis] - low[axis]) * size;
-            }
-            let mut carried = [0.0; 3];
-            for axis in 0..D::N {
-                carried[axis] = centre[axis] + dot(gradient[axis], rest);
-            }
-            carried
-        }
     }
 
     /// The octants at a point that still hang together when the given faces are open: one mask for

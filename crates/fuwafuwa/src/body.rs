@@ -1,18 +1,23 @@
 //! One soft thing: its voxels, how they hang together, and the state of its nodes.
 
+mod asleep;
+mod blend;
+mod derived;
+mod motion;
+
 use crate::breakable::BreakableNodes;
-use crate::dim::{Dim, Point, voxel_around};
+use crate::dim::{Dim, Point};
 use crate::grid::VoxelGrid;
-use crate::law::{Elasticity, Law};
+use crate::law::Law;
 use crate::material::{BodyError, Material};
-use crate::mesh::{Element, Mesh, Node};
+use crate::mesh::{Element, Mesh};
 use crate::momentum::{Momentum, RoughMotion};
 use crate::piece::Pieces;
 use crate::pyramid::{Grading, Pyramid};
 use crate::sharing::Sharing;
-use crate::solve::{Blocks, Kick, Row};
-use crate::threads;
-use crate::vector::{as_row, dot, minus, plus, scaled, three};
+use crate::solve::{Blocks, Row};
+use crate::vector::{as_row, dot, three};
+use blend::{Blend, elasticities};
 
 /// One soft thing, whole or in pieces.
 #[derive(Clone, Debug)]
@@ -50,22 +55,6 @@ pub struct Body<D: Dim> {
     pub(crate) ahead: Vec<Row>,
     /// The rigid motion of each piece, as of the last round of damping.
     pub(crate) rigid: Vec<RoughMotion>,
-}
-
-/// What the materials of its voxels come to in a body as a whole.
-#[derive(Copy, Clone, Debug)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct Blend {
-    /// Damping ratio of the slowest swing, the mean over the voxels.
-    damping: f64,
-    /// Its ω = π √(Y/ρ) / width [1/s].
-    slow: f64,
-    /// Friction, the mean over the voxels.
-    friction: f32,
-    /// The fastest pressure wave of a material that is in use [m/s].
-    fastest_wave: f64,
-    /// The fastest swing, that of a single voxel which grows and shrinks [1/s].
-    fastest_swing: f64,
 }
 
 impl<D: Dim> Body<D> {
@@ -160,14 +149,6 @@ impl<D: Dim> Body<D> {
             row[..D::N].copy_from_slice(&velocity[..D::N]);
         }
         self
-    }
-
-    /// Moves a free body on by `duration` seconds under `gravity` [m/s²], without contact or
-    /// damping: symplectic Euler, stable while `duration` ≤ 0.6 s / c (s the voxel, c the wave).
-    #[inline(never)]
-    pub fn advance(&mut self, duration: f32, gravity: [f32; 3]) {
-        self.push(duration, gravity);
-        self.drift(duration, 0.0);
     }
 
     /// Holds a node: from now on it keeps the velocity it is given, whatever pulls at it.
@@ -340,176 +321,6 @@ impl<D: Dim> Body<D> {
         self.blend.fastest_wave
     }
 
-    /// Adds elastic forces and gravity over `duration` [s] to the velocities.
-    pub(crate) fn push(&mut self, duration: f32, gravity: [f32; 3]) {
-        self.refresh_awake();
-        self.blocks.evaluate(&self.ahead);
-        let mut gravity = as_row(gravity);
-        gravity[D::N..].fill(0.0);
-        let kick = Kick {
-            nodes: &self.awake,
-            inverse_mass: &self.inverse_mass,
-            duration,
-            gravity,
-        };
-        self.blocks.kick(&kick, &mut self.velocity);
-    }
-
-    /// Moves every awake node by its velocity, and looks `lead` seconds ahead for the next forces,
-    /// as seen from the rigid motion of its piece: what only turns must not be braked.
-    /// No node moves by more than a voxel: faster ones would turn elements inside out, and the
-    /// forces would grow from substep to substep. Returns how far the fastest has come [m].
-    pub(crate) fn drift(&mut self, duration: f32, lead: f32) -> f32 {
-        let top_speed = self.grid.voxel_size() / duration;
-        // Pieces born since the last round of damping have no motion yet.
-        self.rigid
-            .resize(self.pieces.list.len(), RoughMotion::default());
-        let (rigid, pieces) = (&self.rigid, &self.pieces);
-        let lists = [&mut self.position, &mut self.velocity, &mut self.ahead];
-        let rows = threads::rows(&self.awake, lists.map(Vec::as_mut_slice));
-        let fastest = threads::map(rows, |rows| {
-            let [positions, velocities, ahead] = rows.lists;
-            let mut fastest = 0.0f32;
-            for &id in rows.nodes {
-                let node = id as usize - rows.first;
-                let mut velocity = velocities[node];
-                let squared = dot(velocity, velocity);
-                // Not `max`, which would have every node wait for the one before.
-                if squared > fastest {
-                    fastest = squared;
-                }
-                if squared > top_speed * top_speed {
-                    velocity = scaled(velocity, top_speed / squared.sqrt());
-                    velocities[node] = velocity;
-                }
-                let position = plus(positions[node], scaled(velocity, duration));
-                positions[node] = position;
-                let whole = rigid[pieces.of_node(id) as usize].at::<D>(position);
-                ahead[node] = plus(position, scaled(minus(velocity, whole), lead));
-            }
-            fastest
-        });
-        let fastest = fastest.into_iter().fold(0.0, f32::max);
-        fastest.sqrt().min(top_speed) * duration
-    }
-
-    /// Wakes or puts to sleep all pieces whose number is marked.
-    pub(crate) fn set_asleep(&mut self, marked: &[bool], asleep: bool) {
-        for (id, element) in self.mesh.elements() {
-            if !marked[self.pieces.of_element(id) as usize] {
-                continue;
-            }
-            self.blocks.set_asleep(id, asleep);
-            for &node in &element.nodes {
-                let node = node as usize;
-                if asleep {
-                    self.velocity[node] = [0.0; 4];
-                    self.ahead[node] = self.position[node];
-                }
-                let free = !asleep && !self.held[node];
-                self.inverse_mass[node] = if free { 1.0 / self.mass[node] } else { 0.0 };
-            }
-        }
-        for (piece, _) in self
-            .pieces
-            .list
-            .iter_mut()
-            .zip(marked)
-            .filter(|(_, marked)| **marked)
-        {
-            piece.asleep = asleep;
-            piece.still = 0.0;
-        }
-        self.awake_is_stale = true;
-    }
-
-    /// The lattice point and the position [m] of every node, by id; no position where there is none.
-    pub(crate) fn places(&self) -> Vec<(Point, Row)> {
-        let place = |(id, &row): (usize, &Row)| match self.mesh.is_alive(id as u32) {
-            true => (self.mesh.node(id as u32).at, row),
-            false => ([0; 3], [f32::NAN; 4]),
-        };
-        self.position.iter().enumerate().map(place).collect()
-    }
-
-    /// Puts pieces with a node that is not finite, or faster than `top_speed` [m/s], back to where
-    /// they were and to sleep for good; returns their numbers.
-    pub(crate) fn quarantine(&mut self, before: &[(Point, Row)], top_speed: f32) -> Vec<u32> {
-        let mut marked = vec![false; self.pieces.list.len()];
-        for &id in &self.awake {
-            let velocity = self.velocity[id as usize];
-            let speed = dot(velocity, velocity);
-            let sane = speed <= top_speed * top_speed && is_finite(self.position[id as usize]);
-            marked[self.pieces.of_node(id) as usize] |= !sane;
-        }
-        if !marked.contains(&true) {
-            return Vec::new();
-        }
-        let nodes: Vec<(u32, Node)> = self.mesh.nodes().collect();
-        let nodes = nodes.into_iter();
-        for (id, node) in nodes.filter(|&(id, _)| marked[self.pieces.of_node(id) as usize]) {
-            self.position[id as usize] = self.place_before(id, node.at, before);
-        }
-        self.set_asleep(&marked, true);
-        let numbers = (0..marked.len() as u32).filter(|&piece| marked[piece as usize]);
-        let numbers: Vec<u32> = numbers.collect();
-        for &piece in &numbers {
-            self.pieces.list[piece as usize].quarantined = true;
-        }
-        numbers
-    }
-
-    /// Where a node was. One that is new, or whose id was another's, is put beside the nearest of its
-    /// elements that was anywhere, and to its place at rest when none was: across a crack, what is
-    /// near in the lattice may be far away.
-    fn place_before(&self, id: u32, at: Point, before: &[(Point, Row)]) -> Row {
-        let was = |id: u32, at: Point| {
-            let known = before.get(id as usize);
-            known.filter(|(point, row)| *point == at && is_finite(*row))
-        };
-        let carriers = self.mesh.carriers_of(id);
-        let beside = carriers.flat_map(|(element, _)| element.nodes.iter());
-        let beside = beside.filter_map(|&other| was(other, self.mesh.node(other).at));
-        let apart = |point: Point| [0, 1, 2].map(|axis: usize| at[axis] - point[axis]);
-        let squared = |(point, _): &&(Point, Row)| apart(*point).map(|k| k * k).iter().sum::<i32>();
-        let nearest = || beside.min_by_key(squared);
-        let (point, row) = was(id, at).or_else(nearest).copied().unwrap_or_default();
-        let [x, y, z] = apart(point).map(|k| k as f32 * self.grid.voxel_size());
-        plus(row, [x, y, z, 0.0])
-    }
-
-    /// Brings the list of moving nodes up to date.
-    pub(crate) fn refresh_awake(&mut self) {
-        if !self.awake_is_stale {
-            return;
-        }
-        self.awake_is_stale = false;
-        let mut awake = std::mem::take(&mut self.awake);
-        awake.clear();
-        let nodes = self.mesh.nodes().map(|(id, _)| id);
-        awake.extend(nodes.filter(|&id| !self.pieces.sleeps(id)));
-        self.awake = awake;
-    }
-
-    pub(crate) fn make_room(&mut self) {
-        let capacity = self.mesh.node_capacity();
-        self.position.resize(capacity, [0.0; 4]);
-        self.ahead.resize(capacity, [0.0; 4]);
-        self.velocity.resize(capacity, [0.0; 4]);
-        self.mass.resize(capacity, 0.0);
-        self.inverse_mass.resize(capacity, 0.0);
-        self.held.resize(capacity, false);
-        self.damage.resize(capacity, 0.0);
-        self.bare.resize(self.mesh.element_capacity(), 0);
-        self.bound.resize(self.mesh.element_capacity(), 0);
-        self.pieces.make_room(&self.mesh);
-    }
-
-    /// A new node is held when every node it comes from was.
-    pub(crate) fn inherit_hold(&mut self, node: u32, from: &[(u32, f64)]) {
-        self.held[node as usize] = from.iter().all(|&(old, _)| self.held[old as usize]);
-    }
-
     pub(crate) fn states<'a>(
         &'a self,
         nodes: &'a [u32],
@@ -517,125 +328,4 @@ impl<D: Dim> Body<D> {
         let state = |id: usize| (self.position[id], self.velocity[id], self.mass[id]);
         nodes.iter().map(move |&id| state(id as usize))
     }
-
-    /// Adds up the masses of nodes from the elements that carry them.
-    pub(crate) fn weigh(&mut self, nodes: &[u32]) {
-        let half = f64::from(self.grid.voxel_size()) * 0.5;
-        for &id in nodes {
-            let mut mass = 0.0;
-            for (element, place) in self.mesh.carriers_of(id) {
-                let density = f64::from(self.material(element).density);
-                let child = half * f64::from(element.cell.width());
-                let volume = (0..D::N).fold(1.0, |volume, _| volume * child);
-                mass += density * volume * self.mesh.stencil(element).volumes[place];
-            }
-            let node = id as usize;
-            self.mass[node] = mass as f32;
-            let free = !self.held[node] && !self.pieces.sleeps(id);
-            self.inverse_mass[node] = if free { 1.0 / self.mass[node] } else { 0.0 };
-        }
-    }
-
-    /// Notes which faces of the elements of level 0 on these voxels are bare.
-    pub(crate) fn expose(&mut self, voxels: &[Point]) {
-        for &voxel in voxels.iter().filter(|&&voxel| self.grid.is_solid(voxel)) {
-            let owner = self.mesh.owner(voxel).expect("a solid voxel has an owner");
-            let element = self.mesh.element(owner).expect("owners are alive");
-            if element.cell.level > 0 {
-                continue;
-            }
-            let mut bare = 0;
-            for axis in 0..D::N {
-                for side in 0..2 {
-                    if !self.is_face_closed(voxel, axis, side) {
-                        bare |= 1 << (2 * axis + side);
-                    }
-                }
-            }
-            self.bare[owner as usize] = bare;
-            if bare != 0 {
-                self.bound[owner as usize] = self.sharing.bound(voxel);
-            }
-        }
-    }
-
-    /// Looks again which of `nodes` are breakable nodes.
-    pub(crate) fn find_breakable(&mut self, nodes: &[u32]) {
-        let Self {
-            grid,
-            sharing,
-            mesh,
-            materials,
-            ..
-        } = self;
-        self.breakable.look(nodes, grid, sharing, mesh, materials);
-    }
-
-    fn is_face_closed(&self, voxel: Point, axis: usize, side: usize) -> bool {
-        let mut at = voxel;
-        at[axis] += side as i32;
-        // Seen from the low corner of the face, the voxel stands on the high side of every axis
-        // but, where the face is its own high one, of this one.
-        let octant = D::CORNERS - 1 - (side << axis);
-        debug_assert_eq!(voxel_around::<D>(at, octant), voxel);
-        self.sharing.is_closed(at, octant, axis)
-    }
-}
-
-fn elasticities(materials: &[Material], stiffness_scale: f64) -> Vec<Elasticity> {
-    let soft = |material: &Material| Elasticity {
-        young: material.elasticity.young * stiffness_scale,
-        ..material.elasticity
-    };
-    materials.iter().map(soft).collect()
-}
-
-impl Blend {
-    fn of<D: Dim>(grid: &VoxelGrid<D>, materials: &[Material]) -> Self {
-        let mut counts = vec![0.0; materials.len()];
-        for number in grid.voxels().map(|voxel| grid.material(voxel)) {
-            if number > 0 {
-                counts[number as usize - 1] += 1.0;
-            }
-        }
-        let total: f64 = counts.iter().sum();
-        let used = || {
-            counts
-                .iter()
-                .zip(materials)
-                .filter(|(count, _)| **count > 0.0)
-        };
-        let mean = |of: &dyn Fn(&Material) -> f64| {
-            used()
-                .map(|(count, material)| count * of(material))
-                .sum::<f64>()
-                / total
-        };
-        let young = mean(&|material| material.elasticity.young);
-        let density = mean(&|material| f64::from(material.density));
-        let width = f64::from(grid.voxel_size()) * root(total, D::N);
-        let waves = used().map(|(_, material)| material.wave_speed());
-        let swings = used().map(|(_, material)| material.voxel_swing(D::N));
-        Self {
-            damping: mean(&|material| f64::from(material.damping)),
-            slow: std::f64::consts::PI * (young / density).sqrt() / width,
-            friction: mean(&|material| f64::from(material.friction)) as f32,
-            fastest_wave: waves.fold(0.0, f64::max),
-            fastest_swing: swings.fold(0.0, f64::max) / f64::from(grid.voxel_size()),
-        }
-    }
-}
-
-/// The square or cube root, by Newton's iteration: it may not come from the platform.
-fn root(of: f64, order: usize) -> f64 {
-    let mut root = of.max(1.0);
-    for _ in 0..60 {
-        let power = (1..order).fold(1.0, |power, _| power * root);
-        root -= (power * root - of) / (order as f64 * power);
-    }
-    root
-}
-
-fn is_finite(row: Row) -> bool {
-    row.iter().all(|k| k.is_finite())
 }

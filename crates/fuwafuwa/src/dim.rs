@@ -24,6 +24,14 @@ pub trait Dim:
     /// Stiffness of the hourglass modes of a whole cell relative to Young's modulus. Derived so
     /// that a beam one element thick bends exactly: 1/3 in the plane, 1/6 in space.
     const HOURGLASS: f64;
+
+    /// How many layers a grid has along the third axis that is to be `voxels` deep: in the plane one.
+    fn depth(voxels: usize) -> usize {
+        match Self::N {
+            2 => 1,
+            _ => voxels,
+        }
+    }
 }
 
 /// The plane.
@@ -112,4 +120,33 @@ pub fn neighbourhood<D: Dim>(at: Point, reach: i32) -> impl Iterator<Item = Poin
         high[axis] += reach;
     }
     points_in(low, high)
+}
+
+/// The corners of a cell around its face 2 · axis + side, counterclockwise as seen from outside; in
+/// the plane two, the inside to their left, and the last two say nothing.
+pub fn face_corners<D: Dim>(face: usize) -> [usize; 4] {
+    let (axis, side) = (face / 2, face % 2);
+    let ring: &[usize] = match D::N {
+        2 => &[0, 1],
+        _ => &[0, 1, 3, 2],
+    };
+    // The other axes, in an order that makes the ring turn around the outward normal.
+    let others = match D::N {
+        2 => [1 - axis, 2],
+        _ => [(axis + 1) % 3, (axis + 2) % 3],
+    };
+    let forwards = match D::N {
+        2 => (side == 1) == (axis == 0),
+        _ => side == 1,
+    };
+    let mut corners = [0; 4];
+    for (place, &step) in ring.iter().enumerate() {
+        let place = if forwards {
+            place
+        } else {
+            ring.len() - 1 - place
+        };
+        corners[place] = side << axis | (step & 1) << others[0] | (step >> 1) << others[1];
+    }
+    corners
 }

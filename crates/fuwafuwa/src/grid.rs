@@ -209,7 +209,7 @@ impl<D: Dim> VoxelGrid<D> {
         if size.contains(&0) {
             return Err(BuildError::Empty);
         }
-        if D::N == 2 && size[2] != 1 {
+        if size[2] != D::depth(size[2]) {
             return Err(BuildError::NotFlat { layers: size[2] });
         }
         let fits = size.iter().all(|&extent| extent <= MAX_EXTENT);

@@ -136,9 +136,8 @@ fn endo<D: Dim>(
         add_outer(&mut moment, *x, *r);
         spread += dot(*r, *r);
     }
-    if D::N == 2 {
-        moment[2][2] = spread;
-    }
+    // In the plane it turns around the third axis.
+    (D::N..3).for_each(|axis| moment[axis][axis] = spread);
     let rotation = rotation_of(&moment);
     let stiffness = elasticity.young * volume_of(stencil, half) * D::N as f64 / spread;
     let pull = |(r, x): (&Vector64, &Vector64)| scaled(minus(apply(&rotation, *r), *x), stiffness);
@@ -162,9 +161,7 @@ fn patch_exact<D: Dim>(
         add_outer(&mut deformation, scaled(x, 1.0 / volume), gradient(k));
         centre = plus(centre, scaled(x, stencil.volumes[k] / stencil.volume));
     }
-    if D::N == 2 {
-        deformation[2] = IDENTITY[2];
-    }
+    deformation[D::N..].copy_from_slice(&IDENTITY[D::N..]);
     let stress = stress(elasticity, &deformation);
 
     let offset = |k: usize| scaled(stencil.offsets[k], half);

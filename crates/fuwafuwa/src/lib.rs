@@ -26,6 +26,7 @@
 // An axis indexes several vectors at once; zipping them would hide the formula.
 #![allow(clippy::needless_range_loop)]
 
+mod affine;
 pub mod blade;
 pub mod body;
 mod breakable;
@@ -38,6 +39,7 @@ pub mod dim;
 pub mod event;
 mod fracture;
 pub mod grid;
+pub mod hash;
 pub mod law;
 pub mod manipulator;
 pub mod material;

@@ -133,6 +133,7 @@ impl Shape {
     /// The shape as a world of `D` sees it: in the plane third coordinates do not count, so that
     /// nothing is pushed out of the plane.
     pub(crate) fn seen_in<D: Dim>(self) -> Self {
+        // Flattened below: in space nothing is to be.
         if D::N == 3 {
             return self;
         }

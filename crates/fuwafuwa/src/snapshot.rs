@@ -5,6 +5,7 @@
 //! ```
 
 use crate::dim::Dim;
+use crate::hash::Hash;
 use crate::world::World;
 use std::fmt;
 
@@ -59,7 +60,7 @@ pub fn save<D: Dim>(world: &World<D>) -> Vec<u8> {
     bytes.extend(MAGIC);
     bytes.extend(VERSION.to_le_bytes());
     bytes.push(D::N as u8);
-    bytes.extend(checksum(&state).to_le_bytes());
+    bytes.extend(Hash::of(&state).to_le_bytes());
     bytes.extend(state);
     bytes
 }
@@ -85,15 +86,8 @@ pub fn load<D: Dim>(bytes: &[u8]) -> Result<World<D>, BadSnapshot> {
     if usize::from(found) != D::N {
         return Err(BadSnapshot::Dimensions { found });
     }
-    if header[9..] != checksum(state).to_le_bytes() {
+    if header[9..] != Hash::of(state).to_le_bytes() {
         return Err(BadSnapshot::Damaged);
     }
     postcard::from_bytes(state).map_err(|_| BadSnapshot::Damaged)
-}
-
-/// FNV-1a.
-fn checksum(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-    })
 }

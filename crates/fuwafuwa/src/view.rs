@@ -1,7 +1,7 @@
 //! What can be asked of a body: its pieces, its skin, its elements, the mass in a region.
 
 use crate::body::Body;
-use crate::dim::{Dim, add, corner};
+use crate::dim::{Dim, add, corner, face_corners};
 use crate::mesh::Element;
 use crate::shape::{Shape, Vector};
 use crate::stencil::{slot_at, slot_index};
@@ -168,6 +168,7 @@ impl<D: Dim> Body<D> {
     /// The closed lines around all pieces of a body in the plane; nothing in space.
     #[inline(never)]
     pub fn outlines(&self) -> Vec<Outline> {
+        // Around a quad of a skin in space there is no next one.
         if D::N != 2 {
             return Vec::new();
         }
@@ -245,29 +246,6 @@ impl<D: Dim> Body<D> {
         sum.sqrt()
     }
 
-    /// The centre of an element [m] and its deformation gradient F, by rows.
-    pub(crate) fn deformation(&self, element: &Element) -> (Vector, [Vector; 3]) {
-        let stencil = self.mesh.stencil(element);
-        let half = 0.5 * self.grid.voxel_size() * element.cell.width() as f32;
-        let scale = 1.0 / (stencil.volume as f32 * half);
-        let (mut centre, mut gradient) = ([0.0; 3], [[0.0; 3]; 3]);
-        for (place, &node) in element.nodes.iter().enumerate() {
-            let at = three(self.position[node as usize]);
-            let share = (stencil.volumes[place] / stencil.volume) as f32;
-            centre = plus(centre, scaled(at, share));
-            let b = stencil.gradients[place].map(|k| k as f32);
-            for i in 0..D::N {
-                gradient[i] = plus(gradient[i], scaled(b, at[i] * scale));
-            }
-        }
-        gradient
-            .iter_mut()
-            .enumerate()
-            .skip(D::N)
-            .for_each(|(k, row)| row[k] = 1.0);
-        (centre, gradient)
-    }
-
     /// Where the slots of an element are: at its nodes, or between the nodes that stand for them.
     fn slot_positions(&self, element: &Element) -> [Vector; 27] {
         let centre = self.deformation(element).0;
@@ -313,6 +291,7 @@ impl<D: Dim> Body<D> {
             nodes[place] = element.nodes[ring[place]];
             corners[place] = three(self.position[nodes[place] as usize]);
         }
+        // Across a segment, or across both diagonals of a quad, which need not be flat.
         let normal = match D::N {
             2 => {
                 let along = minus(corners[1], corners[0]);
@@ -344,35 +323,6 @@ impl ElementView {
         let place = |vertex: usize| self.slots[slot_index(at(vertex))];
         (0..D::CORNERS).map(place).collect()
     }
-}
-
-/// The corners of a cell around its face 2 · axis + side, in the order of [`Facet::nodes`]; the last
-/// two say nothing in 2D.
-pub fn face_corners<D: Dim>(face: usize) -> [usize; 4] {
-    let (axis, side) = (face / 2, face % 2);
-    let ring: &[usize] = match D::N {
-        2 => &[0, 1],
-        _ => &[0, 1, 3, 2],
-    };
-    // The other axes, in an order that makes the ring turn around the outward normal.
-    let others = match D::N {
-        2 => [1 - axis, 2],
-        _ => [(axis + 1) % 3, (axis + 2) % 3],
-    };
-    let forwards = match D::N {
-        2 => (side == 1) == (axis == 0),
-        _ => side == 1,
-    };
-    let mut corners = [0; 4];
-    for (place, &step) in ring.iter().enumerate() {
-        let place = if forwards {
-            place
-        } else {
-            ring.len() - 1 - place
-        };
-        corners[place] = side << axis | (step & 1) << others[0] | (step >> 1) << others[1];
-    }
-    corners
 }
 
 fn unit(v: Vector) -> Vector {

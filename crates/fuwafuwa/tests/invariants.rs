@@ -42,7 +42,7 @@ fn random_shape<D: Dim>(random: &mut Random, n: i32) -> Option<VoxelGrid<D>> {
     };
     let two_materials = random.below(3) == 0;
     let extent = n as usize;
-    let size = [extent, extent, if D::N == 3 { extent } else { 1 }];
+    let size = [extent, extent, D::depth(extent)];
     VoxelGrid::from_fn(size, 1.0, |at| {
         let solid = parts[..3].iter().any(|part| inside(part, at)) && !inside(&parts[3], at);
         u8::from(solid) * (1 + u8::from(two_materials && at[0] > n / 2))

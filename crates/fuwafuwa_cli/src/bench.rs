@@ -68,7 +68,7 @@ struct Measure {
 /// Measures, and prints what it found.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     if arguments.against == Some(Rival::Rapier) {
-        return rapier::run(arguments);
+        return rapier::run(&for_rapier(arguments));
     }
     let threads = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.into());
     let measures = threads.build()?.install(|| measures(arguments))?;
@@ -91,6 +91,21 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     }
     print!("{}", table(&rows, &[false, true, true, true, false]));
     Ok(ExitCode::SUCCESS)
+}
+
+/// The arguments of the program that runs Rapier.
+fn for_rapier(arguments: &Arguments) -> Vec<String> {
+    let mut passed = vec![format!("--dim={}", arguments.dim)];
+    passed.extend(arguments.n.map(|n| format!("--n={n}")));
+    passed.extend(
+        arguments
+            .scene
+            .as_ref()
+            .map(|scene| format!("--scene={scene}")),
+    );
+    passed.extend(arguments.frames.map(|frames| format!("--frames={frames}")));
+    passed.extend(arguments.json.then(|| "--json".into()));
+    passed
 }
 
 fn measures(arguments: &Arguments) -> Result<Vec<Measure>> {
@@ -317,5 +332,31 @@ fn measure(what: String, unit: &'static str, mut values: Vec<f64>, scale: f64) -
         median: at(values.len() / 2),
         best: at(0),
         worst: at(values.len().saturating_sub(1)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        arguments: Arguments,
+    }
+
+    fn check(line: &str, expect: &[&str]) {
+        let line = Line::parse_from(line.split(' '));
+        assert_eq!(for_rapier(&line.arguments), expect);
+    }
+
+    #[test]
+    fn what_was_asked_for_is_passed_on() {
+        check("bench --against rapier", &["--dim=2"]);
+        check(
+            "bench --against rapier --dim 3 --n 16 --scene soft --frames 9 --json",
+            &["--dim=3", "--n=16", "--scene=soft", "--frames=9", "--json"],
+        );
     }
 }

@@ -2,11 +2,32 @@
 
 use crate::PaintError;
 use crate::shadow::{KEY, Shadow};
-use crate::solid::{Camera, Triangle};
 use crate::theme::{Role, colour};
 use fuwafuwa::shape::Vector;
 use fuwafuwa::vector::{cross, dot, length, minus, plus, scaled};
 use tiny_skia::{Pixmap, PremultipliedColorU8};
+
+/// From where space is seen.
+#[derive(Copy, Clone, Debug)]
+pub struct Camera {
+    /// Where the eye is [m].
+    pub eye: Vector,
+    /// What it looks at [m]; this falls in the middle of the image.
+    pub target: Vector,
+    /// What fits across the image at the target [m].
+    pub across: f32,
+}
+
+/// A triangle with a normal at each corner.
+#[derive(Copy, Clone, Debug)]
+pub struct Triangle {
+    /// [m]
+    pub corners: [Vector; 3],
+    /// Outwards, one at each corner; of any length.
+    pub normals: [Vector; 3],
+    /// What it belongs to.
+    pub role: Role,
+}
 
 /// Pixels are painted this many times as fine on each axis, and averaged.
 const FINE: usize = 2;

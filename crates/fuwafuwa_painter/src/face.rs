@@ -1,6 +1,6 @@
 //! A face on a body, from ellipses and curves.
 
-use crate::soft::ellipse;
+use crate::paper::ellipse;
 use crate::{Frame, Painter, Role, Spot};
 use fuwafuwa::shape::Vector;
 use fuwafuwa::vector::{dot, length, minus, plus, scaled};

@@ -18,6 +18,7 @@ mod error;
 mod face;
 pub mod film;
 mod letters;
+mod paper;
 mod puff;
 mod raster;
 mod shadow;
@@ -30,29 +31,10 @@ pub mod theme;
 
 pub use error::PaintError;
 pub use face::{Face, Mood};
+pub use paper::{Frame, Spot};
 use std::rc::Rc;
 pub use theme::Role;
 pub use tiny_skia::Pixmap;
-
-/// A place on the paper [px], y downwards.
-pub type Spot = [f32; 2];
-
-/// Where places of the plane, y upwards, fall on the paper.
-#[derive(Copy, Clone, Debug)]
-pub struct Frame {
-    /// Where the origin falls.
-    pub origin: Spot,
-    /// Pixels a unit.
-    pub unit: f32,
-}
-
-impl Frame {
-    /// The spot of a place; its third coordinate does not count.
-    pub fn spot(self, at: [f32; 3]) -> Spot {
-        let [x, y] = self.origin;
-        [x + at[0] * self.unit, y - at[1] * self.unit]
-    }
-}
 
 /// One thing on the paper.
 #[derive(Clone, Debug)]

@@ -4,6 +4,7 @@
 //! use [`crate::stage`].
 
 use crate::face::Face;
+use crate::paper::ellipse;
 use crate::puff::{LINE, Layer, Puff, THIN_LINE, layered, line_tone};
 use crate::smoothing::{self, Curve};
 use crate::stage;
@@ -204,18 +205,6 @@ fn paint_piece(layer: &mut Layer, piece: &Piece, voxel: f32) {
 
 fn spots(frame: Frame, places: &[Vector]) -> Vec<Spot> {
     places.iter().map(|&at| frame.spot(at)).collect()
-}
-
-/// The corners of an ellipse, for an upright pair of axes.
-pub(crate) fn ellipse(middle: Spot, size: Spot) -> impl Iterator<Item = Spot> {
-    const ROUND: usize = 32;
-    (0..ROUND).map(move |k| {
-        let turn = k as f32 / ROUND as f32 * std::f32::consts::TAU;
-        [
-            middle[0] + size[0] * turn.cos(),
-            middle[1] + size[1] * turn.sin(),
-        ]
-    })
 }
 
 #[cfg(test)]

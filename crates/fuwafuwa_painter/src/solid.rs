@@ -3,33 +3,12 @@
 
 use crate::PaintError;
 use crate::canvas::Canvas;
+pub use crate::canvas::{Camera, Triangle};
 use crate::shadow::Shadow;
 use crate::theme::Role;
 use fuwafuwa::shape::Vector;
 use fuwafuwa::vector::{cross, length, minus, plus, scaled};
 use tiny_skia::Pixmap;
-
-/// From where space is seen.
-#[derive(Copy, Clone, Debug)]
-pub struct Camera {
-    /// Where the eye is [m].
-    pub eye: Vector,
-    /// What it looks at [m]; this falls in the middle of the image.
-    pub target: Vector,
-    /// What fits across the image at the target [m].
-    pub across: f32,
-}
-
-/// A triangle with a normal at each corner.
-#[derive(Copy, Clone, Debug)]
-pub struct Triangle {
-    /// [m]
-    pub corners: [Vector; 3],
-    /// Outwards, one at each corner; of any length.
-    pub normals: [Vector; 3],
-    /// What it belongs to.
-    pub role: Role,
-}
 
 /// What stands in space, to become an image.
 #[derive(Clone, Debug)]

@@ -46,6 +46,7 @@
 //! and [`Model::grid`](crate::import::Model::grid).
 
 mod body;
+mod build;
 mod change;
 mod error;
 mod game;

@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use crate::Direction;
-
 /// A device from when it is plugged in until it is unplugged; plugged in again it has another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct DeviceId(pub u32);
@@ -46,6 +44,15 @@ pub struct Button {
     pub down: bool,
     /// How often it went down since the device was plugged in. Wraps around.
     pub presses: u32,
+}
+
+/// One of the four ways in which a focus moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Direction {
+    Up,
+    Right,
+    Down,
+    Left,
 }
 
 /// A small stick for the thumb that knows eight directions, as four buttons of which two may be down.
@@ -224,6 +231,26 @@ impl Button {
     pub fn press(&mut self) {
         self.down = true;
         self.presses = self.presses.wrapping_add(1);
+    }
+}
+
+impl Direction {
+    /// Clockwise from the top.
+    pub const ALL: [Direction; 4] = [
+        Direction::Up,
+        Direction::Right,
+        Direction::Down,
+        Direction::Left,
+    ];
+
+    /// x to the right, y up.
+    pub const fn vector(self) -> [f32; 2] {
+        match self {
+            Direction::Up => [0.0, 1.0],
+            Direction::Right => [1.0, 0.0],
+            Direction::Down => [0.0, -1.0],
+            Direction::Left => [-1.0, 0.0],
+        }
     }
 }
 

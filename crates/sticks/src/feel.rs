@@ -1,15 +1,6 @@
 //! What a person means by what a stick says: functions of numbers and of time, without a device.
 
-use crate::{Button, Device, DeviceId};
-
-/// One of the four ways in which a focus moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Direction {
-    Up,
-    Right,
-    Down,
-    Left,
-}
+use crate::{Button, Device, DeviceId, Direction};
 
 /// When to do something again that is held down, as keyboards do with letters.
 #[derive(Clone, Debug, Default)]
@@ -47,24 +38,6 @@ pub fn radial_dead_zone(stick: [f32; 2], inner: f32, outer: f32) -> [f32; 2] {
 }
 
 impl Direction {
-    /// Clockwise from the top.
-    pub const ALL: [Direction; 4] = [
-        Direction::Up,
-        Direction::Right,
-        Direction::Down,
-        Direction::Left,
-    ];
-
-    /// x to the right, y up.
-    pub const fn vector(self) -> [f32; 2] {
-        match self {
-            Direction::Up => [0.0, 1.0],
-            Direction::Right => [1.0, 0.0],
-            Direction::Down => [0.0, -1.0],
-            Direction::Left => [-1.0, 0.0],
-        }
-    }
-
     /// Where a stick leans that leaned `before`. It has to be pushed farther to lean than to go on leaning, so that neither
     /// a trembling hand nor a diagonal makes it flicker.
     pub fn of(stick: [f32; 2], before: Option<Direction>) -> Option<Direction> {

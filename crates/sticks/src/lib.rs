@@ -33,9 +33,12 @@
 
 mod device;
 mod feel;
+mod latest;
 
 #[cfg(all(feature = "haptic", not(target_family = "wasm")))]
 mod haptic;
+#[cfg(all(feature = "haptic", not(target_family = "wasm")))]
+mod held;
 #[cfg(all(feature = "sdl", not(target_family = "wasm")))]
 mod owner;
 #[cfg(not(all(feature = "sdl", not(target_family = "wasm"))))]
@@ -53,12 +56,16 @@ mod puppet;
 #[cfg(all(test, feature = "sdl"))]
 mod tests;
 
-use std::sync::{Arc, Mutex, PoisonError};
+use latest::Latest;
+use std::sync::Arc;
 
-pub use device::{About, Button, Change, Control, Device, DeviceId, Hat, Pad, PadButton, Snapshot};
-pub use feel::{Direction, Navigator, Repeat, radial_dead_zone};
+pub use device::{
+    About, Button, Change, Control, Device, DeviceId, Direction, Hat, Pad, PadButton, Snapshot,
+};
+pub use feel::{Navigator, Repeat, radial_dead_zone};
 #[cfg(all(feature = "haptic", not(target_family = "wasm")))]
 pub use haptic::Haptic;
+pub use latest::NoSticks;
 #[cfg(all(
     any(test, feature = "virtual"),
     feature = "sdl",
@@ -71,17 +78,6 @@ pub struct Sticks {
     latest: Latest,
     #[allow(dead_code, reason = "held for its drop, which ends the thread")]
     owner: owner::Owner,
-}
-
-/// Why no device can be read. The game goes on without.
-#[derive(Debug, thiserror::Error)]
-pub enum NoSticks {
-    #[error("sticks and pads are being read already: a process can open them only once at a time")]
-    AlreadyOpen,
-    #[error("SDL cannot read sticks and pads: {0}")]
-    Sdl(String),
-    #[error("no thread could be started to read sticks and pads: {0}")]
-    Thread(#[from] std::io::Error),
 }
 
 impl Sticks {
@@ -99,23 +95,5 @@ impl Sticks {
     /// lock and a count.
     pub fn snapshot(&self) -> Arc<Snapshot> {
         self.latest.get()
-    }
-}
-
-/// Where the owner leaves the latest snapshot. The lock is held only to exchange a pointer.
-#[derive(Clone, Default)]
-struct Latest(Arc<Mutex<Arc<Snapshot>>>);
-
-impl Latest {
-    fn get(&self) -> Arc<Snapshot> {
-        self.0
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .clone()
-    }
-
-    #[cfg(all(feature = "sdl", not(target_family = "wasm")))]
-    fn set(&self, snapshot: Snapshot) {
-        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Arc::new(snapshot);
     }
 }

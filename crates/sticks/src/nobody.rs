@@ -1,6 +1,6 @@
 //! Stands in for `owner` where there is no SDL: finds no device.
 
-use crate::{Latest, NoSticks};
+use crate::latest::{Latest, NoSticks};
 
 pub struct Owner;
 

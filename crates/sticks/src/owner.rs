@@ -10,8 +10,9 @@ use sdl3_sys::gamepad::{
     SDL_GAMEPAD_AXIS_RIGHT_TRIGGER, SDL_GAMEPAD_AXIS_RIGHTX, SDL_GAMEPAD_AXIS_RIGHTY,
 };
 
+use crate::latest::{Latest, NoSticks};
 use crate::sdl::{HatBits, Open, Part, Sdl, Turn, What};
-use crate::{Button, Device, DeviceId, Direction, Hat, Latest, NoSticks, Pad, PadButton, Snapshot};
+use crate::{Button, Device, DeviceId, Direction, Hat, Pad, PadButton, Snapshot};
 
 /// How old a snapshot may get while a device is there. Longer is felt as lag; at 1 ms the thread costs twice as much.
 const PERIOD: Duration = Duration::from_millis(2);
@@ -41,7 +42,7 @@ pub struct Hub<'sdl> {
 struct Connected<'sdl> {
     /// Before `open`, so that it is dropped first.
     #[cfg(feature = "haptic")]
-    held: crate::haptic::Held<'sdl>,
+    held: crate::held::Held<'sdl>,
     open: Open<'sdl>,
     device: Device,
 }
@@ -143,7 +144,7 @@ impl<'sdl> Hub<'sdl> {
 
     /// A device, and what can be felt of it.
     #[cfg(feature = "haptic")]
-    pub fn held(&mut self, id: DeviceId) -> Option<(&Open<'sdl>, &mut crate::haptic::Held<'sdl>)> {
+    pub fn held(&mut self, id: DeviceId) -> Option<(&Open<'sdl>, &mut crate::held::Held<'sdl>)> {
         let mut all = self.connected.iter_mut();
         let connected = all.find(|connected| connected.device.id == id)?;
         Some((&connected.open, &mut connected.held))
@@ -194,7 +195,7 @@ impl<'sdl> Hub<'sdl> {
             device.pad = open.is_pad().then(Pad::default);
             let mut connected = Connected {
                 #[cfg(feature = "haptic")]
-                held: crate::haptic::Held::default(),
+                held: crate::held::Held::default(),
                 open,
                 device,
             };

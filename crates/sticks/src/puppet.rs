@@ -3,10 +3,11 @@
 use std::sync::Weak;
 use std::sync::mpsc::{self, Sender};
 
+use crate::latest::Latest;
 use crate::owner::{Hub, Order, Owner};
 use crate::sdl::puppets::{PuppetAct, PuppetForm, Rumble};
 use crate::sdl::{HatBits, Sdl, Turn};
-use crate::{DeviceId, Direction, Latest, NoSticks, PadButton, Sticks};
+use crate::{DeviceId, Direction, NoSticks, PadButton, Sticks};
 
 /// A device made of nothing. Dropping it unplugs it. What is done with it is in the snapshot when the call returns.
 #[must_use = "a puppet is unplugged when it is dropped"]

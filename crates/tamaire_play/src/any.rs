@@ -1,6 +1,6 @@
 //! Rounds whose dimension is that of their level: for those who do not look into bodies.
 
-use crate::{Bot, InputFrame, Level, Progress, Replay, Round};
+use crate::{InputFrame, Level, Progress, Round};
 use fuwafuwa::{Dim2, Dim3, Event, Manipulator, Shape, StepReport, Vector};
 use std::sync::Arc;
 
@@ -93,15 +93,5 @@ impl AnyRound {
     /// See [`Round::hashes`].
     pub fn hashes(&self) -> &[u64] {
         both!(self, round => round.hashes())
-    }
-
-    /// What was played in it so far.
-    pub fn replay(&self) -> Replay {
-        both!(self, round => Replay::of(round))
-    }
-
-    /// What a bot does in its next tick.
-    pub fn ask(&self, bot: &mut Bot) -> InputFrame {
-        both!(self, round => bot.frame(round))
     }
 }

@@ -4,7 +4,7 @@
 mod map;
 mod sight;
 
-use crate::{InputFrame, Round};
+use crate::{AnyRound, InputFrame, Round};
 use fuwafuwa::vector::{length, minus, plus, scaled};
 use fuwafuwa::world::TICK;
 use fuwafuwa::{Dim, Vector};
@@ -79,6 +79,16 @@ enum Stroke {
     Reach(Vector, u32),
     /// On its way to where the stroke ends [m], for so many ticks more.
     Cut(Vector, u32),
+}
+
+impl AnyRound {
+    /// What a bot does in its next tick.
+    pub fn ask(&self, bot: &mut Bot) -> InputFrame {
+        match self {
+            Self::Plane(round) => bot.frame(round),
+            Self::Space(round) => bot.frame(round),
+        }
+    }
 }
 
 impl Bot {

@@ -1,5 +1,6 @@
 //! Where a round is played: a scene with a table `[game]`, in a text file that a person can write.
 
+use fuwafuwa::hash::Hash;
 use fuwafuwa::{Dim, Shape, World};
 use fuwafuwa_scenes::scene::{BodyText, GameText, Scene, SceneError};
 use std::any::Any;
@@ -218,11 +219,10 @@ impl Level {
         self.scene.view
     }
 
-    /// A number that two levels share only if they are the same [FNV-1a].
+    /// A number that two levels share only if they are the same.
     pub fn hash(&self) -> u64 {
         let text = toml::to_string(&self.scene).expect("a scene that was read can be written");
-        let add = |hash: u64, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        text.bytes().fold(0xcbf2_9ce4_8422_2325, add)
+        Hash::of(text.as_bytes())
     }
 
     /// Its world at the start, and its basket.

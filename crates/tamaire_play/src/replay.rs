@@ -155,6 +155,16 @@ impl Replay {
     }
 }
 
+impl AnyRound {
+    /// What was played in it so far.
+    pub fn replay(&self) -> Replay {
+        match self {
+            Self::Plane(round) => Replay::of(round),
+            Self::Space(round) => Replay::of(round),
+        }
+    }
+}
+
 /// How many hashes there are of so many ticks.
 fn marks(ticks: usize) -> usize {
     ticks.div_ceil(60)

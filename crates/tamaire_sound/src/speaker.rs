@@ -5,46 +5,17 @@
 //! device, and goes on trying while there is none.
 
 mod device;
+mod mailbox;
+mod source;
 
 use crate::cue::Cue;
-use crate::soundscape::{Hush, Soundscape, Volumes};
-use crate::synth::Synth;
-use cpal::{FromSample, SizedSample};
-use device::{keep_open, open_stream};
+use crate::soundscape::{Soundscape, Volumes};
+use device::{PATIENCE, keep_open, open_stream};
+pub use mailbox::NoSound;
+use mailbox::{Mailbox, lock};
 use std::sync::mpsc;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError, Weak};
+use std::sync::{Arc, Mutex};
 use std::thread;
-use std::time::Duration;
-
-/// Until a device that does not answer counts as none.
-const PATIENCE: Duration = Duration::from_secs(3);
-
-/// As many cues may wait for the device; a tick of heavy tearing has some hundred.
-const MOST_CUES: usize = 256;
-
-/// As many of them may be of the world. The rest are kept for menus and jingles, which are few and
-/// must not be lost.
-const MOST_CUES_OF_THE_WORLD: usize = 240;
-
-/// Frames that are worked out at a time.
-const FRAMES: usize = 256;
-
-/// Why nothing is heard. The game goes on without.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum NoSound {
-    /// There is none.
-    #[error("no sound device was found")]
-    NoDevice,
-    /// Another program has it for itself.
-    #[error("the sound device is in use by another program")]
-    Busy,
-    /// It neither works nor fails.
-    #[error("the sound device does not answer")]
-    NoAnswer,
-    /// Something else, in the words of the system.
-    #[error("the sound device cannot be used: {0}")]
-    Refused(String),
-}
 
 /// The machine's sound device. Falls silent when dropped.
 pub struct Speaker {
@@ -93,114 +64,15 @@ impl Speaker {
     }
 }
 
-/// What the game leaves for the device.
-struct Mailbox {
-    soundscape: Soundscape,
-    volumes: Volumes,
-    /// Counts what was told, so that the device sees what is new.
-    number: u64,
-    cues: Vec<Cue>,
-    trouble: Option<NoSound>,
-}
-
-impl Mailbox {
-    fn new() -> Self {
-        Self {
-            soundscape: Soundscape::default(),
-            volumes: Volumes::default(),
-            number: 0,
-            cues: Vec::with_capacity(MOST_CUES),
-            trouble: None,
-        }
-    }
-
-    /// Drops a cue for which there is no room, or no device: it would come too late.
-    fn put(&mut self, cue: Cue) {
-        let most = match cue {
-            Cue::Thud { .. } | Cue::Tear { .. } | Cue::Crumb { .. } => MOST_CUES_OF_THE_WORLD,
-            Cue::Won(_) | Cue::Menu(_) => MOST_CUES,
-        };
-        if self.trouble.is_none() && self.cues.len() < most {
-            self.cues.push(cue);
-        }
-    }
-}
-
-/// Nothing in the mailbox can be half done, so a thread that panicked does no harm.
-fn lock(mailbox: &Mutex<Mailbox>) -> MutexGuard<'_, Mailbox> {
-    mailbox.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// What the device's thread owns: it must never wait, nor allocate.
-struct Source {
-    mailbox: Weak<Mutex<Mailbox>>,
-    synth: Synth,
-    /// Of the last news that it heard.
-    number: u64,
-}
-
-impl Source {
-    fn new(mailbox: Weak<Mutex<Mailbox>>, rate: u32) -> Self {
-        Self {
-            mailbox,
-            synth: Synth::new(rate),
-            number: 0,
-        }
-    }
-
-    /// Fills frames of `channels` samples: all after the second are silent, and a single one gets both.
-    fn fill<T: SizedSample + FromSample<f32>>(&mut self, out: &mut [T], channels: usize) {
-        self.listen();
-        let mut stereo = [0.0; 2 * FRAMES];
-        for part in out.chunks_mut(FRAMES * channels) {
-            let stereo = &mut stereo[..2 * part.len().div_ceil(channels)];
-            self.synth.render(stereo);
-            for (frame, sides) in part.chunks_mut(channels).zip(stereo.chunks(2)) {
-                if let [one] = frame {
-                    *one = T::from_sample(0.5 * (sides[0] + sides[1]));
-                    continue;
-                }
-                frame.fill(T::EQUILIBRIUM);
-                for (sample, side) in frame.iter_mut().zip(sides) {
-                    *sample = T::from_sample(*side);
-                }
-            }
-        }
-    }
-
-    /// Takes what is new. If the game is just writing, that has time until the next call.
-    fn listen(&mut self) {
-        let Some(mailbox) = self.mailbox.upgrade() else {
-            let hush = Hush::Everything;
-            self.synth.hear(&Soundscape {
-                hush,
-                ..Soundscape::default()
-            });
-            return;
-        };
-        let mut mailbox = match mailbox.try_lock() {
-            Ok(mailbox) => mailbox,
-            Err(TryLockError::Poisoned(poisoned)) => poisoned.into_inner(),
-            Err(TryLockError::WouldBlock) => return,
-        };
-        if self.number != mailbox.number {
-            self.number = mailbox.number;
-            self.synth.hear(&mailbox.soundscape);
-            self.synth.set_volumes(&mailbox.volumes);
-        }
-        for cue in mailbox.cues.drain(..) {
-            self.synth.play(cue);
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::device::{PAUSE, report};
+    use super::mailbox::MOST_CUES_OF_THE_WORLD;
+    use super::source::Source;
     use super::*;
     use crate::cue::{Menu, Route};
     use crate::soundscape::Press;
-    use std::time::Instant;
+    use std::time::{Duration, Instant};
 
     fn speaker() -> (Speaker, Source) {
         let mailbox = Arc::new(Mutex::new(Mailbox::new()));

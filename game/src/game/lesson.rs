@@ -1,9 +1,6 @@
 //! What somebody who is new to space has not tried yet.
 
-use super::{Game, Screen};
-use crate::input::{Action, Means};
 use fuwafuwa::Vector;
-use fuwafuwa::vector::minus;
 
 /// Who has gone this far along the floor has moved, who this far up or down has risen [m], and who has gone this far
 /// around has looked around [rad].
@@ -29,62 +26,18 @@ impl Lesson {
     }
 
     /// Which of the three are to be told of: how to move, to rise, to look around.
-    fn missing(&self) -> [bool; 3] {
+    pub(super) fn missing(&self) -> [bool; 3] {
         self.tried.map(|tried| !tried && self.seconds < LONG)
     }
 
     /// A player wants to be so far from where the hand began [m], and the camera is so far from where it began [rad].
-    fn see(&mut self, gone: Vector, turned: f32, seconds: f32) {
+    pub(super) fn see(&mut self, gone: Vector, turned: f32, seconds: f32) {
         let along = (gone[0] * gone[0] + gone[2] * gone[2]).sqrt();
         let now = [along > MOVED, gone[1].abs() > RAISED, turned > TURNED];
         for (tried, now) in self.tried.iter_mut().zip(now) {
             *tried |= now;
         }
         self.seconds += seconds;
-    }
-}
-
-impl Game {
-    /// How the hand moves and rises and the camera turns, with what was used last; each with whether it is still to be
-    /// told. Nothing in the plane, where nobody plays, and to those who have won in space.
-    pub fn lesson(&self) -> Vec<(String, bool)> {
-        // Where elements are seen, the wheel looks deeper.
-        if !self.is_played_in_space() || self.has_won_in_space() || self.elements.is_some() {
-            return Vec::new();
-        }
-        let on_stick = self.means == Means::Stick;
-        let names = [
-            &[Action::Up, Action::Left, Action::Down, Action::Right][..],
-            &[Action::Raise, Action::Lower],
-            &[Action::TurnLeft, Action::TurnRight],
-        ];
-        let bindings = &self.settings.bindings;
-        let names = names.map(|actions| bindings.first_names(actions, on_stick));
-        let lines = (self.words().how_in_space)(self.means, &names);
-        lines.into_iter().zip(self.lesson.missing()).collect()
-    }
-
-    /// Notes what was tried.
-    pub(super) fn learn(&mut self, seconds: f32) {
-        if !self.is_played_in_space() {
-            return;
-        }
-        let round = self.session.round();
-        let gone = match self.players.wanted(0) {
-            Some(wanted) => minus(wanted, round.start(0)),
-            None => [0.0; 3],
-        };
-        let [right, up] = self.camera.gone_around();
-        self.lesson.see(gone, right.abs().max(up.abs()), seconds);
-    }
-
-    fn has_won_in_space(&self) -> bool {
-        let mut levels = self.levels.iter();
-        levels.any(|level| level.scene().dim == 3 && self.records.of(&level.id).is_some())
-    }
-
-    fn is_played_in_space(&self) -> bool {
-        self.screen == Screen::Play && self.session.is_played() && self.turn().is_some()
     }
 }
 

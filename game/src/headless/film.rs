@@ -3,7 +3,7 @@
 //! The round is played a second time: the same input gives the same world, and painting disturbs
 //! no timing.
 
-use super::progress;
+use super::played::progress;
 use super::report::by_route;
 use crate::look::{Camera, Effects, Mood};
 use fuwafuwa::vector::{plus, scaled};

@@ -1,6 +1,6 @@
 //! How a round went, for people and for programs.
 
-use super::Played;
+use super::played::{Played, RATE};
 use serde::Serialize;
 use std::fmt;
 use std::time::Duration;
@@ -76,7 +76,7 @@ impl Report {
             by,
             won: outcome.is_some(),
             route: outcome.map(|outcome| outcome.route),
-            seconds: round.frames().len() as f32 / super::RATE,
+            seconds: round.frames().len() as f32 / RATE,
             ticks: round.frames().len() as u64,
             kept: progress.kept,
             // The sum of nothing is -0.

@@ -1,8 +1,8 @@
 //! How a body feels, and where on it that is seen.
 
 use super::Mood;
-use super::perch::Perch;
-use fuwafuwa::vector::{cross, length, minus, plus, scaled};
+use super::perch::{Perch, UPRIGHT, masses, square};
+use fuwafuwa::vector::{length, minus, plus, scaled};
 use fuwafuwa::world::TICK;
 use fuwafuwa::{Body, Dim, Vector};
 use fuwafuwa_render::anchor;
@@ -201,31 +201,11 @@ impl Feeling {
     }
 }
 
-/// To the right, up and towards who looks.
-pub(super) const UPRIGHT: [Vector; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-
-/// Axes of length 1 and square to each other: the third as it is, the second nearly, the first as it must be.
-pub(super) fn square([_, up, out]: [Vector; 3]) -> [Vector; 3] {
-    let unit = |of: Vector| scaled(of, 1.0 / length(of).max(1e-9));
-    let out = unit(out);
-    let right = unit(cross(up, out));
-    [right, cross(out, right), out]
-}
-
 fn is_there<D: Dim>(body: &Body<D>, seat: Seat) -> bool {
     let mesh = body.mesh();
     (seat.node as usize) < mesh.node_capacity()
         && mesh.is_alive(seat.node)
         && mesh.node(seat.node).at == seat.rest
-}
-
-/// The mass of each piece [kg].
-pub(super) fn masses<D: Dim>(body: &Body<D>) -> Vec<f32> {
-    let mut masses = vec![0.0f32; body.pieces().list.len()];
-    for (id, _) in body.mesh().nodes() {
-        masses[body.pieces().of_node(id) as usize] += body.node_state(id).2;
-    }
-    masses
 }
 
 /// The piece with the most mass.

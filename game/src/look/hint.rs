@@ -1,8 +1,7 @@
 //! What the hand could do, shown without a word until it moves: a ring around it says "you", and a
 //! pale hand pushes a pale body into the basket, over and over.
 
-use super::stage::Hint;
-use super::{Look, View};
+use super::{Hint, Look, View};
 use egui::{Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
 use fuwafuwa::{Dim, Dim2, Dim3, Manipulator, Vector};
 use tamaire_play::Round;

@@ -1,7 +1,7 @@
 //! Little pictures of levels as they begin, drawn as rounds are.
 
+use super::calm::{camera, face_of, frame};
 use super::feelings::Feeling;
-use super::stage::{camera, face_of, frame};
 use super::{Camera, Face, Theme, View};
 use eframe::egui_wgpu::RenderState;
 use egui::{Color32, Painter, Rect, TextureId, pos2};

@@ -1,5 +1,6 @@
 //! How a round looks: the camera, the faces, what flies about, the colours, little pictures of levels.
 
+mod calm;
 mod camera;
 mod confetti;
 mod effects;
@@ -10,6 +11,7 @@ mod hint;
 mod maps;
 mod opening;
 mod perch;
+mod showing;
 mod stage;
 mod theme;
 
@@ -20,5 +22,6 @@ pub use face::{Face, Mood};
 pub use feelings::Feeling;
 pub use maps::Maps;
 pub use opening::Opening;
-pub use stage::{Hint, Look, Stage};
+pub use showing::{Hint, Look};
+pub use stage::Stage;
 pub use theme::Theme;

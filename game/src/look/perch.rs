@@ -3,11 +3,13 @@
 //! It keeps its place there and rolls with it. Once too much of that place is torn, or who looks sees it from behind, it
 //! shrinks and comes up again where there is a better one.
 
-use super::feelings::{UPRIGHT, masses, square};
 use fuwafuwa::vector::{cross, dot, length, minus, plus, scaled};
 use fuwafuwa::{Body, Dim, Point, Vector};
 use fuwafuwa_render::anchor_at;
 use std::f32::consts::PI;
+
+/// To the right, up and towards who looks.
+pub(super) const UPRIGHT: [Vector; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// A face is so large, in radii of a ball of the volume of its piece, or a share of that where the skin is small.
 const LARGE: f32 = 0.55;
@@ -363,6 +365,23 @@ fn upright(out: Vector, towards: Vector) -> [Vector; 3] {
 fn seen(at: Vector, axes: [Vector; 3], eye: Vector) -> f32 {
     let up = upright(axes[2], minus(eye, at))[1];
     dot(axes[2], wish(at, eye)).min(dot(axes[1], up))
+}
+
+/// Axes of length 1 and square to each other: the third as it is, the second nearly, the first as it must be.
+pub(super) fn square([_, up, out]: [Vector; 3]) -> [Vector; 3] {
+    let unit = |of: Vector| scaled(of, 1.0 / length(of).max(1e-9));
+    let out = unit(out);
+    let right = unit(cross(up, out));
+    [right, cross(out, right), out]
+}
+
+/// The mass of each piece [kg].
+pub(super) fn masses<D: Dim>(body: &Body<D>) -> Vec<f32> {
+    let mut masses = vec![0.0f32; body.pieces().list.len()];
+    for (id, _) in body.mesh().nodes() {
+        masses[body.pieces().of_node(id) as usize] += body.node_state(id).2;
+    }
+    masses
 }
 
 #[cfg(test)]

@@ -1,50 +1,15 @@
 //! A round on the screen: the world, what flies about, the faces.
 
-use super::camera::View;
+use super::calm::{camera, face_of, frame};
 use super::feelings::Feeling;
-use super::{Effects, Face, Maps, Mood, Theme, glow, hint};
+use super::{Face, Look, Maps, Mood, Theme, View, glow, hint};
 use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait, RenderState};
 use egui::{Color32, PaintCallbackInfo, Painter, Pos2, Rect, Stroke, Ui, vec2};
-use fuwafuwa::vector::{length, minus, plus, scaled};
+use fuwafuwa::vector::{length, minus};
 use fuwafuwa::{Dim, Dim2, Dim3, Vector};
-use fuwafuwa_render::frame::ElementColour;
-use fuwafuwa_render::{Ages, Basket, Camera, Frame, Particle, Renderer, Sticker, space};
+use fuwafuwa_render::{Ages, Frame, Particle, Renderer, Sticker, space};
 use std::sync::{Arc, Mutex, PoisonError};
 use tamaire_play::{AnyRound, Level, Round};
-
-/// How to show a round.
-#[derive(Copy, Clone, Debug)]
-pub struct Look<'a> {
-    /// Where.
-    pub view: View,
-    /// In which colours.
-    pub theme: &'a Theme,
-    /// Whether to show the elements instead of the skin.
-    pub elements: Option<ElementColour>,
-    /// In space, how much is left of a body that is opened for it, 0 to 1.
-    pub left: f32,
-    /// What flies about.
-    pub effects: &'a Effects,
-    /// Seconds since the game began, for blinking.
-    pub time: f32,
-    /// The same level as somebody played it before.
-    pub ghost: Option<&'a AnyRound>,
-    /// Whether to show what the hand could do, until it moves.
-    pub hint: Hint,
-    /// With reduced motion.
-    pub still: bool,
-}
-
-/// What a player is shown before the hand moves.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Hint {
-    /// Nothing.
-    None,
-    /// Which hand is theirs.
-    Hand,
-    /// And what it could do.
-    Way,
-}
 
 /// Lines of a round that was played before.
 const GHOST: Color32 = Color32::from_rgba_premultiplied(42, 38, 56, 120);
@@ -217,21 +182,6 @@ fn pixels(ui: &Ui, rect: Rect) -> [u32; 2] {
     [size.x.round() as u32, size.y.round() as u32]
 }
 
-/// How a round is seen from somewhere while nothing happens.
-pub(super) fn frame<'a, D: Dim, C>(camera: C, round: &Round<D>, theme: &'a Theme) -> Frame<'a, C> {
-    let fill = (round.progress().inside / round.level().game().share).clamp(0.0, 1.0);
-    Frame {
-        camera,
-        theme: &theme.world,
-        look: fuwafuwa_render::Look::Skin,
-        basket: round.basket().map(|&region| Basket { region, fill }),
-        particles: &[],
-        stickers: &[],
-        ghost: None,
-        seconds: 0.0,
-    }
-}
-
 /// What of the bodies is shown.
 fn shown<'a>(look: &Look, ages: &'a Ages) -> fuwafuwa_render::Look<'a> {
     match look.elements {
@@ -241,16 +191,6 @@ fn shown<'a>(look: &Look, ages: &'a Ages) -> fuwafuwa_render::Look<'a> {
             ages: &ages.seconds,
             nodes: false,
         },
-    }
-}
-
-/// The view as the renderer takes it.
-pub(super) fn camera(view: &View) -> Camera {
-    Camera {
-        centre: [view.centre[0], view.centre[1], 0.0],
-        height: view.height(),
-        tilt: 0.0,
-        shake: [0.0; 3],
     }
 }
 
@@ -304,19 +244,6 @@ fn faces<D: Dim>(round: &Round<D>, look: &Look) -> Vec<Face> {
         }
     };
     feelings.iter().enumerate().map(face).collect()
-}
-
-/// The face of a body that looks straight ahead, so many times as large as usual.
-pub(super) fn face_of(body: usize, feeling: &Feeling, size: f32) -> Face {
-    Face {
-        body,
-        piece: feeling.piece,
-        at: feeling.at,
-        axes: feeling.axes.map(|axis| scaled(axis, size * feeling.size)),
-        mood: feeling.mood,
-        blink: 0.0,
-        look_at: plus(feeling.at, feeling.axes[2]),
-    }
 }
 
 /// The lines of a round that was played before.

@@ -1,7 +1,6 @@
 //! What sticks and pads can do, what they say, and what they are made to do, as it happens.
 
-use super::kit::{Weight, button, card, fitted, header, page, place_of_page, slider};
-use super::veil;
+use super::kit::{Weight, button, card, fitted, header, page, place_of_page, slider, veil};
 use crate::game::trial::Trial;
 use crate::game::{Game, Screen};
 use crate::look::Theme;

@@ -1,9 +1,10 @@
 //! Widgets that look like a toy: few, large and round. All of them can be reached with a pad.
 
+use crate::game::Game;
 use crate::look::Theme;
 use egui::{
     Align, Align2, Color32, Context, FocusDirection, FontId, Galley, Id, Key, Layout, Painter,
-    Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2,
+    Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 use std::sync::Arc;
 
@@ -20,6 +21,9 @@ const FADE: f32 = 56.0;
 /// Height of the letters on a button, as a share of its own.
 const LETTERS: f32 = 0.42;
 
+/// What a button does.
+pub type Act = fn(&mut Game);
+
 /// What a button is for.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Weight {
@@ -27,6 +31,23 @@ pub enum Weight {
     Main,
     /// Something else.
     Other,
+}
+
+/// Dims the world behind a menu.
+pub fn veil(ui: &Ui, strength: u8) {
+    ui.painter()
+        .rect_filled(ui.max_rect(), 0.0, PAPER.gamma_multiply_u8(strength));
+}
+
+/// Words in the middle of a place.
+pub fn words(ui: &Ui, at: Pos2, text: &str, size: f32, colour: Color32) {
+    ui.painter().text(
+        at,
+        Align2::CENTER_CENTER,
+        text,
+        FontId::proportional(size),
+        colour,
+    );
 }
 
 /// A large round button.

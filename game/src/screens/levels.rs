@@ -1,7 +1,7 @@
 //! Which level?
 
-use super::kit::{fitted, focus_ring, header, liveliness, page, place_of_page};
-use super::{marks, veil};
+use super::kit::{fitted, focus_ring, header, liveliness, page, place_of_page, veil, words};
+use super::marks;
 use crate::game::{Game, Screen};
 use crate::look::{Maps, Stage};
 use egui::{Color32, Rect, Response, Role, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
@@ -92,7 +92,7 @@ fn tile(ui: &mut Ui, game: &Game, maps: &Maps, place: usize, size: Vec2) -> Resp
         let reached = record.is_some_and(|record| record.wishes.contains(&wish));
         let star = if reached { "★" } else { "☆" };
         let tone = if reached { theme.accent } else { theme.faint };
-        super::words(ui, pos2(x + 12.0, base), star, 20.0, tone);
+        words(ui, pos2(x + 12.0, base), star, 20.0, tone);
         x += 24.0;
     }
     x += 16.0;

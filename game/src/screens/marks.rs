@@ -1,5 +1,6 @@
 //! Signs that say something without a word.
 
+use super::kit::words;
 use crate::look::Theme;
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Ui, pos2, vec2};
 use tamaire_play::Route;
@@ -33,7 +34,7 @@ pub(super) fn tick(painter: &Painter, middle: Pos2, size: f32, stroke: Stroke) {
 pub(super) fn space(ui: &Ui, corner: Pos2, theme: &Theme) {
     let ground = Rect::from_min_size(corner, vec2(38.0, 24.0));
     ui.painter().rect_filled(ground, 12.0, theme.ink);
-    super::words(ui, ground.center(), "3D", 16.0, theme.card);
+    words(ui, ground.center(), "3D", 16.0, theme.card);
 }
 
 /// A route: a body pressed into a square, or one that bits are off, or both; pale until it was gone.

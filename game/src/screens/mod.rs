@@ -17,10 +17,7 @@ pub use kit::note_use_of_keys;
 
 use crate::game::{Game, Screen};
 use crate::look::Stage;
-use egui::{Align2, Color32, FontId, Rect, Ui, pos2, vec2};
-
-/// What a button does.
-type Act = fn(&mut Game);
+use egui::{Color32, FontId, Rect, Ui, pos2, vec2};
 
 /// Shows the screen that is on.
 pub fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
@@ -69,21 +66,4 @@ fn notices(game: &Game, ui: &Ui) {
         painter.galley(rect.min + scale * vec2(18.0, 9.0), galley, ink);
         y += size.y + 8.0;
     }
-}
-
-/// Dims the world behind a menu.
-fn veil(ui: &Ui, strength: u8) {
-    ui.painter()
-        .rect_filled(ui.max_rect(), 0.0, kit::PAPER.gamma_multiply_u8(strength));
-}
-
-/// Words in the middle of a place.
-fn words(ui: &Ui, at: egui::Pos2, text: &str, size: f32, colour: Color32) {
-    ui.painter().text(
-        at,
-        Align2::CENTER_CENTER,
-        text,
-        FontId::proportional(size),
-        colour,
-    );
 }

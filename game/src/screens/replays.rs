@@ -1,7 +1,6 @@
 //! Rounds that were kept.
 
-use super::kit::{Weight, button, card, fitted, header, page, place_of_page};
-use super::veil;
+use super::kit::{Weight, button, card, fitted, header, page, place_of_page, veil};
 use crate::game::{Game, Screen};
 use crate::platform::SavedReplay;
 use egui::{Id, RichText, Ui, vec2};

@@ -1,7 +1,7 @@
 //! How it went, and a dare to try the other way.
 
-use super::kit::{Weight, button, card, column, fitted};
-use super::{Act, marks, veil};
+use super::kit::{Act, Weight, button, card, column, fitted, veil};
+use super::marks;
 use crate::game::{Game, Screen};
 use crate::look::Theme;
 use crate::words::Words;

@@ -1,7 +1,6 @@
 //! The name of the game over a body that plays by itself.
 
-use super::kit::{Weight, button, column};
-use super::{veil, words};
+use super::kit::{Weight, button, column, veil, words};
 use crate::game::{Game, Screen};
 use egui::{Color32, Sense, Ui, vec2};
 use tamaire_sound::Menu;

@@ -43,8 +43,7 @@ impl<D: Dim> VoxelGrid<D> {
     /// As [`VoxelGrid::from_fn`]; a small `n` leaves nothing solid.
     #[inline(never)]
     pub fn ring(n: usize, diameter: f32) -> Result<Self, BuildError> {
-        let depth = if D::N == 3 { n.div_ceil(4) } else { 1 };
-        let size = [n, n, depth];
+        let size = [n, n, D::depth(n.div_ceil(4))];
         // In halves of a voxel; like a ball it leaves one free on each side.
         let outer = n as f32 - 1.0;
         let tube = 0.25 * outer;
@@ -98,7 +97,7 @@ impl<D: Dim> VoxelGrid<D> {
     }
 
     fn cube_size(n: usize) -> [usize; 3] {
-        [n, n, if D::N == 3 { n } else { 1 }]
+        [n, n, D::depth(n)]
     }
 
     /// The centre of a voxel from the middle of a grid of `size`, in halves of a voxel: whole numbers.

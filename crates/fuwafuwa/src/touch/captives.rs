@@ -11,17 +11,13 @@ use super::sphere::ContactSphere;
 use super::spheres::Spheres;
 use crate::body::Body;
 use crate::dim::Dim;
-use crate::mesh::Element;
 use crate::shape::Vector;
 use crate::solve::Row;
-use crate::stencil::slot_at;
-use crate::vector::{cross, dot, minus, plus, scaled, three};
+use crate::vector::{dot, minus, plus, scaled, three};
 use std::collections::BTreeMap;
 
 /// Exits are looked for so many voxels around first.
 const EXIT_REACH: f32 = 2.0;
-/// An element that is flatter than this holds nobody: its volume over that at rest.
-const FLAT: f32 = 0.01;
 
 /// A sphere whose middle is inside another piece.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -278,32 +274,6 @@ impl<D: Dim> Body<D> {
         };
         let child = self.child_at(element, at);
         child.is_some_and(|child| element.children >> child & 1 == 1)
-    }
-
-    /// The child of an element's cell that a place [m] lies in.
-    fn child_at(&self, element: &Element, at: Vector) -> Option<usize> {
-        let (centre, [x, y, z]) = self.deformation(element);
-        let volume = dot(x, cross(y, z));
-        if volume.abs() < FLAT {
-            return None;
-        }
-        // Cramer's rule: where the place was at rest, as seen from the centroid.
-        let by = scaled(minus(at, centre), 1.0 / volume);
-        let columns = [cross(y, z), cross(z, x), cross(x, y)];
-        let child_width = 0.5 * self.grid.voxel_size() * element.cell.width() as f32;
-        let stencil = self.mesh.stencil(element);
-        let corner = slot_at(stencil.slots[0] as usize);
-        let mut child = 0;
-        for axis in 0..D::N {
-            let from_centroid: f32 = (0..3).map(|k| columns[k][axis] * by[k]).sum();
-            let from_corner = from_centroid / child_width - stencil.offsets[0][axis] as f32;
-            let along = from_corner + corner[axis] as f32;
-            if !(0.0..=2.0).contains(&along) {
-                return None;
-            }
-            child |= usize::from(along > 1.0) << axis;
-        }
-        Some(child)
     }
 }
 

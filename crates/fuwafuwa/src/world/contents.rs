@@ -7,6 +7,7 @@ use crate::contact::Hit;
 use crate::dim::Dim;
 use crate::event::Event;
 use crate::fracture::Cooldowns;
+use crate::hash::Hash;
 use crate::manipulator::{Manipulator, is_place};
 use crate::shape::{Shape, Vector};
 use crate::touch::Nearby;
@@ -176,27 +177,26 @@ impl<D: Dim> World<D> {
     }
 
     /// A number that two worlds share only when every node and hand of them is in the same state,
-    /// to the last bit; as [FNV-1a], with words of 64 bits in place of bytes.
+    /// to the last bit.
     #[inline(never)]
     pub fn hash(&self) -> u64 {
-        let mut hash = 0xcbf2_9ce4_8422_2325u64;
-        let mut add = |bits: u64| hash = (hash ^ bits).wrapping_mul(0x0100_0000_01b3);
-        add(self.ticks);
+        let mut hash = Hash::NONE;
+        hash.add(self.ticks);
         for body in &self.bodies {
             for (id, _) in body.mesh.nodes() {
                 let (at, speed) = (body.position[id as usize], body.velocity[id as usize]);
-                add(u64::from(body.pieces.of_node(id)));
+                hash.add(u64::from(body.pieces.of_node(id)));
                 for value in at.iter().chain(&speed) {
-                    add(u64::from(value.to_bits()));
+                    hash.add(u64::from(value.to_bits()));
                 }
             }
         }
         for hand in &self.manipulators {
             for value in hand.position.iter().chain(&hand.velocity) {
-                add(u64::from(value.to_bits()));
+                hash.add(u64::from(value.to_bits()));
             }
         }
-        hash
+        hash.number()
     }
 
     /// All pieces of a body.

@@ -70,8 +70,7 @@ impl Beam {
     /// Tip deflection of the graded mesh by Timoshenko's.
     fn ratio_in<D: Dim>(self, progress: &Progress) -> Result<f64> {
         let elasticity = Elasticity::new(1000.0, self.poisson)?;
-        let depth = if D::N == 3 { self.thickness } else { 1 };
-        let size = [self.length, self.thickness, depth];
+        let size = [self.length, self.thickness, D::depth(self.thickness)];
         let grid = VoxelGrid::<D>::from_fn(size, 1.0, |_| 1)?;
         let sharing = Sharing::new(&grid);
         let mesh = Mesh::grade(

@@ -60,7 +60,7 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
 /// The greatest load [N] on a bar 1 m across whose ends are pulled apart until it breaks.
 fn load<D: Dim>(n: usize, notched: bool) -> Result<f64> {
     let length = if notched { 2 } else { 3 };
-    let size = [length * n, n, if D::N == 3 { n } else { 1 }];
+    let size = [length * n, n, D::depth(n)];
     let grid = VoxelGrid::<D>::from_fn(size, 1.0 / n as f32, |_| 1)?;
     let mut material = Material {
         damping: 0.3,

@@ -1,5 +1,6 @@
 //! What a body at rest is made of: a graded disc, its look-up table, and a ball cut open.
 
+use super::legend::level_entries;
 use anyhow::Result;
 use fuwafuwa::dim::{add, corner, points_in, scale};
 use fuwafuwa::pyramid::{Grading, Pyramid};
@@ -37,7 +38,7 @@ pub fn elements() -> Result<Painter> {
         }
     }
     let levels = body.mesh().elements_per_level().len();
-    let mut entries = super::level_entries(levels as u8);
+    let mut entries = level_entries(levels as u8);
     entries.push((Sample::Dot(Role::Node), "node"));
     entries.push((Sample::Dot(Role::MidNode), "mid node"));
     painter.legend(998.0, &entries);

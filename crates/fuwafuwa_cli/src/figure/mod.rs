@@ -2,13 +2,14 @@
 
 mod children;
 mod disc;
+mod legend;
 mod phases;
 mod sequence;
 mod square;
 
 use anyhow::{Context, Result};
 use clap::ValueEnum;
-use fuwafuwa_painter::{Painter, Pixmap, Role, Sample, film};
+use fuwafuwa_painter::{Painter, Pixmap, film};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -95,15 +96,6 @@ fn write(which: Which, folder: &Path) -> Result<Vec<PathBuf>> {
         files.film("figure_6_ball", &frames)?;
     }
     Ok(files.written)
-}
-
-/// The levels of a legend.
-fn level_entries(levels: u8) -> Vec<(Sample, &'static str)> {
-    const NAMES: [&str; 6] = [
-        "level 0", "level 1", "level 2", "level 3", "level 4", "level 5",
-    ];
-    let sample = |level| Sample::Area(Role::Level(level), Role::Edge);
-    (0..levels).map(sample).zip(NAMES).collect()
 }
 
 /// A folder that is being filled.

@@ -1,5 +1,6 @@
 //! A body being cut: in the plane by a hand that pushes, in space by a blade.
 
+use super::legend::level_entries;
 use crate::report::Progress;
 use anyhow::Result;
 use fuwafuwa::law::Elasticity;
@@ -57,7 +58,7 @@ pub fn disc() -> Result<(Painter, Vec<Pixmap>)> {
     }
     let mut strip = film::strip(&moments(&elements, &[0.0, 0.42, 0.57, 0.62, 0.68, 1.0]), 3)?;
     strip.extend(64);
-    let mut entries = super::level_entries(5);
+    let mut entries = level_entries(5);
     entries.push((Sample::Line(Role::Crack), "torn"));
     let y = strip.size()[1] as f32 - 50.0;
     strip.legend(y, &entries);
@@ -110,7 +111,7 @@ pub fn ball() -> Result<(Painter, Vec<Pixmap>)> {
         (Sample::Area(Role::Skin, Role::Skin), "skin"),
         (Sample::Area(Role::Fresh, Role::Fresh), "cut"),
     ];
-    entries.extend(super::level_entries(3));
+    entries.extend(level_entries(3));
     let y = strip.size()[1] as f32 - 50.0;
     strip.legend(y, &entries);
     Ok((strip, skins))

@@ -6,11 +6,10 @@ use crate::elements::colour_of;
 use crate::frame::ElementColour;
 use crate::theme::{Theme, bytes};
 use bytemuck::{Pod, Zeroable};
-use fuwafuwa::dim::{add, corner, scale};
+use fuwafuwa::dim::{add, corner, face_corners, scale};
 use fuwafuwa::mesh::Element;
 use fuwafuwa::stencil::slot_index;
 use fuwafuwa::vector::{minus, plus, scaled, three};
-use fuwafuwa::view::face_corners;
 use fuwafuwa::{Body, Dim3, ElementView, Vector};
 
 /// How far a box stays inside its element [voxels]: so neighbours are told apart.

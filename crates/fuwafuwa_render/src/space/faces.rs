@@ -9,9 +9,8 @@
 use super::pool::Pool;
 use super::rest::{Rest, Tint};
 use crate::theme::{Colour, among, bytes, mix};
-use fuwafuwa::dim::corner;
+use fuwafuwa::dim::{corner, face_corners};
 use fuwafuwa::vector::{plus, scaled};
-use fuwafuwa::view::face_corners;
 use fuwafuwa::{Body, Dim3, Point, Vector};
 
 /// No place.

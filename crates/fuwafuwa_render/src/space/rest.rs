@@ -3,10 +3,9 @@
 //! As in the plane: every point of the surface gets an offset, in voxels and in the frame of the
 //! body at rest, and a deformed body carries the offsets along.
 
-use fuwafuwa::dim::{add, corner, points_in, voxel_around};
+use fuwafuwa::dim::{add, corner, face_corners, points_in, voxel_around};
 use fuwafuwa::sharing::{Groups, Sharing};
 use fuwafuwa::vector::{length, minus, plus, scaled};
-use fuwafuwa::view::face_corners;
 use fuwafuwa::{Dim, Dim3, Point, Vector, VoxelGrid};
 
 /// The variance of the smoothing [voxels²] as a share of the root of the number of faces of the

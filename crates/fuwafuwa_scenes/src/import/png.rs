@@ -1,7 +1,8 @@
 //! PNG: a drawing or a sprite becomes a flat shape.
 
-use super::{Colours, Complaint, ImportError, Place, Problem, in_file, name_of, no_grid, read};
-use super::{check_length, unexpected};
+use super::colours::Colours;
+use super::error::{Complaint, ImportError, Place, Problem, in_file, no_grid, unexpected};
+use super::file::{check_length, name_of, read};
 use ::png::{Decoder, DecodingError, Limits, Transformations};
 use fuwafuwa::grid::MAX_EXTENT;
 use fuwafuwa::{Dim2, VoxelGrid};

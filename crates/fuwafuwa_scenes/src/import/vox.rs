@@ -12,8 +12,9 @@
 //! The crate `dot_vox` reads the format too, but it recurses on nested chunks, so that a small
 //! hostile file overflows the stack, and it drops damaged chunks without a word.
 
-use super::{Colours, Complaint, ImportError, Place, Problem, in_file, name_of, no_grid, read};
-use super::{check_length, unexpected};
+use super::colours::Colours;
+use super::error::{Complaint, ImportError, Place, Problem, in_file, no_grid, unexpected};
+use super::file::{check_length, name_of, read};
 use fuwafuwa::{Dim3, VoxelGrid};
 use std::path::Path;
 

@@ -1,12 +1,16 @@
 //! The device that the system prefers: found, kept open, and looked for again when it is lost.
 
-use super::{Mailbox, NoSound, PATIENCE, Source, lock};
+use super::mailbox::{Mailbox, NoSound, lock};
+use super::source::Source;
 use cpal::traits::{DeviceTrait, HostTrait, StreamTrait};
 use cpal::{Device, ErrorKind, FromSample, I24, SampleFormat, SizedSample, StreamConfig, U24};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::sync::{Mutex, Weak};
 use std::thread;
 use std::time::Duration;
+
+/// Until a device that does not answer counts as none.
+pub(super) const PATIENCE: Duration = Duration::from_secs(3);
 
 /// Between two attempts to open a device.
 pub(super) const PAUSE: Duration = Duration::from_secs(2);

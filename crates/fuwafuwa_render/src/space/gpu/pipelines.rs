@@ -1,6 +1,5 @@
 //! What the GPU is to do with each kind of vertex of a world in space.
 
-use super::targets::{DEPTH_FORMAT, PICTURE_FORMAT, SHADOW_FORMAT};
 use crate::gpu::stage::{
     InMemory, OVER, SAMPLES, Stage, Target, entry, layout, module, sampler, texture, uniform, wgsl,
 };
@@ -9,6 +8,13 @@ use crate::space::room::RoomVertex;
 use crate::space::rounded::{RoundedInstance, RoundedVertex};
 use crate::space::skin::SkinVertex;
 use wgpu::*;
+
+/// The picture, as screens take it.
+pub const PICTURE_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
+/// How far away everything is.
+pub const DEPTH_FORMAT: TextureFormat = TextureFormat::Depth24Plus;
+/// How far from the light everything is.
+pub const SHADOW_FORMAT: TextureFormat = TextureFormat::Depth32Float;
 
 /// All of them, and what they are bound to.
 pub struct Pipelines {

@@ -1,16 +1,10 @@
 //! The images that a world in space is drawn into, apart from the window.
 
-use super::pipelines::Pipelines;
+use super::pipelines::{DEPTH_FORMAT, PICTURE_FORMAT, Pipelines, SHADOW_FORMAT};
 use crate::gpu::stage::SAMPLES;
 use crate::gpu::targets::{bind, new_image, smooth, within};
 use wgpu::*;
 
-/// The picture, as screens take it.
-pub const PICTURE_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
-/// How far away everything is.
-pub const DEPTH_FORMAT: TextureFormat = TextureFormat::Depth24Plus;
-/// How far from the light everything is.
-pub const SHADOW_FORMAT: TextureFormat = TextureFormat::Depth32Float;
 /// The sides of what the light sees and of what the sky sees [px]: the latter is blurred far more.
 pub const SHADOW_SIDES: [u32; 2] = [512, 128];
 

@@ -1,5 +1,8 @@
 //! What the documents say about the code.
 
+mod imports;
+
+use imports::{imports, tangle};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -30,12 +33,12 @@ fn ranks() -> BTreeMap<String, usize> {
         .collect()
 }
 
-/// The source files of a folder and of those in it.
+/// The source files of a folder and of those in it, but for what was built there.
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
-        if path.is_dir() {
+        if path.is_dir() && !path.ends_with("target") {
             found.extend(sources(&path));
         } else if path.extension().is_some_and(|extension| extension == "rs") {
             found.push(path);
@@ -116,5 +119,56 @@ fn what_the_documents_name_is_there() {
                 "{document} names `{path}`, which is not there"
             );
         }
+    }
+}
+
+/// The folders of all crates, with the one that is a workspace of its own.
+fn crates() -> Vec<PathBuf> {
+    let listed = fs::read_dir(root().join("crates")).unwrap();
+    let listed = listed.map(|entry| entry.unwrap().path());
+    let others = ["game", "xtask"].map(|name| root().join(name));
+    listed.chain(others).collect()
+}
+
+/// Files of the engine that still use each other; this list may only become shorter.
+const TANGLED: [&str; 4] = ["contact", "mesh", "solve", "touch"];
+
+#[test]
+fn no_two_files_import_each_other() {
+    let mut count = 0;
+    for folder in crates() {
+        let folder = folder.join("src");
+        let is_engine = folder.ends_with("fuwafuwa/src");
+        let files = sources(&folder).into_iter().map(|path| {
+            let name = path.strip_prefix(&folder).unwrap().to_str().unwrap();
+            (name.replace('\\', "/"), fs::read_to_string(&path).unwrap())
+        });
+        let is_known =
+            |name: &str| is_engine && TANGLED.iter().any(|known| name.starts_with(known));
+        let files: Vec<_> = files.filter(|(name, _)| !is_known(name)).collect();
+        let imports = imports(&files);
+        count += imports.values().flatten().count();
+        let tangled = tangle(imports);
+        assert!(tangled.is_empty(), "in {}: {tangled:#?}", folder.display());
+    }
+    assert!(count > 500, "only {count} imports were found");
+}
+
+/// Files that are longer than they should be; this list may only become shorter.
+const LONG: [&str; 3] = ["src/solve.rs", "src/solve/kernel.rs", "src/touch/skins.rs"];
+
+#[test]
+fn no_file_is_too_long_to_read() {
+    const MOST_LINES: usize = 500;
+    for path in crates().iter().flat_map(|folder| sources(folder)) {
+        let is_known = LONG
+            .iter()
+            .any(|known| path.ends_with(Path::new("fuwafuwa").join(known)));
+        let lines = fs::read_to_string(&path).unwrap().lines().count();
+        assert!(
+            lines <= MOST_LINES || is_known,
+            "{} has {lines} lines",
+            path.display()
+        );
     }
 }

@@ -1,0 +1,85 @@
+//! Where an element takes the places of a body at rest, and back: its motion, taken for affine.
+
+use crate::body::Body;
+use crate::dim::Dim;
+use crate::mesh::Element;
+use crate::shape::Vector;
+use crate::stencil::slot_at;
+use crate::vector::{cross, dot, minus, plus, scaled, three};
+
+/// An element that is flatter than this has no inside: its volume over that at rest.
+const FLAT: f32 = 0.01;
+
+impl<D: Dim> Body<D> {
+    /// The centre of an element [m] and its deformation gradient F, by rows.
+    pub(crate) fn deformation(&self, element: &Element) -> (Vector, [Vector; 3]) {
+        let stencil = self.mesh.stencil(element);
+        let half = 0.5 * self.grid.voxel_size() * element.cell.width() as f32;
+        let scale = 1.0 / (stencil.volume as f32 * half);
+        let (mut centre, mut gradient) = ([0.0; 3], [[0.0; 3]; 3]);
+        for (place, &node) in element.nodes.iter().enumerate() {
+            let at = three(self.position[node as usize]);
+            let share = (stencil.volumes[place] / stencil.volume) as f32;
+            centre = plus(centre, scaled(at, share));
+            let b = stencil.gradients[place].map(|k| k as f32);
+            for i in 0..D::N {
+                gradient[i] = plus(gradient[i], scaled(b, at[i] * scale));
+            }
+        }
+        gradient
+            .iter_mut()
+            .enumerate()
+            .skip(D::N)
+            .for_each(|(k, row)| row[k] = 1.0);
+        (centre, gradient)
+    }
+
+    /// Where an element takes a place of the undeformed body, given in voxels: its affine motion [m].
+    pub(crate) fn carry(&self, element: &Element) -> impl Fn(Vector) -> Vector + use<D> {
+        let (centre, gradient) = self.deformation(element);
+        let stencil = self.mesh.stencil(element);
+        let size = self.grid.voxel_size();
+        let half = 0.5 * size * element.cell.width() as f32;
+        // The slot in the low corner of the cell, as seen from the volume centroid at rest.
+        let steps = slot_at(stencil.slots[0] as usize).map(|k| k as f32 * half);
+        let origin = minus(scaled(stencil.offsets[0].map(|k| k as f32), half), steps);
+        let low = element.cell.first_voxel().map(|k| k as f32);
+        move |place| {
+            let mut rest = origin;
+            for axis in 0..D::N {
+                rest[axis] += (place[axis] - low[axis]) * size;
+            }
+            let mut carried = [0.0; 3];
+            for axis in 0..D::N {
+                carried[axis] = centre[axis] + dot(gradient[axis], rest);
+            }
+            carried
+        }
+    }
+
+    /// The child of an element's cell that a place [m] lies in.
+    pub(crate) fn child_at(&self, element: &Element, at: Vector) -> Option<usize> {
+        let (centre, [x, y, z]) = self.deformation(element);
+        let volume = dot(x, cross(y, z));
+        if volume.abs() < FLAT {
+            return None;
+        }
+        // Cramer's rule: where the place was at rest, as seen from the centroid.
+        let by = scaled(minus(at, centre), 1.0 / volume);
+        let columns = [cross(y, z), cross(z, x), cross(x, y)];
+        let child_width = 0.5 * self.grid.voxel_size() * element.cell.width() as f32;
+        let stencil = self.mesh.stencil(element);
+        let corner = slot_at(stencil.slots[0] as usize);
+        let mut child = 0;
+        for axis in 0..D::N {
+            let from_centroid: f32 = (0..3).map(|k| columns[k][axis] * by[k]).sum();
+            let from_corner = from_centroid / child_width - stencil.offsets[0][axis] as f32;
+            let along = from_corner + corner[axis] as f32;
+            if !(0.0..=2.0).contains(&along) {
+                return None;
+            }
+            child |= usize::from(along > 1.0) << axis;
+        }
+        Some(child)
+    }
+}

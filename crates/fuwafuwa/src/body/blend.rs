@@ -1,0 +1,76 @@
+//! What the materials of its voxels come to in a body as a whole.
+
+use crate::dim::Dim;
+use crate::grid::VoxelGrid;
+use crate::law::Elasticity;
+use crate::material::Material;
+
+/// What the materials of its voxels come to in a body as a whole.
+#[derive(Copy, Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Blend {
+    /// Damping ratio of the slowest swing, the mean over the voxels.
+    pub damping: f64,
+    /// Its ω = π √(Y/ρ) / width [1/s].
+    pub slow: f64,
+    /// Friction, the mean over the voxels.
+    pub friction: f32,
+    /// The fastest pressure wave of a material that is in use [m/s].
+    pub fastest_wave: f64,
+    /// The fastest swing, that of a single voxel which grows and shrinks [1/s].
+    pub fastest_swing: f64,
+}
+
+impl Blend {
+    pub fn of<D: Dim>(grid: &VoxelGrid<D>, materials: &[Material]) -> Self {
+        let mut counts = vec![0.0; materials.len()];
+        for number in grid.voxels().map(|voxel| grid.material(voxel)) {
+            if number > 0 {
+                counts[number as usize - 1] += 1.0;
+            }
+        }
+        let total: f64 = counts.iter().sum();
+        let used = || {
+            counts
+                .iter()
+                .zip(materials)
+                .filter(|(count, _)| **count > 0.0)
+        };
+        let mean = |of: &dyn Fn(&Material) -> f64| {
+            used()
+                .map(|(count, material)| count * of(material))
+                .sum::<f64>()
+                / total
+        };
+        let young = mean(&|material| material.elasticity.young);
+        let density = mean(&|material| f64::from(material.density));
+        let width = f64::from(grid.voxel_size()) * root(total, D::N);
+        let waves = used().map(|(_, material)| material.wave_speed());
+        let swings = used().map(|(_, material)| material.voxel_swing(D::N));
+        Self {
+            damping: mean(&|material| f64::from(material.damping)),
+            slow: std::f64::consts::PI * (young / density).sqrt() / width,
+            friction: mean(&|material| f64::from(material.friction)) as f32,
+            fastest_wave: waves.fold(0.0, f64::max),
+            fastest_swing: swings.fold(0.0, f64::max) / f64::from(grid.voxel_size()),
+        }
+    }
+}
+
+pub fn elasticities(materials: &[Material], stiffness_scale: f64) -> Vec<Elasticity> {
+    let soft = |material: &Material| Elasticity {
+        young: material.elasticity.young * stiffness_scale,
+        ..material.elasticity
+    };
+    materials.iter().map(soft).collect()
+}
+
+/// The square or cube root, by Newton's iteration: it may not come from the platform.
+fn root(of: f64, order: usize) -> f64 {
+    let mut root = of.max(1.0);
+    for _ in 0..60 {
+        let power = (1..order).fold(1.0, |power, _| power * root);
+        root -= (power * root - of) / (order as f64 * power);
+    }
+    root
+}

@@ -1,0 +1,84 @@
+//! How the nodes of a body move in a substep.
+
+use super::Body;
+use crate::dim::Dim;
+use crate::momentum::RoughMotion;
+use crate::solve::Kick;
+use crate::threads;
+use crate::vector::{as_row, dot, minus, plus, scaled};
+
+impl<D: Dim> Body<D> {
+    /// Moves a free body on by `duration` seconds under `gravity` [m/s²], without contact or
+    /// damping: symplectic Euler, stable while `duration` ≤ 0.6 s / c (s the voxel, c the wave).
+    #[inline(never)]
+    pub fn advance(&mut self, duration: f32, gravity: [f32; 3]) {
+        self.push(duration, gravity);
+        self.drift(duration, 0.0);
+    }
+
+    /// Adds elastic forces and gravity over `duration` [s] to the velocities.
+    pub(crate) fn push(&mut self, duration: f32, gravity: [f32; 3]) {
+        self.refresh_awake();
+        self.blocks.evaluate(&self.ahead);
+        let mut gravity = as_row(gravity);
+        gravity[D::N..].fill(0.0);
+        let kick = Kick {
+            nodes: &self.awake,
+            inverse_mass: &self.inverse_mass,
+            duration,
+            gravity,
+        };
+        self.blocks.kick(&kick, &mut self.velocity);
+    }
+
+    /// Moves every awake node by its velocity, and looks `lead` seconds ahead for the next forces,
+    /// as seen from the rigid motion of its piece: what only turns must not be braked.
+    /// No node moves by more than a voxel: faster ones would turn elements inside out, and the
+    /// forces would grow from substep to substep. Returns how far the fastest has come [m].
+    pub(crate) fn drift(&mut self, duration: f32, lead: f32) -> f32 {
+        let top_speed = self.grid.voxel_size() / duration;
+        // Pieces born since the last round of damping have no motion yet.
+        self.rigid
+            .resize(self.pieces.list.len(), RoughMotion::default());
+        let (rigid, pieces) = (&self.rigid, &self.pieces);
+        let lists = [&mut self.position, &mut self.velocity, &mut self.ahead];
+        let rows = threads::rows(&self.awake, lists.map(Vec::as_mut_slice));
+        let fastest = threads::map(rows, |rows| {
+            let [positions, velocities, ahead] = rows.lists;
+            let mut fastest = 0.0f32;
+            for &id in rows.nodes {
+                let node = id as usize - rows.first;
+                let mut velocity = velocities[node];
+                let squared = dot(velocity, velocity);
+                // Not `max`, which would have every node wait for the one before.
+                if squared > fastest {
+                    fastest = squared;
+                }
+                if squared > top_speed * top_speed {
+                    velocity = scaled(velocity, top_speed / squared.sqrt());
+                    velocities[node] = velocity;
+                }
+                let position = plus(positions[node], scaled(velocity, duration));
+                positions[node] = position;
+                let whole = rigid[pieces.of_node(id) as usize].at::<D>(position);
+                ahead[node] = plus(position, scaled(minus(velocity, whole), lead));
+            }
+            fastest
+        });
+        let fastest = fastest.into_iter().fold(0.0, f32::max);
+        fastest.sqrt().min(top_speed) * duration
+    }
+
+    /// Brings the list of moving nodes up to date.
+    pub(crate) fn refresh_awake(&mut self) {
+        if !self.awake_is_stale {
+            return;
+        }
+        self.awake_is_stale = false;
+        let mut awake = std::mem::take(&mut self.awake);
+        awake.clear();
+        let nodes = self.mesh.nodes().map(|(id, _)| id);
+        awake.extend(nodes.filter(|&id| !self.pieces.sleeps(id)));
+        self.awake = awake;
+    }
+}

@@ -1,0 +1,249 @@
+//! What should not be asked for, and what should not be in a world: nothing panics, all stays
+//! finite, and whoever asked is told.
+
+mod changed;
+mod quarantine;
+
+use fuwafuwa::{
+    Blade, Body, Dim, Dim2, Dim3, Drive, Event, Grading, Law, Manipulator, Material, Settings,
+    Shape, VoxelGrid, With, World,
+};
+
+const FLOOR: Shape = Shape::HalfSpace {
+    normal: [0.0, 1.0, 0.0],
+    offset: 0.0,
+};
+
+fn world<D: Dim>() -> World<D> {
+    let mut world = World::new(Settings::default()).unwrap();
+    world.add_obstacle(FLOOR, 0.5).unwrap();
+    world
+}
+
+fn ball<D: Dim>(n: usize) -> Body<D> {
+    Body::new(VoxelGrid::ball(n, 1.0).unwrap(), &[Material::default()]).unwrap()
+}
+
+fn step<D: Dim>(world: &mut World<D>, ticks: usize) {
+    for _ in 0..ticks {
+        world.step();
+    }
+}
+
+fn assert_finite<D: Dim>(world: &World<D>) {
+    for body in world.bodies() {
+        body.mesh().validate(body.grid(), body.sharing()).unwrap();
+        for (id, _) in body.mesh().nodes() {
+            let (at, velocity, mass) = body.node_state(id);
+            let mut all = at.iter().chain(&velocity).chain([&mass]);
+            assert!(all.all(|k| k.is_finite()), "{at:?} {velocity:?} {mass}");
+            assert!(D::N == 3 || (at[2] == 0.0 && velocity[2] == 0.0), "{at:?}");
+        }
+    }
+    for hand in world.manipulators() {
+        let (at, velocity) = (hand.position(), hand.velocity());
+        let mut all = at.iter().chain(&velocity);
+        assert!(all.all(|k| k.is_finite()), "{at:?} {velocity:?}");
+    }
+}
+
+fn bar(size: [usize; 2]) -> Body<Dim2> {
+    let grid = VoxelGrid::from_fn([size[0], size[1], 1], 0.03, |_| 1).unwrap();
+    Body::new(grid, &[Material::default()]).unwrap()
+}
+
+/// Two bars that fly at each other, with nothing else.
+fn about_to_meet() -> World<Dim2> {
+    let settings = Settings {
+        gravity: [0.0; 3],
+        ..Settings::default()
+    };
+    let mut world = World::new(settings).unwrap();
+    world.add_body(bar([6, 6]).thrown([1.0, 0.0, 0.0]));
+    let other = bar([6, 6]).moved([0.4, 0.0, 0.0]);
+    world.add_body(other.thrown([-1.0, 0.0, 0.0]));
+    world
+}
+
+fn assert_they_meet(mut world: World<Dim2>) {
+    step(&mut world, 40);
+    let [left, right] = [0, 1].map(|body| world.bodies()[body].piece_views()[0].centre[0]);
+    assert!(
+        left < right,
+        "they went through each other: {left}, {right}"
+    );
+}
+
+/// Grading::Coarse is for counting: its surface elements cannot be split.
+fn check_coarse<D: Dim>(blade: Blade) {
+    let grid = VoxelGrid::<D>::ball(12, 1.0).unwrap();
+    let coarse = Body::with(
+        grid,
+        &[Material::default()],
+        Law::PatchExact,
+        Grading::Coarse,
+    );
+    let mut world = world::<D>();
+    world.add_body(coarse.unwrap());
+    let depth = if D::N == 3 { 0.5 } else { 0.0 };
+    let hand = Manipulator::new([0.5, 1.2, depth], 0.1).driven(Drive::Kinematic);
+    world.add_manipulator(hand).unwrap();
+    for tick in 0..60u16 {
+        world.set_goal(0, [0.5, 1.2 - 0.02 * f32::from(tick), depth]);
+        assert_eq!(world.step().released, 0);
+    }
+    assert_eq!(world.cut(0, &blade), 0);
+    assert!(world.body_mut(0).crumble().unwrap().is_empty());
+    step(&mut world, 5);
+    assert_finite(&world);
+}
+
+#[test]
+fn a_coarse_body_neither_tears_nor_is_cut() {
+    check_coarse::<Dim2>(Blade::segment([0.5, -0.1], [0.5, 1.1]));
+    check_coarse::<Dim3>(Blade {
+        from: [0.5, -0.1, -0.1],
+        across: [0.0, 1.2, 0.0],
+        along: [0.0, 0.0, 1.2],
+    });
+}
+
+#[test]
+fn hands_without_bounds_are_refused() {
+    let mut world = world::<Dim2>();
+    let usual = || Manipulator::new([0.0, 3.0, 0.0], 0.1);
+    let Drive::Coupled {
+        mass,
+        stiffness,
+        damping,
+        limit,
+    } = Drive::default()
+    else {
+        panic!("the usual hand is coupled");
+    };
+    let drive = |mass, stiffness, damping, limit| {
+        usual().driven(Drive::Coupled {
+            mass,
+            stiffness,
+            damping,
+            limit,
+        })
+    };
+    let infinite = f32::INFINITY;
+    let mut slippery = usual();
+    slippery.friction = infinite;
+    let bad = [
+        (Manipulator::new([0.0, 1e30, 0.0], 0.1), "position"),
+        (Manipulator::new([0.0; 3], infinite), "radius"),
+        (slippery, "friction"),
+        (drive(infinite, stiffness, damping, limit), "mass"),
+        (drive(1e-30, stiffness, damping, limit), "mass"),
+        (drive(mass, infinite, damping, limit), "stiffness"),
+        (drive(mass, stiffness, infinite, limit), "damping"),
+        (drive(mass, stiffness, damping, f32::NAN), "limit"),
+    ];
+    for (hand, field) in bad {
+        let message = world.add_manipulator(hand).unwrap_err().to_string();
+        assert!(message.contains(field), "{message}");
+    }
+    assert!(world.add_obstacle(FLOOR, infinite).is_err());
+    world
+        .add_manipulator(drive(mass, stiffness, damping, infinite))
+        .unwrap();
+    world
+        .add_manipulator(usual().driven(Drive::Kinematic))
+        .unwrap();
+    for hand in 0..2 {
+        assert!(!world.set_goal(hand, [1e38, 0.0, 0.0]));
+        assert!(world.set_goal(hand, [1e6, -1e6, 0.0]));
+    }
+    world.step();
+    assert_finite(&world);
+}
+
+/// In the plane third coordinates do not count: nothing is pushed out of it.
+#[test]
+fn what_stands_off_the_plane_pushes_nothing_out_of_it() {
+    let shapes = [
+        Shape::half_space([0.0, 1.0, 1.0], [0.0; 3]),
+        Shape::Box {
+            centre: [0.5, -0.5, 7.0],
+            half: [2.0, 0.5, 0.0],
+        },
+        Shape::Capsule {
+            from: [-1.0, -0.5, 0.2],
+            to: [2.0, -0.5, -0.1],
+            radius: 0.5,
+        },
+    ];
+    for shape in shapes {
+        let mut world = World::<Dim2>::new(Settings::default()).unwrap();
+        world.add_obstacle(shape, 0.5).unwrap();
+        world.add_body(ball(12).moved([0.0, 0.02, 0.0]));
+        let hand = Manipulator::new([0.5, 0.9, 0.05], 0.1);
+        world.add_manipulator(hand).unwrap();
+        step(&mut world, 30);
+        assert_finite(&world);
+        let low = world.bodies()[0].piece_views()[0].low[1];
+        assert!(low > -0.03, "{shape:?}: {low}");
+    }
+    let edge_on = Shape::half_space([0.0, 0.0, 1.0], [0.0; 3]);
+    assert!(world::<Dim2>().add_obstacle(edge_on, 0.5).is_err());
+    let body = ball::<Dim2>(12);
+    let region = Shape::Box {
+        centre: [0.5, 0.5, 3.0],
+        half: [1.0, 1.0, 0.0],
+    };
+    let share = f64::from(body.mass_inside(&region)) / body.total_mass();
+    assert!((share - 1.0).abs() < 1e-5, "{share}");
+}
+
+#[test]
+fn a_material_that_no_voxel_has_changes_nothing() {
+    let stiff = Material {
+        elasticity: fuwafuwa::Elasticity {
+            young: 1e9,
+            poisson: 0.3,
+        },
+        friction: 2.0,
+        ..Material::default()
+    };
+    let hash_with = |materials: &[Material]| {
+        let mut world = world::<Dim2>();
+        world.add_body(Body::new(VoxelGrid::ball(16, 1.0).unwrap(), materials).unwrap());
+        assert_eq!(world.bodies()[0].stiffness_scale(), 1.0);
+        let hand = Manipulator::new([0.5, 1.1, 0.0], 0.1).driven(Drive::Kinematic);
+        let hand = world.add_manipulator(hand).unwrap();
+        let mut released = 0;
+        for tick in 0..40u8 {
+            world.set_goal(hand, [0.5, 1.1 - 0.03 * f32::from(tick), 0.0]);
+            released += world.step().released;
+        }
+        assert!(released > 10, "it does not tear");
+        world.hash()
+    };
+    let usual = Material::default();
+    assert_eq!(hash_with(&[usual, stiff]), hash_with(&[usual]));
+}
+
+/// A cut on purpose is reported as a tear is, where it happened, but sets no energy free.
+#[test]
+fn a_cut_is_told_where_it_was() {
+    let mut world = world::<Dim2>();
+    world.add_body(ball(16).moved([3.0, 0.0, 0.0]));
+    let count = world.cut(0, &Blade::segment([3.5, -0.1], [3.5, 1.1]));
+    let mut places = 0;
+    for event in world.events() {
+        if let Event::Released { at, energy, .. } = event {
+            assert!(
+                (at[0] - 3.5).abs() < 0.07 && (0.0..=1.0).contains(&at[1]),
+                "{at:?}"
+            );
+            assert_eq!(*energy, 0.0);
+            places += 1;
+        }
+    }
+    assert_eq!(places, count);
+    let parted = |event: &&Event| matches!(event, Event::Parted { .. });
+    assert_eq!(world.events().iter().filter(parted).count(), 1);
+}

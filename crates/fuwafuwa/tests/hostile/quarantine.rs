@@ -1,0 +1,115 @@
+//! What is not finite, or too fast, is stopped where it was.
+
+use super::*;
+
+/// A body that is nowhere is stopped, put to where it was made, and reported.
+#[test]
+fn a_body_that_is_no_place_is_quarantined() {
+    for nowhere in [f32::NAN, f32::INFINITY] {
+        let mut world = world::<Dim2>();
+        world.add_body(ball(12).moved([nowhere, 0.0, 0.0]));
+        world.add_body(ball(12).moved([3.0, 0.0, 0.0]).thrown([0.0, nowhere, 0.0]));
+        let report = world.step();
+        assert_eq!(report.quarantined, 2);
+        assert_finite(&world);
+        step(&mut world, 5);
+        assert_finite(&world);
+        let centres = world
+            .bodies()
+            .iter()
+            .map(|body| body.piece_views()[0].centre);
+        let expected = [[0.5, 0.5, 0.0], [3.5, 0.5, 0.0]];
+        for (centre, expected) in centres.zip(expected) {
+            let apart = (0..2).map(|axis| (centre[axis] - expected[axis]).abs());
+            assert!(apart.fold(0.0, f32::max) < 0.01, "{centre:?}");
+        }
+    }
+}
+
+/// A prototype restored positions by node ids, which a release in the same tick had given to other
+/// nodes, or to none: elements were stretched to the origin.
+#[test]
+fn a_piece_that_tears_in_its_last_tick_is_not_stretched() {
+    let mut world = world::<Dim2>();
+    world.add_body(ball(24).moved([5.0, 0.0, 0.0]));
+    let hand = Manipulator::new([5.5, 1.1, 0.0], 0.08).driven(Drive::Kinematic);
+    world.add_manipulator(hand).unwrap();
+    let mut both = 0;
+    for tick in 0..40u16 {
+        world.set_goal(0, [5.5, 1.1 - 0.03 * f32::from(tick), 0.0]);
+        world.step();
+        let mut doomed = world.clone();
+        let body = doomed.body_mut(0);
+        *body = body.clone().thrown([f32::NAN; 3]);
+        let report = doomed.step();
+        both += u32::from(report.released > 0 && report.quarantined > 0);
+        assert_finite(&doomed);
+        let body = &doomed.bodies()[0];
+        for (_, element) in body.mesh().elements() {
+            let places = || element.nodes.iter().map(|&node| body.node_state(node).0);
+            let width = element.cell.width() as f32 / 24.0;
+            for axis in 0..2 {
+                let low = places().map(|at| at[axis]).fold(f32::MAX, f32::min);
+                let high = places().map(|at| at[axis]).fold(f32::MIN, f32::max);
+                assert!(high - low < 6.0 * width, "tick {tick}: {low} to {high}");
+            }
+        }
+    }
+    assert!(both > 3, "{both} ticks with a release and a quarantine");
+}
+
+/// What is not finite touches nothing: a hand and a neighbour beside it are left as they are.
+#[test]
+fn a_body_out_of_hand_spoils_nothing_else() {
+    let mut world = world::<Dim2>();
+    for (place, x) in [0.0, 0.97].into_iter().enumerate() {
+        world.add_body(ball(16).moved([x, 0.0, 0.0]));
+        let hand = Manipulator::new([x + 0.5, 0.95, 0.0], 0.1);
+        let drive = [Drive::Kinematic, Drive::default()][place];
+        world.add_manipulator(hand.driven(drive)).unwrap();
+    }
+    step(&mut world, 10);
+    let body = world.body_mut(0);
+    *body = body.clone().thrown([f32::NAN; 3]);
+    assert_eq!(world.step().quarantined, 1);
+    assert_finite(&world);
+    let forces = world
+        .manipulators()
+        .iter()
+        .flat_map(|hand| hand.reactions());
+    for reaction in forces {
+        let mut all = reaction.contact.iter().chain(&reaction.coupling);
+        assert!(all.all(|k| k.is_finite()), "{reaction:?}");
+    }
+}
+
+#[test]
+fn what_came_off_a_quarantined_piece_is_quarantined() {
+    let mut world = world::<Dim2>();
+    world.add_body(ball(12).thrown([f32::NAN, 0.0, 0.0]));
+    world.step();
+    world.cut(0, &Blade::segment([0.5, -1.0], [0.5, 2.0]));
+    let views = world.bodies()[0].piece_views();
+    assert_eq!(views.len(), 2);
+    assert!(views.iter().all(|view| view.asleep && view.quarantined));
+}
+
+#[test]
+fn a_quarantined_body_still_holds_others_up() {
+    let mut world = World::new(Settings::default()).unwrap();
+    world.add_body(bar([24, 4]).moved([f32::INFINITY, 0.0, 0.0]));
+    world.add_body(bar([6, 6]).moved([0.27, 0.25, 0.0]));
+    step(&mut world, 30);
+    let view = &world.bodies()[1].piece_views()[0];
+    assert!(view.low[1] > 0.05, "it fell through: {view:?}");
+}
+
+#[test]
+fn others_still_meet_when_one_was_quarantined() {
+    for nowhere in [f32::NAN, f32::INFINITY] {
+        let mut world = about_to_meet();
+        world.add_body(bar([2, 2]).moved([nowhere, -3.0, 0.0]));
+        assert_eq!(world.step().quarantined, 1);
+        assert_they_meet(world);
+    }
+}
