@@ -7,7 +7,10 @@
 
 mod bins;
 mod captives;
+mod collider;
+mod impulse;
 mod nodes;
+mod pair;
 mod pairs;
 mod sphere;
 mod spheres;
@@ -15,40 +18,15 @@ mod spheres;
 use crate::body::Body;
 use crate::dim::Dim;
 use crate::release::Torn;
-use crate::shape::Shape;
-use crate::solve::Row;
 pub use captives::{Captive, Captives};
+pub use collider::Collider;
+pub use impulse::Impulse;
 pub use nodes::NodePairs;
-pub use pairs::{MARGIN, SpherePairs};
+pub use pair::MARGIN;
+use pair::renumber;
+pub use pairs::SpherePairs;
 pub use sphere::{ContactSphere, mean};
 pub use spheres::Spheres;
-
-/// Something rigid that nodes can touch.
-#[derive(Copy, Clone, Debug)]
-pub struct Collider {
-    /// Where it is now.
-    pub shape: Shape,
-    /// [m/s]
-    pub velocity: Row,
-    /// One over its mass [1/kg]; 0 when nothing can push it.
-    pub inverse_mass: f32,
-    /// Coulomb friction with nodes.
-    pub friction: f32,
-    /// Whether it wakes what it touches.
-    pub is_hand: bool,
-}
-
-/// The impulses of a contact [N s]: from one substep to the next, and over a tick.
-#[derive(Copy, Clone, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Impulse {
-    /// Along the normal.
-    pub pressed: f32,
-    /// Across it.
-    pub dragged: Row,
-    /// Along the normal, since the start of the tick.
-    pub total: f32,
-}
 
 /// What may touch what. Between ticks nothing of it counts but the impulses.
 #[derive(Clone, Debug, Default)]
@@ -77,7 +55,7 @@ impl Nearby {
         self.nodes.start_tick();
         self.pairs.start_tick();
         if let Some(places) = self.spheres.start_tick(bodies) {
-            self.pairs.renumber(&places);
+            renumber(&mut self.pairs.list, &places);
         }
         self.captives = Captives::default();
         (self.left, self.has_begun) = (duration, false);

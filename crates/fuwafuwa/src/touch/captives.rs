@@ -6,7 +6,7 @@
 //! around it, but for the nearest, its *exit*, which lets it out.
 
 use super::bins::Bins;
-use super::pairs::SpherePair;
+use super::pair::SpherePair;
 use super::sphere::ContactSphere;
 use super::spheres::Spheres;
 use crate::body::Body;

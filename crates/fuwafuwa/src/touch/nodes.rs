@@ -2,8 +2,9 @@
 //! through.
 
 use super::bins::Bins;
-use super::pairs::MARGIN;
-use super::{Collider, Impulse};
+use super::collider::Collider;
+use super::impulse::Impulse;
+use super::pair::MARGIN;
 use crate::body::Body;
 use crate::dim::Dim;
 use crate::shape::Shape;

@@ -10,18 +10,16 @@
 //!    ●──╲───────┤
 //! ```
 
-use super::Impulse;
 use super::bins::Bins;
+use super::pair::{MARGIN, SpherePair, merge};
 use super::sphere::ContactSphere;
-use super::spheres::{NONE, Spheres};
+use super::spheres::Spheres;
 use crate::body::Body;
 use crate::dim::Dim;
 use crate::solve::Row;
 use crate::threads::{self, SHARE};
 use crate::vector::{dot, length, minus, plus, scaled};
 
-/// Contacts are looked for out to this many voxels, so that none comes as a surprise.
-pub const MARGIN: f32 = 0.3;
 /// How far a sphere may stray from its path, in voxels: more makes longer lists, less more looks.
 const STRAY: f32 = 0.35;
 /// The share of spheres whose paths are long, and how long those of the rest may be at the most, as a
@@ -35,18 +33,6 @@ const COMPARED: usize = 64;
 
 /// Spheres whose pairs one thread looks for at a time.
 const LOOKS: usize = SHARE / 8;
-
-/// Two spheres that may touch.
-#[derive(Copy, Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct SpherePair {
-    /// Places among the spheres, ascending.
-    pub spheres: [u32; 2],
-    /// What passed between them.
-    pub impulse: Impulse,
-    /// Whether they met face to face: if one is behind the other now, it was forced there.
-    pub met_in_front: bool,
-}
 
 /// The way of a sphere while its pairs hold.
 #[derive(Copy, Clone, Debug, Default)]
@@ -118,20 +104,6 @@ impl SpherePairs {
         for pair in &mut self.list {
             pair.impulse.total = 0.0;
         }
-    }
-
-    /// The spheres have new places in their list: each that had one before is told its place now.
-    pub fn renumber(&mut self, places: &[u32]) {
-        self.list.retain_mut(|pair| {
-            let place = |old: u32| places.get(old as usize).copied().unwrap_or(NONE);
-            let [a, b] = pair.spheres.map(place);
-            pair.spheres = [a.min(b), a.max(b)];
-            if a > b {
-                pair.impulse.dragged = scaled(pair.impulse.dragged, -1.0);
-            }
-            pair.spheres[1] != NONE
-        });
-        self.list.sort_unstable_by_key(|pair| pair.spheres);
     }
 
     /// So much time has passed [s], in which no node came further than by `distance` [m].
@@ -251,7 +223,7 @@ impl SpherePairs {
             });
             self.bins = Some(bins);
         }
-        self.merge(&found, &vec![true; count]);
+        merge(&mut self.list, &found, &vec![true; count]);
     }
 
     /// Looks again for the pairs of some, given in ascending order; those of the others stay.
@@ -296,7 +268,7 @@ impl SpherePairs {
             }
             found
         });
-        self.merge(&found, &is_changed);
+        merge(&mut self.list, &found, &is_changed);
         self.spare = 0.0;
     }
 
@@ -336,37 +308,6 @@ impl SpherePairs {
             found.push([a.min(b), a.max(b)]);
         }
     }
-
-    /// Makes the new list of pairs from those just found and the old ones of which neither has
-    /// changed. Pairs that were known keep their impulses.
-    fn merge(&mut self, found: &[Vec<[u32; 2]>], is_changed: &[bool]) {
-        let stays =
-            |pair: &SpherePair| !pair.spheres.iter().any(|&place| is_changed[place as usize]);
-        let mut found = by_first(found, is_changed.len());
-        let merged = threads::map(shares(&mut found, &self.list), |(found, old)| {
-            for same in found.chunk_by_mut(|a, b| a[0] == b[0]) {
-                same.sort_unstable();
-            }
-            let mut pairs = Vec::with_capacity(old.len().max(found.len()));
-            let mut old = old.iter().peekable();
-            for &mut spheres in found {
-                while let Some(pair) = old.next_if(|pair| pair.spheres < spheres) {
-                    if stays(pair) {
-                        pairs.push(*pair);
-                    }
-                }
-                let known = old.next_if(|pair| pair.spheres == spheres);
-                pairs.push(SpherePair {
-                    spheres,
-                    impulse: known.map_or(Impulse::default(), |pair| pair.impulse),
-                    met_in_front: known.is_some_and(|pair| pair.met_in_front),
-                });
-            }
-            pairs.extend(old.filter(|pair| stays(pair)));
-            pairs
-        });
-        self.list = merged.concat();
-    }
 }
 
 /// How far a sphere may stray from its path [m].
@@ -389,61 +330,13 @@ fn longest_short(sweeps: &[f32], most: f32) -> f32 {
     if short < most { short } else { most }
 }
 
-/// Both lists of pairs, which ascend by their first spheres, cut at the same ones.
-fn shares<'a>(
-    mut found: &'a mut [[u32; 2]],
-    mut old: &'a [SpherePair],
-) -> impl Iterator<Item = (&'a mut [[u32; 2]], &'a [SpherePair])> {
-    let mut is_done = false;
-    std::iter::from_fn(move || {
-        if is_done {
-            return None;
-        }
-        let next = found.get(SHARE).map(|pair| pair[0] + 1);
-        is_done = next.is_none();
-        let next = next.unwrap_or(u32::MAX);
-        let end = found.partition_point(|pair| pair[0] < next);
-        let own;
-        (own, found) = std::mem::take(&mut found).split_at_mut(end);
-        let end = old.partition_point(|pair| pair.spheres[0] < next);
-        let known;
-        (known, old) = old.split_at(end);
-        Some((own, known))
-    })
-}
-
-impl SpherePair {
-    /// Its spheres among all of them.
-    pub fn both<'a>(&self, spheres: &'a [ContactSphere]) -> [&'a ContactSphere; 2] {
-        self.spheres.map(|place| &spheres[place as usize])
-    }
-}
-
-/// Pairs of numbers below `count`, ascending by the first.
-fn by_first(pairs: &[Vec<[u32; 2]>], count: usize) -> Vec<[u32; 2]> {
-    let mut end = vec![0u32; count];
-    for pair in pairs.iter().flatten() {
-        end[pair[0] as usize] += 1;
-    }
-    let mut sum = 0;
-    for end in &mut end {
-        sum += std::mem::replace(end, sum);
-    }
-    let mut sorted = vec![[0; 2]; sum as usize];
-    for pair in pairs.iter().flatten() {
-        let place = &mut end[pair[0] as usize];
-        sorted[*place as usize] = *pair;
-        *place += 1;
-    }
-    sorted
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::dim::{Dim2, Dim3};
     use crate::grid::VoxelGrid;
     use crate::material::Material;
+    use crate::touch::pair::renumber;
 
     const SUBSTEPS: u32 = 8;
     const SUBSTEP: f32 = 1.0 / 480.0;
@@ -516,7 +409,7 @@ mod tests {
             velocity(&mut body, &|_| 1.0);
             pairs.start_tick();
             if let Some(places) = spheres.start_tick(std::slice::from_ref(&body)) {
-                pairs.renumber(&places);
+                renumber(&mut pairs.list, &places);
             }
             for substep in 0..SUBSTEPS {
                 if substep == 3 {
@@ -574,7 +467,7 @@ mod tests {
         for tick in 0..20 {
             pairs.start_tick();
             if let Some(places) = spheres.start_tick(std::slice::from_ref(&body)) {
-                pairs.renumber(&places);
+                renumber(&mut pairs.list, &places);
             }
             for round in 0..4 {
                 let bodies = std::slice::from_ref(&body);
@@ -621,28 +514,5 @@ mod tests {
     fn spheres_and_their_neighbours_are_known_after_every_tear() {
         check_tears::<Dim2>(14);
         check_tears::<Dim3>(8);
-    }
-
-    #[test]
-    fn what_passed_between_two_is_known_when_they_have_new_places() {
-        let pair = |spheres, pressed| SpherePair {
-            spheres,
-            impulse: Impulse {
-                pressed,
-                dragged: [pressed; 4],
-                total: 0.0,
-            },
-            met_in_front: true,
-        };
-        let mut pairs = SpherePairs {
-            list: vec![pair([0, 1], 1.0), pair([0, 2], 2.0), pair([1, 3], 3.0)],
-            ..SpherePairs::default()
-        };
-        // The last one stands first now, and one is gone.
-        pairs.renumber(&[1, NONE, 0]);
-        assert_eq!(pairs.list.len(), 1);
-        let kept = pairs.list[0];
-        assert_eq!((kept.spheres, kept.impulse.pressed), ([0, 1], 2.0));
-        assert_eq!(kept.impulse.dragged, [-2.0; 4], "on the other one now");
     }
 }

@@ -55,9 +55,14 @@ impl Spheres {
     pub fn start_tick<D: Dim>(&mut self, bodies: &[Body<D>]) -> Option<Vec<u32>> {
         let places = (!self.is_listed).then(|| self.list_anew(bodies));
         self.is_listed = true;
-        for sphere in &mut self.list {
-            let pieces = &bodies[sphere.body as usize].pieces;
-            sphere.asleep = pieces.list[sphere.piece as usize].asleep;
+        for (sphere, centre) in self.list.iter_mut().zip(&mut self.centres) {
+            let body = &bodies[sphere.body as usize];
+            let was_asleep = sphere.asleep;
+            sphere.asleep = body.pieces.list[sphere.piece as usize].asleep;
+            // Nobody looks after sleepers: this is where they stay.
+            if sphere.asleep && !was_asleep {
+                *centre = sphere.mean::<D>(&body.position);
+            }
         }
         let all = 0..self.list.len() as u32;
         self.awake.clear();
