@@ -28,6 +28,7 @@ mod chains;
 mod contact;
 mod damping;
 pub mod dim;
+mod disjoint;
 pub mod event;
 mod fracture;
 pub mod grid;
