@@ -139,14 +139,15 @@ impl<D: Dim> Body<D> {
     /// The octants at a point that still hang together when the given faces are open: one mask for
     /// each side, nothing when they all do.
     fn sides(&self, at: Point, opened: &BTreeSet<(Point, usize)>) -> Vec<u8> {
-        let groups = self.sharing.groups(at);
+        let around = self.sharing.around(at);
+        let solid = around.middle().solid();
         let mut sides: Vec<u8> = (0..D::CORNERS)
-            .filter(|octant| groups.solid() >> octant & 1 == 1)
+            .filter(|octant| solid >> octant & 1 == 1)
             .map(|octant| 1 << octant)
             .collect();
         for (octant, axis) in faces_around::<D>() {
             let face = (voxel_around::<D>(at, octant), axis);
-            if opened.contains(&face) || !self.sharing.is_closed(at, octant, axis) {
+            if opened.contains(&face) || !around.is_closed(octant, axis) {
                 continue;
             }
             let (a, b) = (1u8 << octant, 1u8 << (octant ^ 1 << axis));

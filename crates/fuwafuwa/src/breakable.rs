@@ -10,19 +10,17 @@
 //!       A │ B      released close by; so it is worked out then, and kept
 //! ```
 
-use crate::dim::{Dim, Point, voxel_around};
+use crate::dim::{Dim, FAR, Point, voxel_around};
 use crate::grid::VoxelGrid;
 use crate::material::Material;
 use crate::mesh::{Mesh, Node};
-use crate::sharing::{Sharing, faces_around};
+use crate::sharing::{Around, Sharing};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// The most that chance adds to what a smooth surface bears; scatter keeps a row of equally
 /// strained nodes from bursting at once. The tip of a crack is one node: there is none to spare.
 const SCATTER: f32 = 0.4;
-/// The octants on the far side of each axis.
-const FAR: [u8; 3] = [0b1010_1010, 0b1100_1100, 0b1111_0000];
 
 /// A breakable node.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -95,9 +93,14 @@ impl BreakableNodes {
         for &id in nodes {
             let node = mesh.node(id);
             let several = node.group & node.group.wrapping_sub(1) != 0;
-            let is_open = several && mesh.is_alive(id) && sharing.is_open(node.at);
-            let judged = is_open.then(|| self.judge(node, grid, sharing, materials));
-            self.of_node[id as usize] = judged;
+            self.of_node[id as usize] = None;
+            if several && mesh.is_alive(id) {
+                let around = sharing.around(node.at);
+                if around.is_open() {
+                    let judged = self.judge(node, grid, &around, materials);
+                    self.of_node[id as usize] = Some(judged);
+                }
+            }
         }
     }
 
@@ -105,21 +108,19 @@ impl BreakableNodes {
         &mut self,
         node: Node,
         grid: &VoxelGrid<D>,
-        sharing: &Sharing<D>,
+        around: &Around<D>,
         materials: &[Material],
     ) -> BreakableNode {
         let Node { at, group } = node;
-        let mut closed = [0; 3];
+        // The faces between voxels of the group, and those of them that are closed.
+        let faces: Closed = [0, 1, 2].map(|axis| group & group >> (1 << axis) & !FAR[axis]);
+        let mut closed = around.closed_faces();
+        closed
+            .iter_mut()
+            .zip(faces)
+            .for_each(|(closed, faces)| *closed &= faces);
         // A crack ends where some voxels still share a node, but no longer a face.
-        let mut is_tip = false;
-        for (octant, axis) in faces_around::<D>() {
-            let both = 1 << octant | 1 << (octant ^ 1 << axis);
-            if group & both == both {
-                let is_closed = sharing.is_closed(at, octant, axis);
-                closed[axis] |= u8::from(is_closed) << octant;
-                is_tip |= !is_closed;
-            }
-        }
+        let is_tip = closed != faces;
         let octants = (0..D::CORNERS).filter(|octant| group >> octant & 1 == 1);
         let numbers = octants.map(|octant| grid.material(voxel_around::<D>(at, octant)));
         let strength = |&number: &u8| materials[number as usize - 1].strength;
@@ -138,7 +139,7 @@ impl BreakableNodes {
             .fold(0, |lone, cut| lone | cut.lone);
         let crumbs = (0..D::CORNERS)
             .filter(|octant| lone >> octant & 1 == 1)
-            .filter(|&octant| would_crumble(sharing, at, octant))
+            .filter(|&octant| would_crumble(around, octant))
             .fold(0, |crumbs, octant| crumbs | 1 << octant);
         BreakableNode {
             group,
@@ -220,14 +221,8 @@ fn side_of<D: Dim>(mut closed: Closed, axis: usize, opened: u8) -> Option<u8> {
 
 /// Whether the voxel of an octant would be set free, or hang by one face: of the faces away from
 /// the point at most one is closed.
-fn would_crumble<D: Dim>(sharing: &Sharing<D>, at: Point, octant: usize) -> bool {
-    // The faces away from the point are seen from the voxel's opposite corner.
-    let mut corner = at;
-    for axis in 0..D::N {
-        corner[axis] += (octant >> axis & 1) as i32 * 2 - 1;
-    }
-    let seen = D::CORNERS - 1 - octant;
-    let is_held = |axis: &usize| sharing.is_closed(corner, seen, *axis);
+fn would_crumble<D: Dim>(around: &Around<D>, octant: usize) -> bool {
+    let is_held = |axis: &usize| around.is_far_face_closed(octant, *axis);
     (0..D::N).filter(is_held).count() <= 1
 }
 

@@ -66,6 +66,27 @@ impl Chains {
     }
 }
 
+/// Ids below a bound in ascending order, each once. What is touched by a release has most of its ids
+/// several times: a bit for every id there could be is cheaper than sorting them.
+pub fn ascending(ids: impl Iterator<Item = u32>, bound: usize) -> Vec<u32> {
+    let mut words = vec![0u64; bound.div_ceil(64)];
+    let mut count = 0;
+    for id in ids {
+        let (word, bit) = (&mut words[id as usize / 64], 1 << (id % 64));
+        count += usize::from(*word & bit == 0);
+        *word |= bit;
+    }
+    let mut found = Vec::with_capacity(count);
+    for (word, first) in words.into_iter().zip((0..).step_by(64)) {
+        let mut left = word;
+        while left != 0 {
+            found.push(first + left.trailing_zeros());
+            left &= left - 1;
+        }
+    }
+    found
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -83,5 +104,12 @@ mod tests {
         chains.remove(1, 4);
         assert_eq!(chains.at(0).collect::<Vec<_>>(), [1, 0]);
         assert_eq!(chains.at(1).collect::<Vec<_>>(), [2]);
+    }
+
+    #[test]
+    fn ids_ascend_and_come_once() {
+        let ids = [129, 3, 63, 64, 3, 0, 129, 128];
+        assert_eq!(ascending(ids.into_iter(), 130), [0, 3, 63, 64, 128, 129]);
+        assert!(ascending([].into_iter(), 0).is_empty());
     }
 }

@@ -80,15 +80,20 @@ pub fn motions<D: Dim>(body: &Body<D>) -> Vec<PieceMotion> {
     let mut motions = vec![PieceMotion::default(); body.pieces.list.len()];
     // A node of the piece itself: far from the world's origin the sums would lose digits.
     let mut origins = vec![[0.0; 3]; motions.len()];
-    for (&id, (position, velocity, mass)) in body.awake.iter().zip(body.states(&body.awake)) {
-        let piece = body.pieces.of_node(id) as usize;
-        let (motion, origin) = (&mut motions[piece], &mut origins[piece]);
-        let x = wide(position);
+    let of_node = |id| body.pieces.of_node(id) as usize;
+    // Nodes that follow one another are mostly of one piece: its sums stay at hand for as long.
+    for nodes in body.awake.chunk_by(|&a, &b| of_node(a) == of_node(b)) {
+        let piece = of_node(nodes[0]);
+        let (mut motion, origin) = (motions[piece], &mut origins[piece]);
         if motion.nodes == 0 {
-            *origin = x;
+            *origin = wide(body.position[nodes[0] as usize]);
         }
-        motion.add::<D>(minus(x, *origin), wide(velocity), f64::from(mass));
-        motion.is_driven |= body.inverse_mass[id as usize] == 0.0 && velocity != [0.0; 4];
+        for (&id, (position, velocity, mass)) in nodes.iter().zip(body.states(nodes)) {
+            let x = minus(wide(position), *origin);
+            motion.add::<D>(x, wide(velocity), f64::from(mass));
+            motion.is_driven |= body.inverse_mass[id as usize] == 0.0 && velocity != [0.0; 4];
+        }
+        motions[piece] = motion;
     }
     for (motion, origin) in motions.iter_mut().zip(origins) {
         if motion.nodes > 0 {

@@ -75,6 +75,9 @@ pub fn corner(index: usize) -> Point {
     ]
 }
 
+/// The corners on the far side of each axis, as masks.
+pub const FAR: [u8; 3] = [0b1010_1010, 0b1100_1100, 0b1111_0000];
+
 /// Coordinate-wise sum.
 #[inline]
 pub fn add(a: Point, b: Point) -> Point {

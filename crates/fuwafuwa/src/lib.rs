@@ -36,6 +36,7 @@ pub mod compiled;
 mod contact;
 mod damping;
 pub mod dim;
+mod disjoint;
 pub mod event;
 mod fracture;
 pub mod grid;

@@ -20,7 +20,7 @@ use crate::dim::{Dim, Point, add, corner, points_in, scale, voxel_around};
 use crate::grid::VoxelGrid;
 use crate::pyramid::{Cell, Grading, Places, Pyramid, parts};
 use crate::sharing::Sharing;
-use crate::stencil::{MissingCorner, Stencil, cell_corners, closure, slot_at};
+use crate::stencil::{MissingCorner, Stencil, cell_corners, slot_at};
 use remodel::Past;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -196,15 +196,14 @@ impl<D: Dim> Mesh<D> {
     /// The ids of the elements that carry a node, in the order of the octants around it.
     pub fn carrier_ids(&self, id: u32) -> impl Iterator<Item = u32> + use<D> {
         let node = self.node(id);
-        let (mut owners, mut count) = ([0; 8], 0);
-        for octant in (0..D::CORNERS).filter(|octant| node.group >> octant & 1 == 1) {
-            let owner = self.owner(voxel_around::<D>(node.at, octant));
-            if let Some(owner) = owner.filter(|owner| !owners[..count].contains(owner)) {
-                owners[count] = owner;
+        let (mut carriers, mut count) = ([0; 8], 0);
+        for owner in self.owners_around(node.at, node.group) {
+            if !carriers[..count].contains(&owner) {
+                carriers[count] = owner;
                 count += 1;
             }
         }
-        owners.into_iter().take(count)
+        carriers.into_iter().take(count)
     }
 
     /// Number of elements on each level, finest first.
@@ -237,6 +236,27 @@ impl<D: Dim> Mesh<D> {
         self.owners[self.places.number(Cell::of(voxel))?].checked_sub(1)
     }
 
+    /// The elements that own the voxels in some octants around a lattice point, in their order.
+    pub fn owners_around(&self, at: Point, octants: u8) -> impl Iterator<Item = u32> + use<D> {
+        let mut owners = [0; 8];
+        match self.places.voxels_around::<D>(at) {
+            Some(places) => {
+                for octant in 0..D::CORNERS {
+                    owners[octant] = self.owners[places[octant]];
+                }
+            }
+            None => {
+                for octant in 0..D::CORNERS {
+                    let voxel = Cell::of(voxel_around::<D>(at, octant));
+                    let place = self.places.number(voxel);
+                    owners[octant] = place.map_or(0, |place| self.owners[place]);
+                }
+            }
+        }
+        let asked = (0..D::CORNERS).filter(move |octant| octants >> octant & 1 == 1);
+        asked.filter_map(move |octant| owners[octant].checked_sub(1))
+    }
+
     /// The first of the voxels that an element fills.
     pub fn first_voxel(&self, element: &Element) -> Point {
         let child = element.children.trailing_zeros() as usize;
@@ -247,20 +267,22 @@ impl<D: Dim> Mesh<D> {
     }
 
     /// The voxels that an element fills.
-    pub fn voxels(&self, element: &Element) -> Vec<Point> {
-        if element.cell.level == 0 {
-            return vec![element.cell.at];
-        }
-        let reach = element.cell.width() / 2 - 1;
-        (0..D::CORNERS)
-            .filter(|child| element.children >> child & 1 == 1)
-            .flat_map(|child| {
-                let low = element.cell.child(child).first_voxel();
-                let mut high = low;
-                high.iter_mut().take(D::N).for_each(|k| *k += reach);
-                points_in(low, high)
-            })
-            .collect()
+    pub fn voxels(&self, element: &Element) -> impl Iterator<Item = Point> + use<D> {
+        let cell = element.cell;
+        let is_voxel = cell.level == 0;
+        let reach = cell.width() / 2 - i32::from(!is_voxel);
+        let children = if is_voxel { 1 } else { element.children };
+        let filled = (0..D::CORNERS).filter(move |child| children >> child & 1 == 1);
+        filled.flat_map(move |child| {
+            let low = if is_voxel {
+                cell.at
+            } else {
+                cell.child(child).first_voxel()
+            };
+            let mut high = low;
+            high.iter_mut().take(D::N).for_each(|k| *k += reach);
+            points_in(low, high)
+        })
     }
 
     /// Whether two meshes are the same but for the numbering of their elements and nodes.
@@ -318,63 +340,70 @@ impl<D: Dim> Mesh<D> {
         &mut self,
         id: u32,
         sharing: &Sharing<D>,
-        mut past: Option<(&Past, &mut Vec<Inheritance>)>,
+        mut past: Option<&mut Past>,
     ) -> Result<bool, Defect> {
         let (cell, children) = (self.alive(id).cell, self.alive(id).children);
-        let candidates = match cell.level {
-            0 => cell_corners::<D>(),
-            _ => closure::<D>(children),
-        };
-        let mut slots = 0u32;
-        let mut nodes = Vec::with_capacity(D::CORNERS);
-        for slot in (0..D::SLOTS).filter(|slot| candidates >> slot & 1 == 1) {
-            let (at, octant) = seat_of::<D>(cell, children, slot);
+        let corners = cell_corners::<D>();
+        let (mut slots, mut seated, mut count) = (0u32, [0u32; 27], 0);
+        for slot in 0..D::SLOTS {
+            let is_corner = corners >> slot & 1 == 1;
+            if !is_corner && cell.level == 0 {
+                continue;
+            }
+            let Some((at, octant)) = seat_of::<D>(cell, children, slot) else {
+                continue;
+            };
             let node = Node {
                 at,
                 group: sharing.groups(at).group_of(octant),
             };
-            let is_corner = slot_at(slot).iter().all(|&k| k != 1);
             let on_surface = self.dense_surface && node.group != D::ALL_CORNERS;
-            if !is_corner && !on_surface && !self.is_node(node) {
+            if !is_corner && !on_surface && !self.is_node_beside(id, node) {
                 continue;
             }
-            let (node_id, is_new) = self.node_id(node, sharing.index(at));
-            if let (true, Some((past, inherited))) = (is_new, &mut past) {
+            let (node, is_new) = self.node_id(node, sharing.index(at));
+            if let (true, Some(past)) = (is_new, &mut past) {
                 let from = past.shares(self, voxel_around::<D>(at, octant), at)?;
-                inherited.push(Inheritance {
-                    node: node_id,
-                    from,
-                });
+                past.inherited.push(Inheritance { node, from });
             }
             slots |= 1 << slot;
-            nodes.push(node_id);
+            seated[count] = node;
+            count += 1;
+        }
+        let seated = &seated[..count];
+        // The nodes tell the slots, and so the class.
+        if self.alive(id).nodes == seated {
+            return Ok(false);
         }
         let stencil = self.class(children, slots)?;
-        let element = self.elements[id as usize]
-            .as_mut()
-            .expect("seated elements are alive");
-        let changed = element.nodes != nodes || element.stencil != stencil;
-        nodes
-            .iter()
-            .for_each(|&node| self.carriers[node as usize] += 1);
-        element
-            .nodes
-            .iter()
-            .for_each(|&node| self.carriers[node as usize] -= 1);
-        element.nodes = nodes;
-        element.stencil = stencil;
-        Ok(changed)
+        let element = Element {
+            cell,
+            children,
+            stencil,
+            nodes: seated.to_vec(),
+        };
+        let old = self.elements[id as usize].replace(element);
+        let old = old.expect("seated elements are alive");
+        for &node in seated {
+            self.carriers[node as usize] += 1;
+        }
+        for &node in &old.nodes {
+            self.carriers[node as usize] -= 1;
+        }
+        if let Some(past) = past {
+            past.replaced.push((id, old));
+        }
+        Ok(true)
     }
 
-    /// Whether a (point, group) is a corner of some owner's own cell.
-    fn is_node(&self, node: Node) -> bool {
-        (0..D::CORNERS)
-            .filter(|octant| node.group >> octant & 1 == 1)
-            .filter_map(|octant| self.owner(voxel_around::<D>(node.at, octant)))
-            .any(|owner| {
-                let width = self.alive(owner).cell.width();
-                (0..D::N).all(|axis| node.at[axis] % width == 0)
-            })
+    /// Whether a (point, group) is a corner of the own cell of an element beside one of which it is
+    /// no corner.
+    fn is_node_beside(&self, id: u32, node: Node) -> bool {
+        // Up to this level, and no further, a cell can have a corner here.
+        let [x, y, z] = node.at;
+        let highest = (x | y | z).trailing_zeros();
+        self.owners_around(node.at, node.group)
+            .any(|owner| owner != id && u32::from(self.alive(owner).cell.level) <= highest)
     }
 
     /// The id of a node at the lattice point with this index, and whether it was made just now.
@@ -414,24 +443,35 @@ fn path<D: Dim>(voxel: Point) -> impl Iterator<Item = (Cell, usize)> {
     })
 }
 
-/// The lattice point of a slot, and an octant there that belongs to the element.
-fn seat_of<D: Dim>(cell: Cell, children: u8, slot: usize) -> (Point, usize) {
+/// The lattice point of a slot, and an octant there that belongs to the element; nothing where the
+/// slot is no corner of any of its children.
+fn seat_of<D: Dim>(cell: Cell, children: u8, slot: usize) -> Option<(Point, usize)> {
     let steps = slot_at(slot);
-    let (at, low) = if cell.level == 0 {
-        (add(cell.at, steps.map(|k| k / 2)), [0; 3])
-    } else {
-        let touches = |&child: &usize| {
-            let step = |axis: usize| steps[axis] - (child >> axis & 1) as i32;
-            children >> child & 1 == 1 && (0..D::N).all(|axis| (0..=1).contains(&step(axis)))
-        };
-        let child = (0..D::CORNERS)
-            .find(touches)
-            .expect("the slot lies in the closure");
-        let at = scale(add(scale(cell.at, 2), steps), cell.width() / 2);
-        (at, corner(child))
-    };
+    let touching = children & TOUCHING[slot];
+    if touching == 0 {
+        return None;
+    }
+    let low = corner(touching.trailing_zeros() as usize);
+    let at = add(scale(cell.at, 2), steps).map(|k| (k << cell.level) / 2);
     let octant = (0..D::N).fold(0, |octant, axis| {
         octant | usize::from(steps[axis] == low[axis]) << axis
     });
-    (at, octant)
+    Some((at, octant))
 }
+
+/// The children that each slot is a corner of.
+const TOUCHING: [u8; 27] = {
+    // Along one axis: the near child, both, the far one.
+    let along = [
+        [0b0101_0101, 0b1111_1111, 0b1010_1010],
+        [0b0011_0011, 0b1111_1111, 0b1100_1100],
+        [0b0000_1111, 0b1111_1111, 0b1111_0000],
+    ];
+    let mut touching = [0; 27];
+    let mut slot = 0;
+    while slot < 27 {
+        touching[slot] = along[0][slot % 3] & along[1][slot / 3 % 3] & along[2][slot / 9];
+        slot += 1;
+    }
+    touching
+};

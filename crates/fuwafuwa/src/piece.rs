@@ -6,6 +6,7 @@
 //! much was released at once, a side that comes upon what was followed before goes on from there.
 
 use crate::dim::Dim;
+use crate::disjoint::DisjointSets;
 use crate::mesh::Mesh;
 use std::collections::{BTreeMap, VecDeque};
 
@@ -50,47 +51,12 @@ struct Sides {
     /// The mark of the first of them.
     first: u32,
     /// Which of them hang together.
-    same: Same,
+    joined: DisjointSets,
     /// Those that are being followed, and those that were, as far as was needed.
     running: Vec<Search>,
     resting: Vec<Search>,
     /// The pieces that came off.
     born: Vec<u32>,
-}
-
-/// Which of some things, given by their places, have turned out to be the same.
-pub(crate) struct Same {
-    /// Each points to a lower one of its kind, the lowest to itself.
-    lower: Vec<usize>,
-}
-
-impl Same {
-    /// Nothing is the same yet.
-    pub(crate) fn new(count: usize) -> Self {
-        let lower = (0..count).collect();
-        Self { lower }
-    }
-
-    /// One more, like none of the others; returns its place.
-    fn add(&mut self) -> usize {
-        self.lower.push(self.lower.len());
-        self.lower.len() - 1
-    }
-
-    /// The lowest of the kind of one.
-    pub(crate) fn lowest(&mut self, mut place: usize) -> usize {
-        while self.lower[place] != place {
-            self.lower[place] = self.lower[self.lower[place]];
-            place = self.lower[place];
-        }
-        place
-    }
-
-    /// Makes two the same.
-    pub(crate) fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.lowest(a), self.lowest(b));
-        self.lower[a.max(b)] = a.min(b);
-    }
 }
 
 impl Pieces {
@@ -175,9 +141,10 @@ impl Pieces {
             self.seen.fill(0);
             self.node_seen.fill(0);
         }
+        let first_born = self.list.len() as u32;
         let mut sides = Sides {
             first: self.marked + 1,
-            same: Same::new(0),
+            joined: DisjointSets::new(0),
             running: Vec::new(),
             resting: Vec::new(),
             born: Vec::new(),
@@ -187,11 +154,11 @@ impl Pieces {
         }
         // What hung together only through a piece that came off shares no place, but each side of
         // it has one in common with that piece.
-        let is_off = |&id: &u32| sides.born.contains(&self.of_element(id));
+        let is_off = |&id: &u32| self.of_element(id) >= first_born;
         let beside_off = places.iter().filter(|around| around.iter().any(is_off));
         let around: Vec<u32> = beside_off.flatten().copied().collect();
         self.part_at(mesh, &around, &mut sides);
-        self.marked += sides.same.lower.len() as u32;
+        self.marked += sides.joined.count() as u32;
         sides.born
     }
 
@@ -213,7 +180,7 @@ impl Pieces {
         let first = sides.first;
         let mut known = Vec::new();
         for mut found in starts {
-            let place = sides.same.add();
+            let place = sides.joined.add();
             found.retain(|&id| {
                 let seen = &mut self.seen[id as usize];
                 let is_new = *seen < first;
@@ -231,7 +198,7 @@ impl Pieces {
             let own = sides
                 .running
                 .iter()
-                .position(|search| sides.same.lowest(search.place) == sides.same.lowest(place));
+                .position(|search| sides.joined.lowest(search.place) == sides.joined.lowest(place));
             sides.meet(own.expect("a side that met another runs on as one"), seen);
         }
         let mut turn = 0;
@@ -296,16 +263,16 @@ impl Sides {
     /// The side at `turn` comes upon what bears a mark: adds the side that left it, if it is another
     /// one, to it. Returns where it stands now.
     fn meet(&mut self, turn: usize, mark: u32) -> usize {
-        let own = self.same.lowest(self.running[turn].place);
-        let other = self.same.lowest((mark - self.first) as usize);
+        let own = self.joined.lowest(self.running[turn].place);
+        let other = self.joined.lowest((mark - self.first) as usize);
         if own == other {
             return turn;
         }
-        let same = &mut self.same;
-        let mut is_met = |search: &Search| same.lowest(search.place) == other;
+        let joined = &mut self.joined;
+        let mut is_met = |search: &Search| joined.lowest(search.place) == other;
         let running = self.running.iter().position(&mut is_met);
         let resting = self.resting.iter().position(&mut is_met);
-        self.same.join(own, other);
+        self.joined.join(own, other);
         let met = match (running, resting) {
             (Some(place), _) => self.running.remove(place),
             (_, Some(place)) => self.resting.swap_remove(place),
@@ -328,16 +295,11 @@ fn sides_of<D: Dim>(mesh: &Mesh<D>, around: &[u32]) -> Vec<Vec<u32>> {
         nodes.extend(element.nodes.iter().map(|&node| (node, place)));
     }
     nodes.sort_unstable();
-    let mut same = Same::new(around.len());
+    let mut joined = DisjointSets::new(around.len());
     for two in nodes.windows(2).filter(|two| two[0].0 == two[1].0) {
-        same.join(two[0].1, two[1].1);
+        joined.join(two[0].1, two[1].1);
     }
-    let mut sides: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
-    for (place, &id) in around.iter().enumerate() {
-        let side = sides.entry(same.lowest(place)).or_default();
-        side.push(id);
-    }
-    sides.into_values().collect()
+    joined.sort(around)
 }
 
 /// The elements that share a node with one, itself included, some of them more than once.

@@ -133,6 +133,19 @@ impl Places {
         let [x, y, z] = cell.at.map(|k| k as usize);
         inside.then(|| first + (z * size[1] as usize + y) * size[0] as usize + x)
     }
+
+    /// The numbers of the voxels around a lattice point, by octant; `None` unless all are in the grid.
+    #[inline]
+    pub fn voxels_around<D: Dim>(&self, at: Point) -> Option<[usize; 8]> {
+        let (size, _) = self.levels[0];
+        let inside = (0..D::N).all(|axis| at[axis] > 0 && at[axis] < size[axis]);
+        let low = self.number(Cell::of(voxel_around::<D>(at, 0)))?;
+        let steps = [1, size[0] as usize, (size[0] * size[1]) as usize];
+        let step = |octant: usize, axis: usize| (octant >> axis & 1) * steps[axis];
+        inside.then(|| {
+            std::array::from_fn(|octant| low + (0..3).map(|axis| step(octant, axis)).sum::<usize>())
+        })
+    }
 }
 
 /// How fine the elements are, and where.

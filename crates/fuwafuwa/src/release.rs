@@ -1,13 +1,13 @@
 //! What a release of shared nodes does to a body: connections, cells, elements, state, pieces.
 
 use crate::body::Body;
-use crate::dim::{Dim, Point, neighbourhood, voxel_around};
+use crate::chains::ascending;
+use crate::dim::{Dim, Point, voxel_around};
+use crate::disjoint::DisjointSets;
 use crate::mesh::{Defect, Inheritance, Remodelled};
 use crate::momentum::{Momentum, RigidMotion, centre_of};
-use crate::piece::Same;
 use crate::pyramid::Grading;
 use crate::solve::Row;
-use std::collections::BTreeMap;
 
 /// What a release changed in a body.
 #[derive(Clone, Debug, Default)]
@@ -47,17 +47,20 @@ impl<D: Dim> Body<D> {
         if changed.is_empty() {
             return Ok(Torn::default());
         }
-        changed.extend(self.sharing.normalise(around::<D>(&changed)));
-        let near = around::<D>(&changed).into_iter();
+        changed.extend(self.sharing.normalise(self.sharing.all_around(&changed)));
+        let near = self.sharing.all_around(&changed).into_iter();
         let born = self.pyramid.refine(&self.grid, &self.sharing, near);
         let remodelled =
             self.mesh
                 .remodel(&self.grid, &self.sharing, &self.pyramid, &changed, &born)?;
-        self.pass_on(&remodelled);
+        let touched = self.nodes_of(&remodelled.seated);
+        self.pass_on(&remodelled, &touched);
         self.expose(&beside::<D>(&changed));
         let places = self.places_around(&changed);
         let beside = places.concat();
-        self.refresh_breakable(&beside, &remodelled);
+        let lists = [&touched, &self.nodes_of(&beside), &remodelled.abandoned];
+        let nodes = lists.into_iter().flatten().copied();
+        self.find_breakable(&ascending(nodes, self.mesh.node_capacity()));
         self.awake_is_stale = true;
         let new = remodelled.inherited.iter().map(|new| new.node);
         Ok(Torn {
@@ -70,94 +73,79 @@ impl<D: Dim> Body<D> {
     /// The elements around the given points, ascending: a list for each of the places where they
     /// met before, if only through others of their list.
     fn places_around(&self, points: &[Point]) -> Vec<Vec<u32>> {
-        let around = |&at: &Point| {
-            let voxels = (0..D::CORNERS).map(move |octant| voxel_around::<D>(at, octant));
-            voxels.filter_map(|voxel| self.mesh.owner(voxel))
-        };
-        let mut elements: Vec<u32> = points.iter().flat_map(around).collect();
-        elements.sort_unstable();
-        elements.dedup();
-        let mut same = Same::new(elements.len());
+        let around = |&at: &Point| self.mesh.owners_around(at, D::ALL_CORNERS);
+        let elements = points.iter().flat_map(around);
+        let elements = ascending(elements, self.mesh.element_capacity());
+        let mut joined = DisjointSets::new(elements.len());
         for at in points {
             let mut places = around(at).filter_map(|id| elements.binary_search(&id).ok());
             if let Some(first) = places.next() {
-                places.for_each(|place| same.join(first, place));
+                places.for_each(|place| joined.join(first, place));
             }
         }
-        let mut sorted: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
-        for (place, &id) in elements.iter().enumerate() {
-            sorted.entry(same.lowest(place)).or_default().push(id);
-        }
-        sorted.into_values().collect()
+        joined.sort(&elements)
     }
 
-    /// Gives new nodes and elements the state of those they come from.
-    fn pass_on(&mut self, remodelled: &Remodelled) {
-        let touched = self.touched_by(remodelled);
-        let mut new: Vec<u32> = remodelled.inherited.iter().map(|new| new.node).collect();
-        new.sort_unstable();
-        let is_new = |id: u32| new.binary_search(&id).is_ok();
-        // Held nodes keep their velocity; the rest of each piece keeps its momentum.
-        let free = |id: &u32| self.inverse_mass[*id as usize] > 0.0;
-        let stay = touched.iter().copied().filter(|&id| !is_new(id));
-        let old = stay.chain(remodelled.abandoned.iter().copied());
-        let old = self.by_piece(old.filter(free));
-        let before: BTreeMap<u32, ([f64; 3], Momentum)> = old
-            .iter()
-            .map(|(&piece, nodes)| {
-                let centre = centre_of(self.states(nodes).map(|(x, _, mass)| (x, mass)));
-                (piece, (centre, Momentum::of(self.states(nodes), centre)))
-            })
-            .collect();
+    /// Gives new nodes and elements the state of those they come from; `touched` are the nodes of the
+    /// elements that were seated.
+    fn pass_on(&mut self, remodelled: &Remodelled, touched: &[u32]) {
+        let Remodelled {
+            removed,
+            seated,
+            inherited,
+            abandoned,
+        } = remodelled;
+        let new = ascending(
+            inherited.iter().map(|new| new.node),
+            self.mesh.node_capacity(),
+        );
+        let is_old = |id: &u32| new.binary_search(id).is_err();
+        let old = touched.iter().copied().filter(is_old);
+        let old = self.free_by_piece(old.chain(abandoned.iter().copied()));
+        let momentum = |nodes: &[u32]| {
+            let centre = centre_of(self.states(nodes).map(|(x, _, mass)| (x, mass)));
+            let piece = self.pieces.of_node(nodes[0]);
+            (piece, centre, Momentum::of(self.states(nodes), centre))
+        };
+        let before: Vec<_> = self.pieces_in(&old).into_iter().map(momentum).collect();
 
-        self.inherit(&remodelled.inherited);
-        for &id in &remodelled.seated {
+        self.inherit(inherited);
+        for &id in seated {
             let element = self.mesh.element(id).expect("seated elements are alive");
             self.pieces.adopt(id, &element.nodes);
             self.bare[id as usize] = 0;
         }
-        let Remodelled {
-            removed, seated, ..
-        } = remodelled;
         self.blocks.update(&self.mesh, &self.grid, removed, seated);
-        let level_0 = |id: &&u32| {
-            let element = self.mesh.element(**id);
-            element.is_some_and(|element| element.cell.level == 0)
-        };
-        let fresh = seated
-            .iter()
-            .filter(level_0)
-            .filter_map(|&id| self.mesh.element(id));
+        let seated = seated.iter().filter_map(|&id| self.mesh.element(id));
+        let fresh = seated.filter(|element| element.cell.level == 0);
         let fresh: Vec<Point> = fresh.map(|element| element.cell.at).collect();
         self.expose(&fresh);
-        self.weigh(&touched);
-        let free = |id: &u32| self.inverse_mass[*id as usize] > 0.0;
-        let now = self.by_piece(touched.iter().copied().filter(free));
-        for (piece, nodes) in &now {
-            if let Some(&(centre, momentum)) = before.get(piece) {
+        self.weigh(touched);
+        let now = self.free_by_piece(touched.iter().copied());
+        for nodes in self.pieces_in(&now) {
+            let piece = self.pieces.of_node(nodes[0]);
+            let known = before.binary_search_by_key(&piece, |&(piece, ..)| piece);
+            if let Ok(place) = known {
+                let (_, centre, momentum) = before[place];
                 self.restore_momentum(nodes, momentum, centre);
             }
         }
     }
 
-    fn refresh_breakable(&mut self, elements: &[u32], remodelled: &Remodelled) {
-        let mut nodes = self.touched_by(remodelled);
-        for &id in elements {
-            let element = self.mesh.element(id).expect("owners are alive");
-            nodes.extend(&element.nodes);
-        }
-        nodes.extend(&remodelled.abandoned);
-        nodes.sort_unstable();
-        nodes.dedup();
-        self.find_breakable(&nodes);
+    /// Those of some nodes that are not held, those of each piece together, in ascending order of the
+    /// pieces and else in their own.
+    fn free_by_piece(&self, nodes: impl Iterator<Item = u32>) -> Vec<u32> {
+        // Held nodes keep their velocity; the rest of each piece keeps its momentum.
+        let free = |id: &u32| self.inverse_mass[*id as usize] > 0.0;
+        let mut nodes: Vec<u32> = nodes.filter(free).collect();
+        nodes.sort_by_key(|&id| self.pieces.of_node(id));
+        nodes
     }
 
-    fn by_piece(&self, nodes: impl Iterator<Item = u32>) -> BTreeMap<u32, Vec<u32>> {
-        let mut sorted: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-        for id in nodes {
-            sorted.entry(self.pieces.of_node(id)).or_default().push(id);
-        }
-        sorted
+    /// The nodes of each piece, of nodes by piece.
+    fn pieces_in<'a>(&self, nodes: &'a [u32]) -> Vec<&'a [u32]> {
+        let of_node = |id| self.pieces.of_node(id);
+        nodes.chunk_by(|&a, &b| of_node(a) == of_node(b)).collect()
     }
 
     /// New nodes take over the weighted state of old ones, all read before any is written.
@@ -188,18 +176,11 @@ impl<D: Dim> Body<D> {
         }
     }
 
-    /// The nodes of all elements that a remodelling made or changed, ascending.
-    fn touched_by(&self, remodelled: &Remodelled) -> Vec<u32> {
-        let elements = remodelled
-            .seated
-            .iter()
-            .filter_map(|&id| self.mesh.element(id));
-        let mut nodes: Vec<u32> = elements
-            .flat_map(|element| element.nodes.iter().copied())
-            .collect();
-        nodes.sort_unstable();
-        nodes.dedup();
-        nodes
+    /// The nodes of some elements, ascending.
+    fn nodes_of(&self, elements: &[u32]) -> Vec<u32> {
+        let elements = elements.iter().filter_map(|&id| self.mesh.element(id));
+        let nodes = elements.flat_map(|element| element.nodes.iter().copied());
+        ascending(nodes, self.mesh.node_capacity())
     }
 
     /// Adds the rigid motion that gives the nodes the momentum `before` about `centre` again.
@@ -216,15 +197,6 @@ impl<D: Dim> Body<D> {
             }
         }
     }
-}
-
-/// The lattice points around the given ones and themselves, each once.
-fn around<D: Dim>(points: &[Point]) -> Vec<Point> {
-    let near = |&point: &Point| neighbourhood::<D>(point, 1);
-    let mut near: Vec<Point> = points.iter().flat_map(near).collect();
-    near.sort_unstable();
-    near.dedup();
-    near
 }
 
 /// The voxels around the given points, in ascending order.

@@ -11,7 +11,7 @@
 //!   c ┃ d
 //! ```
 
-use crate::dim::{Dim, Point, neighbourhood, points_in, voxel_around};
+use crate::dim::{Dim, FAR, Point, add, neighbourhood, points_in, voxel_around};
 use crate::grid::VoxelGrid;
 use std::marker::PhantomData;
 
@@ -54,21 +54,16 @@ impl Groups {
     /// The octants that hold a voxel.
     #[inline]
     pub fn solid(self) -> u8 {
-        (0..8).fold(0, |mask, octant| {
-            mask | u8::from(self.name(octant) != EMPTY) << octant
-        })
+        !self.named(EMPTY)
     }
 
     /// The octants that share a node with `octant`: 0 when there is no voxel.
     #[inline]
     pub fn group_of(self, octant: usize) -> u8 {
-        let name = self.name(octant);
-        if name == EMPTY {
-            return 0;
+        match self.name(octant) {
+            EMPTY => 0,
+            name => self.named(name),
         }
-        (0..8).fold(0, |mask, other| {
-            mask | u8::from(self.name(other) == name) << other
-        })
     }
 
     /// Whether two octants hold voxels that share a node.
@@ -105,6 +100,19 @@ impl Groups {
                 self.put(octant, low);
             }
         }
+    }
+
+    /// The octants that have a name.
+    #[inline]
+    fn named(self, name: u32) -> u8 {
+        // Four bits that are all 0 where the name fits; then one bit for the four, then side by side.
+        let mut other = self.0 ^ (name * 0x1111_1111);
+        other |= other >> 2;
+        other |= other >> 1;
+        let mut fits = !other & 0x1111_1111;
+        fits = (fits | fits >> 3) & 0x0303_0303;
+        fits = (fits | fits >> 6) & 0x000f_000f;
+        (fits | fits >> 12) as u8
     }
 
     #[inline]
@@ -208,39 +216,46 @@ impl<D: Dim> Sharing<D> {
         bound
     }
 
-    /// Whether the face between `octant` and its neighbour across `axis`, seen from the lattice
-    /// point `at`, is closed: both voxels exist and share a node at all of its corners.
-    pub fn is_closed(&self, at: Point, octant: usize, axis: usize) -> bool {
-        let others: [usize; 2] = match (D::N, axis) {
-            (2, axis) => [1 - axis, usize::MAX],
-            (_, 0) => [1, 2],
-            (_, 1) => [0, 2],
-            _ => [0, 1],
-        };
-        (0..D::CORNERS / 2).all(|corner| {
-            let (mut point, mut seen) = (at, octant);
-            for (bit, &other) in others.iter().enumerate().take(D::N - 1) {
-                if corner >> bit & 1 == 1 {
-                    point[other] += (octant >> other & 1) as i32 * 2 - 1;
-                    seen ^= 1 << other;
-                }
+    /// The groupings at a point and at those next to it.
+    pub fn around(&self, at: Point) -> Around<D> {
+        let mut groups = [Groups::NONE; 27];
+        let is_inner = (0..D::N).all(|axis| at[axis] > 0 && at[axis] + 1 < self.size[axis]);
+        if is_inner {
+            // What lies along the first axis lies side by side in memory.
+            for (row, three) in groups[..D::SLOTS].chunks_exact_mut(3).enumerate() {
+                let (y, z) = (row as i32 % 3 - 1, row as i32 / 3 - 1);
+                let z = if D::N == 3 { z } else { 0 };
+                let first = self.index(add(at, [-1, y, z]));
+                three.copy_from_slice(&self.groups[first..first + 3]);
             }
-            self.groups(point).shares(seen, seen ^ 1 << axis)
-        })
+        } else {
+            let near = neighbourhood::<D>(at, 1);
+            groups
+                .iter_mut()
+                .zip(near)
+                .for_each(|(groups, near)| *groups = self.groups(near));
+        }
+        Around {
+            groups,
+            dim: PhantomData,
+        }
+    }
+
+    /// The lattice points next to the given ones and themselves, each once, in memory order.
+    pub fn all_around(&self, points: &[Point]) -> Vec<Point> {
+        let near = points
+            .iter()
+            .flat_map(|&point| neighbourhood::<D>(point, 1));
+        let mut near: Vec<Point> = near.filter(|&near| self.contains(near)).collect();
+        near.sort_unstable_by_key(|&near| self.index(near));
+        near.dedup();
+        near
     }
 
     /// Whether a crack can start or go on at a point: some side is empty, it has more than one
     /// group, or one of the faces around it is open.
     pub fn is_open(&self, at: Point) -> bool {
-        let groups = self.groups(at);
-        if groups == Groups::NONE {
-            return false;
-        }
-        let full = Groups::joined(D::ALL_CORNERS);
-        // Where everything around is together no face is open: true of most points of a body.
-        let is_near_a_gap = || neighbourhood::<D>(at, 1).any(|near| self.groups(near) != full);
-        let is_open = |(octant, axis)| !self.is_closed(at, octant, axis);
-        groups != full || is_near_a_gap() && faces_around::<D>().any(is_open)
+        self.around(at).is_open()
     }
 
     /// Splits the groups at `at` into what lies in the octants of `side` and what does not.
@@ -262,17 +277,9 @@ impl<D: Dim> Sharing<D> {
     pub fn normalise(&mut self, mut work: Vec<Point>) -> Vec<Point> {
         let mut changed = Vec::new();
         while let Some(at) = work.pop() {
-            let old = self.groups(at);
-            if old == Groups::NONE {
-                continue;
-            }
-            let mut groups = Groups::apart(old.solid());
-            for (octant, axis) in faces_around::<D>() {
-                if self.is_closed(at, octant, axis) {
-                    groups.join(octant, octant ^ 1 << axis);
-                }
-            }
-            if groups != old {
+            let around = self.around(at);
+            let groups = around.joined_by_faces();
+            if groups != around.middle() {
                 let index = self.index(at);
                 self.groups[index] = groups;
                 changed.push(at);
@@ -282,6 +289,117 @@ impl<D: Dim> Sharing<D> {
         changed.sort_unstable_by_key(|&at| self.index(at));
         changed.dedup();
         changed
+    }
+}
+
+/// The groupings at a lattice point and at those next to it: all that there is to know about the
+/// faces that meet there, and about the voxels around it.
+#[derive(Copy, Clone, Debug)]
+pub struct Around<D: Dim> {
+    /// The first axis running fastest, the point itself in the middle.
+    groups: [Groups; 27],
+    dim: PhantomData<D>,
+}
+
+impl<D: Dim> Around<D> {
+    /// How far apart neighbours along each axis stand.
+    const STEPS: [usize; 3] = [1, 3, 9];
+
+    /// The grouping at the point itself.
+    pub fn middle(&self) -> Groups {
+        self.groups[D::SLOTS / 2]
+    }
+
+    /// Whether the face between `octant` and its neighbour across `axis`, seen from the point, is
+    /// closed: both voxels exist and share a node at all of its corners.
+    #[inline]
+    pub fn is_closed(&self, octant: usize, axis: usize) -> bool {
+        self.is_closed_from(D::SLOTS / 2, octant, axis)
+    }
+
+    /// Whether the face across `axis` of the voxel in `octant` that does not meet the point is closed.
+    #[inline]
+    pub fn is_far_face_closed(&self, octant: usize, axis: usize) -> bool {
+        let from = Self::towards(D::SLOTS / 2, octant, axis);
+        self.is_closed_from(from, octant ^ 1 << axis, axis)
+    }
+
+    /// For each axis, the octants on its near side whose face across it is closed.
+    pub fn closed_faces(&self) -> [u8; 3] {
+        let mut closed = [0; 3];
+        for axis in 0..D::N {
+            for octant in 0..D::CORNERS {
+                if octant >> axis & 1 == 0 {
+                    closed[axis] |= u8::from(self.is_closed(octant, axis)) << octant;
+                }
+            }
+        }
+        closed
+    }
+
+    /// Whether a crack can start or go on at the point: see [`Sharing::is_open`].
+    pub fn is_open(&self) -> bool {
+        let groups = self.middle();
+        if groups != Groups::joined(D::ALL_CORNERS) {
+            return groups != Groups::NONE;
+        }
+        // Where everything around is together no face is open: true of most points of a body.
+        let is_open = |(faces, far): (u8, u8)| faces != D::ALL_CORNERS & !far;
+        !self.is_whole()
+            && self
+                .closed_faces()
+                .into_iter()
+                .zip(FAR)
+                .take(D::N)
+                .any(is_open)
+    }
+
+    /// The voxels at the point as closed faces alone hold them together.
+    fn joined_by_faces(&self) -> Groups {
+        let mut groups = Groups::apart(self.middle().solid());
+        if groups == self.middle() || self.is_whole() {
+            return self.middle();
+        }
+        let closed = self.closed_faces();
+        for (octant, axis) in faces_around::<D>() {
+            if closed[axis] >> octant & 1 == 1 {
+                groups.join(octant, octant ^ 1 << axis);
+            }
+        }
+        groups
+    }
+
+    /// Whether everything around is together.
+    fn is_whole(&self) -> bool {
+        let full = Groups::joined(D::ALL_CORNERS);
+        self.groups[..D::SLOTS].iter().all(|&groups| groups == full)
+    }
+
+    /// As [`Around::is_closed`], seen from the point at a place of `groups`; all corners of the face
+    /// must have one.
+    #[inline]
+    fn is_closed_from(&self, place: usize, octant: usize, axis: usize) -> bool {
+        (0..D::CORNERS / 2).all(|corner| {
+            let (mut place, mut seen) = (place, octant);
+            for bit in 0..D::N - 1 {
+                let other = bit + usize::from(bit >= axis);
+                if corner >> bit & 1 == 1 {
+                    place = Self::towards(place, octant, other);
+                    seen ^= 1 << other;
+                }
+            }
+            self.groups[place].shares(seen, seen ^ 1 << axis)
+        })
+    }
+
+    /// The place one step along an axis to the side on which an octant lies.
+    #[inline]
+    fn towards(place: usize, octant: usize, axis: usize) -> usize {
+        if octant >> axis & 1 == 1 {
+            place + Self::STEPS[axis]
+        } else {
+            place - Self::STEPS[axis]
+        }
     }
 }
 

@@ -124,7 +124,7 @@ fn ball<D: Dim>(n: usize) -> Result<Vec<Measure>> {
 }
 
 fn usual(progress: &Progress) -> Result<Vec<Measure>> {
-    progress.expect(15);
+    progress.expect(16);
     let mut measures = Vec::new();
     let mut add = |measured: Result<Vec<Measure>>| -> Result<()> {
         measures.extend(measured?);
@@ -135,8 +135,9 @@ fn usual(progress: &Progress) -> Result<Vec<Measure>> {
     add(one(element_time::<Dim3>(32)))?;
     add(one(element_time::<Dim3>(64)))?;
     for n in [64, 128, 256, 512] {
-        add(one(release_time(n)))?;
+        add(one(release_time::<Dim2>(n)))?;
     }
+    add(one(release_time::<Dim3>(64)))?;
     for name in ["drop", "drop-3d", "tear", "diced", "pile", "tear-3d"] {
         add(scene(name, &[], &Progress::new()))?;
     }
@@ -158,23 +159,29 @@ fn element_time<D: Dim>(n: usize) -> Result<Measure> {
     Ok(measure(what, "ns", times, 1e9 / elements))
 }
 
-/// Releases in a disc, each at a fresh place near its rim.
-fn release_time(n: usize) -> Result<Measure> {
-    let grid = VoxelGrid::<Dim2>::ball(n, 1.0)?;
+/// Releases in a ball, each at a fresh place near its surface.
+fn release_time<D: Dim>(n: usize) -> Result<Measure> {
+    let grid = VoxelGrid::<D>::ball(n, 1.0)?;
     let mut body = Body::new(grid, &[Material::default()])?;
-    // Where the surface crosses every third column, counted from the lower left of the disc.
+    // Where the surface crosses every third column, counted from the lower left of the ball.
+    let columns = || (n / 4..3 * n / 4).step_by(3);
+    let rows = if D::N == 3 {
+        columns().collect()
+    } else {
+        vec![0]
+    };
     let mut places = Vec::new();
-    for x in (n / 4..3 * n / 4).step_by(3) {
-        let lowest = (0..n).find(|&y| body.grid().is_solid([x as i32, y as i32, 0]));
-        places.extend(lowest.map(|y| [x as i32, y as i32, 0]));
+    for (x, z) in columns().flat_map(|x| rows.iter().map(move |&z| (x as i32, z as i32))) {
+        let lowest = (0..n as i32).find(|&y| body.grid().is_solid([x, y, z]));
+        places.extend(lowest.map(|y| [x, y, z]));
     }
     let mut times = Vec::new();
     for at in places {
         let start = Instant::now();
-        body.release(&[(at, 0b1010)])?;
+        body.release(&[(at, 0b1010_1010)])?;
         times.push(start.elapsed().as_secs_f64());
     }
-    let what = format!("2D disc n = {n}, one release and remodel");
+    let what = format!("{}D ball n = {n}, one release and remodel", D::N);
     Ok(measure(what, "us", times, 1e6))
 }
 

@@ -1,7 +1,7 @@
 //! What a body works out from its mesh, in the beginning and where a release changed something.
 
 use super::Body;
-use crate::dim::{Dim, Point, voxel_around};
+use crate::dim::{Dim, Point};
 
 impl<D: Dim> Body<D> {
     pub(crate) fn make_room(&mut self) {
@@ -49,13 +49,12 @@ impl<D: Dim> Body<D> {
             if element.cell.level > 0 {
                 continue;
             }
+            // Seen from its low corner, the voxel stands on the far side of every axis.
+            let (around, octant) = (self.sharing.around(voxel), D::CORNERS - 1);
             let mut bare = 0;
             for axis in 0..D::N {
-                for side in 0..2 {
-                    if !self.is_face_closed(voxel, axis, side) {
-                        bare |= 1 << (2 * axis + side);
-                    }
-                }
+                bare |= u8::from(!around.is_closed(octant, axis)) << (2 * axis);
+                bare |= u8::from(!around.is_far_face_closed(octant, axis)) << (2 * axis + 1);
             }
             self.bare[owner as usize] = bare;
             if bare != 0 {
@@ -74,15 +73,5 @@ impl<D: Dim> Body<D> {
             ..
         } = self;
         self.breakable.look(nodes, grid, sharing, mesh, materials);
-    }
-
-    fn is_face_closed(&self, voxel: Point, axis: usize, side: usize) -> bool {
-        let mut at = voxel;
-        at[axis] += side as i32;
-        // Seen from the low corner of the face, the voxel stands on the high side of every axis
-        // but, where the face is its own high one, of this one.
-        let octant = D::CORNERS - 1 - (side << axis);
-        debug_assert_eq!(voxel_around::<D>(at, octant), voxel);
-        self.sharing.is_closed(at, octant, axis)
     }
 }

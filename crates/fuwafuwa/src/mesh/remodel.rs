@@ -1,12 +1,12 @@
 //! Keeping the mesh up to date while cracks grow, at a cost that goes with what they touch.
 
 use super::{Defect, Element, Mesh, path};
-use crate::dim::{Dim, Point, add, corner, scale, voxel_around};
+use crate::chains::ascending;
+use crate::dim::{Dim, Point, add, corner, scale};
 use crate::grid::VoxelGrid;
 use crate::pyramid::{Cell, Pyramid, parts};
 use crate::sharing::Sharing;
 use crate::stencil::{Stencil, slot_index};
-use std::collections::{BTreeMap, BTreeSet};
 
 /// What one remodelling changed.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -52,99 +52,103 @@ impl<D: Dim> Mesh<D> {
         changed: &[Point],
         born: &[Cell],
     ) -> Result<Remodelled, Defect> {
+        let parent_too = |&cell: &Cell| [cell, cell.parent()];
+        let mut refitted: Vec<Cell> = born.iter().flat_map(parent_too).collect();
+        refitted.sort_unstable();
+        refitted.dedup();
         let mut past = Past::default();
-        let mut remodelled = Remodelled::default();
-        let mut points: BTreeSet<Point> = changed.iter().copied().collect();
-        let refitted: BTreeSet<Cell> = born
-            .iter()
-            .flat_map(|&cell| [cell, cell.parent()])
-            .collect();
+        let mut removed = Vec::new();
         for &cell in &refitted {
-            points.extend(
-                (0..D::CORNERS).map(|vertex| scale(add(cell.at, corner(vertex)), cell.width())),
-            );
-            self.refit(
-                cell,
-                pyramid.filled(grid, cell),
-                &mut past,
-                &mut remodelled.removed,
-            );
+            self.refit(cell, pyramid.filled(grid, cell), &mut past, &mut removed);
         }
-        let touched: BTreeSet<u32> = points
-            .iter()
-            .flat_map(|&at| (0..D::CORNERS).map(move |octant| voxel_around::<D>(at, octant)))
-            .filter(|&voxel| grid.is_solid(voxel))
-            .filter_map(|voxel| self.owner(voxel))
-            .collect();
-        for &id in &touched {
-            let element = self.elements[id as usize]
-                .as_ref()
-                .expect("owners are alive");
-            past.keep(element);
-        }
-        for &id in &touched {
-            if self.seat(id, sharing, Some((&past, &mut remodelled.inherited)))? {
-                remodelled.seated.push(id);
+        past.removed.sort_unstable_by_key(|element| element.cell);
+        let mut seated = Vec::new();
+        for id in self.elements_touched(sharing, changed, born, &refitted) {
+            if self.seat(id, sharing, Some(&mut past))? {
+                seated.push(id);
             }
         }
-        remodelled.abandoned = past.abandoned(&self.carriers);
-        for &id in &remodelled.abandoned {
+        let abandoned = past.abandoned(&self.carriers);
+        for &id in &abandoned {
             let point = sharing.index(self.node(id).at);
             self.by_point.remove(point, id);
         }
-        self.free_nodes.extend(&remodelled.abandoned);
-        self.free_elements.extend(&remodelled.removed);
-        Ok(remodelled)
+        self.free_nodes.extend(&abandoned);
+        self.free_elements.extend(&removed);
+        Ok(Remodelled {
+            removed,
+            seated,
+            inherited: past.inherited,
+            abandoned,
+        })
+    }
+
+    /// The elements that may need other nodes, ascending: those in cells that were `refitted`, and those
+    /// around points whose groups have changed or which are corners of cells that were `born`, for
+    /// nodes come into being nowhere else.
+    fn elements_touched(
+        &self,
+        sharing: &Sharing<D>,
+        changed: &[Point],
+        born: &[Cell],
+        refitted: &[Cell],
+    ) -> Vec<u32> {
+        let corners = |&cell: &Cell| {
+            let corner_of = move |vertex| scale(add(cell.at, corner(vertex)), cell.width());
+            (0..D::CORNERS).map(corner_of)
+        };
+        let corners = born.iter().flat_map(corners);
+        let mut points: Vec<Point> = changed.iter().copied().chain(corners).collect();
+        // Cells have their corners in common with others.
+        points.sort_unstable_by_key(|&at| sharing.index(at));
+        points.dedup();
+        let around = |at| self.owners_around(at, D::ALL_CORNERS);
+        let places = refitted.iter().filter_map(|&cell| self.places.number(cell));
+        let inside = places.flat_map(|place| self.by_cell.at(place));
+        let touched = points.into_iter().flat_map(around).chain(inside);
+        ascending(touched, self.elements.len())
     }
 
     /// Rebuilds the elements of a cell so that they fill `filled` [Endo 2004, §3.2, phase 2 d].
     fn refit(&mut self, cell: Cell, filled: u8, past: &mut Past, removed: &mut Vec<u32>) {
-        let wanted: Vec<u8> = parts::<D>(filled).collect();
         let Some(place) = self.places.number(cell) else {
             return;
         };
-        let (kept, outdated): (Vec<u32>, Vec<u32>) = self
-            .by_cell
-            .at(place)
-            .partition(|&id| wanted.contains(&self.alive(id).children));
-        let is_new = |children: &&u8| kept.iter().all(|&id| self.alive(id).children != **children);
-        let new: Vec<u8> = wanted.iter().filter(is_new).copied().collect();
-        for &id in kept.iter().chain(&outdated) {
-            past.keep(self.alive(id));
-        }
-        for id in outdated {
+        let mut left = filled;
+        let present: Vec<u32> = self.by_cell.at(place).collect();
+        for id in present {
+            let children = self.alive(id).children;
+            if parts::<D>(filled).any(|part| part == children) {
+                left &= !children;
+                continue;
+            }
             self.by_cell.remove(place, id);
-            let element = self.elements[id as usize]
-                .take()
-                .expect("outdated elements were alive");
-            element
-                .nodes
-                .iter()
-                .for_each(|&node| self.carriers[node as usize] -= 1);
+            let element = self.elements[id as usize].take();
+            let element = element.expect("a cell lists live elements only");
+            for &node in &element.nodes {
+                self.carriers[node as usize] -= 1;
+            }
+            past.removed.push(element);
             removed.push(id);
         }
-        for children in new {
-            self.place(cell, children);
+        for part in parts::<D>(left) {
+            self.place(cell, part);
         }
     }
 }
 
-/// The elements of every cell that a remodelling touches, as they were before it.
+/// What a remodelling has changed so far, as it was before, and what came of it.
 #[derive(Default)]
 pub struct Past {
-    by_cell: BTreeMap<Cell, Vec<Element>>,
+    /// Elements that are gone, in the order of their cells.
+    removed: Vec<Element>,
+    /// Elements that have other nodes now, by ascending id; those without any were not there before.
+    pub replaced: Vec<(u32, Element)>,
+    /// New nodes, and where their state comes from.
+    pub inherited: Vec<Inheritance>,
 }
 
 impl Past {
-    /// Remembers an element; one that has no nodes yet has no past.
-    fn keep(&mut self, element: &Element) {
-        let known = self.by_cell.entry(element.cell).or_default();
-        let is_new = known.iter().all(|old| old.children & element.children == 0);
-        if is_new && !element.nodes.is_empty() {
-            known.push(element.clone());
-        }
-    }
-
     /// The old nodes, with weights, that a new node at `at` next to `voxel` inherits from: the
     /// lattice of the voxel's old owner, completed where it carries no node, and interpolated
     /// linearly inside the child that holds the voxel.
@@ -191,29 +195,38 @@ impl Past {
     ) -> Option<(&'a Element, usize)> {
         path::<D>(voxel).find_map(|(cell, child)| {
             let fills = |element: &&Element| element.children >> child & 1 == 1;
-            let found = match self.by_cell.get(&cell) {
-                Some(old) => old.iter().find(fills),
-                None => {
-                    let ids = mesh.by_cell.at(mesh.places.number(cell)?);
-                    ids.map(|id| mesh.alive(id)).find(fills)
-                }
+            let first = self.removed.partition_point(|element| element.cell < cell);
+            let removed = self.removed[first..].iter();
+            let mut removed = removed.take_while(|element| element.cell == cell);
+            let here = || {
+                mesh.by_cell
+                    .at(mesh.places.number(cell)?)
+                    .find_map(|id| self.was(mesh, id).filter(fills))
             };
-            Some((found?, child))
+            let found = removed.find(fills).or_else(here)?;
+            Some((found, child))
         })
+    }
+
+    /// An element as it was, if it was there.
+    fn was<'a, D: Dim>(&'a self, mesh: &'a Mesh<D>, id: u32) -> Option<&'a Element> {
+        let place = self.replaced.binary_search_by_key(&id, |&(id, _)| id);
+        let element = match place {
+            Ok(place) => &self.replaced[place].1,
+            Err(_) => mesh.alive(id),
+        };
+        (!element.nodes.is_empty()).then_some(element)
     }
 
     /// The old nodes that nobody carries any more, ascending.
     fn abandoned(&self, carriers: &[u8]) -> Vec<u32> {
-        let old = self
-            .by_cell
-            .values()
-            .flatten()
-            .flat_map(|element| &element.nodes);
-        let gone: BTreeSet<u32> = old
-            .filter(|&&node| carriers[node as usize] == 0)
-            .copied()
-            .collect();
-        gone.into_iter().collect()
+        let replaced = self.replaced.iter().map(|(_, element)| element);
+        let old = self.removed.iter().chain(replaced);
+        let old = old.flat_map(|element| element.nodes.iter().copied());
+        ascending(
+            old.filter(|&node| carriers[node as usize] == 0),
+            carriers.len(),
+        )
     }
 }
 

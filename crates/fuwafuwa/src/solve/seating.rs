@@ -2,6 +2,7 @@
 
 use super::kernel::{numbers, numbers_a_node, symmetric};
 use super::{ALL_LANES, Block, Blocks, Home, LANES, PAD, VACANT};
+use crate::chains::ascending;
 use crate::dim::Dim;
 use crate::grid::VoxelGrid;
 use crate::law::Law;
@@ -34,12 +35,8 @@ impl<D: Dim> Blocks<D> {
         }
         self.slots.resize(mesh.node_capacity(), [0; 8]);
         let elements = seated.iter().filter_map(|&id| mesh.element(id));
-        let mut touched: Vec<u32> = elements
-            .flat_map(|element| element.nodes.iter().copied())
-            .collect();
-        touched.sort_unstable();
-        touched.dedup();
-        for node in touched {
+        let nodes = elements.flat_map(|element| element.nodes.iter().copied());
+        for node in ascending(nodes, mesh.node_capacity()) {
             let mut slots = [0; 8];
             for (place, id) in slots.iter_mut().zip(mesh.carrier_ids(node)) {
                 *place = self.slot(id, node);

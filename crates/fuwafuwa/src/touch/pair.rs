@@ -8,6 +8,7 @@ use crate::vector::scaled;
 
 /// Contacts are looked for out to this many voxels, so that none comes as a surprise.
 pub const MARGIN: f32 = 0.3;
+
 /// Two spheres that may touch.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
