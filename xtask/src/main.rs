@@ -153,7 +153,7 @@ const TEST: &[Step] = &[
         arguments: &[
             "test",
             "--release",
-            // Not the examples: each compiles as long as all these tests run.
+            // The examples were built in debug.
             "--tests",
             "--package",
             "fuwafuwa",
