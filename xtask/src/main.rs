@@ -148,7 +148,7 @@ const TEST: &[Step] = &[
         arguments: &[
             "test",
             "--release",
-            // Not the examples: each compiles as long as all these tests run.
+            // The examples were built in debug.
             "--tests",
             "--package",
             "fuwafuwa",
