@@ -117,6 +117,10 @@ impl NodePairs {
         duration: f32,
         left: f32,
     ) {
+        if colliders.is_empty() {
+            self.list.clear();
+            return;
+        }
         for (range, collider) in self.ranges.iter_mut().zip(colliders) {
             range.come += length(collider.velocity) * duration;
         }

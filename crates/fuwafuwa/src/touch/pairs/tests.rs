@@ -1,0 +1,182 @@
+use super::*;
+use crate::dim::{Dim2, Dim3};
+use crate::grid::VoxelGrid;
+use crate::material::Material;
+use crate::touch::pair::renumber;
+
+const SUBSTEPS: u32 = 8;
+const SUBSTEP: f32 = 1.0 / 480.0;
+
+fn random(seed: &mut u32) -> f32 {
+    *seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+    (*seed >> 8) as f32 / (1 << 24) as f32 - 0.5
+}
+
+/// The list against all pairs that there are.
+fn compare<D: Dim>(pairs: &SpherePairs, spheres: &Spheres, bodies: &[Body<D>], when: &str) {
+    assert!(pairs.list.is_sorted_by(|a, b| a.spheres < b.spheres));
+    let all = &spheres.list;
+    let centre = |sphere: &ContactSphere| sphere.mean::<D>(&bodies[sphere.body as usize].position);
+    for (second, b) in all.iter().zip(0..) {
+        for (first, a) in all.iter().zip(0..b) {
+            let apart = minus(centre(first), centre(second));
+            let reach = (1.0 + MARGIN) * (first.radius + second.radius);
+            let is_close = dot(apart, apart) < reach * reach;
+            let is_found = pairs
+                .list
+                .binary_search_by(|pair| pair.spheres.cmp(&[a, b]))
+                .is_ok();
+            let both_sleep = first.asleep && second.asleep;
+            let may_touch = is_close && !both_sleep && !first.is_held_to(second);
+            assert!(is_found || !may_touch, "{when}: {a} and {b} are missing");
+            assert!(!is_found || !both_sleep, "{when}: {a} and {b} sleep");
+        }
+    }
+}
+
+/// Crumbs fly about, some much faster than others, turn round on their way, and wake.
+fn check<D: Dim>(n: usize) {
+    let grid = VoxelGrid::<D>::ball(n, 1.0).expect("a ball is not empty");
+    let mut body = Body::new(grid, &[Material::default()]).expect("the material is good");
+    body.crumble().expect("the mesh stays whole");
+    let (size, count) = (body.grid.voxel_size(), body.pieces.list.len());
+    let mut seed = 7;
+    let (mut spheres, mut pairs) = (Spheres::default(), SpherePairs::default());
+    let (mut again, mut whole) = (0, 0);
+    for tick in 0..20 {
+        let sleepers: Vec<bool> = (0..count).map(|_| random(&mut seed) > 0.2).collect();
+        body.set_asleep(&vec![true; count], false);
+        body.set_asleep(&sleepers, tick % 3 == 1);
+        // Up to 30 voxels a tick, most of them hardly one.
+        let speeds: Vec<Row> = (0..count)
+            .map(|_| {
+                let fast = if random(&mut seed) > 0.45 {
+                    3600.0
+                } else {
+                    60.0
+                };
+                let mut speed = [0.0; 4];
+                (0..D::N).for_each(|axis| speed[axis] = fast * size * random(&mut seed));
+                speed
+            })
+            .collect();
+        let velocity = |body: &mut Body<D>, sign: &dyn Fn(usize) -> f32| {
+            for node in 0..body.position.len() {
+                let piece = body.pieces.of_node(node as u32) as usize;
+                let moves = if body.pieces.list[piece].asleep {
+                    0.0
+                } else {
+                    sign(piece)
+                };
+                body.velocity[node] = scaled(speeds[piece], moves);
+            }
+        };
+        velocity(&mut body, &|_| 1.0);
+        pairs.start_tick();
+        if let Some(places) = spheres.start_tick(std::slice::from_ref(&body)) {
+            renumber(&mut pairs.list, &places);
+        }
+        for substep in 0..SUBSTEPS {
+            if substep == 3 {
+                velocity(&mut body, &|piece| if piece % 3 == 0 { -1.0 } else { 1.0 });
+            }
+            if substep == 5 && tick % 3 == 1 {
+                let marked: Vec<bool> = (0..count).map(|piece| piece % 2 == 0).collect();
+                body.set_asleep(&marked, false);
+                let woken: Vec<(u32, u32)> = (0..count as u32)
+                    .step_by(2)
+                    .map(|piece| (0, piece))
+                    .collect();
+                spheres.wake(&woken, &mut pairs.changed);
+            }
+            let bodies = std::slice::from_ref(&body);
+            let left = (SUBSTEPS - substep) as f32 * SUBSTEP;
+            whole += u32::from(pairs.bins.is_none());
+            again += u32::from(pairs.follow(&mut spheres, bodies, left));
+            compare(
+                &pairs,
+                &spheres,
+                bodies,
+                &format!("tick {tick}, substep {substep}"),
+            );
+            spheres.note_close(pairs.list.iter().flat_map(|pair| pair.spheres));
+            let mut furthest = 0.0f32;
+            for node in 0..body.position.len() {
+                let step = scaled(body.velocity[node], SUBSTEP);
+                furthest = furthest.max(length(step));
+                body.position[node] = plus(body.position[node], step);
+            }
+            pairs.pass(SUBSTEP, furthest);
+        }
+    }
+    assert!(
+        again > whole + 10,
+        "{again} lists: strays must have been looked for"
+    );
+}
+
+#[test]
+fn no_pair_is_missed() {
+    check::<Dim2>(14);
+    check::<Dim3>(6);
+}
+
+/// A body is torn at random; the spheres kept up against those listed anew, and who is bound to whom
+/// against the nodes they have.
+fn check_tears<D: Dim>(n: usize) {
+    let grid = VoxelGrid::<D>::ball(n, 1.0).expect("a ball is not empty");
+    let mut body = Body::new(grid, &[Material::default()]).expect("the material is good");
+    let mut seed = 5;
+    let mut below = |count: usize| ((random(&mut seed) + 0.5) * count as f32) as usize % count;
+    let (mut spheres, mut pairs) = (Spheres::default(), SpherePairs::default());
+    for tick in 0..20 {
+        pairs.start_tick();
+        if let Some(places) = spheres.start_tick(std::slice::from_ref(&body)) {
+            renumber(&mut pairs.list, &places);
+        }
+        for round in 0..4 {
+            let bodies = std::slice::from_ref(&body);
+            pairs.follow(&mut spheres, bodies, SUBSTEP);
+            compare(
+                &pairs,
+                &spheres,
+                bodies,
+                &format!("tick {tick}, round {round}"),
+            );
+            spheres.note_close(pairs.list.iter().flat_map(|pair| pair.spheres));
+            let count = 1 + below(12);
+            let sides = (0..count).map(|_| {
+                let mut at = [0; 3];
+                (0..D::N).for_each(|axis| at[axis] = below(n + 1) as i32);
+                (at, 1 + below((1 << D::CORNERS) - 2) as u8)
+            });
+            let torn = body.tear(&sides.collect::<Vec<_>>());
+            let torn = torn.expect("a release leaves the mesh whole");
+            spheres.tear(0, &body, &torn.elements, &mut pairs.changed);
+            let mut kept = spheres.list.clone();
+            kept.sort_by_key(ContactSphere::key);
+            let mut anew = Spheres::default();
+            anew.start_tick(std::slice::from_ref(&body));
+            assert_eq!(kept, anew.list);
+        }
+        for b in 0..spheres.list.len() {
+            for a in 0..b {
+                let [own, other] = [a, b].map(|place| &spheres.list[place]);
+                let apart = own.way_to(other).map(i32::abs).into_iter().max();
+                let [first, second] = [own, other].map(|sphere| &sphere.nodes[..D::CORNERS]);
+                let shares = first.iter().any(|node| second.contains(node));
+                if apart <= Some(1) {
+                    assert_eq!(own.is_held_to(other), shares);
+                }
+                assert_eq!(own.is_held_to(other), other.is_held_to(own));
+            }
+        }
+    }
+    assert!(body.pieces.list.len() > 10);
+}
+
+#[test]
+fn spheres_and_their_neighbours_are_known_after_every_tear() {
+    check_tears::<Dim2>(14);
+    check_tears::<Dim3>(8);
+}
