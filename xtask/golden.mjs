@@ -1,8 +1,10 @@
 // Runs the golden scenes of crates/fuwafuwa_golden, built for wasm32, and fails where one ends in other bits than it must.
-// usage: node golden.mjs FILE.wasm
+// Beside each stands how long it took, and how long natively.
+// usage: node golden.mjs FILE.wasm MILLISECONDS...   the native times, in the order of the scenes
 import { readFile } from "node:fs/promises";
 
-const { instance } = await WebAssembly.instantiate(await readFile(process.argv[2]));
+const [file, ...native] = process.argv.slice(2);
+const { instance } = await WebAssembly.instantiate(await readFile(file));
 const { memory, golden_count, golden_name, golden_name_length, golden_run, golden_hash } = instance.exports;
 const hex = (hash) => "0x" + BigInt.asUintN(64, hash).toString(16).padStart(16, "0");
 
@@ -11,6 +13,11 @@ for (let scene = 0; scene < golden_count(); scene++) {
   // Before the run, so that a trap can be told by its scene.
   process.stdout.write(`wasm32: ${name}: `);
   const [found, golden] = [hex(golden_run(scene)), hex(golden_hash(scene))];
-  console.log(found === golden ? `${found}, as it must` : `DIFFERENT, ${found} instead of ${golden}`);
+  // Once more for the clock: in the first run Node is still compiling.
+  const start = performance.now();
+  golden_run(scene);
+  const took = performance.now() - start;
+  const time = `${took.toFixed()} ms, natively ${native[scene]}: ${(took / native[scene]).toFixed(1)} ×`;
+  console.log(found === golden ? `${found}, as it must; ${time}` : `DIFFERENT, ${found} instead of ${golden}`);
   if (found !== golden) process.exitCode = 1;
 }

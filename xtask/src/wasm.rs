@@ -1,15 +1,15 @@
-//! The golden scenes on wasm32, run under Node: do they end in the same bits as natively? And does
-//! the game compile for a browser?
+//! The golden scenes on wasm32, run under Node: do they end in the same bits as natively, and how much
+//! longer do they take? And does the game compile for a browser?
 //!
 //! rustup's toolchain can build for wasm32 after `rustup target add wasm32-unknown-unknown`. Where
 //! it has not been told to, or cannot reach its server, Debian's packages do: a compiler, the
 //! sources of its standard library, which cargo then builds too, and a linker.
 
 use crate::packages::{IfMissing, Lack, apt_get, install_arguments, list_lacks};
-use crate::shell::{CANNOT, Failure, answers, cargo, execute, output_of, root, target};
+use crate::shell::{CANNOT, FAILED, Failure, answers, cargo, execute, output_of, root, target};
 use std::env;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 const TARGET: &str = "wasm32-unknown-unknown";
 /// Where Debian puts its compiler. The one on the path is usually another.
@@ -33,8 +33,12 @@ pub fn run(if_missing: IfMissing) -> Result<(), Failure> {
     }
     let compiler = found.map_err(|lacks| cannot(&lacks, if_missing))?;
     let module = build(&compiler)?;
+    let native_times = native_times()?;
     execute(
-        Command::new("node").arg("xtask/golden.mjs").arg(module),
+        Command::new("node")
+            .arg("xtask/golden.mjs")
+            .arg(module)
+            .args(native_times),
         "a scene ends in other bits on wasm32: look for arithmetic beyond + - * / and sqrt, for \
          usize, which has 32 bits there, and for lanes that sum in another order",
     )?;
@@ -139,6 +143,31 @@ fn build(compiler: &Compiler) -> Result<PathBuf, Failure> {
     Ok(folder().join(TARGET).join("release/fuwafuwa_golden.wasm"))
 }
 
+/// How long each scene takes natively on one thread [ms], in their order.
+fn native_times() -> Result<Vec<String>, Failure> {
+    let mut command = cargo();
+    command.args([
+        "run",
+        "--quiet",
+        "--release",
+        "--package",
+        "fuwafuwa_golden",
+    ]);
+    command.args(["--example", "times"]);
+    let output = command
+        .current_dir(root())
+        .stderr(Stdio::inherit())
+        .output();
+    let Some(output) = output.ok().filter(|output| output.status.success()) else {
+        return Err(Failure {
+            message: "the golden scenes could not be timed natively".to_string(),
+            code: FAILED,
+        });
+    };
+    let times = String::from_utf8_lossy(&output.stdout);
+    Ok(times.split_whitespace().map(str::to_string).collect())
+}
+
 /// Where wasm32 is built: beside the native build.
 fn folder() -> PathBuf {
     target().join("wasm")
@@ -153,7 +182,12 @@ fn cargo_for_wasm(compiler: &Compiler, words: &[&str]) -> Command {
         .env("CARGO_TARGET_DIR", root().join(folder()))
         // Flags for the native build, such as a target-cpu, make no sense here.
         .env_remove("RUSTFLAGS")
-        .env_remove("CARGO_ENCODED_RUSTFLAGS");
+        .env_remove("CARGO_ENCODED_RUSTFLAGS")
+        // Every browser of today has wide lanes, but a module has them or not.
+        .env(
+            "CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS",
+            "-Ctarget-feature=+simd128",
+        );
     if let Compiler::Debian { linker } = compiler {
         command
             .arg("-Zbuild-std=std,panic_abort")

@@ -18,8 +18,7 @@
 //! None is on unless asked for.
 //! - `serde`: saving and loading worlds, in the module `snapshot`
 //! - `parallel`: large bodies on several threads, to the same bits
-// One exception, in `solve`: calling code compiled for AVX2 after asking for AVX2.
-#![deny(unsafe_code)]
+#![forbid(unsafe_code)]
 #![warn(missing_docs)]
 // Units and sources stand in brackets: [m], [Endo 2004, §3.1].
 #![allow(rustdoc::broken_intra_doc_links)]

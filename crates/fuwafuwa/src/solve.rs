@@ -9,19 +9,20 @@
 //! The lanes of a block are of one class where a class has elements enough. The rest, a fifth of a
 //! body in some hundred classes, is pooled by number of nodes, with a stencil for each lane.
 
+mod assign;
 mod kernel;
 mod lanes;
-mod seating;
 
 use crate::dim::Dim;
 use crate::law::{Elasticity, Law};
 use crate::threads::{self, Rows};
 use crate::vector::{plus, scaled};
+use fearless_simd::Simd;
 use kernel::{
-    Eight, Mixed, Moduli, Same, Scratch, Seats, forces, gradient, plain_forces, plain_gradient,
-    stress,
+    BlockView, Moduli, PerLane, Scratch, Uniform, forces, gradient, matrix_of, plain_forces,
+    plain_gradient, stress,
 };
-use lanes::{Lanes, Portable};
+use lanes::{Eight, on_widest_lanes, splat};
 use std::collections::{BTreeMap, BTreeSet};
 use std::marker::PhantomData;
 
@@ -64,7 +65,7 @@ pub struct Blocks<D: Dim> {
     /// The stencils of pooled lanes.
     pooled: Vec<Eight>,
     /// Block and lane of each element, by id; the block is [`VACANT`] while it has none.
-    seats: Vec<(u32, u8)>,
+    assigned: Vec<(u32, u8)>,
     /// Where the forces on each node stand, by id: places in `forces`, one an element, in the order
     /// of the octants; 0, where no force is, for those that are fewer.
     slots: Vec<[u32; 8]>,
@@ -75,7 +76,7 @@ pub struct Blocks<D: Dim> {
     forces: Vec<f32>,
     /// Kept for the next evaluation, so that it need not be cleared.
     #[cfg_attr(feature = "serde", serde(skip))]
-    desk: Option<Box<[Scratch; GROUP]>>,
+    scratch: Option<Box<[Scratch; GROUP]>>,
     dim: PhantomData<D>,
 }
 
@@ -173,14 +174,14 @@ impl Block {
 
     /// What the kernel works on; `first` is the number of the first of the forces.
     #[inline(always)]
-    fn seats<'a, D: Dim>(
+    fn view<'a, D: Dim>(
         &'a mut self,
         shared: &Shared<'a>,
         forces: &'a mut [f32],
         first: usize,
-    ) -> Seats<'a> {
+    ) -> BlockView<'a> {
         let places = self.first as usize..self.end();
-        Seats {
+        BlockView {
             nodes: &shared.nodes[places.clone()],
             half_size: &self.half_size,
             rotation: &mut self.rotation,
@@ -192,7 +193,8 @@ impl Block {
 
 /// The forces of the blocks of a group that are awake.
 #[inline(always)]
-fn evaluate_group<D: Dim, L: Lanes>(
+fn evaluate_group<D: Dim, S: Simd>(
+    simd: S,
     group: Group,
     position: &[Row],
     scratch: &mut [Scratch; GROUP],
@@ -209,11 +211,11 @@ fn evaluate_group<D: Dim, L: Lanes>(
             continue;
         }
         let (home, stencil) = (block.home, block.stencil(&shared));
-        let seats = block.seats::<D>(&shared, all, first);
+        let view = block.view::<D>(&shared, all, first);
         match (home, stencil) {
-            (Home::Plain(_), _) => plain_gradient::<D, L>(position, &seats, scratch),
-            (_, (same, [])) => gradient::<D, L>(&Same(same), position, &seats, scratch),
-            (_, (_, mixed)) => gradient::<D, L>(&Mixed(mixed), position, &seats, scratch),
+            (Home::Plain(_), _) => plain_gradient::<D, S>(simd, position, &view, scratch),
+            (_, (one, [])) => gradient::<D, S>(simd, &Uniform(one), position, &view, scratch),
+            (_, (_, each)) => gradient::<D, S>(simd, &PerLane(each), position, &view, scratch),
         }
     }
     for (block, scratch) in blocks.iter_mut().zip(&mut *scratch) {
@@ -221,8 +223,8 @@ fn evaluate_group<D: Dim, L: Lanes>(
             continue;
         }
         let moduli = &shared.moduli[block.home.material() as usize - 1];
-        let mut seats = block.seats::<D>(&shared, all, first);
-        stress::<D, L>(law, moduli, &mut seats, scratch);
+        let mut view = block.view::<D>(&shared, all, first);
+        stress::<D, S>(simd, law, moduli, &mut view, scratch);
     }
     for (block, scratch) in blocks.iter_mut().zip(&*scratch) {
         if block.asleep == ALL_LANES {
@@ -230,38 +232,22 @@ fn evaluate_group<D: Dim, L: Lanes>(
         }
         let (home, stencil) = (block.home, block.stencil(&shared));
         let moduli = &shared.moduli[home.material() as usize - 1];
-        let seats = &mut block.seats::<D>(&shared, all, first);
+        let view = &mut block.view::<D>(&shared, all, first);
         match (home, stencil) {
-            (Home::Plain(_), _) => plain_forces::<D, L>(moduli, seats, scratch),
-            (_, (same, [])) => {
-                forces::<D, L>(law, moduli, &Same(same), seats, scratch);
+            (Home::Plain(_), _) => plain_forces::<D, S>(simd, moduli, view, scratch),
+            (_, (one, [])) => {
+                forces::<D, S>(simd, law, moduli, &Uniform(one), view, scratch);
             }
-            (_, (_, mixed)) => {
-                forces::<D, L>(law, moduli, &Mixed(mixed), seats, scratch);
+            (_, (_, each)) => {
+                forces::<D, S>(simd, law, moduli, &PerLane(each), view, scratch);
             }
         }
     }
-}
-
-/// As [`evaluate_group`], compiled for AVX2.
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn evaluate_group_wide<D: Dim>(group: Group, position: &[Row], scratch: &mut [Scratch; GROUP]) {
-    evaluate_group::<D, lanes::Wide>(group, position, scratch);
 }
 
 /// The forces of a group, by the widest lanes the machine has.
 fn evaluate_best<D: Dim>(group: Group, position: &[Row], scratch: &mut [Scratch; GROUP]) {
-    #[cfg(target_arch = "x86_64")]
-    if std::arch::is_x86_feature_detected!("avx2") {
-        // SAFETY: the machine has AVX2; the function is safe code otherwise.
-        #[allow(unsafe_code)]
-        unsafe {
-            evaluate_group_wide::<D>(group, position, scratch);
-        }
-        return;
-    }
-    evaluate_group::<D, Portable>(group, position, scratch);
+    on_widest_lanes!(simd => evaluate_group::<D, _>(simd, group, position, scratch));
 }
 
 impl<D: Dim> Blocks<D> {
@@ -277,11 +263,11 @@ impl<D: Dim> Blocks<D> {
             stencils: BTreeMap::new(),
             numbers: Vec::new(),
             pooled: Vec::new(),
-            seats: Vec::new(),
+            assigned: Vec::new(),
             slots: Vec::new(),
             nodes: vec![VACANT; LANES],
             forces: vec![0.0; LANES * D::N + PAD],
-            desk: None,
+            scratch: None,
             dim: PhantomData,
         }
     }
@@ -304,20 +290,12 @@ impl<D: Dim> Blocks<D> {
             );
             return;
         }
-        let mut desk = std::mem::take(&mut self.desk);
-        let scratch = desk.get_or_insert_with(|| Box::new([Scratch::EMPTY; GROUP]));
+        let mut kept = self.scratch.take();
+        let scratch = kept.get_or_insert_with(|| Box::new([Scratch::EMPTY; GROUP]));
         for group in self.groups() {
             evaluate_best::<D>(group, position, scratch);
         }
-        self.desk = desk;
-    }
-
-    #[cfg(test)]
-    fn evaluate_portable(&mut self, position: &[Row]) {
-        let mut scratch = [Scratch::EMPTY; GROUP];
-        for group in self.groups() {
-            evaluate_group::<D, Portable>(group, position, &mut scratch);
-        }
+        self.scratch = kept;
     }
 
     /// The blocks in groups that share nothing that is written: on any number of threads the same
@@ -358,7 +336,7 @@ impl<D: Dim> Blocks<D> {
     /// The force [N] on a node, as of the last evaluation.
     #[inline]
     pub fn force_on(&self, node: u32) -> Row {
-        self.force_by::<Portable>(node)
+        on_widest_lanes!(simd => self.force_by(simd, node))
     }
 
     /// The forces [N] of the elements on a node, in the order of the octants around it, as of the
@@ -375,8 +353,8 @@ impl<D: Dim> Blocks<D> {
     }
 
     #[inline(always)]
-    fn force_by<L: Lanes>(&self, node: u32) -> Row {
-        let mut sum = L::sum(&self.forces, &self.slots[node as usize], D::CORNERS);
+    fn force_by<S: Simd>(&self, simd: S, node: u32) -> Row {
+        let mut sum = lanes::sum(simd, &self.forces, &self.slots[node as usize][..D::CORNERS]);
         sum[D::N..].fill(0.0);
         sum
     }
@@ -388,15 +366,10 @@ impl<D: Dim> Blocks<D> {
             let [cosine, sine, ..] = turned;
             return [[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]];
         }
-        let mut lanes = [[0.0; LANES]; 9];
-        for (k, entry) in kernel::matrix_of(turned.map(Portable::splat))
-            .iter()
-            .flatten()
-            .enumerate()
-        {
-            entry.store(&mut lanes[k]);
-        }
-        [0, 1, 2].map(|row: usize| [0, 1, 2].map(|column: usize| lanes[3 * row + column][0]))
+        on_widest_lanes!(simd => {
+            let matrix = matrix_of(simd, turned.map(|part| splat(simd, part)));
+            matrix.map(|row| row.map(|entry| entry[0]))
+        })
     }
 
     /// How many elements that are awake were inside out in the last evaluation; under
@@ -409,7 +382,7 @@ impl<D: Dim> Blocks<D> {
     /// Lets an element sleep, or wakes it: a block whose elements all sleep is not evaluated, and
     /// keeps the forces it had.
     pub fn set_asleep(&mut self, id: u32, asleep: bool) {
-        let (block, lane) = self.seats[id as usize];
+        let (block, lane) = self.assigned[id as usize];
         let sleepers = &mut self.blocks[block as usize].asleep;
         *sleepers = *sleepers & !(1 << lane) | u8::from(asleep) << lane;
     }
@@ -417,24 +390,12 @@ impl<D: Dim> Blocks<D> {
     /// Adds a substep's worth of elastic force and of gravity to velocities [m/s].
     pub fn kick(&self, kick: &Kick, velocity: &mut [Row]) {
         threads::map(threads::rows(kick.nodes, [velocity]), |rows| {
-            #[cfg(target_arch = "x86_64")]
-            if std::arch::is_x86_feature_detected!("avx2") {
-                // SAFETY: the machine has AVX2; the function is safe code otherwise.
-                #[allow(unsafe_code)]
-                return unsafe { self.kick_wide(kick, rows) };
-            }
-            self.kick_by::<Portable>(kick, rows);
+            on_widest_lanes!(simd => self.kick_by(simd, kick, rows));
         });
     }
 
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn kick_wide(&self, kick: &Kick, rows: Rows<Row, 1>) {
-        self.kick_by::<lanes::Wide>(kick, rows);
-    }
-
     #[inline(always)]
-    fn kick_by<L: Lanes>(&self, kick: &Kick, rows: Rows<Row, 1>) {
+    fn kick_by<S: Simd>(&self, simd: S, kick: &Kick, rows: Rows<Row, 1>) {
         let [velocity] = rows.lists;
         for &id in rows.nodes {
             let node = id as usize;
@@ -442,14 +403,14 @@ impl<D: Dim> Blocks<D> {
             if inverse_mass == 0.0 {
                 continue;
             }
-            let acceleration = plus(scaled(self.force_by::<L>(id), inverse_mass), kick.gravity);
+            let acceleration = plus(scaled(self.force_by(simd, id), inverse_mass), kick.gravity);
             let velocity = &mut velocity[node - rows.first];
             *velocity = plus(*velocity, scaled(acceleration, kick.duration));
         }
     }
 
     fn rotation_of(&self, id: u32) -> [f32; 4] {
-        match self.seats.get(id as usize) {
+        match self.assigned.get(id as usize) {
             Some(&(block, lane)) if block != VACANT => self.blocks[block as usize]
                 .rotation
                 .map(|part| part[lane as usize]),
@@ -472,9 +433,10 @@ mod tests {
     use crate::mesh::Mesh;
     use crate::pyramid::{Grading, Pyramid};
     use crate::sharing::Sharing;
+    use fearless_simd::{Level, dispatch};
 
-    /// The wide path against the portable one, on a body with every kind of block.
-    fn check_same_bits<D: Dim>(law: Law) {
+    /// The widest lanes against others, on a body with every kind of block.
+    fn check_same_bits<D: Dim>(law: Law, level: Level) {
         let grid = VoxelGrid::<D>::ball(24, 1.0).unwrap();
         let sharing = Sharing::new(&grid);
         let pyramid = Pyramid::new(&grid, &sharing, Grading::Graded);
@@ -483,7 +445,7 @@ mod tests {
         let mut wide = Blocks::new(law, &[elasticity], grid.voxel_size());
         let all: Vec<u32> = mesh.elements().map(|(id, _)| id).collect();
         wide.update(&mesh, &grid, &[], &all);
-        let mut portable = wide.clone();
+        let mut other = wide.clone();
         let mut position = vec![[0.0; 4]; mesh.node_capacity()];
         for (id, node) in mesh.nodes() {
             let [x, y, z] = node.at.map(|k| k as f32 / 24.0);
@@ -497,11 +459,15 @@ mod tests {
         }
         for _ in 0..3 {
             wide.evaluate(&position);
-            portable.evaluate_portable(&position);
+            let mut scratch = [Scratch::EMPTY; GROUP];
+            for group in other.groups() {
+                let scratch = &mut scratch;
+                dispatch!(level, simd => evaluate_group::<D, _>(simd, group, &position, scratch));
+            }
         }
         for (id, _) in mesh.nodes() {
             let bits = |blocks: &Blocks<D>| blocks.force_on(id).map(f32::to_bits);
-            assert_eq!(bits(&wide), bits(&portable));
+            assert_eq!(bits(&wide), bits(&other));
         }
         let nodes: Vec<u32> = mesh.nodes().map(|(id, _)| id).collect();
         let inverse_mass: Vec<f32> = (0..position.len()).map(|id| (id % 7) as f32).collect();
@@ -512,23 +478,25 @@ mod tests {
             gravity: [0.0, -9.81, 0.0, 0.0],
         };
         let mut velocities = [position.clone(), position];
-        let [by_best, by_portable] = &mut velocities;
+        let [by_best, by_other] = &mut velocities;
         wide.kick(&kick, by_best);
-        for rows in threads::rows(&nodes, [by_portable]) {
-            portable.kick_by::<Portable>(&kick, rows);
+        for rows in threads::rows(&nodes, [by_other]) {
+            dispatch!(level, simd => other.kick_by(simd, &kick, rows));
         }
-        let [by_best, by_portable] = velocities.map(|rows| {
+        let [by_best, by_other] = velocities.map(|rows| {
             let bits = rows.iter().flatten().map(|value| value.to_bits());
             bits.collect::<Vec<u32>>()
         });
-        assert_eq!(by_best, by_portable);
+        assert_eq!(by_best, by_other);
     }
 
     #[test]
-    fn wide_and_portable_lanes_give_the_same_bits() {
-        for law in [Law::PatchExact, Law::Endo2004] {
-            check_same_bits::<Dim2>(law);
-            check_same_bits::<Dim3>(law);
+    fn all_lanes_give_the_same_bits() {
+        for level in [Level::fallback(), Level::baseline()] {
+            for law in [Law::PatchExact, Law::Endo2004] {
+                check_same_bits::<Dim2>(law, level);
+                check_same_bits::<Dim3>(law, level);
+            }
         }
     }
 }

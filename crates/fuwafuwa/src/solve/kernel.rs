@@ -16,16 +16,14 @@
 //! A plain cell, all of whose nodes are corners, has w = 1, b and r of ±1 and no skew: its sums
 //! are sums and differences. Four of five elements are plain.
 
-use super::lanes::Lanes;
+use super::lanes::{Eight, Lanes, at_least, gather, if_positive, load, positive, scatter, splat};
 use super::{LANES, Row};
 use crate::dim::Dim;
 use crate::law::{Elasticity, Law, SQUASH_LIMIT};
-
-/// One number for each lane, in memory.
-pub type Eight = [f32; LANES];
+use fearless_simd::prelude::*;
 
 /// What one block brings along.
-pub struct Seats<'a> {
+pub struct BlockView<'a> {
     /// Node k of lane l at k · LANES + l.
     pub nodes: &'a [u32],
     pub half_size: &'a Eight,
@@ -60,27 +58,27 @@ impl Moduli {
 
 /// Numbers of a stencil: for each node b, w r and w, then the upper half of W, 1/V and the
 /// stiffness: of the hourglass modes, or of [`Law::Endo2004`]. `get` reads one of them, for all lanes or for each.
-pub trait Stencils<L: Lanes> {
-    fn get(&self, index: usize) -> L;
+pub trait Stencils {
+    fn get<S: Simd>(&self, simd: S, index: usize) -> Lanes<S>;
 }
 
 /// All lanes are of one class.
-pub struct Same<'a>(pub &'a [f32]);
+pub struct Uniform<'a>(pub &'a [f32]);
 
 /// Each lane is of its own class.
-pub struct Mixed<'a>(pub &'a [Eight]);
+pub struct PerLane<'a>(pub &'a [Eight]);
 
-impl<L: Lanes> Stencils<L> for Same<'_> {
+impl Stencils for Uniform<'_> {
     #[inline(always)]
-    fn get(&self, index: usize) -> L {
-        L::splat(self.0[index])
+    fn get<S: Simd>(&self, simd: S, index: usize) -> Lanes<S> {
+        splat(simd, self.0[index])
     }
 }
 
-impl<L: Lanes> Stencils<L> for Mixed<'_> {
+impl Stencils for PerLane<'_> {
     #[inline(always)]
-    fn get(&self, index: usize) -> L {
-        L::load(&self.0[index])
+    fn get<S: Simd>(&self, simd: S, index: usize) -> Lanes<S> {
+        load(simd, &self.0[index])
     }
 }
 
@@ -94,7 +92,7 @@ pub const fn numbers<D: Dim>(nodes: usize) -> usize {
     numbers_a_node::<D>() * nodes + D::N * (D::N + 1) / 2 + 2
 }
 
-type Matrix<L> = [[L; 3]; 3];
+type Matrix<S> = [[Lanes<S>; 3]; 3];
 
 /// What passes from one loop over some blocks to the next.
 #[derive(Copy, Clone, Debug)]
@@ -120,17 +118,22 @@ impl Scratch {
 
 /// First loop: F and c of plain cells, by sums and differences.
 #[inline(always)]
-pub fn plain_gradient<D: Dim, L: Lanes>(position: &[Row], seats: &Seats, scratch: &mut Scratch) {
-    let zero = L::splat(0.0);
-    let share = L::splat(1.0 / D::CORNERS as f32);
-    let scale = share / L::load(seats.half_size);
-    let origin = L::gather(position, places(seats.nodes, 0));
+pub fn plain_gradient<D: Dim, S: Simd>(
+    simd: S,
+    position: &[Row],
+    view: &BlockView,
+    scratch: &mut Scratch,
+) {
+    let zero = splat(simd, 0.0);
+    let share = splat(simd, 1.0 / D::CORNERS as f32);
+    let scale = share / load(simd, view.half_size);
+    let origin = gather(simd, position, places(view.nodes, 0));
     let mut x = [[zero; 3]; 8];
     for node in 1..D::CORNERS {
-        let at = L::gather(position, places(seats.nodes, node));
+        let at = gather(simd, position, places(view.nodes, node));
         for i in 0..D::N {
             x[node][i] = at[i] - origin[i];
-            x[node][i].store(&mut scratch.x[node][i]);
+            x[node][i].store_array(&mut scratch.x[node][i]);
         }
     }
     for i in 0..D::N {
@@ -138,204 +141,212 @@ pub fn plain_gradient<D: Dim, L: Lanes>(position: &[Row], seats: &Seats, scratch
         let (d1, s1) = (x[3][i] - x[2][i], x[3][i] + x[2][i]);
         let f = &mut scratch.f[i];
         if D::N == 2 {
-            (scale * (d0 + d1)).store(&mut f[0]);
-            (scale * (s1 - s0)).store(&mut f[1]);
-            (share * (s0 + s1)).store(&mut scratch.centre[i]);
+            (scale * (d0 + d1)).store_array(&mut f[0]);
+            (scale * (s1 - s0)).store_array(&mut f[1]);
+            (share * (s0 + s1)).store_array(&mut scratch.centre[i]);
         } else {
             let (d2, s2) = (x[5][i] - x[4][i], x[5][i] + x[4][i]);
             let (d3, s3) = (x[7][i] - x[6][i], x[7][i] + x[6][i]);
             let (low, high) = (s0 + s1, s2 + s3);
-            (scale * (d0 + d1 + (d2 + d3))).store(&mut f[0]);
-            (scale * (s1 - s0 + (s3 - s2))).store(&mut f[1]);
-            (scale * (high - low)).store(&mut f[2]);
-            (share * (low + high)).store(&mut scratch.centre[i]);
+            (scale * (d0 + d1 + (d2 + d3))).store_array(&mut f[0]);
+            (scale * (s1 - s0 + (s3 - s2))).store_array(&mut f[1]);
+            (scale * (high - low)).store_array(&mut f[2]);
+            (share * (low + high)).store_array(&mut scratch.centre[i]);
         }
     }
 }
 
 /// First loop: F, G and c of elements of any class.
 #[inline(always)]
-pub fn gradient<D: Dim, L: Lanes>(
-    stencils: &impl Stencils<L>,
+pub fn gradient<D: Dim, S: Simd>(
+    simd: S,
+    stencils: &impl Stencils,
     position: &[Row],
-    seats: &Seats,
+    view: &BlockView,
     scratch: &mut Scratch,
 ) {
-    let zero = L::splat(0.0);
-    let count = seats.nodes.len() / LANES;
+    let zero = splat(simd, 0.0);
+    let count = view.nodes.len() / LANES;
     let a_node = numbers_a_node::<D>();
-    let origin = L::gather(position, places(seats.nodes, 0));
+    let origin = gather(simd, position, places(view.nodes, 0));
     for i in 0..D::N {
-        zero.store(&mut scratch.x[0][i]);
+        zero.store_array(&mut scratch.x[0][i]);
     }
     let mut f = [[zero; 3]; 3];
     let mut moment = [[zero; 3]; 3];
     let mut centre = [zero; 3];
     for node in 1..count {
-        let at = L::gather(position, places(seats.nodes, node));
-        let w = stencils.get(a_node * node + 2 * D::N);
+        let at = gather(simd, position, places(view.nodes, node));
+        let w = stencils.get(simd, a_node * node + 2 * D::N);
         let mut x = [zero; 3];
         for i in 0..D::N {
             x[i] = at[i] - origin[i];
-            x[i].store(&mut scratch.x[node][i]);
-            centre[i] = centre[i] + x[i] * w;
+            x[i].store_array(&mut scratch.x[node][i]);
+            centre[i] += x[i] * w;
         }
         for j in 0..D::N {
-            let b = stencils.get(a_node * node + j);
-            let wr = stencils.get(a_node * node + D::N + j);
+            let b = stencils.get(simd, a_node * node + j);
+            let wr = stencils.get(simd, a_node * node + D::N + j);
             for i in 0..D::N {
-                f[i][j] = f[i][j] + x[i] * b;
-                moment[i][j] = moment[i][j] + x[i] * wr;
+                f[i][j] += x[i] * b;
+                moment[i][j] += x[i] * wr;
             }
         }
     }
-    let inverse_volume = stencils.get(numbers::<D>(count) - 2);
-    let scale = inverse_volume / L::load(seats.half_size);
+    let inverse_volume = stencils.get(simd, numbers::<D>(count) - 2);
+    let scale = inverse_volume / load(simd, view.half_size);
     for i in 0..D::N {
         for j in 0..D::N {
-            (f[i][j] * scale).store(&mut scratch.f[i][j]);
-            moment[i][j].store(&mut scratch.moment[i][j]);
+            (f[i][j] * scale).store_array(&mut scratch.f[i][j]);
+            moment[i][j].store_array(&mut scratch.moment[i][j]);
         }
-        (centre[i] * inverse_volume).store(&mut scratch.centre[i]);
+        (centre[i] * inverse_volume).store_array(&mut scratch.centre[i]);
     }
 }
 
 /// Second loop: brings the rotation up to date, and finds the stress.
 #[inline(always)]
-pub fn stress<D: Dim, L: Lanes>(
+pub fn stress<D: Dim, S: Simd>(
+    simd: S,
     law: Law,
     moduli: &Moduli,
-    seats: &mut Seats,
+    view: &mut BlockView,
     scratch: &mut Scratch,
 ) {
-    let mut f = [[L::splat(0.0); 3]; 3];
+    let mut f = [[splat(simd, 0.0); 3]; 3];
     for i in 0..D::N {
         for j in 0..D::N {
-            f[i][j] = L::load(&scratch.f[i][j]);
+            f[i][j] = load(simd, &scratch.f[i][j]);
         }
     }
-    let rotation = turn::<D, L>(&f, seats.rotation);
+    let rotation = turn::<D, S>(simd, &f, view.rotation);
     let stress = match law {
-        Law::PatchExact => stress_of::<D, L>(moduli, &f, &rotation, seats.inverted),
+        Law::PatchExact => stress_of::<D, S>(simd, moduli, &f, &rotation, view.inverted),
         Law::Endo2004 => rotation,
     };
     for i in 0..D::N {
         for j in 0..D::N {
-            stress[i][j].store(&mut scratch.stress[i][j]);
+            stress[i][j].store_array(&mut scratch.stress[i][j]);
         }
     }
 }
 
 /// Third loop: the forces of plain cells.
 #[inline(always)]
-pub fn plain_forces<D: Dim, L: Lanes>(moduli: &Moduli, seats: &mut Seats, scratch: &Scratch) {
-    let half = L::load(seats.half_size);
-    let (stiffness, area) = scales::<D, L>(moduli, half);
+pub fn plain_forces<D: Dim, S: Simd>(
+    simd: S,
+    moduli: &Moduli,
+    view: &mut BlockView,
+    scratch: &Scratch,
+) {
+    let half = load(simd, view.half_size);
+    let (stiffness, area) = scales::<D, S>(simd, moduli, half);
     let bend = stiffness * half;
-    let mut force = [[L::splat(0.0); 3]; 8];
+    let mut force = [[splat(simd, 0.0); 3]; 8];
     for i in 0..D::N {
-        let centre = L::load(&scratch.centre[i]);
+        let centre = load(simd, &scratch.centre[i]);
         force[0][i] = stiffness * centre;
         for node in 1..D::CORNERS {
-            force[node][i] = stiffness * (centre - L::load(&scratch.x[node][i]));
+            force[node][i] = stiffness * (centre - load(simd, &scratch.x[node][i]));
         }
     }
     for i in 0..D::N {
-        let mut m = [L::splat(0.0); 3];
+        let mut m = [splat(simd, 0.0); 3];
         for j in 0..D::N {
-            m[j] = bend * L::load(&scratch.f[i][j]) - area * L::load(&scratch.stress[i][j]);
+            m[j] = bend * load(simd, &scratch.f[i][j]) - area * load(simd, &scratch.stress[i][j]);
         }
         if D::N == 2 {
             let (sum, difference) = (m[0] + m[1], m[0] - m[1]);
-            force[0][i] = force[0][i] - sum;
-            force[1][i] = force[1][i] + difference;
-            force[2][i] = force[2][i] - difference;
-            force[3][i] = force[3][i] + sum;
+            force[0][i] -= sum;
+            force[1][i] += difference;
+            force[2][i] -= difference;
+            force[3][i] += sum;
         } else {
             let (sum, difference) = (m[1] + m[2], m[1] - m[2]);
             let turns = [sum + m[0], sum - m[0], difference + m[0], difference - m[0]];
-            force[0][i] = force[0][i] - turns[0];
-            force[1][i] = force[1][i] - turns[1];
-            force[2][i] = force[2][i] + turns[3];
-            force[3][i] = force[3][i] + turns[2];
-            force[4][i] = force[4][i] - turns[2];
-            force[5][i] = force[5][i] - turns[3];
-            force[6][i] = force[6][i] + turns[1];
-            force[7][i] = force[7][i] + turns[0];
+            force[0][i] -= turns[0];
+            force[1][i] -= turns[1];
+            force[2][i] += turns[3];
+            force[3][i] += turns[2];
+            force[4][i] -= turns[2];
+            force[5][i] -= turns[3];
+            force[6][i] += turns[1];
+            force[7][i] += turns[0];
         }
     }
     for node in 0..D::CORNERS {
-        L::scatter(force[node], D::N, target::<D>(seats.forces, node));
+        scatter(simd, force[node], D::N, target::<D>(view.forces, node));
     }
 }
 
 /// Third loop: the forces of elements of any class.
 #[inline(always)]
-pub fn forces<D: Dim, L: Lanes>(
+pub fn forces<D: Dim, S: Simd>(
+    simd: S,
     law: Law,
     moduli: &Moduli,
-    stencils: &impl Stencils<L>,
-    seats: &mut Seats,
+    stencils: &impl Stencils,
+    view: &mut BlockView,
     scratch: &Scratch,
 ) {
-    let zero = L::splat(0.0);
-    let count = seats.nodes.len() / LANES;
+    let zero = splat(simd, 0.0);
+    let count = view.nodes.len() / LANES;
     let a_node = numbers_a_node::<D>();
-    let half = L::load(seats.half_size);
+    let half = load(simd, view.half_size);
     let (mut pull, mut shear) = ([[zero; 3]; 3], [[zero; 3]; 3]);
     let stiffness;
-    let own_stiffness = stencils.get(numbers::<D>(count) - 1);
+    let own_stiffness = stencils.get(simd, numbers::<D>(count) - 1);
     if law == Law::PatchExact {
-        let (plain_spring, area) = scales::<D, L>(moduli, half);
+        let (plain_spring, area) = scales::<D, S>(simd, moduli, half);
         let spring = plain_spring * own_stiffness;
-        let inverse_volume = stencils.get(numbers::<D>(count) - 2);
+        let inverse_volume = stencils.get(simd, numbers::<D>(count) - 2);
         let (bend, skew) = (spring * half, spring * inverse_volume);
         stiffness = spring;
         for i in 0..D::N {
             for j in 0..D::N {
                 let mut bent = zero;
                 for k in 0..D::N {
-                    let spread = stencils.get(a_node * count + symmetric::<D>(k, j));
-                    bent = bent + L::load(&scratch.f[i][k]) * spread;
+                    let spread = stencils.get(simd, a_node * count + symmetric::<D>(k, j));
+                    bent += load(simd, &scratch.f[i][k]) * spread;
                 }
-                let moment = L::load(&scratch.moment[i][j]);
-                let stress = L::load(&scratch.stress[i][j]);
+                let moment = load(simd, &scratch.moment[i][j]);
+                let stress = load(simd, &scratch.stress[i][j]);
                 pull[i][j] = skew * (moment - half * bent) - area * stress;
-                shear[i][j] = bend * L::load(&scratch.f[i][j]);
+                shear[i][j] = bend * load(simd, &scratch.f[i][j]);
             }
         }
     } else {
-        let rest = if D::N == 2 { L::splat(1.0) } else { half };
-        stiffness = L::splat(moduli.young) * own_stiffness * rest;
+        let rest = if D::N == 2 { splat(simd, 1.0) } else { half };
+        stiffness = splat(simd, moduli.young) * own_stiffness * rest;
         for i in 0..D::N {
             for j in 0..D::N {
-                pull[i][j] = stiffness * half * L::load(&scratch.stress[i][j]);
+                pull[i][j] = stiffness * half * load(simd, &scratch.stress[i][j]);
             }
         }
     }
     for node in 0..count {
-        let spring = stiffness * stencils.get(a_node * node + 2 * D::N);
+        let spring = stiffness * stencils.get(simd, a_node * node + 2 * D::N);
         let mut force = [zero; 3];
         for i in 0..D::N {
-            let centre = L::load(&scratch.centre[i]);
-            let x = L::load(&scratch.x[node][i]);
+            let centre = load(simd, &scratch.centre[i]);
+            let x = load(simd, &scratch.x[node][i]);
             force[i] = spring * (centre - x);
         }
         for j in 0..D::N {
-            let b = stencils.get(a_node * node + j);
-            let wr = stencils.get(a_node * node + D::N + j);
+            let b = stencils.get(simd, a_node * node + j);
+            let wr = stencils.get(simd, a_node * node + D::N + j);
             for i in 0..D::N {
-                force[i] = force[i] + (pull[i][j] * b + shear[i][j] * wr);
+                force[i] += pull[i][j] * b + shear[i][j] * wr;
             }
         }
-        L::scatter(force, D::N, target::<D>(seats.forces, node));
+        scatter(simd, force, D::N, target::<D>(view.forces, node));
     }
 }
 
 /// k and h^(d−1): the stiffness of the hourglass term, and what turns stress into force.
 #[inline(always)]
-fn scales<D: Dim, L: Lanes>(moduli: &Moduli, half: L) -> (L, L) {
-    let hourglass = L::splat(moduli.hourglass);
+fn scales<D: Dim, S: Simd>(simd: S, moduli: &Moduli, half: Lanes<S>) -> (Lanes<S>, Lanes<S>) {
+    let hourglass = splat(simd, moduli.hourglass);
     if D::N == 2 {
         (hourglass, half)
     } else {
@@ -346,21 +357,22 @@ fn scales<D: Dim, L: Lanes>(moduli: &Moduli, half: L) -> (L, L) {
 /// First Piola–Kirchhoff stress [Pa] of the deformation f with rotation r; notes where f turns
 /// inside out.
 #[inline(always)]
-fn stress_of<D: Dim, L: Lanes>(
+fn stress_of<D: Dim, S: Simd>(
+    simd: S,
     moduli: &Moduli,
-    f: &Matrix<L>,
-    r: &Matrix<L>,
+    f: &Matrix<S>,
+    r: &Matrix<S>,
     inverted: &mut u8,
-) -> Matrix<L> {
-    let zero = L::splat(0.0);
-    let mut stretch = L::splat(-(D::N as f32));
+) -> Matrix<S> {
+    let zero = splat(simd, 0.0);
+    let mut stretch = splat(simd, -(D::N as f32));
     for i in 0..D::N {
         for j in 0..D::N {
-            stretch = stretch + f[i][j] * r[i][j];
+            stretch += f[i][j] * r[i][j];
         }
     }
-    let twice_shear = L::splat(moduli.twice_shear);
-    let pressure = L::splat(moduli.lame) * stretch - twice_shear;
+    let twice_shear = splat(simd, moduli.twice_shear);
+    let pressure = splat(simd, moduli.lame) * stretch - twice_shear;
     let mut cofactor = [[zero; 3]; 3];
     if D::N == 2 {
         cofactor[0] = [f[1][1], zero - f[1][0], zero];
@@ -374,12 +386,12 @@ fn stress_of<D: Dim, L: Lanes>(
             }
         }
     }
-    let mut squash = L::splat(SQUASH_LIMIT as f32);
+    let mut squash = splat(simd, SQUASH_LIMIT as f32);
     for j in 0..D::N {
-        squash = squash - f[0][j] * cofactor[0][j];
+        squash -= f[0][j] * cofactor[0][j];
     }
-    *inverted = (squash - L::splat(SQUASH_LIMIT as f32)).positive();
-    let barrier = L::splat(moduli.young) * squash.at_least(zero);
+    *inverted = positive(squash - splat(simd, SQUASH_LIMIT as f32));
+    let barrier = splat(simd, moduli.young) * at_least(squash, zero);
     let mut p = [[zero; 3]; 3];
     for i in 0..D::N {
         for j in 0..D::N {
@@ -391,55 +403,55 @@ fn stress_of<D: Dim, L: Lanes>(
 
 /// The rotation of a deformation; see [`crate::law::rotation_of`].
 #[inline(always)]
-fn turn<D: Dim, L: Lanes>(f: &Matrix<L>, rotation: &mut [Eight; 4]) -> Matrix<L> {
+fn turn<D: Dim, S: Simd>(simd: S, f: &Matrix<S>, rotation: &mut [Eight; 4]) -> Matrix<S> {
     if D::N == 2 {
-        return turn_in_plane(f, rotation);
+        return turn_in_plane(simd, f, rotation);
     }
-    let mut q = [L::splat(0.0); 4];
+    let mut q = [splat(simd, 0.0); 4];
     for part in 0..4 {
-        q[part] = L::load(&rotation[part]);
+        q[part] = load(simd, &rotation[part]);
     }
     // Two rounds keep up with a body that spins and is squashed at once; one lags.
-    q = turn_in_space(f, turn_in_space(f, q));
+    q = turn_in_space(simd, f, turn_in_space(simd, f, q));
     for part in 0..4 {
-        q[part].store(&mut rotation[part]);
+        q[part].store_array(&mut rotation[part]);
     }
-    matrix_of(q)
+    matrix_of(simd, q)
 }
 
 /// The exact rotation in the plane: (cos, sin) ∝ (F₀₀ + F₁₁, F₁₀ − F₀₁). Where both vanish, it stays.
 #[inline(always)]
-fn turn_in_plane<L: Lanes>(f: &Matrix<L>, rotation: &mut [Eight; 4]) -> Matrix<L> {
-    let zero = L::splat(0.0);
+fn turn_in_plane<S: Simd>(simd: S, f: &Matrix<S>, rotation: &mut [Eight; 4]) -> Matrix<S> {
+    let zero = splat(simd, 0.0);
     let (a, b) = (f[0][0] + f[1][1], f[1][0] - f[0][1]);
     let squared = a * a + b * b;
-    let inverse = L::splat(1.0) / squared.sqrt();
-    let is_clear = squared - L::splat(1e-24);
-    let cosine = is_clear.if_positive(a * inverse, L::load(&rotation[0]));
-    let sine = is_clear.if_positive(b * inverse, L::load(&rotation[1]));
-    cosine.store(&mut rotation[0]);
-    sine.store(&mut rotation[1]);
+    let inverse = splat(simd, 1.0) / squared.sqrt();
+    let is_clear = squared - splat(simd, 1e-24);
+    let cosine = if_positive(is_clear, a * inverse, load(simd, &rotation[0]));
+    let sine = if_positive(is_clear, b * inverse, load(simd, &rotation[1]));
+    cosine.store_array(&mut rotation[0]);
+    sine.store_array(&mut rotation[1]);
     [[cosine, zero - sine, zero], [sine, cosine, zero], [zero; 3]]
 }
 
 /// One round towards the rotation in space.
 #[inline(always)]
-fn turn_in_space<L: Lanes>(f: &Matrix<L>, q: [L; 4]) -> [L; 4] {
-    let zero = L::splat(0.0);
-    let half = L::splat(0.5);
-    let r = matrix_of(q);
+fn turn_in_space<S: Simd>(simd: S, f: &Matrix<S>, q: [Lanes<S>; 4]) -> [Lanes<S>; 4] {
+    let zero = splat(simd, 0.0);
+    let half = splat(simd, 0.5);
+    let r = matrix_of(simd, q);
     let mut s = [[zero; 3]; 3];
     let mut norm = zero;
     for i in 0..3 {
         for j in 0..3 {
             s[i][j] = f[i][0] * r[j][0] + f[i][1] * r[j][1] + f[i][2] * r[j][2];
-            norm = norm + f[i][j] * f[i][j];
+            norm += f[i][j] * f[i][j];
         }
     }
-    let t = (L::splat(3.0) * norm).sqrt() + L::splat(1e-6);
+    let t = (splat(simd, 3.0) * norm).sqrt() + splat(simd, 1e-6);
     // Numbers below 1e-12 are rounded away: at rest their products would be subnormal, and slow.
-    let rounder = L::splat(1e-5);
-    let settled = |value: L| (value + rounder) - rounder;
+    let rounder = splat(simd, 1e-5);
+    let settled = |value: Lanes<S>| (value + rounder) - rounder;
     let axial = [
         settled(s[2][1] - s[1][2]),
         settled(s[0][2] - s[2][0]),
@@ -465,7 +477,7 @@ fn turn_in_space<L: Lanes>(f: &Matrix<L>, q: [L; 4]) -> [L; 4] {
         o - w[0] * x - w[1] * y - w[2] * z,
     ];
     let squared = next[0] * next[0] + next[1] * next[1] + next[2] * next[2] + next[3] * next[3];
-    let scale = L::splat(1.0) / squared.sqrt();
+    let scale = splat(simd, 1.0) / squared.sqrt();
     [
         next[0] * scale,
         next[1] * scale,
@@ -476,10 +488,10 @@ fn turn_in_space<L: Lanes>(f: &Matrix<L>, q: [L; 4]) -> [L; 4] {
 
 /// The matrix of a quaternion.
 #[inline(always)]
-pub fn matrix_of<L: Lanes>(q: [L; 4]) -> Matrix<L> {
+pub fn matrix_of<S: Simd>(simd: S, q: [Lanes<S>; 4]) -> Matrix<S> {
     let [x, y, z, w] = q;
     let (x2, y2, z2) = (x + x, y + y, z + z);
-    let one = L::splat(1.0);
+    let one = splat(simd, 1.0);
     [
         [one - (y * y2 + z * z2), x * y2 - w * z2, x * z2 + w * y2],
         [x * y2 + w * z2, one - (x * x2 + z * z2), y * z2 - w * x2],

@@ -1,4 +1,4 @@
-//! Which block an element sits in: how blocks follow a remodelling.
+//! Which block and lane an element is in: how blocks follow a remodelling.
 
 use super::kernel::{numbers, numbers_a_node, symmetric};
 use super::{ALL_LANES, Block, Blocks, Home, LANES, PAD, VACANT};
@@ -47,7 +47,7 @@ impl<D: Dim> Blocks<D> {
 
     /// The place of an element's force on a node.
     fn slot(&self, id: u32, node: u32) -> u32 {
-        let (block, lane) = self.seats[id as usize];
+        let (block, lane) = self.assigned[id as usize];
         let block = &self.blocks[block as usize];
         let first = block.first as usize + lane as usize;
         let mut lane_nodes = self.nodes[first..].iter().step_by(LANES);
@@ -58,13 +58,13 @@ impl<D: Dim> Blocks<D> {
     }
 
     fn take_out(&mut self, id: u32) {
-        let Some(&(index, lane)) = self.seats.get(id as usize) else {
+        let Some(&(index, lane)) = self.assigned.get(id as usize) else {
             return;
         };
         if index == VACANT {
             return;
         }
-        self.seats[id as usize] = (VACANT, 0);
+        self.assigned[id as usize] = (VACANT, 0);
         let block = &mut self.blocks[index as usize];
         block.elements[lane as usize] = VACANT;
         block.asleep |= 1 << lane;
@@ -110,7 +110,7 @@ impl<D: Dim> Blocks<D> {
                     open.unwrap_or_else(|| self.empty_block(pool, count))
                 }
             };
-            self.seat(index, newcomer, &numbers);
+            self.assign(index, newcomer, &numbers);
             newcomers = rest;
         }
     }
@@ -155,8 +155,8 @@ impl<D: Dim> Blocks<D> {
         })
     }
 
-    /// Seats an element in a vacant lane of a block.
-    fn seat(&mut self, index: u32, newcomer: &Newcomer, numbers: &[f32]) {
+    /// Puts an element into a vacant lane of a block.
+    fn assign(&mut self, index: u32, newcomer: &Newcomer, numbers: &[f32]) {
         let block = &mut self.blocks[index as usize];
         let is_first = block.elements == [VACANT; LANES];
         let mut vacant = (0..LANES).filter(|&lane| block.elements[lane] == VACANT);
@@ -190,8 +190,9 @@ impl<D: Dim> Blocks<D> {
             open.insert(index);
         }
         let id = newcomer.id as usize;
-        self.seats.resize(self.seats.len().max(id + 1), (VACANT, 0));
-        self.seats[id] = (index, lane as u8);
+        self.assigned
+            .resize(self.assigned.len().max(id + 1), (VACANT, 0));
+        self.assigned[id] = (index, lane as u8);
     }
 }
 
