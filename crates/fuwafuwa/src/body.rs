@@ -287,7 +287,7 @@ impl<D: Dim> Body<D> {
         (lead as f32, rate as f32)
     }
 
-    /// Friction of its skin.
+    /// Friction of its surface.
     pub(crate) fn friction(&self) -> f32 {
         self.blend.friction
     }

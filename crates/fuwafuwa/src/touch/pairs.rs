@@ -115,6 +115,10 @@ impl SpherePairs {
     /// Follows the spheres, and brings the list up to date; `left` [s] of the tick are to come. Returns
     /// whether it changed.
     pub fn follow<D: Dim>(&mut self, spheres: &mut Spheres, bodies: &[Body<D>], left: f32) -> bool {
+        if spheres.awake.is_empty() {
+            self.list.clear();
+            return true;
+        }
         if self.bins.is_none() {
             spheres.move_all(bodies);
             self.find_all(spheres, bodies, left);
@@ -185,44 +189,42 @@ impl SpherePairs {
         self.loose.clear();
         self.is_loose.clear();
         self.is_loose.resize(count, false);
-        let mut found = Vec::new();
-        if !spheres.awake.is_empty() {
-            self.set_frame(spheres);
-            let span = self.span();
-            let largest = spheres.list.iter().map(|sphere| sphere.radius);
-            let reach = widened(2.0 * largest.fold(0.0, f32::max));
-            // Half the length of each path; sleepers have none.
-            let sweep = |(path, sphere): (&Path, &ContactSphere)| match sphere.asleep {
-                true => -1.0,
-                false => length(minus(path.velocity, self.frame)) * span.half,
-            };
-            let sweeps: Vec<f32> = self.paths.iter().zip(&spheres.list).map(sweep).collect();
-            self.short = longest_short(&sweeps, LONGEST_SHORT * reach);
-            for (place, &sweep) in (0..).zip(&sweeps) {
-                if sweep > self.short {
-                    self.loose.push(place);
-                    self.is_loose[place as usize] = true;
-                }
+        self.set_frame(spheres);
+        let span = self.span();
+        let largest = spheres.list.iter().map(|sphere| sphere.radius);
+        let reach = widened(2.0 * largest.fold(0.0, f32::max));
+        // Half the length of each path; sleepers have none.
+        let sweep = |(path, sphere): (&Path, &ContactSphere)| match sphere.asleep {
+            true => -1.0,
+            false => length(minus(path.velocity, self.frame)) * span.half,
+        };
+        let sweeps: Vec<f32> = self.paths.iter().zip(&spheres.list).map(sweep).collect();
+        let awake = spheres.awake.iter().map(|&place| sweeps[place as usize]);
+        self.short = longest_short(awake.collect(), LONGEST_SHORT * reach);
+        for (place, &sweep) in (0..).zip(&sweeps) {
+            if sweep > self.short {
+                self.loose.push(place);
+                self.is_loose[place as usize] = true;
             }
-            let middles: Vec<Row> = self.paths.iter().map(|path| path.at(span.middle)).collect();
-            let bins = Bins::new::<D>(&middles, BIN_WIDTH * reach);
-            let this = &*self;
-            found = threads::map(spheres.awake.chunks(LOOKS), |places| {
-                let mut found = Vec::new();
-                for &place in places {
-                    // Of two the one with the longer path looks for the other.
-                    let rank = |place: u32| (sweeps[place as usize], place);
-                    let (at, sweep) = (middles[place as usize], sweeps[place as usize]);
-                    bins.near::<D>(at, reach + 2.0 * sweep, |other| {
-                        if rank(other) < rank(place) {
-                            this.meet(place, other, span, spheres, &mut found);
-                        }
-                    });
-                }
-                found
-            });
-            self.bins = Some(bins);
         }
+        let middles: Vec<Row> = self.paths.iter().map(|path| path.at(span.middle)).collect();
+        let bins = Bins::new::<D>(&middles, BIN_WIDTH * reach);
+        let this = &*self;
+        let found = threads::map(spheres.awake.chunks(LOOKS), |places| {
+            let mut found = Vec::new();
+            for &place in places {
+                // Of two the one with the longer path looks for the other.
+                let rank = |place: u32| (sweeps[place as usize], place);
+                let (at, sweep) = (middles[place as usize], sweeps[place as usize]);
+                bins.near::<D>(at, reach + 2.0 * sweep, |other| {
+                    if rank(other) < rank(place) {
+                        this.meet(place, other, span, spheres, &mut found);
+                    }
+                });
+            }
+            found
+        });
+        self.bins = Some(bins);
         merge(&mut self.list, &found, &vec![true; count]);
     }
 
@@ -323,10 +325,9 @@ fn widened(touching: f32) -> f32 {
 }
 
 /// What all sweeps but those of a few long paths stay below [m], and `most` [m] at the most.
-fn longest_short(sweeps: &[f32], most: f32) -> f32 {
-    let mut sorted = sweeps.to_vec();
-    let place = sorted.len() - 1 - sorted.len() / LONG_SHARE;
-    let (_, &mut short, _) = sorted.select_nth_unstable_by(place, f32::total_cmp);
+fn longest_short(mut sweeps: Vec<f32>, most: f32) -> f32 {
+    let place = sweeps.len() - 1 - sweeps.len() / LONG_SHARE;
+    let (_, &mut short, _) = sweeps.select_nth_unstable_by(place, f32::total_cmp);
     if short < most { short } else { most }
 }
 
