@@ -158,10 +158,10 @@ impl<D: Dim> Body<D> {
         }
     }
 
-    /// The octants at a point that still hang together when the given faces are open: one mask for
-    /// each side, nothing when they all do.
+    /// What is to be released at a point so that the given faces are open: one mask for each side
+    /// that comes off, nothing where they are open already.
     fn sides(&self, at: Point, opened: &BTreeSet<(Point, usize)>) -> Vec<u8> {
-        let groups = self.sharing.groups(at);
+        let mut groups = self.sharing.groups(at);
         let mut sides: Vec<u8> = (0..D::CORNERS)
             .filter(|octant| groups.solid() >> octant & 1 == 1)
             .map(|octant| 1 << octant)
@@ -178,7 +178,8 @@ impl<D: Dim> Body<D> {
             sides.push(joined.into_iter().fold(0, |all, side| all | side));
         }
         sides.sort_unstable();
-        if sides.len() > 1 { sides } else { Vec::new() }
+        sides.retain(|&side| groups.release(side));
+        sides
     }
 }
 

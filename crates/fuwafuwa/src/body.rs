@@ -1,9 +1,12 @@
 //! One soft thing: its voxels, how they hang together, and the state of its nodes.
 
+#[cfg(feature = "serde")]
+mod sound;
+
 use crate::breakable::BreakableNodes;
 use crate::dim::{Dim, Point, voxel_around};
 use crate::grid::VoxelGrid;
-use crate::law::{Elasticity, Law};
+use crate::law::{Elasticity, Law, turn_far_from};
 use crate::material::{BodyError, Material};
 use crate::mesh::{Element, Mesh, Node};
 use crate::momentum::{Momentum, RoughMotion};
@@ -32,6 +35,8 @@ pub struct Body<D: Dim> {
     /// Position [m], velocity [m/s] and mass [kg] of each node, by id.
     pub(crate) position: Vec<Row>,
     pub(crate) velocity: Vec<Row>,
+    /// Whether nodes were placed from outside since forces were last computed.
+    placed: bool,
     mass: Vec<f32>,
     /// One over the mass [1/kg]; 0 while a node is held or sleeps.
     pub(crate) inverse_mass: Vec<f32>,
@@ -60,6 +65,8 @@ struct Blend {
     slow: f64,
     /// Friction, the mean over the voxels.
     friction: f32,
+    /// The least strength of a material that is in use [Pa].
+    least_strength: f32,
     /// The fastest pressure wave of a material that is in use [m/s].
     fastest_wave: f64,
     /// The fastest swing, that of a single voxel which grows and shrinks [1/s].
@@ -105,6 +112,7 @@ impl<D: Dim> Body<D> {
             stiffness_scale: 1.0,
             position: Vec::new(),
             velocity: Vec::new(),
+            placed: false,
             mass: Vec::new(),
             inverse_mass: Vec::new(),
             held: Vec::new(),
@@ -241,6 +249,7 @@ impl<D: Dim> Body<D> {
             self.position[id as usize][..D::N].copy_from_slice(&position[..D::N]);
             self.velocity[id as usize][..D::N].copy_from_slice(&velocity[..D::N]);
             self.ahead[id as usize] = self.position[id as usize];
+            self.placed = true;
         }
         finite
     }
@@ -301,6 +310,11 @@ impl<D: Dim> Body<D> {
         self.blend.friction
     }
 
+    /// Whether the strength of a material in it is finite: else nothing tears.
+    pub(crate) fn can_tear(&self) -> bool {
+        self.blend.least_strength < f32::INFINITY
+    }
+
     /// The longest substep that its stiffest material bears [s]: 0.6 s / c.
     pub fn longest_substep(&self) -> f64 {
         let fastest = self.blend.fastest_wave * self.stiffness_scale.sqrt();
@@ -333,6 +347,10 @@ impl<D: Dim> Body<D> {
     /// Adds elastic forces and gravity over `duration` [s] to the velocities.
     pub(crate) fn push(&mut self, duration: f32, gravity: [f32; 3]) {
         self.refresh_awake();
+        if std::mem::take(&mut self.placed) {
+            let all: Vec<u32> = self.mesh.elements().map(|(id, _)| id).collect();
+            self.settle(&all);
+        }
         self.blocks.evaluate(&self.ahead);
         let mut gravity = as_row(gravity);
         gravity[D::N..].fill(0.0);
@@ -343,6 +361,23 @@ impl<D: Dim> Body<D> {
             gravity,
         };
         self.blocks.kick(&kick, &mut self.velocity);
+    }
+
+    /// Turns elements that are far from how their nodes lie, because they are new or their nodes were
+    /// placed: [`Blocks`] follows what turns step by step, and stands still half a turn off. In the plane
+    /// it finds the rotation at once.
+    pub(crate) fn settle(&mut self, elements: &[u32]) {
+        if D::N == 2 {
+            return;
+        }
+        for &id in elements {
+            let element = self.mesh.element(id).expect("only live elements settle");
+            let wide = |rows: [[f32; 3]; 3]| rows.map(|row| row.map(f64::from));
+            let (rotation, deformation) = (self.blocks.rotation(id), self.deformation(element).1);
+            if let Some(turned) = turn_far_from(&wide(rotation), &wide(deformation)) {
+                self.blocks.set_rotation(id, turned.map(|part| part as f32));
+            }
+        }
     }
 
     /// Moves every awake node by its velocity, and looks `lead` seconds ahead for the next forces,
@@ -600,12 +635,14 @@ impl Blend {
         let young = mean(&|material| material.elasticity.young);
         let density = mean(&|material| f64::from(material.density));
         let width = f64::from(grid.voxel_size()) * root(total, D::N);
+        let strengths = used().map(|(_, material)| material.strength);
         let waves = used().map(|(_, material)| material.wave_speed());
         let swings = used().map(|(_, material)| material.voxel_swing(D::N));
         Self {
             damping: mean(&|material| f64::from(material.damping)),
             slow: std::f64::consts::PI * (young / density).sqrt() / width,
             friction: mean(&|material| f64::from(material.friction)) as f32,
+            least_strength: strengths.fold(f32::INFINITY, f32::min),
             fastest_wave: waves.fold(0.0, f64::max),
             fastest_swing: swings.fold(0.0, f64::max) / f64::from(grid.voxel_size()),
         }

@@ -39,7 +39,8 @@ impl<D: Dim> Body<D> {
         }
         let mut changed: Vec<Point> = Vec::new();
         for &(point, side) in at {
-            if self.sharing.release(point, side) {
+            // A point is often released side by side: it is looked around once.
+            if self.sharing.release(point, side) && changed.last() != Some(&point) {
                 changed.push(point);
             }
         }
@@ -110,6 +111,8 @@ impl<D: Dim> Body<D> {
             .collect();
 
         self.inherit(&remodelled.inherited);
+        let seated = remodelled.seated.iter().copied();
+        let new_elements: Vec<u32> = seated.filter(|&id| !self.blocks.has(id)).collect();
         for &id in &remodelled.seated {
             let element = self.mesh.element(id).expect("seated elements are alive");
             self.pieces.adopt(id, &element.nodes);
@@ -119,6 +122,7 @@ impl<D: Dim> Body<D> {
             removed, seated, ..
         } = remodelled;
         self.blocks.update(&self.mesh, &self.grid, removed, seated);
+        self.settle(&new_elements);
         let level_0 = |id: &&u32| {
             let element = self.mesh.element(**id);
             element.is_some_and(|element| element.cell.level == 0)
