@@ -136,11 +136,12 @@ impl<D: Dim> Body<D> {
         Some(self.carry(self.mesh.element(owner)?)(at.map(|k| k as f32)))
     }
 
-    /// The octants at a point that still hang together when the given faces are open: one mask for
-    /// each side, nothing when they all do.
+    /// What is to be released at a point so that the given faces are open: one mask for each side
+    /// that comes off, nothing where they are open already.
     fn sides(&self, at: Point, opened: &BTreeSet<(Point, usize)>) -> Vec<u8> {
         let around = self.sharing.around(at);
-        let solid = around.middle().solid();
+        let mut groups = around.middle();
+        let solid = groups.solid();
         let mut sides: Vec<u8> = (0..D::CORNERS)
             .filter(|octant| solid >> octant & 1 == 1)
             .map(|octant| 1 << octant)
@@ -157,7 +158,8 @@ impl<D: Dim> Body<D> {
             sides.push(joined.into_iter().fold(0, |all, side| all | side));
         }
         sides.sort_unstable();
-        if sides.len() > 1 { sides } else { Vec::new() }
+        sides.retain(|&side| groups.release(side));
+        sides
     }
 }
 

@@ -4,6 +4,8 @@ mod asleep;
 mod blend;
 mod derived;
 mod motion;
+#[cfg(feature = "serde")]
+mod sound;
 
 use crate::breakable::BreakableNodes;
 use crate::dim::{Dim, Point};
@@ -37,6 +39,8 @@ pub struct Body<D: Dim> {
     /// Position [m], velocity [m/s] and mass [kg] of each node, by id.
     pub(crate) position: Vec<Row>,
     pub(crate) velocity: Vec<Row>,
+    /// Whether nodes were placed from outside since forces were last computed.
+    placed: bool,
     mass: Vec<f32>,
     /// One over the mass [1/kg]; 0 while a node is held or sleeps.
     pub(crate) inverse_mass: Vec<f32>,
@@ -97,6 +101,7 @@ impl<D: Dim> Body<D> {
             stiffness_scale: 1.0,
             position: Vec::new(),
             velocity: Vec::new(),
+            placed: false,
             mass: Vec::new(),
             inverse_mass: Vec::new(),
             held: Vec::new(),
@@ -229,6 +234,7 @@ impl<D: Dim> Body<D> {
             self.position[id as usize][..D::N].copy_from_slice(&position[..D::N]);
             self.velocity[id as usize][..D::N].copy_from_slice(&velocity[..D::N]);
             self.ahead[id as usize] = self.position[id as usize];
+            self.placed = true;
         }
         finite
     }
@@ -290,6 +296,11 @@ impl<D: Dim> Body<D> {
     /// Friction of its surface.
     pub(crate) fn friction(&self) -> f32 {
         self.blend.friction
+    }
+
+    /// Whether the strength of a material in it is finite: else nothing tears.
+    pub(crate) fn can_tear(&self) -> bool {
+        self.blend.least_strength < f32::INFINITY
     }
 
     /// The longest substep that its stiffest material bears [s]: 0.6 s / c.

@@ -52,6 +52,25 @@ impl Chains {
         *self.link(place, id) = after;
     }
 
+    /// Whether chains that were read from a file have so many places, and ids below a number, each in one
+    /// list at most: then every list ends.
+    #[cfg(feature = "serde")]
+    pub fn is_sound(&self, places: usize, ids: usize) -> bool {
+        let mut seen = vec![false; ids.min(self.next.len())];
+        let mut ends = |&first: &u32| {
+            let mut id = first;
+            while id != END {
+                match seen.get_mut(id as usize) {
+                    Some(seen) if !*seen => *seen = true,
+                    _ => return false,
+                }
+                id = self.next[id as usize];
+            }
+            true
+        };
+        self.first.len() == places && self.first.iter().all(&mut ends)
+    }
+
     /// Where the list of a place names `id`.
     fn link(&mut self, place: usize, id: u32) -> &mut u32 {
         let (mut before, mut here) = (END, self.first[place]);
@@ -90,6 +109,20 @@ pub fn ascending(ids: impl Iterator<Item = u32>, bound: usize) -> Vec<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    #[cfg(feature = "serde")]
+    fn a_list_that_never_ends_is_seen() {
+        let mut chains = Chains::new(2);
+        for id in 0..3 {
+            chains.append(1, id);
+        }
+        assert!(chains.is_sound(2, 3) && !chains.is_sound(3, 3) && !chains.is_sound(2, 2));
+        chains.next[2] = 0;
+        assert!(!chains.is_sound(2, 3));
+        chains.next[2] = 7;
+        assert!(!chains.is_sound(2, 3));
+    }
 
     #[test]
     fn ids_keep_their_order_and_come_back() {

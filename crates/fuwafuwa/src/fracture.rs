@@ -79,9 +79,7 @@ pub fn failures<D: Dim>(
     duration: f32,
 ) -> Vec<Failure> {
     cooldowns.pass(duration);
-    let weakest = body.materials().iter().map(|material| material.strength);
-    let weakest = weakest.fold(f32::INFINITY, f32::min);
-    if weakest == f32::INFINITY {
+    if !body.can_tear() {
         return Vec::new();
     }
     let size = body.grid.voxel_size();

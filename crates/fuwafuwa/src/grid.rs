@@ -205,6 +205,13 @@ impl<D: Dim> VoxelGrid<D> {
         ((voxel[2] * self.size[1] + voxel[1]) * self.size[0] + voxel[0]) as usize
     }
 
+    /// Whether one that was read from a file could have been made.
+    #[cfg(feature = "serde")]
+    pub(crate) fn is_sound(&self) -> bool {
+        let size = self.size.map(|extent| usize::try_from(extent).unwrap_or(0));
+        Self::from_materials(size, self.voxel_size, self.materials.clone()).is_ok()
+    }
+
     fn checked_size(size: [usize; 3]) -> Result<Point, BuildError> {
         if size.contains(&0) {
             return Err(BuildError::Empty);
@@ -244,7 +251,6 @@ mod tests {
     #[test]
     fn bad_grids_are_refused_with_their_reason() {
         assert_eq!(VoxelGrid::<Dim2>::ball(0, 1.0), Err(BuildError::Empty));
-        assert_eq!(VoxelGrid::<Dim3>::ball(1, 1.0), Err(BuildError::Empty));
         let size = [2000, 1, 1];
         let long = VoxelGrid::<Dim3>::from_fn(size, 1.0, |_| 1);
         assert_eq!(long, Err(BuildError::TooLarge { size }));
@@ -257,6 +263,16 @@ mod tests {
         }
         let deep = VoxelGrid::<Dim2>::from_fn([4, 4, 2], 1.0, |_| 1);
         assert_eq!(deep, Err(BuildError::NotFlat { layers: 2 }));
+    }
+
+    #[test]
+    fn a_ball_of_one_voxel_is_not_empty() {
+        for (n, [disc, ball]) in [(1, [1, 1]), (2, [4, 8]), (3, [1, 1]), (4, [4, 8])] {
+            let disc_of_n = VoxelGrid::<Dim2>::ball(n, 1.0).unwrap();
+            assert_eq!(disc_of_n.solid_count(), disc, "{n}");
+            let ball_of_n = VoxelGrid::<Dim3>::ball(n, 1.0).unwrap();
+            assert_eq!(ball_of_n.solid_count(), ball, "{n}");
+        }
     }
 
     #[test]

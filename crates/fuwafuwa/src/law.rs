@@ -214,9 +214,45 @@ fn stress(elasticity: Elasticity, deformation: &Matrix) -> Matrix {
 /// matrix is positive definite for every F, unlike a plain Newton step, and the step does not lag
 /// behind a spinning body as the usual division by |tr S| does [Mueller 2016]. The rounds end when
 /// the turn is below rounding.
+///
+/// Half a turn off, about any axis, moments balance too, but tr Rᵀ F is not the greatest. Then they
+/// begin again half a turn about each axis away: one of those is at most 120° off.
 pub fn rotation_of(deformation: &Matrix) -> Matrix {
-    let norm = (3.0 * deformation.iter().map(|&row| dot(row, row)).sum::<f64>()).sqrt();
-    let mut turned = [0.0, 0.0, 0.0, 1.0];
+    from_quaternion(turn_of(deformation))
+}
+
+/// The rotation of a deformation, as a quaternion, when `near` is a quarter turn off or more: too far
+/// for a few rounds from there.
+pub fn turn_far_from(near: &Matrix, deformation: &Matrix) -> Option<[f64; 4]> {
+    if is_greatest(near, deformation) {
+        return None;
+    }
+    let turned = turn_of(deformation);
+    let gain = trace(&from_quaternion(turned), deformation) - trace(near, deformation);
+    // A rotation by a off loses 2 − 2 cos a of its trace, and has ‖F‖ = √3.
+    (gain > norm(deformation)).then_some(turned)
+}
+
+fn turn_of(deformation: &Matrix) -> [f64; 4] {
+    let mut turned = turn_from([0.0, 0.0, 0.0, 1.0], deformation);
+    let trace_of = |turned| trace(&from_quaternion(turned), deformation);
+    if is_greatest(&from_quaternion(turned), deformation) {
+        return turned;
+    }
+    for axis in 0..3 {
+        let mut start = [0.0; 4];
+        start[axis] = 1.0;
+        let other = turn_from(start, deformation);
+        if trace_of(other) > trace_of(turned) + 1e-9 * norm(deformation) {
+            turned = other;
+        }
+    }
+    turned
+}
+
+/// The rounds of [`rotation_of`], from a quaternion on.
+fn turn_from(mut turned: [f64; 4], deformation: &Matrix) -> [f64; 4] {
+    let scale = 3f64.sqrt() * norm(deformation);
     for _ in 0..100 {
         let rotation = from_quaternion(turned);
         let mut product = [[0.0; 3]; 3];
@@ -235,7 +271,7 @@ pub fn rotation_of(deformation: &Matrix) -> Matrix {
             for j in 0..3 {
                 system[i][j] = -0.5 * (product[i][j] + product[j][i]);
             }
-            system[i][i] += norm + 1e-12;
+            system[i][i] += scale + 1e-12;
         }
         let adjugate = cofactor(&system);
         let determinant = dot(system[0], adjugate[0]);
@@ -245,7 +281,21 @@ pub fn rotation_of(deformation: &Matrix) -> Matrix {
             break;
         }
     }
-    from_quaternion(turned)
+    turned
+}
+
+/// Whether no rotation far from this one fits better: no eigenvalue of F Rᵀ is above its trace.
+fn is_greatest(rotation: &Matrix, deformation: &Matrix) -> bool {
+    trace(rotation, deformation) > norm(deformation)
+}
+
+/// tr Rᵀ F
+fn trace(rotation: &Matrix, deformation: &Matrix) -> f64 {
+    (0..3).map(|i| dot(rotation[i], deformation[i])).sum()
+}
+
+fn norm(m: &Matrix) -> f64 {
+    m.iter().map(|&row| dot(row, row)).sum::<f64>().sqrt()
 }
 
 fn from_quaternion([x, y, z, w]: [f64; 4]) -> Matrix {
@@ -300,5 +350,39 @@ fn apply(m: &Matrix, v: Vector64) -> Vector64 {
 fn add_outer(m: &mut Matrix, a: Vector64, b: Vector64) {
     for (row, component) in m.iter_mut().zip(a) {
         *row = plus(*row, scaled(b, component));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Half a turn off the rounds stood still, and the body tore itself to pieces.
+    #[test]
+    fn half_a_turn_is_found_about_any_axis() {
+        let axes = [
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 0.0, 1.0],
+            [0.6, 0.8, 0.0],
+            [0.6, 0.0, -0.8],
+            [2.0 / 3.0, 1.0 / 3.0, 2.0 / 3.0],
+        ];
+        let stretch = [[1.1, 0.1, 0.0], [0.1, 0.9, 0.05], [0.0, 0.05, 1.2]];
+        for [x, y, z] in axes {
+            for w in [0.0, 1e-9, 1e-3, 0.3] {
+                let length = f64::sqrt(1.0 + w * w);
+                let turned = from_quaternion([x, y, z, w].map(|k| k / length));
+                // R S, by rows.
+                let deformation = turned.map(|row| {
+                    let rows = (0..3).map(|k| scaled(stretch[k], row[k]));
+                    rows.fold([0.0; 3], plus)
+                });
+                let found = rotation_of(&deformation);
+                for (found, expected) in found.iter().flatten().zip(turned.iter().flatten()) {
+                    assert!((found - expected).abs() < 1e-9, "{found} for {expected}");
+                }
+            }
+        }
     }
 }

@@ -84,6 +84,13 @@ impl fmt::Display for Defect {
     }
 }
 
+impl Defect {
+    #[cfg(feature = "serde")]
+    pub(crate) fn of(what: String) -> Self {
+        Self(what)
+    }
+}
+
 impl std::error::Error for Defect {}
 
 impl From<MissingCorner> for Defect {

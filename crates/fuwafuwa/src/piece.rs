@@ -53,7 +53,7 @@ struct Sides {
     /// Which of them hang together.
     joined: DisjointSets,
     /// Those that are being followed, and those that were, as far as was needed.
-    running: Vec<Search>,
+    running: VecDeque<Search>,
     resting: Vec<Search>,
     /// The pieces that came off.
     born: Vec<u32>,
@@ -122,6 +122,16 @@ impl Pieces {
         self.node_seen.resize(mesh.node_capacity(), 0);
     }
 
+    /// Whether there is a number for each element and node, as far as lists that were read from a file go.
+    #[cfg(feature = "serde")]
+    pub(crate) fn has_room<D: Dim>(&self, mesh: &Mesh<D>) -> bool {
+        let (elements, nodes) = (mesh.element_capacity(), mesh.node_capacity());
+        let seen = self.seen.iter().chain(&self.node_seen);
+        [self.of_element.len(), self.seen.len()] == [elements; 2]
+            && [self.of_node.len(), self.node_seen.len()] == [nodes; 2]
+            && seen.max().is_none_or(|&mark| mark <= self.marked)
+    }
+
     /// A new node belongs where the node it took its state from belongs.
     pub fn inherit(&mut self, node: u32, from: u32) {
         self.of_node[node as usize] = self.of_node[from as usize];
@@ -141,14 +151,14 @@ impl Pieces {
             self.seen.fill(0);
             self.node_seen.fill(0);
         }
-        let first_born = self.list.len() as u32;
         let mut sides = Sides {
             first: self.marked + 1,
             joined: DisjointSets::new(0),
-            running: Vec::new(),
+            running: VecDeque::new(),
             resting: Vec::new(),
             born: Vec::new(),
         };
+        let first_born = self.list.len() as u32;
         for around in places {
             self.part_at(mesh, around, &mut sides);
         }
@@ -192,7 +202,7 @@ impl Pieces {
                 is_new
             });
             let next = found.iter().copied().collect();
-            sides.running.push(Search { place, found, next });
+            sides.running.push_back(Search { place, found, next });
         }
         for (place, seen) in known {
             let own = sides
@@ -205,7 +215,8 @@ impl Pieces {
         while sides.running.len() > 1 {
             turn %= sides.running.len();
             let Some(id) = sides.running[turn].next.pop_front() else {
-                let alone = sides.running.remove(turn);
+                // Dust leaves from the front, which costs the rest nothing.
+                let alone = sides.running.remove(turn).expect("a turn is in the list");
                 sides.born.push(self.split_off(mesh, &alone.found));
                 continue;
             };
@@ -237,7 +248,7 @@ impl Pieces {
             }
             turn += 1;
         }
-        sides.resting.append(&mut sides.running);
+        sides.resting.extend(sides.running.drain(..));
     }
 
     /// Makes a piece of the given elements: asleep or stopped, like the one they were of.
@@ -275,9 +286,12 @@ impl Sides {
         self.joined.join(own, other);
         let met = match (running, resting) {
             (Some(place), _) => self.running.remove(place),
-            (_, Some(place)) => self.resting.swap_remove(place),
-            // All of it came off before, this side with it.
-            _ => return turn,
+            (_, Some(place)) => Some(self.resting.swap_remove(place)),
+            _ => None,
+        };
+        // All of it came off before, this side with it.
+        let Some(met) = met else {
+            return turn;
         };
         let turn = turn - usize::from(running.is_some_and(|place| place < turn));
         self.running[turn].found.extend(met.found);

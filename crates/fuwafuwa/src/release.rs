@@ -40,7 +40,8 @@ impl<D: Dim> Body<D> {
         }
         let mut changed: Vec<Point> = Vec::new();
         for &(point, side) in at {
-            if self.sharing.release(point, side) {
+            // A point is often released side by side: it is looked around once.
+            if self.sharing.release(point, side) && changed.last() != Some(&point) {
                 changed.push(point);
             }
         }
@@ -110,12 +111,15 @@ impl<D: Dim> Body<D> {
         let before: Vec<_> = self.pieces_in(&old).into_iter().map(momentum).collect();
 
         self.inherit(inherited);
+        let new = seated.iter().copied().filter(|&id| !self.blocks.has(id));
+        let new: Vec<u32> = new.collect();
         for &id in seated {
             let element = self.mesh.element(id).expect("seated elements are alive");
             self.pieces.adopt(id, &element.nodes);
             self.bare[id as usize] = 0;
         }
         self.blocks.update(&self.mesh, &self.grid, removed, seated);
+        self.settle(&new);
         let seated = seated.iter().filter_map(|&id| self.mesh.element(id));
         let fresh = seated.filter(|element| element.cell.level == 0);
         let fresh: Vec<Point> = fresh.map(|element| element.cell.at).collect();

@@ -79,7 +79,12 @@ impl Groups {
             .map(move |octant| self.group_of(octant))
     }
 
-    /// Splits every group that has octants both inside and outside `side`.
+    /// Splits every group that has octants both inside and outside `side`; false when there is none.
+    pub fn release(&mut self, side: u8) -> bool {
+        let split = self.split(side);
+        std::mem::replace(self, split) != split
+    }
+
     fn split(self, side: u8) -> Self {
         let mut groups = Self::NONE;
         for octant in (0..8).filter(|&octant| self.name(octant) != EMPTY) {
@@ -265,10 +270,31 @@ impl<D: Dim> Sharing<D> {
             return false;
         }
         let index = self.index(at);
-        let split = self.groups[index].split(side);
-        let changed = split != self.groups[index];
-        self.groups[index] = split;
-        changed
+        self.groups[index].release(side)
+    }
+
+    /// Whether one that was read from a file groups the voxels of a grid, by closed faces alone.
+    #[cfg(feature = "serde")]
+    pub(crate) fn is_sound(&self, grid: &VoxelGrid<D>) -> bool {
+        let whole = Self::new(grid);
+        let is_grouping = |(&own, whole): (&Groups, &Groups)| {
+            let groups = own.iter().map(|group| (group, group.trailing_zeros()));
+            let named = groups.fold(Groups::NONE, |mut named, (group, name)| {
+                let octants = (0..8).filter(|octant| group >> octant & 1 == 1);
+                octants.for_each(|octant| named.put(octant, name));
+                named
+            });
+            // What is no voxel has no group, and no group is larger than before anything was released.
+            let is_part = |group: u8| {
+                let of = whole.group_of(group.trailing_zeros() as usize);
+                group & !of == 0
+            };
+            named == own && own.solid() == whole.solid() && own.iter().all(is_part)
+        };
+        self.size == whole.size
+            && self.groups.len() == whole.groups.len()
+            && self.groups.iter().zip(&whole.groups).all(is_grouping)
+            && self.clone().normalise(self.points().collect()).is_empty()
     }
 
     /// Regroups the voxels at each point of `work`, and wherever that spreads, by closed faces

@@ -32,6 +32,13 @@ pub enum BadSnapshot {
     },
     /// It is not as it was saved: cut off, damaged or changed.
     Damaged,
+    /// It is as it was written, but not of a world: a body in it cannot be.
+    Broken {
+        /// Which body.
+        body: usize,
+        /// What is wrong with it.
+        defect: String,
+    },
 }
 
 impl fmt::Display for BadSnapshot {
@@ -44,6 +51,9 @@ impl fmt::Display for BadSnapshot {
             ),
             Self::Dimensions { found } => {
                 write!(f, "the snapshot is of a world with {found} dimensions")
+            }
+            Self::Broken { body, defect } => {
+                write!(f, "the snapshot is of no world: of body {body}, {defect}")
             }
             Self::Damaged => write!(f, "the snapshot is damaged: its checksum does not fit"),
         }
@@ -68,7 +78,8 @@ pub fn save<D: Dim>(world: &World<D>) -> Vec<u8> {
 /// The world that was saved.
 ///
 /// # Errors
-/// [`BadSnapshot`] when it is none, has another format or other dimensions, or was damaged.
+/// [`BadSnapshot`] when it is none, has another format or other dimensions, was damaged, or when the
+/// voxels, connections, elements, nodes or pieces of a body in it contradict each other.
 #[inline(never)]
 pub fn load<D: Dim>(bytes: &[u8]) -> Result<World<D>, BadSnapshot> {
     if bytes.len() < HEADER || bytes[..4] != MAGIC {
@@ -89,5 +100,13 @@ pub fn load<D: Dim>(bytes: &[u8]) -> Result<World<D>, BadSnapshot> {
     if header[9..] != Hash::of(state).to_le_bytes() {
         return Err(BadSnapshot::Damaged);
     }
-    postcard::from_bytes(state).map_err(|_| BadSnapshot::Damaged)
+    let world: World<D> = postcard::from_bytes(state).map_err(|_| BadSnapshot::Damaged)?;
+    for (place, body) in world.bodies().iter().enumerate() {
+        let checked = body.check();
+        checked.map_err(|defect| BadSnapshot::Broken {
+            body: place,
+            defect: defect.to_string(),
+        })?;
+    }
+    Ok(world)
 }

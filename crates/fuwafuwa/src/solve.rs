@@ -372,6 +372,21 @@ impl<D: Dim> Blocks<D> {
         })
     }
 
+    /// Whether an element is in a block.
+    pub fn has(&self, id: u32) -> bool {
+        let assigned = self.assigned.get(id as usize);
+        assigned.is_some_and(|&(block, _)| block != VACANT)
+    }
+
+    /// Gives an element in space another rotation, as a quaternion, for the next evaluation to begin with.
+    pub fn set_rotation(&mut self, id: u32, turned: [f32; 4]) {
+        let (block, lane) = self.assigned[id as usize];
+        let rotation = &mut self.blocks[block as usize].rotation;
+        for (all, part) in rotation.iter_mut().zip(turned) {
+            all[lane as usize] = part;
+        }
+    }
+
     /// How many elements that are awake were inside out in the last evaluation; under
     /// [`Law::Endo2004`], which does not look, none.
     pub fn inverted_count(&self) -> u32 {

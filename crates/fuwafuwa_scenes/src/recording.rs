@@ -1,6 +1,6 @@
 //! What hands did in a scene, tick by tick, so that it can be run again and compared.
 
-use crate::scene::{Scene, SceneError, text_of};
+use crate::scene::{MAX_SECONDS, Scene, SceneError, shortened, text_of};
 use fuwafuwa::{Dim, World};
 use serde::{Deserialize, Serialize};
 use std::io;
@@ -10,6 +10,8 @@ use std::path::Path;
 pub const VERSION: u32 = 1;
 /// Most bytes of a recording that are read: some hours of two hands.
 pub const MAX_BYTES: u64 = 1 << 26;
+/// Most ticks of a recording: as long as a scene can be watched.
+pub const MAX_TICKS: usize = (MAX_SECONDS * 60.0) as usize;
 
 /// A scene, the goals of its hands at each tick, and the hashes they led to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -81,14 +83,32 @@ impl Recording {
             Ok(recording) => recording,
             Err(error) => {
                 // Without the line itself, in which the goals of hours may stand.
-                let reason = format!("this is no recording: {}", error.message());
+                let message = shortened(error.message(), 400);
+                let reason = format!("this is no recording: {message}");
                 return Err(RecordingError::Text { name, reason });
             }
         };
-        match recording.version {
-            VERSION => Ok(recording),
-            found => Err(RecordingError::Version { name, found }),
+        if recording.version != VERSION {
+            let found = recording.version;
+            return Err(RecordingError::Version { name, found });
         }
+        match recording.check() {
+            Ok(()) => Ok(recording),
+            Err(reason) => Err(RecordingError::Text { name, reason }),
+        }
+    }
+
+    fn check(&self) -> Result<(), String> {
+        let ticks = self.goals.len();
+        if ticks > MAX_TICKS {
+            return Err(format!("expected {MAX_TICKS} ticks at most, found {ticks}"));
+        }
+        let mut bodies = self.scene.body.iter();
+        if bodies.any(|body| body.file.is_some() && body.content.is_none()) {
+            // Whose recording it is does not say which files are opened.
+            return Err("expected the content of every body that has a file".into());
+        }
+        Ok(())
     }
 
     /// Records a scene with the goals of its own hands, for so many ticks. `watch` sees the world
@@ -101,6 +121,8 @@ impl Recording {
         ticks: u64,
         mut watch: impl FnMut(&World<D>),
     ) -> Result<Self, SceneError> {
+        let mut scene = scene.clone();
+        scene.embed_files(&[])?;
         let mut world = scene.build::<D>()?;
         let (mut goals, mut hashes) = (Vec::new(), Vec::new());
         for tick in 0..ticks {
@@ -116,7 +138,7 @@ impl Recording {
         Ok(Self {
             version: VERSION,
             engine: env!("CARGO_PKG_VERSION").into(),
-            scene: scene.clone(),
+            scene,
             goals,
             hashes,
         })
@@ -178,6 +200,25 @@ mod tests {
         assert_eq!(read.replay::<Dim2>(|_| {}).unwrap().differs_at, None);
         read.goals[30][0][0] += 0.01;
         assert!(read.replay::<Dim2>(|_| {}).unwrap().differs_at.is_some());
+    }
+
+    #[test]
+    fn a_recording_opens_no_files_of_its_reader() {
+        let scene = Scene::open("drop", &["body.n=8".into()]).unwrap();
+        let mut recording = Recording::of::<Dim2>(&scene, 1, |_| {}).unwrap();
+        assert_eq!(recording.check(), Ok(()));
+        recording.scene.body[0].file = Some("/etc/hosts.png".into());
+        assert!(recording.check().unwrap_err().contains("content"));
+        recording.scene.body[0].content = Some(String::new());
+        assert_eq!(recording.check(), Ok(()));
+    }
+
+    #[test]
+    fn a_recording_ends() {
+        let scene = Scene::open("drop", &["body.n=8".into()]).unwrap();
+        let mut recording = Recording::of::<Dim2>(&scene, 1, |_| {}).unwrap();
+        recording.goals = vec![Vec::new(); MAX_TICKS + 1];
+        assert!(recording.check().unwrap_err().contains("ticks at most"));
     }
 
     #[test]

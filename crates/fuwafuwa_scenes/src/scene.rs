@@ -54,7 +54,7 @@ mod grid;
 mod rigid;
 
 pub use body::{BodyText, Form, MaterialText, PartText};
-pub use error::SceneError;
+pub use error::{SceneError, shortened};
 pub use game::{GameText, RouteText, WishText, Words};
 pub use rigid::{BallText, BoxText, CapsuleText, HalfSpaceText, HandText, ObstacleText};
 
@@ -71,6 +71,9 @@ pub const MAX_TEXT_BYTES: u64 = 1 << 20;
 
 /// Most bodies of a scene.
 pub const MAX_BODIES: usize = 1024;
+
+/// Most obstacles of a scene, and most hands: what moves is held against each of them.
+pub const MAX_RIGID: usize = 256;
 
 /// Most voxels in the grids of all bodies of a scene together, solid or not: as many as the largest
 /// model has.
@@ -255,6 +258,11 @@ impl Scene {
         let count = self.body.len();
         let expected = format!("expected {MAX_BODIES} bodies at most, found {count}");
         require(count <= MAX_BODIES, "body", expected)?;
+        let counts = [("obstacle", self.obstacle.len()), ("hand", self.hand.len())];
+        for (field, count) in counts {
+            let expected = format!("expected {MAX_RIGID} at most, found {count}");
+            require(count <= MAX_RIGID, field, expected)?;
+        }
         let mut voxels = 0;
         for (index, text) in self.body.iter().enumerate() {
             let body = text.build(&materials, most_voxels, &mut voxels);

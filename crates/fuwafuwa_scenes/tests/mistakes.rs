@@ -179,8 +179,8 @@ fn a_mistake_is_told_with_file_line_field_and_what_was_expected() {
             ", line 7: body 1, n: expected 1 to 1024 voxels across, found 1000000000000",
         ),
         (
-            "n = 12",
-            "n = 2",
+            "shape = \"ball\"\nn = 12",
+            "shape = \"ring\"\nn = 1",
             ", line 7: body 1, n: the shape is empty: no voxel is solid",
         ),
         (
@@ -382,6 +382,44 @@ fn bodies_are_limited_in_number_and_in_their_sum() {
     assert_eq!(
         scene.build_within::<Dim2>(287).unwrap_err().to_string(),
         "toy.toml, line 18: body 2, n: expected 287 voxels at most in the grids of all bodies together, found 288"
+    );
+}
+
+/// A text of a megabyte asked for 10^12 distances, or for obstacles that every node was held against.
+#[test]
+fn what_takes_long_is_refused_before_it_is_begun() {
+    let part = "[[body.part]]\nfill = 0\nball = { centre = [9.0, 9.0, 0.0], radius = 0.1 }\n";
+    let body = "[[body]]\nshape = \"box\"\nn = 1024\n";
+    let parts = format!("dim = 2\n{body}{}", part.repeat(200));
+    let expected = "expected 128 at most in a body of 1048576 voxels, found 200";
+    assert!(
+        complaint(&parts).contains(expected),
+        "{}",
+        complaint(&parts)
+    );
+
+    let diced = format!("dim = 2\n{body}diced = 0.001\n");
+    assert!(
+        complaint(&diced).contains("are too many"),
+        "{}",
+        complaint(&diced)
+    );
+
+    let ball = "[[obstacle]]\nball = { centre = [0.0, -1.0, 0.0], radius = 0.5 }\n";
+    let walls = GOOD.to_string() + &ball.repeat(256);
+    let expected = "obstacle: expected 256 at most, found 257";
+    assert!(
+        complaint(&walls).contains(expected),
+        "{}",
+        complaint(&walls)
+    );
+    let hand = "[[hand]]\nradius = 0.1\npath = [[0.0, -0.3, 0.5, 0.0]]\n";
+    let hands = GOOD.to_string() + &hand.repeat(256);
+    let expected = "hand: expected 256 at most, found 257";
+    assert!(
+        complaint(&hands).contains(expected),
+        "{}",
+        complaint(&hands)
     );
 }
 

@@ -5,6 +5,7 @@ use crate::round::MAX_TICKS;
 use crate::{AnyRound, InputFrame, Level, Outcome, Round};
 use fuwafuwa::Dim;
 use fuwafuwa_scenes::Scene;
+use fuwafuwa_scenes::scene::shortened;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::Arc;
@@ -94,7 +95,7 @@ impl Replay {
         struct Header {
             version: u32,
         }
-        let wrong = |error: toml::de::Error| ReplayError::Text(error.message().into());
+        let wrong = |error: toml::de::Error| ReplayError::Text(shortened(error.message(), 400));
         // Another version may have other fields: that it is one must be seen before them.
         let Header { version } = toml::from_str(text).map_err(wrong)?;
         if version != VERSION {
@@ -248,6 +249,23 @@ impl Playback {
 mod tests {
     use super::*;
     use fuwafuwa::Dim2;
+
+    #[test]
+    fn what_is_no_replay_is_refused_briefly() {
+        let long = "z".repeat(1 << 20);
+        let level = Arc::new(Level::open("classic").unwrap());
+        let text = Replay::of(&Round::<Dim2>::new(level)).text();
+        let texts = [
+            format!("version = \"{long}\""),
+            format!("version = {VERSION}\n{long} = 1"),
+            text.replacen("hashes = []", &format!("hashes = \"{long}\""), 1),
+            text.replacen("dim = 2", &format!("dim = \"{long}\""), 1),
+        ];
+        for text in texts {
+            let error = Replay::read(&text).unwrap_err().to_string();
+            assert!(error.len() < 1000, "{} bytes", error.len());
+        }
+    }
 
     #[test]
     fn a_replay_brings_its_files_along() {

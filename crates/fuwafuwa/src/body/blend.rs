@@ -15,6 +15,8 @@ pub struct Blend {
     pub slow: f64,
     /// Friction, the mean over the voxels.
     pub friction: f32,
+    /// The least strength of a material that is in use [Pa].
+    pub least_strength: f32,
     /// The fastest pressure wave of a material that is in use [m/s].
     pub fastest_wave: f64,
     /// The fastest swing, that of a single voxel which grows and shrinks [1/s].
@@ -45,12 +47,14 @@ impl Blend {
         let young = mean(&|material| material.elasticity.young);
         let density = mean(&|material| f64::from(material.density));
         let width = f64::from(grid.voxel_size()) * root(total, D::N);
+        let strengths = used().map(|(_, material)| material.strength);
         let waves = used().map(|(_, material)| material.wave_speed());
         let swings = used().map(|(_, material)| material.voxel_swing(D::N));
         Self {
             damping: mean(&|material| f64::from(material.damping)),
             slow: std::f64::consts::PI * (young / density).sqrt() / width,
             friction: mean(&|material| f64::from(material.friction)) as f32,
+            least_strength: strengths.fold(f32::INFINITY, f32::min),
             fastest_wave: waves.fold(0.0, f64::max),
             fastest_swing: swings.fold(0.0, f64::max) / f64::from(grid.voxel_size()),
         }

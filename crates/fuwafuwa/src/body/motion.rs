@@ -2,6 +2,7 @@
 
 use super::Body;
 use crate::dim::Dim;
+use crate::law::turn_far_from;
 use crate::momentum::RoughMotion;
 use crate::solve::Kick;
 use crate::threads;
@@ -19,6 +20,10 @@ impl<D: Dim> Body<D> {
     /// Adds elastic forces and gravity over `duration` [s] to the velocities.
     pub(crate) fn push(&mut self, duration: f32, gravity: [f32; 3]) {
         self.refresh_awake();
+        if std::mem::take(&mut self.placed) {
+            let all: Vec<u32> = self.mesh.elements().map(|(id, _)| id).collect();
+            self.settle(&all);
+        }
         self.blocks.evaluate(&self.ahead);
         let mut gravity = as_row(gravity);
         gravity[D::N..].fill(0.0);
@@ -29,6 +34,23 @@ impl<D: Dim> Body<D> {
             gravity,
         };
         self.blocks.kick(&kick, &mut self.velocity);
+    }
+
+    /// Turns elements that are far from how their nodes lie, because they are new or their nodes were
+    /// placed: `solve` follows what turns step by step, and stands still half a turn off. In the plane it
+    /// finds the rotation at once.
+    pub(crate) fn settle(&mut self, elements: &[u32]) {
+        if D::N == 2 {
+            return;
+        }
+        for &id in elements {
+            let element = self.mesh.element(id).expect("only live elements settle");
+            let wide = |rows: [[f32; 3]; 3]| rows.map(|row| row.map(f64::from));
+            let (rotation, deformation) = (self.blocks.rotation(id), self.deformation(element).1);
+            if let Some(turned) = turn_far_from(&wide(rotation), &wide(deformation)) {
+                self.blocks.set_rotation(id, turned.map(|part| part as f32));
+            }
+        }
     }
 
     /// Moves every awake node by its velocity, and looks `lead` seconds ahead for the next forces,

@@ -10,14 +10,15 @@ impl<D: Dim> VoxelGrid<D> {
     /// The disc (2D) or ball (3D) that fills a grid of `n` voxels across `diameter` metres.
     ///
     /// A voxel is solid when its centre lies within the radius less half a voxel, so that the
-    /// outermost layer stays inside the box.
+    /// outermost layer stays inside the box. One or two voxels across it fills the box.
     ///
     /// # Errors
-    /// As [`VoxelGrid::from_fn`]; `n` below 3 leaves nothing solid.
+    /// As [`VoxelGrid::from_fn`].
     #[inline(never)]
     pub fn ball(n: usize, diameter: f32) -> Result<Self, BuildError> {
         let centre = n as f32 * 0.5;
-        let radius = centre - 0.5;
+        // Wide enough for the corners of 2 × 2 × 2 voxels, and less than the 1 of three voxels.
+        let radius = (centre - 0.5).max(0.9);
         Self::from_fn(Self::cube_size(n), diameter / n as f32, |at| {
             let squared: f32 = at[..D::N]
                 .iter()

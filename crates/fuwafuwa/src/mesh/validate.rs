@@ -1,9 +1,17 @@
 //! What must hold for every mesh: the checks behind [`Mesh::validate`].
 
 use super::{Defect, Mesh};
+#[cfg(feature = "serde")]
+use super::{Element, Node};
 use crate::dim::{Dim, Point, neighbourhood};
 use crate::grid::VoxelGrid;
+#[cfg(feature = "serde")]
+use crate::pyramid::Cell;
 use crate::sharing::Sharing;
+#[cfg(feature = "serde")]
+use crate::stencil::Stencil;
+#[cfg(feature = "serde")]
+use std::collections::BTreeMap;
 
 impl<D: Dim> Mesh<D> {
     /// Checks that every solid voxel is owned once, that neighbours differ by at most one level,
@@ -49,6 +57,113 @@ impl<D: Dim> Mesh<D> {
             Some(voxel) => Err(Defect(format!("no element owns the voxel {voxel:?}"))),
             None => Ok(owners),
         }
+    }
+
+    /// Checks that a mesh that was read from a file is `fresh`, which was graded from scratch, but for the
+    /// numbers of its elements and nodes; and that what it is looked up by leads there.
+    ///
+    /// # Errors
+    /// The first [`Defect`] found.
+    #[cfg(feature = "serde")]
+    pub(crate) fn check_against(&self, fresh: &Self, sharing: &Sharing<D>) -> Result<(), Defect> {
+        let ensure = |good: bool, what: &str| match good {
+            true => Ok(()),
+            false => Err(Defect(format!("{what} do not fit"))),
+        };
+        let tables = self.places == fresh.places
+            && self.dense_surface == fresh.dense_surface
+            && self.carriers.len() == self.nodes.len()
+            && self.owners.len() == fresh.owners.len();
+        ensure(tables, "the tables of a mesh")?;
+        let is_class = |(&(children, slots), &class): (&(u8, u32), &u32)| {
+            let known = children != 0 && children <= D::ALL_CORNERS && slots >> D::SLOTS == 0;
+            let stencil = known
+                .then(|| Stencil::<D>::new(children, slots).ok())
+                .flatten();
+            stencil.is_some() && self.stencils.get(class as usize) == stencil.as_ref()
+        };
+        let classes = self.classes.len() == self.stencils.len();
+        ensure(classes && self.classes.iter().all(is_class), "classes")?;
+        let is_whole = |(_, element): (u32, &Element)| {
+            let stencil = self.stencils.get(element.stencil as usize);
+            let nodes = element.nodes.iter();
+            stencil.is_some_and(|stencil| stencil.slots.len() == element.nodes.len()) && { nodes }
+                .all(|&node| (node as usize) < self.nodes.len())
+        };
+        ensure(self.elements().all(is_whole), "elements")?;
+        let shapes = self.by_shape();
+        ensure(
+            shapes.is_some()
+                && shapes == fresh.by_shape()
+                && self.node_count() == fresh.node_count(),
+            "elements and voxels",
+        )?;
+
+        let dead = |free: &[u32], is_dead: &dyn Fn(u32) -> bool, count: usize| {
+            let mut free = free.to_vec();
+            free.sort_unstable();
+            free.into_iter()
+                .eq((0..count as u32).filter(|&id| is_dead(id)))
+        };
+        let gone = |id: u32| self.elements[id as usize].is_none();
+        let free = dead(&self.free_elements, &gone, self.elements.len());
+        let bare = |id: u32| self.carriers[id as usize] == 0;
+        ensure(
+            free && dead(&self.free_nodes, &bare, self.nodes.len()),
+            "free ids",
+        )?;
+
+        let ends = self
+            .by_cell
+            .is_sound(self.places.count(), self.elements.len())
+            && self
+                .by_point
+                .is_sound(sharing.point_count(), self.nodes.len());
+        ensure(ends, "lists of ids")?;
+        let at = |cell| self.places.number(cell).into_iter();
+        let listed = |cell| at(cell).flat_map(|place| self.by_cell.at(place));
+        let mut elements = self.elements();
+        let found = elements.all(|(id, element)| listed(element.cell).any(|other| other == id));
+        let count = (0..self.places.count()).flat_map(|place| self.by_cell.at(place));
+        ensure(
+            found && count.count() == self.element_count(),
+            "lists of elements",
+        )?;
+        let beside = |node: Node| self.by_point.at(sharing.index(node.at));
+        let found = self
+            .nodes()
+            .all(|(id, node)| sharing.contains(node.at) && beside(node).any(|other| other == id));
+        let count = (0..sharing.point_count()).flat_map(|place| self.by_point.at(place));
+        ensure(
+            found && count.count() == self.node_count(),
+            "lists of nodes",
+        )?;
+        let owners = self.owners.iter().zip(&fresh.owners);
+        let same = { owners }.all(|(own, fresh)| (*own == 0) == (*fresh == 0));
+        ensure(same, "owners")
+    }
+
+    /// The class of each element and its nodes, by what it fills: once each.
+    #[cfg(feature = "serde")]
+    fn by_shape(&self) -> Option<BTreeMap<(Cell, u8), Vec<Node>>> {
+        let mut shapes = BTreeMap::new();
+        for (_, element) in self.elements() {
+            let nodes = element.nodes.iter().map(|&id| self.node(id)).collect();
+            let stencil = self.stencil(element);
+            let is_class = self
+                .classes
+                .get(&(element.children, mask_of(&stencil.slots)));
+            if is_class != Some(&element.stencil) {
+                return None;
+            }
+            if shapes
+                .insert((element.cell, element.children), nodes)
+                .is_some()
+            {
+                return None;
+            }
+        }
+        Some(shapes)
     }
 
     fn check_split_points(&self, sharing: &Sharing<D>) -> Result<(), Defect> {
@@ -107,6 +222,12 @@ impl<D: Dim> Mesh<D> {
         }
         Ok(())
     }
+}
+
+/// The slots as a mask.
+#[cfg(feature = "serde")]
+fn mask_of(slots: &[u8]) -> u32 {
+    slots.iter().fold(0, |mask, slot| mask | 1 << slot)
 }
 
 fn check_grading<D: Dim>(grid: &VoxelGrid<D>, levels: &[u8]) -> Result<(), Defect> {

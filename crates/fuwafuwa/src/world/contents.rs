@@ -55,7 +55,9 @@ impl<D: Dim> World<D> {
     pub fn add_manipulator(&mut self, mut manipulator: Manipulator) -> Result<usize, Refused> {
         manipulator.check().map_err(Refused::Manipulator)?;
         let hand = &mut manipulator;
-        for vector in [&mut hand.position, &mut hand.goal, &mut hand.goal_before] {
+        let places = [&mut hand.position, &mut hand.goal, &mut hand.goal_before];
+        let others = [&mut hand.position_before, &mut hand.velocity];
+        for vector in places.into_iter().chain(others) {
             vector[D::N..].fill(0.0);
         }
         self.manipulators.push(manipulator);

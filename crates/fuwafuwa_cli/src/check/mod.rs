@@ -1,6 +1,7 @@
 //! The mechanics against references; the exit code is 1 when a check fails.
 
 mod beam;
+mod doughnut;
 mod energy;
 mod momentum;
 mod motion;
@@ -11,6 +12,7 @@ mod pile;
 mod random;
 mod sag;
 mod spin;
+mod stack;
 mod statics;
 mod tear;
 
@@ -36,11 +38,11 @@ enum Which {
     Patch,
     /// Graded cantilevers must bend as Timoshenko's theory says.
     Beam,
-    /// Graded bodies must sag under their weight as uniform ones do.
+    /// Graded bodies must sag under their weight as uniform ones do, boxes as one that is fine enough.
     Sag,
     /// Graded bodies must ring as uniform ones do, and keep their energy.
     Period,
-    /// A free body must keep its spin.
+    /// A free body must keep its spin, and so must the halves of one that was cut.
     Spin,
     /// Releases must leave mass and momentum as they are.
     Momentum,
@@ -48,6 +50,10 @@ enum Which {
     Tear,
     /// Dust must come to rest, and none of it be lost.
     Pile,
+    /// A stack of bodies must stand still.
+    Stack,
+    /// A ring squeezed shut must not pass through itself.
+    Doughnut,
     /// All of them.
     All,
 }
@@ -56,7 +62,7 @@ type Check = fn(&Progress) -> Result<Vec<Outcome>>;
 
 /// Runs the checks and prints what they found.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
-    let checks: [(Which, Check); 8] = [
+    let checks: [(Which, Check); 10] = [
         (Which::Patch, patch::check),
         (Which::Beam, beam::check),
         (Which::Sag, sag::check),
@@ -65,6 +71,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         (Which::Momentum, momentum::check),
         (Which::Tear, tear::check),
         (Which::Pile, pile::check),
+        (Which::Stack, stack::check),
+        (Which::Doughnut, doughnut::check),
     ];
     let mut outcomes = Vec::new();
     for (name, check) in checks {

@@ -1,9 +1,11 @@
-//! Sag: how far the top of a disc or a ball sinks under its weight, graded against uniform.
+//! Sag: how far the top of a disc, a ball or a box sinks under its weight, graded against uniform.
 //!
-//! The lowest layer of nodes is held. Both bodies have the same voxels, for a disc of few voxels is
-//! another disc than one of many, and stands on another foot: what is compared is the placing of
-//! elements and nothing else. The weight is small, so the law is linearised at rest; the sag that
-//! is shown is that for a game's material and a gravity of 1 m/s².
+//! The lowest layer of nodes is held. A graded disc is compared with a uniform one of the same voxels,
+//! for a disc of few voxels is another disc than one of many, and stands on another foot: what is
+//! compared is the placing of elements and nothing else. A box stands on the same face whatever its
+//! voxels are, so all graded boxes are compared with one uniform box that is as good as converged. The
+//! weight is small, so the law is linearised at rest; the sag that is shown is that for a game's
+//! material and a gravity of 1 m/s².
 //!
 //! The uniform body has by far the most elements, but each side of it mirrors the other: a half of
 //! the disc and a quarter of the ball, whose nodes stay in the planes of the cuts, sag as the whole.
@@ -23,9 +25,57 @@ const DISCS: [usize; 5] = [16, 32, 64, 128, 256];
 const BALLS: [usize; 4] = [8, 16, 32, 64];
 /// Largest deviation from the uniform body.
 const TOLERANCE: f64 = 0.02;
+/// Dimensions, voxels across, and largest deviation of the boxes.
+const BOXES: [(usize, usize, f64); 7] = [
+    (2, 16, 0.05),
+    (2, 32, TOLERANCE),
+    (2, 64, TOLERANCE),
+    (2, 128, TOLERANCE),
+    (3, 16, 0.05),
+    (3, 32, TOLERANCE),
+    (3, 64, TOLERANCE),
+];
+/// Voxels across the uniform box that stands for all, by dimension; one of half as many must sag as it
+/// does to this share.
+const REFERENCES: [(usize, usize); 2] = [(2, 256), (3, 64)];
+const CONVERGED: f64 = 0.01;
 
 /// Sag of graded bodies relative to that of uniform ones.
 pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+    let mut outcomes = check_round(progress)?;
+    outcomes.extend(check_boxes(progress)?);
+    Ok(outcomes)
+}
+
+fn check_boxes(progress: &Progress) -> Result<Vec<Outcome>> {
+    let halves = REFERENCES.map(|(dim, n)| (dim, n / 2));
+    let uniform = REFERENCES.iter().chain(&halves);
+    let uniform = uniform.map(|&(dim, n)| (dim, n, Grading::Uniform));
+    let graded = BOXES.map(|(dim, n, _)| (dim, n, Grading::Graded));
+    let cases: Vec<_> = uniform.chain(graded).collect();
+    let found = parallel::each(&cases, progress, |&(dim, n, grading)| match dim {
+        2 => sag(&VoxelGrid::<Dim2>::cube(n, 1.0)?, grading, progress),
+        _ => sag(&VoxelGrid::<Dim3>::cube(n, 1.0)?, grading, progress),
+    })?;
+    let mut outcomes = Vec::new();
+    for (place, (dim, n)) in REFERENCES.into_iter().enumerate() {
+        let (reference, half) = (found[place], found[REFERENCES.len() + place]);
+        let case = format!(
+            "sag of a box {dim}D, uniform, n = {} / {n} ({:.2} mm)",
+            n / 2,
+            1e3 * reference
+        );
+        outcomes.push(Outcome::near(case, half / reference, 1.0, CONVERGED));
+        let graded = BOXES.iter().zip(&found[2 * REFERENCES.len()..]);
+        for (&(_, n, tolerance), sag) in graded.filter(|((of, ..), _)| *of == dim) {
+            let case = format!("sag of a box {dim}D, n = {n}, graded / that");
+            outcomes.push(Outcome::near(case, sag / reference, 1.0, tolerance));
+        }
+    }
+    Ok(outcomes)
+}
+
+fn check_round(progress: &Progress) -> Result<Vec<Outcome>> {
     let discs = DISCS.map(|n| (2, n));
     let bodies: Vec<(usize, usize)> = discs.into_iter().chain(BALLS.map(|n| (3, n))).collect();
     let gradings = [Grading::Graded, Grading::Uniform];
@@ -36,8 +86,8 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     // The slowest last.
     cases.sort_by_key(|&((dim, n), _)| n.pow(dim as u32) * n);
     let found = parallel::each(&cases, progress, |&((dim, n), grading)| match dim {
-        2 => sag::<Dim2>(n, grading, progress),
-        _ => sag::<Dim3>(n, grading, progress),
+        2 => sag(&VoxelGrid::<Dim2>::ball(n, 1.0)?, grading, progress),
+        _ => sag(&VoxelGrid::<Dim3>::ball(n, 1.0)?, grading, progress),
     })?;
     let sags: Vec<_> = cases.into_iter().zip(found).collect();
     let sag_of = |body, grading| {
@@ -59,24 +109,23 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     Ok(bodies.iter().map(outcome).collect())
 }
 
-/// How far the top sinks [m]; `n` is even.
-fn sag<D: Dim>(n: usize, grading: Grading, progress: &Progress) -> Result<f64> {
+/// How far the top sinks [m]; the body is an even number of voxels across.
+fn sag<D: Dim>(whole: &VoxelGrid<D>, grading: Grading, progress: &Progress) -> Result<f64> {
     match grading {
-        Grading::Uniform => sag_between::<D>(n, grading, n as i32 / 2, progress),
-        _ => sag_between::<D>(n, grading, 0, progress),
+        Grading::Uniform => sag_between(whole, grading, whole.size()[0] / 2, progress),
+        _ => sag_between(whole, grading, 0, progress),
     }
 }
 
 /// As [`sag`], by the part of the body that lies beyond `mirror` on each level axis. Nodes in a
-/// mirror stay in it; where it is 0 nothing of the body reaches it.
+/// mirror stay in it; 0 stands for none.
 fn sag_between<D: Dim>(
-    n: usize,
+    whole: &VoxelGrid<D>,
     grading: Grading,
     mirror: i32,
     progress: &Progress,
 ) -> Result<f64> {
     let material = material();
-    let whole = VoxelGrid::<D>::ball(n, 1.0)?;
     let level_axes = (0..D::N).filter(|&axis| axis != 1);
     let size = whole.size().map(|extent| extent as usize);
     let grid = VoxelGrid::<D>::from_fn(size, whole.voxel_size(), |at| {
@@ -89,7 +138,7 @@ fn sag_between<D: Dim>(
     let lowest = heights.iter().copied().min().unwrap_or(0);
     let highest = heights.iter().copied().max().unwrap_or(0);
     let statics = Statics::new(&mesh, material.elasticity, |node, axis| {
-        node.at[1] == lowest || axis != 1 && node.at[axis] == mirror
+        node.at[1] == lowest || axis != 1 && mirror > 0 && node.at[axis] == mirror
     });
     let mut load = vec![0.0; mesh.node_capacity() * D::N];
     for (_, element) in mesh.elements() {
@@ -104,9 +153,8 @@ fn sag_between<D: Dim>(
     let moved = statics.solve(&load, still, progress)?;
     let (mut sunk, mut count) = (0.0, 0.0);
     for (id, node) in mesh.nodes().filter(|(_, node)| node.at[1] == highest) {
-        // A node off the mirrors stands for its images too.
-        let images = level_axes.clone().filter(|&axis| node.at[axis] != mirror);
-        let weight = images.fold(1.0, |weight, _| 2.0 * weight);
+        // As much as the voxels below it show of the top; those below a mirror's nodes are half of them.
+        let weight = f64::from(node.group.count_ones());
         sunk -= weight * moved[id as usize * D::N + 1];
         count += weight;
     }
@@ -122,21 +170,26 @@ mod tests {
     #[test]
     fn a_small_disc_sags_like_its_voxels() {
         let progress = Progress::new();
+        let disc = VoxelGrid::<Dim2>::ball(16, 1.0).unwrap();
         let [graded, uniform] =
-            [Grading::Graded, Grading::Uniform].map(|grading| sag::<Dim2>(16, grading, &progress));
+            [Grading::Graded, Grading::Uniform].map(|grading| sag(&disc, grading, &progress));
         let (graded, uniform) = (graded.unwrap(), uniform.unwrap());
         assert!(uniform > 1e-3 && (graded / uniform - 1.0).abs() < TOLERANCE);
     }
 
     #[test]
     fn a_part_between_mirrors_sags_like_the_whole() {
-        fn check<D: Dim>(n: usize) {
-            let between =
-                |mirror| sag_between::<D>(n, Grading::Uniform, mirror, &Progress::new()).unwrap();
-            let (whole, part) = (between(0), between(n as i32 / 2));
+        fn check<D: Dim>(body: VoxelGrid<D>) {
+            let between = |mirror| {
+                let sag = sag_between(&body, Grading::Uniform, mirror, &Progress::new());
+                sag.unwrap()
+            };
+            let (whole, part) = (between(0), between(body.size()[0] / 2));
             assert!((part / whole - 1.0).abs() < 1e-6, "{part} of {whole}");
         }
-        check::<Dim2>(16);
-        check::<Dim3>(8);
+        check(VoxelGrid::<Dim2>::ball(16, 1.0).unwrap());
+        check(VoxelGrid::<Dim3>::ball(8, 1.0).unwrap());
+        check(VoxelGrid::<Dim2>::cube(16, 1.0).unwrap());
+        check(VoxelGrid::<Dim3>::cube(8, 1.0).unwrap());
     }
 }

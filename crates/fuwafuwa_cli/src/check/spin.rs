@@ -1,12 +1,13 @@
-//! Spin: a free body that turns keeps its angular momentum.
+//! Spin: a free body that turns keeps its angular momentum, and so does each half of one that was cut.
 
 use super::motion::{arrange, ball, length, material};
 use super::parallel;
 use crate::report::{Outcome, Progress};
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use fuwafuwa::pyramid::Grading;
+use fuwafuwa::vector::{cross, plus};
 use fuwafuwa::world::TICK;
-use fuwafuwa::{Dim, Dim2, Dim3, Material, Settings, World};
+use fuwafuwa::{Blade, Body, Dim, Dim2, Dim3, Material, Settings, World};
 
 /// Dimensions, voxels across, and damping of the bodies.
 const BODIES: [(usize, usize, f32); 4] = [(2, 32, 0.0), (2, 32, 0.08), (3, 24, 0.0), (3, 24, 0.08)];
@@ -14,6 +15,9 @@ const BODIES: [(usize, usize, f32); 4] = [(2, 32, 0.0), (2, 32, 0.08), (3, 24, 0
 const KEPT: f64 = 0.999;
 /// How long a body spins [s].
 const DURATION: f32 = 5.0;
+/// Bodies that are cut in two as they spin, and when their halves are apart [s].
+const TORN: [(usize, usize); 2] = [(2, 32), (3, 16)];
+const APART: f32 = 1.0;
 
 /// Angular momentum along its first direction, after some seconds at 5 rad/s.
 pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
@@ -25,7 +29,92 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
         let case = format!("spin {dim}D, n = {n}, damping {damping}, kept after {DURATION} s");
         Outcome::within(case, kept, KEPT..=2.0 - KEPT)
     };
-    Ok(BODIES.iter().zip(found).map(outcome).collect())
+    let mut outcomes: Vec<Outcome> = BODIES.iter().zip(found).map(outcome).collect();
+    let found = parallel::each(&TORN, progress, |&(dim, n)| match dim {
+        2 => halves::<Dim2>(n),
+        _ => halves::<Dim3>(n),
+    })?;
+    for ((dim, n), halves) in TORN.iter().zip(found) {
+        let case = |what: &str| format!("{what} {dim}D, n = {n}, kept after {DURATION} s");
+        let kept = KEPT..=2.0 - KEPT;
+        let spin = |what, value| Outcome::within(case(what), value, kept.clone());
+        outcomes.push(spin("spin of a torn half", halves.spin));
+        outcomes.push(spin("momentum of a torn half", halves.momentum));
+        outcomes.push(spin("spin of both", halves.both));
+    }
+    Ok(outcomes)
+}
+
+/// What was kept of the motion of two halves; of two, by the one that kept it worse.
+struct Halves {
+    spin: f64,
+    momentum: f64,
+    both: f64,
+}
+
+/// Cuts a body that spins in two. The halves part by themselves, each spinning as the whole did.
+fn halves<D: Dim>(n: usize) -> Result<Halves> {
+    let mut world = spinning::<D>(n, material())?;
+    let whole = world.bodies()[0].momentum().angular;
+    let (across, along) = ([0.0, 3.0, 0.0], [0.0, 0.0, 3.0]);
+    let from = [0.0, -1.5, -1.5];
+    let cut = world.cut(
+        0,
+        &Blade {
+            from,
+            across,
+            along,
+        },
+    );
+    let step = |world: &mut World<D>, duration: f32| {
+        for _ in 0..(duration / TICK).round() as usize {
+            world.step();
+        }
+    };
+    step(&mut world, APART);
+    let pieces = world.bodies()[0].pieces().list.len();
+    ensure!(pieces == 2, "{cut} nodes cut left {pieces} pieces");
+    let motions = |world: &World<D>| [0, 1].map(|piece| motion(&world.bodies()[0], piece));
+    let before = motions(&world);
+    step(&mut world, DURATION);
+    let after = motions(&world);
+    let worst = |kept: [f64; 2]| match (kept[0] - 1.0).abs() > (kept[1] - 1.0).abs() {
+        true => kept[0],
+        false => kept[1],
+    };
+    Ok(Halves {
+        spin: worst([0, 1].map(|piece| along_first(before[piece].1, after[piece].1))),
+        momentum: worst([0, 1].map(|piece| along_first(before[piece].0, after[piece].0))),
+        both: along_first(whole, world.bodies()[0].momentum().angular),
+    })
+}
+
+/// The momentum of a piece, and its angular momentum about its own centre.
+fn motion<D: Dim>(body: &Body<D>, piece: u32) -> ([f64; 3], [f64; 3]) {
+    let nodes = body.mesh().nodes().map(|(id, _)| id);
+    let nodes = nodes.filter(|&id| body.pieces().of_node(id) == piece);
+    let states: Vec<_> = nodes.map(|id| body.node_state(id)).collect();
+    let (mut mass, mut centre, mut linear) = (0.0, [0.0; 3], [0.0; 3]);
+    for &(at, velocity, node) in &states {
+        mass += f64::from(node);
+        for axis in 0..3 {
+            centre[axis] += f64::from(node * at[axis]);
+            linear[axis] += f64::from(node * velocity[axis]);
+        }
+    }
+    let mut angular = [0.0; 3];
+    for &(at, velocity, node) in &states {
+        let reach = [0, 1, 2].map(|axis| f64::from(at[axis]) - centre[axis] / mass);
+        let push = velocity.map(|k| f64::from(node * k));
+        angular = plus(angular, cross(reach, push));
+    }
+    (linear, angular)
+}
+
+/// How much of a vector another one still has along it.
+fn along_first(before: [f64; 3], after: [f64; 3]) -> f64 {
+    let along: f64 = (0..3).map(|axis| before[axis] * after[axis]).sum();
+    along / (length(before) * length(before))
 }
 
 fn kept<D: Dim>(n: usize, damping: f32) -> Result<f64> {
@@ -33,6 +122,16 @@ fn kept<D: Dim>(n: usize, damping: f32) -> Result<f64> {
         damping,
         ..material()
     };
+    let mut world = spinning::<D>(n, material)?;
+    let before = world.bodies()[0].momentum().angular;
+    for _ in 0..(DURATION / TICK).round() as usize {
+        world.step();
+    }
+    Ok(along_first(before, world.bodies()[0].momentum().angular))
+}
+
+/// A free body that spins.
+fn spinning<D: Dim>(n: usize, material: Material) -> Result<World<D>> {
     let mut body = ball::<D>(n, material, Grading::Graded)?;
     // 5 rad/s about (0, 4, 3) / 5; in 2D about the third axis.
     let spin = if D::N == 3 {
@@ -54,13 +153,7 @@ fn kept<D: Dim>(n: usize, damping: f32) -> Result<f64> {
         most_substeps: 1024,
     })?;
     world.add_body(body);
-    let before = world.bodies()[0].momentum().angular;
-    for _ in 0..(DURATION / TICK).round() as usize {
-        world.step();
-    }
-    let after = world.bodies()[0].momentum().angular;
-    let along: f64 = (0..3).map(|axis| before[axis] * after[axis]).sum();
-    Ok(along / (length(before) * length(before)))
+    Ok(world)
 }
 
 #[cfg(test)]
@@ -70,5 +163,13 @@ mod tests {
     #[test]
     fn a_small_ball_keeps_its_spin() {
         assert!(kept::<Dim3>(8, 0.0).unwrap() > KEPT);
+    }
+
+    #[test]
+    fn halves_of_a_small_disc_keep_their_spin() {
+        let halves = halves::<Dim2>(8).unwrap();
+        for kept in [halves.spin, halves.momentum, halves.both] {
+            assert!((kept - 1.0).abs() < 1.0 - KEPT, "{kept}");
+        }
     }
 }

@@ -5,7 +5,7 @@ use super::error::{Wrong, require, require_vector};
 use super::grid;
 use fuwafuwa::law::Law;
 use fuwafuwa::pyramid::Grading;
-use fuwafuwa::{Blade, Body, BodyError, Dim, Material};
+use fuwafuwa::{Blade, Body, BodyError, Dim, Material, VoxelGrid};
 
 impl BodyText {
     /// The body, where its voxels and those of the bodies before it are `most` at most.
@@ -17,13 +17,14 @@ impl BodyText {
     ) -> Result<Body<D>, Wrong> {
         require_vector(D::N, "at", self.at)?;
         require_vector(D::N, "velocity", self.velocity)?;
-        let grid = grid::of::<D>(self)?;
-        *voxels += grid.voxels().count();
-        let expected = format!(
-            "expected {most} voxels at most in the grids of all bodies together, found {voxels}"
-        );
-        require(*voxels <= most, "n", expected)?;
-        self.check_diced(grid.voxel_size())?;
+        let grid = grid::of::<D>(self, |count| {
+            *voxels += count;
+            let expected = format!(
+                "expected {most} voxels at most in the grids of all bodies together, found {voxels}"
+            );
+            require(*voxels <= most, "n", expected)
+        })?;
+        self.check_diced(&grid)?;
         let law = match self.paper_law {
             true => Law::Endo2004,
             false => Law::PatchExact,
@@ -54,12 +55,24 @@ impl BodyText {
         Ok(body.moved(self.at).thrown(self.velocity))
     }
 
-    fn check_diced(&self, voxel_size: f32) -> Result<(), Wrong> {
-        let spacing = self.diced.unwrap_or(voxel_size);
+    fn check_diced<D: Dim>(&self, grid: &VoxelGrid<D>) -> Result<(), Wrong> {
+        let Some(spacing) = self.diced else {
+            return Ok(());
+        };
+        let voxel_size = grid.voxel_size();
         let expected = format!("expected a voxel, {voxel_size} m, or more, found {spacing}");
-        require(spacing >= voxel_size, "diced", expected)
+        require(spacing >= voxel_size, "diced", expected)?;
+        // Each blade looks at every voxel.
+        let blades = |&extent: &i32| (extent as f32 * voxel_size / spacing) as usize;
+        let blades: usize = grid.size()[..D::N].iter().map(blades).sum();
+        let voxels = grid.voxels().count();
+        let expected = format!("{blades} blades through {voxels} voxels are too many");
+        require(blades * voxels <= MAX_CROSSINGS, "diced", expected)
     }
 }
+
+/// Most voxels times blades of a diced body.
+const MAX_CROSSINGS: usize = 1 << 26;
 
 /// Planes a distance apart on every axis, through the whole body.
 fn grid_of_blades<D: Dim>(body: &Body<D>, spacing: f32) -> Vec<Blade> {

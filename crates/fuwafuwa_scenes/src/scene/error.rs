@@ -92,7 +92,8 @@ const IN_WORDS: [(&str, &str); 6] = [
     ),
 ];
 
-fn shortened(text: &str, most: usize) -> String {
+/// The first letters of a text that may be as long as a file.
+pub fn shortened(text: &str, most: usize) -> String {
     match text.char_indices().nth(most) {
         Some((end, _)) => format!("{}…", &text[..end]),
         None => text.into(),

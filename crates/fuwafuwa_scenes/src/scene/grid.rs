@@ -9,8 +9,14 @@ use fuwafuwa::grid::MAX_EXTENT;
 use fuwafuwa::{BuildError, Dim, Dim2, Dim3, Shape, VoxelGrid};
 use std::path::Path;
 
-/// The grid of a body.
-pub(super) fn of<D: Dim>(text: &BodyText) -> Result<VoxelGrid<D>, Wrong> {
+/// Most distances that the parts of a body take to work out: one for each part and voxel.
+const MAX_DISTANCES: usize = 1 << 27;
+
+/// The grid of a body, if so many voxels are let through.
+pub(super) fn of<D: Dim>(
+    text: &BodyText,
+    let_through: impl FnOnce(usize) -> Result<(), Wrong>,
+) -> Result<VoxelGrid<D>, Wrong> {
     let good = text.width > 0.0 && text.width.is_finite();
     let expected = format!("expected a positive number of metres, found {}", text.width);
     require(good, "width", expected)?;
@@ -19,6 +25,12 @@ pub(super) fn of<D: Dim>(text: &BodyText) -> Result<VoxelGrid<D>, Wrong> {
         (None, Some(file)) => of_file::<D>(text, file)?,
         _ => return Err(Wrong::new("shape", "expected either a shape or a file")),
     };
+    let count = voxels.materials.len();
+    let_through(count)?;
+    let most = MAX_DISTANCES / count.max(1);
+    let found = text.part.len();
+    let expected = format!("expected {most} at most in a body of {count} voxels, found {found}");
+    require(found <= most, "part", expected)?;
     for (index, part) in text.part.iter().enumerate() {
         let part = Part::of::<D>(part).map_err(|wrong| wrong.inside("part", index))?;
         voxels.change::<D>(&part);

@@ -1,0 +1,131 @@
+//! Doughnut: a ring that two hands squeeze shut does not pass through itself.
+
+use super::motion::material;
+use super::parallel;
+use crate::report::{Outcome, Progress};
+use anyhow::{Result, ensure};
+use fuwafuwa::shape::Vector;
+use fuwafuwa::{Body, Dim2, Drive, Manipulator, Material, Settings, VoxelGrid, World};
+
+/// Voxels across, and how fast each hand comes [m/s].
+const CASES: [(usize, f32); 4] = [(24, 0.25), (24, 2.0), (48, 0.25), (48, 2.0)];
+/// Radius of the hands [m].
+const HAND: f32 = 0.4;
+/// How far apart the hands stay [m]; both sides of the ring together are 0.5 m thick, so the hole is shut
+/// before.
+const LEFT: f32 = 0.4;
+/// How long the hands wait then [s].
+const WAIT: f32 = 2.0;
+/// Half the width of the middle of the ring, where one side is above the other [m].
+const MIDDLE: f32 = 0.1;
+/// How far one side of the hole may be pressed into the other, in voxels.
+const DEPTH: f64 = 0.5;
+/// How far apart they may be when it is shut, in voxels: less says that it was never squeezed.
+const SHUT: f64 = 2.0;
+
+/// Rings of several sizes, squeezed slowly and fast.
+pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+    let depths = parallel::each(&CASES, progress, |&(n, speed)| squeeze(n, speed))?;
+    let outcome = |(&(n, speed), depth): (&(usize, f32), f64)| {
+        let case = format!("doughnut n = {n}, {speed} m/s, voxels into itself");
+        Outcome::within(case, depth, -SHUT..=DEPTH)
+    };
+    Ok(CASES.iter().zip(depths).map(outcome).collect())
+}
+
+/// How far the upper side of the hole goes into the lower one at most, in voxels.
+fn squeeze(n: usize, speed: f32) -> Result<f64> {
+    let mut world = World::<Dim2>::new(Settings {
+        gravity: [0.0; 3],
+        ..Settings::default()
+    })?;
+    let material = Material {
+        damping: Material::default().damping,
+        ..material()
+    };
+    let grid = VoxelGrid::<Dim2>::ring(n, 1.0)?;
+    let voxel = grid.voxel_size();
+    world.add_body(Body::new(grid, &[material])?);
+    let sides = [-1.0, 1.0];
+    let middle_of = |side: f32, apart: f32| [0.5, 0.5 + side * (HAND + 0.5 * apart), 0.0];
+    for side in sides {
+        let hand = Manipulator::new(middle_of(side, 1.0), HAND);
+        world.add_manipulator(hand.driven(Drive::Kinematic))?;
+    }
+    let holes = sides.map(|side| hole_side(&world.bodies()[0], side));
+    let (mut apart, mut waited, mut deepest) = (1.0, 0.0, f32::NEG_INFINITY);
+    while waited < WAIT {
+        apart -= 2.0 * speed / 60.0;
+        if apart < LEFT {
+            (apart, waited) = (LEFT, waited + 1.0 / 60.0);
+        }
+        for (hand, side) in sides.into_iter().enumerate() {
+            world.set_goal(hand, middle_of(side, apart));
+        }
+        let report = world.step();
+        ensure!(report.quarantined == 0, "the ring went out of hand");
+        let [low, high] = holes
+            .each_ref()
+            .map(|nodes| places(&world.bodies()[0], nodes));
+        deepest = deepest.max(overlap(&low, &high));
+    }
+    Ok(f64::from(deepest / voxel))
+}
+
+/// The nodes below or above the middle of the hole that stand on its side.
+fn hole_side(body: &Body<Dim2>, side: f32) -> Vec<u32> {
+    let nodes = body.mesh().nodes().filter(|(id, node)| {
+        let [x, y, _] = body.node_state(*id).0.map(|k| k - 0.5);
+        let is_inner = x * x + y * y < 0.36 * 0.36;
+        let is_bare = node.group.count_ones() < 4;
+        is_inner && is_bare && y * side > 0.0
+    });
+    nodes.map(|(id, _)| id).collect()
+}
+
+/// Where nodes are, from left to right.
+fn places(body: &Body<Dim2>, nodes: &[u32]) -> Vec<Vector> {
+    let mut places: Vec<Vector> = nodes.iter().map(|&id| body.node_state(id).0).collect();
+    places.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    places
+}
+
+/// How far a line of places is above a higher one at most, around the middle; less than 0 when it is below.
+fn overlap(low: &[Vector], high: &[Vector]) -> f32 {
+    let is_amid = |at: &&Vector| (at[0] - 0.5).abs() < MIDDLE;
+    let mut deepest = f32::NEG_INFINITY;
+    for at in high.iter().filter(is_amid) {
+        for two in low.windows(2) {
+            let [a, b] = [two[0], two[1]];
+            if (a[0]..b[0]).contains(&at[0]) {
+                let line = a[1] + (b[1] - a[1]) * (at[0] - a[0]) / (b[0] - a[0]);
+                deepest = deepest.max(line - at[1]);
+            }
+        }
+    }
+    deepest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn overlaps_are_seen() {
+        let line = |y| (0..5u8).map(move |k| [0.3 + 0.1 * f32::from(k), y, 0.0]);
+        let (low, high): (Vec<Vector>, Vec<Vector>) = (line(0.4).collect(), line(0.6).collect());
+        assert!((overlap(&low, &high) + 0.2).abs() < 1e-6);
+        assert!((overlap(&high, &low) - 0.2).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_ring_at_rest_has_a_hole() {
+        let body = Body::new(VoxelGrid::<Dim2>::ring(24, 1.0).unwrap(), &[material()]).unwrap();
+        let [low, high] = [-1.0, 1.0].map(|side| places(&body, &hole_side(&body, side)));
+        assert!(
+            (overlap(&low, &high) + 0.5).abs() < 0.1,
+            "{}",
+            overlap(&low, &high)
+        );
+    }
+}

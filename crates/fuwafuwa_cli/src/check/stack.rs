@@ -1,0 +1,100 @@
+//! Stack: ten boxes on each other stand still.
+
+use super::motion::material;
+use super::parallel;
+use crate::report::{Outcome, Progress};
+use anyhow::{Result, ensure};
+use fuwafuwa::law::Elasticity;
+use fuwafuwa::shape::Vector;
+use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, Settings, Shape, VoxelGrid, World};
+
+/// Bodies in a stack, voxels across each, and its width [m].
+const BODIES: usize = 10;
+const VOXELS: usize = 4;
+const WIDTH: f32 = 0.1;
+/// Stiff enough that the lowest is squeezed by no more than some 2 % [Pa].
+const YOUNG: f64 = 5e4;
+/// How long they stand, and from when on still [s].
+const DURATION: f32 = 60.0;
+const SETTLED: f32 = 5.0;
+/// How far a body may come to stand from where it was put, sideways, and how far it may go when it has
+/// settled; in widths.
+const LEANING: f64 = 0.05;
+const MOTION: f64 = 0.01;
+
+/// What became of a stack, in widths of a body.
+struct Stack {
+    leaning: f64,
+    motion: f64,
+}
+
+/// Stacks of boxes in both dimensions.
+pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+    let found = parallel::each(&[2, 3], progress, |&dim| match dim {
+        2 => stand::<Dim2>(BODIES, DURATION),
+        _ => stand::<Dim3>(BODIES, DURATION),
+    })?;
+    let mut outcomes = Vec::new();
+    for (dim, stack) in [2, 3].into_iter().zip(found) {
+        let case =
+            |what: &str| format!("stack {dim}D, {BODIES} bodies, {what} in {DURATION} s, widths");
+        outcomes.push(Outcome::at_most(case("leaning"), stack.leaning, LEANING));
+        outcomes.push(Outcome::at_most(case("motion"), stack.motion, MOTION));
+    }
+    Ok(outcomes)
+}
+
+fn stand<D: Dim>(bodies: usize, duration: f32) -> Result<Stack> {
+    let mut world = World::<D>::new(Settings::default())?;
+    world.add_obstacle(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.5)?;
+    let material = Material {
+        elasticity: Elasticity {
+            young: YOUNG,
+            ..material().elasticity
+        },
+        damping: Material::default().damping,
+        ..material()
+    };
+    for place in 0..bodies {
+        let body = Body::new(VoxelGrid::cube(VOXELS, WIDTH)?, &[material])?;
+        world.add_body(body.moved([0.0, WIDTH * place as f32, 0.0]));
+    }
+    let centres = |world: &World<D>| -> Vec<Vector> {
+        let views = world.bodies().iter().map(|body| body.piece_views());
+        views.map(|pieces| pieces[0].centre).collect()
+    };
+    let put = centres(&world);
+    let mut settled = put.clone();
+    let (mut leaning, mut motion) = (0.0f32, 0.0f32);
+    for tick in 0..(60.0 * duration) as usize {
+        let report = world.step();
+        ensure!(report.released == 0, "a body of the stack tore");
+        let now = centres(&world);
+        if tick == (60.0 * SETTLED) as usize {
+            settled.clone_from(&now);
+        }
+        for place in 0..bodies {
+            let gone = |from: &[Vector], axis: usize| (now[place][axis] - from[place][axis]).abs();
+            let sideways = (0..D::N).filter(|&axis| axis != 1);
+            leaning = sideways.fold(leaning, |most, axis| most.max(gone(&put, axis)));
+            if tick > (60.0 * SETTLED) as usize {
+                motion = (0..D::N).fold(motion, |most, axis| most.max(gone(&settled, axis)));
+            }
+        }
+    }
+    Ok(Stack {
+        leaning: f64::from(leaning / WIDTH),
+        motion: f64::from(motion / WIDTH),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_bodies_stand_on_each_other() {
+        let stack = stand::<Dim2>(2, SETTLED + 1.0).unwrap();
+        assert!(stack.leaning <= LEANING && stack.motion <= MOTION);
+    }
+}
