@@ -46,14 +46,19 @@ pub struct Body<D: Dim> {
     pub(crate) inverse_mass: Vec<f32>,
     held: Vec<bool>,
     /// The nodes that move, ascending; stale after a remodelling.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) awake: Vec<u32>,
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) awake_is_stale: bool,
     /// Nodes where a crack can start or go on, and how far each is overstrained.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) breakable: BreakableNodes,
     pub(crate) damage: Vec<f32>,
     /// Which faces of an element of level 0 are bare: bit 2 · axis + side; by element id.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) bare: Vec<u8>,
     /// Of those with bare faces, the voxels around that share a node: see [`Sharing::bound`].
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) bound: Vec<u32>,
     /// Positions a moment ahead, where damped forces are evaluated.
     pub(crate) ahead: Vec<Row>,
@@ -128,12 +133,21 @@ impl<D: Dim> Body<D> {
         body.blocks.update(&body.mesh, &body.grid, &[], &elements);
         let all: Vec<u32> = body.mesh.nodes().map(|(id, _)| id).collect();
         body.weigh(&all);
-        let voxels: Vec<Point> = body.grid.voxels().collect();
-        body.expose(&voxels);
-        if grading != Grading::Coarse {
-            body.find_breakable(&all);
-        }
+        body.rebuild();
         Ok(body)
+    }
+
+    /// Works out what follows from the rest: bare faces, breakable nodes, and who is awake.
+    pub(crate) fn rebuild(&mut self) {
+        self.make_room();
+        let voxels: Vec<Point> = self.grid.voxels().collect();
+        self.expose(&voxels);
+        if self.pyramid.grading() != Grading::Coarse {
+            let nodes: Vec<u32> = self.mesh.nodes().map(|(id, _)| id).collect();
+            self.find_breakable(&nodes);
+        }
+        self.awake_is_stale = true;
+        self.refresh_awake();
     }
 
     /// The same body, moved `by` [m]. What is then no place is quarantined in its first tick.

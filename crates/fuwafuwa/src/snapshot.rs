@@ -100,7 +100,7 @@ pub fn load<D: Dim>(bytes: &[u8]) -> Result<World<D>, BadSnapshot> {
     if header[9..] != Hash::of(state).to_le_bytes() {
         return Err(BadSnapshot::Damaged);
     }
-    let world: World<D> = postcard::from_bytes(state).map_err(|_| BadSnapshot::Damaged)?;
+    let mut world: World<D> = postcard::from_bytes(state).map_err(|_| BadSnapshot::Damaged)?;
     for (place, body) in world.bodies().iter().enumerate() {
         let checked = body.check();
         checked.map_err(|defect| BadSnapshot::Broken {
@@ -108,5 +108,6 @@ pub fn load<D: Dim>(bytes: &[u8]) -> Result<World<D>, BadSnapshot> {
             defect: defect.to_string(),
         })?;
     }
+    world.rebuild();
     Ok(world)
 }

@@ -41,11 +41,11 @@ pub struct Nearby {
     /// Those inside another piece.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub captives: Captives,
-    /// What is left of the tick [s], and whether it has only begun.
+    /// What is left of the tick [s], and whether captives were looked for in it.
     #[cfg_attr(feature = "serde", serde(skip))]
     left: f32,
     #[cfg_attr(feature = "serde", serde(skip))]
-    has_begun: bool,
+    knows_captives: bool,
 }
 
 impl Nearby {
@@ -58,7 +58,7 @@ impl Nearby {
             renumber(&mut self.pairs.list, &places);
         }
         self.captives = Captives::default();
-        (self.left, self.has_begun) = (duration, false);
+        (self.left, self.knows_captives) = (duration, false);
     }
 
     /// A body was torn.
@@ -86,9 +86,9 @@ impl Nearby {
     pub fn follow<D: Dim>(&mut self, bodies: &[Body<D>], colliders: &[Collider], duration: f32) {
         self.nodes.follow(bodies, colliders, duration, self.left);
         let changed = self.pairs.follow(&mut self.spheres, bodies, self.left);
-        if !self.has_begun {
+        if !self.knows_captives {
             self.captives.find(&self.spheres, &self.pairs.list, bodies);
-            self.has_begun = true;
+            self.knows_captives = true;
         }
         if changed {
             let paired = self.pairs.list.iter().flat_map(|pair| pair.spheres);

@@ -182,8 +182,9 @@ impl<D: Dim> World<D> {
                 self.damp(duration);
             }
             self.push(duration);
-            self.touch(duration);
+            let hits = self.touch(duration);
             self.drift(duration);
+            self.wake(&hits);
         }
         report.inverted = self.bodies.iter().map(Body::inverted_count).sum();
         self.quarantine(&before, &mut report);
@@ -273,8 +274,9 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Changes velocities so that nothing goes through anything else.
-    fn touch(&mut self, duration: f32) {
+    /// Changes velocities so that nothing goes through anything else. Returns the sleepers that were hit: in
+    /// this substep they are walls still.
+    fn touch(&mut self, duration: f32) -> Vec<Hit> {
         let colliders = self.colliders();
         let obstacles = &colliders[..self.obstacles.len()];
         let (bodies, nearby) = (&self.bodies, &mut self.nearby);
@@ -284,8 +286,7 @@ impl<D: Dim> World<D> {
         self.contacts.find_hands(hands, obstacles, duration);
         let bodies = &mut self.bodies;
         self.contacts.solve(bodies, hands, nearby, duration);
-        // Who is hit is a wall in this substep still, and awake from the next one on.
-        self.wake(&hits);
+        hits
     }
 
     /// Moves everything by its velocity, and takes back what only pushed overlaps out.

@@ -38,7 +38,12 @@ impl Exit {
         let speed = PUSH_OUT_SPEED.min(length(way) / duration);
         let [first, second] = both.map(|sphere| sphere.inverse_mass(bodies));
         let inverse_mass = first + second;
-        (inverse_mass > 0.0).then(|| Self {
+        // Who is out of hand must not take the other one along; and what is no number is less than nothing.
+        let relative = minus(spheres.velocities[a], spheres.velocities[b]);
+        let most = (both[0].radius + both[1].radius) / duration;
+        let squared = |row: Row| inner::<D>(row, row);
+        let is_way = squared(way) < f32::INFINITY && squared(relative) < most * most;
+        (is_way && inverse_mass > 0.0).then(|| Self {
             grips: both.map(|sphere| motion.grip::<D>(sphere)),
             inertia: 1.0 / inverse_mass,
             velocity: scaled(way, speed / length(way)),

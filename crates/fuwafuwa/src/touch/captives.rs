@@ -43,6 +43,9 @@ impl Captives {
         self.list.clear();
         self.captors.clear();
         self.captors.resize(spheres.list.len(), None);
+        if spheres.awake.is_empty() {
+            return;
+        }
         let mut pieces: Vec<Vec<Extent>> = bodies.iter().map(extents).collect();
         let largest = { pieces.iter().flatten() }.map(|piece| piece.count).max();
         let own = |pieces: &[Vec<Extent>], place: u32| {

@@ -10,7 +10,7 @@ use crate::dim::Dim;
 use crate::shape::Shape;
 use crate::solve::Row;
 use crate::vector::{dot, length, minus, plus, scaled, three};
-use std::ops;
+use std::ops::Range;
 
 /// How far a node and how far a hand may come beyond what their speed says, in voxels, before they are
 /// looked for again: larger means longer lists, smaller more looks. What pulls a hand is stronger.
@@ -52,13 +52,15 @@ pub struct NodePairs {
     /// from there, by body and node [m].
     #[cfg_attr(feature = "serde", serde(skip))]
     anchors: Vec<Vec<Row>>,
-    /// How far nodes may still come before one may have come too far [m].
+    /// How far nodes may still come before one may have come too far, and how far any may at the least [m].
     #[cfg_attr(feature = "serde", serde(skip))]
     spare: f32,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    least_slack: f32,
     /// How far each collider may come from where it was, and how far it has come [m]; nothing while all
     /// must be looked for.
     #[cfg_attr(feature = "serde", serde(skip))]
-    ranges: Vec<Range>,
+    leeways: Vec<Leeway>,
     /// Nodes that are gone, new or awake since: body and node.
     #[cfg_attr(feature = "serde", serde(skip))]
     changed: Vec<(u32, u32)>,
@@ -66,7 +68,7 @@ pub struct NodePairs {
 
 /// How far a collider may come, and how far it has come [m].
 #[derive(Copy, Clone, Debug)]
-struct Range {
+struct Leeway {
     most: f32,
     come: f32,
 }
@@ -77,7 +79,7 @@ impl NodePairs {
         for pair in &mut self.list {
             pair.impulse.total = 0.0;
         }
-        self.ranges.clear();
+        self.leeways.clear();
         self.changed.clear();
     }
 
@@ -121,11 +123,11 @@ impl NodePairs {
             self.list.clear();
             return;
         }
-        for (range, collider) in self.ranges.iter_mut().zip(colliders) {
-            range.come += length(collider.velocity) * duration;
+        for (leeway, collider) in self.leeways.iter_mut().zip(colliders) {
+            leeway.come += length(collider.velocity) * duration;
         }
-        let outrun = self.ranges.iter().any(|range| range.come > range.most);
-        if outrun || self.ranges.len() != colliders.len() {
+        let outrun = self.leeways.iter().any(|leeway| leeway.come > leeway.most);
+        if outrun || self.leeways.len() != colliders.len() {
             self.find_all(bodies, colliders, left);
             return;
         }
@@ -142,40 +144,43 @@ impl NodePairs {
         for &(place, node) in &changed {
             self.anchor(place, node, bodies, left);
         }
-        for (index, (collider, range)) in colliders.iter().zip(&self.ranges).enumerate() {
+        for (index, (collider, leeway)) in colliders.iter().zip(&self.leeways).enumerate() {
             let is_near = |&&(place, node): &&(u32, u32)| {
                 let body = &bodies[place as usize];
                 let reach = self.reach(place, node, body.grid.voxel_size());
                 let at = three(body.position[node as usize]);
-                body.mesh.is_alive(node) && collider.shape.distance(at).0 <= reach + range.most
+                body.mesh.is_alive(node) && collider.shape.distance(at).0 <= reach + leeway.most
             };
             let near = changed.iter().filter(is_near);
             found.extend(near.map(|&(body, node)| (index as u32, body, node)));
         }
         self.merge(&found, |pair| {
-            changed.binary_search(&(pair.body, pair.node)).is_err()
+            let is_changed = changed.binary_search(&(pair.body, pair.node)).is_ok();
+            !is_changed || pair.has_touched(bodies)
         });
-        self.spare = 0.0;
+        self.spare = self.spare.min(self.least_slack);
     }
 
     /// Looks for all nodes that may come to a collider in what is `left` of the tick [s]. Those that
     /// sleep meet hands only.
     fn find_all<D: Dim>(&mut self, bodies: &[Body<D>], colliders: &[Collider], left: f32) {
         self.changed.clear();
-        (self.travel, self.spare) = (0.0, 0.0);
+        self.travel = 0.0;
         let sizes = bodies.iter().map(|body| body.grid.voxel_size());
+        self.least_slack = SLACK * sizes.clone().fold(f32::MAX, f32::min);
+        self.spare = self.least_slack;
         let size = sizes.fold(0.0, f32::max);
-        let range = |collider: &Collider| {
+        let leeway = |collider: &Collider| {
             let slack = if collider.is_hand {
                 HAND_SLACK * size
             } else {
                 0.0
             };
             let most = slack + length(collider.velocity) * left;
-            Range { most, come: 0.0 }
+            Leeway { most, come: 0.0 }
         };
-        self.ranges.clear();
-        self.ranges.extend(colliders.iter().map(range));
+        self.leeways.clear();
+        self.leeways.extend(colliders.iter().map(leeway));
         self.anchors.resize(bodies.len(), Vec::new());
         let mut squares = Vec::new();
         for (body, place) in bodies.iter().zip(0..) {
@@ -188,12 +193,12 @@ impl NodePairs {
         }
         let mut found = Vec::new();
         let mut near: Vec<u32> = Vec::new();
-        for (index, (collider, range)) in colliders.iter().zip(&self.ranges).enumerate() {
+        for (index, (collider, leeway)) in colliders.iter().zip(&self.leeways).enumerate() {
             for (place, (squares, body)) in squares.iter().zip(bodies).enumerate() {
                 near.clear();
-                squares.within(range.most, &collider.shape, &mut near);
+                squares.within(leeway.most, &collider.shape, &mut near);
                 if collider.is_hand && body.awake.len() < body.mesh.node_count() {
-                    let reach = range.most + MARGIN * body.grid.voxel_size();
+                    let reach = leeway.most + MARGIN * body.grid.voxel_size();
                     let is_near = |&node: &u32| {
                         let at = three(body.position[node as usize]);
                         body.pieces.sleeps(node) && collider.shape.distance(at).0 <= reach
@@ -205,7 +210,7 @@ impl NodePairs {
                 found.extend(near.iter().map(|&node| (index as u32, place as u32, node)));
             }
         }
-        self.merge(&found, |_| false);
+        self.merge(&found, |pair| pair.has_touched(bodies));
     }
 
     /// Adds the nodes that came further than they might to the changed ones; notes what the others have
@@ -278,6 +283,11 @@ impl NodePair {
         (self.collider, self.body, self.node)
     }
 
+    /// Whether they touched in this tick, which is to be told when they are far apart too.
+    fn has_touched<D: Dim>(&self, bodies: &[Body<D>]) -> bool {
+        self.impulse.total > 0.0 && bodies[self.body as usize].mesh.is_alive(self.node)
+    }
+
     /// The number of the piece; nothing when another body stands here since.
     pub fn piece<D: Dim>(&self, bodies: &[Body<D>]) -> Option<u32> {
         let body = bodies.get(self.body as usize)?;
@@ -297,7 +307,7 @@ struct Squares {
 
 /// The places of nodes in the bins, a ball around them, and how close the first of them are listed [m].
 struct Square {
-    points: ops::Range<usize>,
+    points: Range<usize>,
     centre: Row,
     radius: f32,
     reach: f32,
@@ -336,7 +346,7 @@ impl Squares {
 }
 
 impl Square {
-    fn around(bins: &Bins, points: ops::Range<usize>, nodes: &[(u32, f32)]) -> Self {
+    fn around(bins: &Bins, points: Range<usize>, nodes: &[(u32, f32)]) -> Self {
         let (mut low, mut high, mut furthest) = ([f32::MAX; 4], [f32::MIN; 4], 0.0f32);
         for (number, at) in points.clone().map(|place| bins.point(place)) {
             for axis in 0..4 {

@@ -21,10 +21,13 @@ pub struct SpherePair {
     pub met_in_front: bool,
 }
 
-/// Makes the new list of pairs from those just found and the old ones of which neither has
-/// changed. Pairs that were known keep their impulses.
+/// Makes the new list of pairs from those just found and the old ones of which neither has changed, or
+/// which touched in this tick: that is to be told. Pairs that were known keep their impulses.
 pub fn merge(list: &mut Vec<SpherePair>, found: &[Vec<[u32; 2]>], is_changed: &[bool]) {
-    let stays = |pair: &SpherePair| !pair.spheres.iter().any(|&place| is_changed[place as usize]);
+    let stays = |pair: &SpherePair| {
+        let mut both = pair.spheres.iter();
+        pair.impulse.total > 0.0 || !both.any(|&place| is_changed[place as usize])
+    };
     let mut found = by_first(found, is_changed.len());
     let merged = threads::map(shares(&mut found, list), |(found, old)| {
         for same in found.chunk_by_mut(|a, b| a[0] == b[0]) {

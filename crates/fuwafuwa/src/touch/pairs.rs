@@ -2,7 +2,7 @@
 //!
 //! They are looked for once a tick, along the way that each is going to take: a straight *path*, from
 //! which it may stray a little. Only those that have strayed further, woke or came to the surface
-//! are looked for again; so no pair can be missed, whatever moves.
+//! are looked for again; so no pair can be missed, whatever moves as long as it is finite.
 //!
 //! ```text
 //!    ●──────────┤        two paths make a pair when their spheres, widened by what they may stray,
@@ -88,6 +88,11 @@ pub struct SpherePairs {
     elapsed: f32,
     #[cfg_attr(feature = "serde", serde(skip))]
     duration: f32,
+    /// How close the largest spheres are looked for, and how far the smallest may stray [m].
+    #[cfg_attr(feature = "serde", serde(skip))]
+    reach: f32,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    least_stray: f32,
     /// How far anything may still come before one may have strayed [m], and the greatest speed along
     /// a path [m/s].
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -116,8 +121,9 @@ impl SpherePairs {
     /// whether it changed.
     pub fn follow<D: Dim>(&mut self, spheres: &mut Spheres, bodies: &[Body<D>], left: f32) -> bool {
         if spheres.awake.is_empty() {
+            let had_some = !self.list.is_empty();
             self.list.clear();
-            return true;
+            return had_some;
         }
         if self.bins.is_none() {
             spheres.move_all(bodies);
@@ -183,7 +189,7 @@ impl SpherePairs {
         let count = spheres.list.len();
         self.changed.clear();
         (self.elapsed, self.duration) = (0.0, left);
-        (self.spare, self.pace) = (0.0, 0.0);
+        self.pace = 0.0;
         self.paths.resize(count, Path::default());
         (0..count as u32).for_each(|place| self.lay(place, spheres, bodies));
         self.loose.clear();
@@ -191,8 +197,14 @@ impl SpherePairs {
         self.is_loose.resize(count, false);
         self.set_frame(spheres);
         let span = self.span();
-        let largest = spheres.list.iter().map(|sphere| sphere.radius);
-        let reach = widened(2.0 * largest.fold(0.0, f32::max));
+        let radii = spheres.list.iter().map(|sphere| sphere.radius);
+        let (smallest, largest) = radii.fold((f32::MAX, 0.0), |(low, high), radius| {
+            (f32::min(low, radius), f32::max(high, radius))
+        });
+        self.least_stray = 2.0 * STRAY * smallest;
+        self.spare = self.least_stray;
+        self.reach = widened(2.0 * largest);
+        let reach = self.reach;
         // Half the length of each path; sleepers have none.
         let sweep = |(path, sphere): (&Path, &ContactSphere)| match sphere.asleep {
             true => -1.0,
@@ -246,8 +258,6 @@ impl SpherePairs {
             half: 0.5 * (self.duration - self.elapsed).max(0.0),
         };
         let bins = self.bins.as_ref().expect("all were looked for before");
-        let largest = spheres.list.iter().map(|sphere| sphere.radius);
-        let reach = widened(2.0 * largest.fold(0.0, f32::max));
         let this = &*self;
         let found = threads::map(changed.chunks(LOOKS), |places| {
             let mut found = Vec::new();
@@ -257,7 +267,7 @@ impl SpherePairs {
                 let shift = scaled(this.frame, span.middle - this.span().middle);
                 let at = minus(path.at(span.middle), shift);
                 let sweep = length(minus(path.velocity, this.frame)) * span.half;
-                bins.near::<D>(at, reach + this.short + sweep, |other| {
+                bins.near::<D>(at, this.reach + this.short + sweep, |other| {
                     if !this.is_loose[other as usize] {
                         this.meet(place, other, span, spheres, &mut found);
                     }
@@ -271,7 +281,8 @@ impl SpherePairs {
             found
         });
         merge(&mut self.list, &found, &is_changed);
-        self.spare = 0.0;
+        // `find_strayed` found out about the others.
+        self.spare = self.spare.min(self.least_stray);
     }
 
     /// From when all were looked for to the end of the tick.

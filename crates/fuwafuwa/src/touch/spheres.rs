@@ -64,6 +64,11 @@ impl Spheres {
                 *centre = sphere.mean::<D>(&body.position);
             }
         }
+        // So that a world that was saved goes on as one that was not.
+        self.close.clear();
+        self.is_close.fill(false);
+        self.velocities.fill([0.0; 4]);
+        self.moved.fill(0.0);
         let all = 0..self.list.len() as u32;
         self.awake.clear();
         self.awake
@@ -92,10 +97,6 @@ impl Spheres {
         };
         self.centres.clear();
         self.centres.extend(self.list.iter().map(centre));
-        self.close.clear();
-        self.is_close.clear();
-        self.velocities.clear();
-        self.moved.clear();
         self.make_room();
         let places = before.iter().map(|&key| self.place(key));
         places.collect()
@@ -121,7 +122,9 @@ impl Spheres {
             let own = &mut by_element[id as usize];
             if *own == NONE {
                 *own = self.list.len() as u32;
-                self.awake.push(*own);
+                if !sphere.asleep {
+                    self.awake.push(*own);
+                }
                 self.keys.push(sphere.key());
                 self.list.push(sphere);
                 self.is_listed = false;

@@ -201,6 +201,12 @@ impl<D: Dim> World<D> {
         hash.number()
     }
 
+    /// Works out what is not saved.
+    #[cfg(feature = "serde")]
+    pub(crate) fn rebuild(&mut self) {
+        self.bodies.iter_mut().for_each(Body::rebuild);
+    }
+
     /// All pieces of a body.
     fn pieces_of(&self, body: usize) -> Vec<Hit> {
         let pieces = 0..self.bodies[body].pieces.list.len() as u32;

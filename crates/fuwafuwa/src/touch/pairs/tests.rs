@@ -160,6 +160,11 @@ fn check_tears<D: Dim>(n: usize) {
             let mut anew = Spheres::default();
             anew.start_tick(std::slice::from_ref(&body));
             assert_eq!(kept, anew.list);
+            let mut rebuilt = body.clone();
+            rebuilt.rebuild();
+            let mut anew = Spheres::default();
+            anew.start_tick(std::slice::from_ref(&rebuilt));
+            assert_eq!(kept, anew.list, "what tears kept up, and a fresh look");
         }
         for b in 0..spheres.list.len() {
             for a in 0..b {
