@@ -9,6 +9,7 @@
 mod exit;
 mod motion;
 mod row;
+mod sides;
 
 use crate::body::Body;
 use crate::dim::Dim;
@@ -20,6 +21,7 @@ use crate::vector::{as_row, minus, scaled, three};
 use exit::Exit;
 use motion::Motion;
 use row::{Contact, inner};
+use sides::{HandContact, NodeContact, SphereContact, push_hand};
 
 /// A crumb is behind a sphere when the way to it goes this far inwards (cosine).
 const BEHIND: f32 = 0.3;
@@ -29,35 +31,6 @@ const WAKE_SPEED: f32 = 0.15;
 /// A contact matters when the gap closes to so many voxels within so many substeps.
 const CLOSE: f32 = 0.05;
 const AHEAD: f32 = 1.5;
-
-/// A node against something rigid.
-#[derive(Copy, Clone, Debug)]
-struct NodeContact {
-    contact: Contact,
-    /// Place of the node among those of all bodies.
-    node: u32,
-    /// The hand, if it is one that the node touches.
-    hand: Option<u32>,
-}
-
-/// Two spheres against each other.
-#[derive(Copy, Clone, Debug)]
-struct SphereContact {
-    contact: Contact,
-    /// Places of their nodes among those of all bodies.
-    grips: [Grip; 2],
-}
-
-/// The corner nodes of a sphere; the first four in 2D.
-type Grip = [u32; 8];
-
-/// A manipulator against an obstacle or against another manipulator.
-#[derive(Copy, Clone, Debug)]
-struct HandContact {
-    contact: Contact,
-    hand: usize,
-    other: Option<usize>,
-}
 
 /// The contacts of one substep.
 #[derive(Clone, Debug, Default)]
@@ -397,15 +370,5 @@ fn for_each<T>(rows: &mut [T], backwards: bool, mut solve: impl FnMut(&mut T)) {
         rows.iter_mut().rev().for_each(&mut solve);
     } else {
         rows.iter_mut().for_each(&mut solve);
-    }
-}
-
-fn push_hand(hand: &mut Manipulator, impulse: Row, duration: f32) {
-    let inverse_mass = hand.inverse_mass();
-    for axis in 0..3 {
-        hand.velocity[axis] += impulse[axis] * inverse_mass;
-        if let Some(reaction) = hand.reactions.last_mut() {
-            reaction.contact[axis] += impulse[axis] / duration;
-        }
     }
 }

@@ -10,30 +10,23 @@
 //! body in some hundred classes, is pooled by number of nodes, with a stencil for each lane.
 
 mod assign;
+mod block;
 mod kernel;
 mod lanes;
+mod turn;
+
+pub use lanes::Row;
 
 use crate::dim::Dim;
 use crate::law::{Elasticity, Law};
 use crate::threads::{self, Rows};
 use crate::vector::{plus, scaled};
+use block::{Block, GROUP, Group, Home, Shared, VACANT, evaluate_best};
 use fearless_simd::Simd;
-use kernel::{
-    BlockView, Moduli, PerLane, Scratch, Uniform, forces, gradient, matrix_of, plain_forces,
-    plain_gradient, stress,
-};
-use lanes::{Eight, on_widest_lanes, splat};
+use kernel::{Moduli, Scratch};
+use lanes::{Eight, LANES, on_widest_lanes, splat};
 use std::collections::{BTreeMap, BTreeSet};
 use std::marker::PhantomData;
-
-/// Three coordinates and a pad, so that a row is one aligned load; in 2D the third is 0.
-pub type Row = [f32; 4];
-
-/// Elements in a block.
-pub const LANES: usize = 8;
-
-/// Blocks that go through the three loops of the kernel together: their scratch fits the L1 cache.
-const GROUP: usize = 8;
 
 /// Blocks from which on several threads are worth their meeting: about as many as make shares enough
 /// in [`threads`].
@@ -42,9 +35,6 @@ const LEAST_PARALLEL: usize = 1024;
 
 /// Numbers after the last force, so that four can be read from where it begins.
 const PAD: usize = 4;
-
-const VACANT: u32 = u32::MAX;
-const ALL_LANES: u8 = u8::MAX;
 
 /// All elements of a body in blocks, with the forces they put on their nodes.
 #[derive(Clone, Debug)]
@@ -80,50 +70,6 @@ pub struct Blocks<D: Dim> {
     dim: PhantomData<D>,
 }
 
-#[derive(Clone, Debug)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct Block {
-    home: Home,
-    elements: [u32; LANES],
-    /// The lanes that sleep or are vacant, as a mask.
-    asleep: u8,
-    /// The lanes that are inside out, as of the last evaluation.
-    inverted: u8,
-    half_size: Eight,
-    /// In space a quaternion; in the plane cosine and sine.
-    rotation: [Eight; 4],
-    node_count: u32,
-    /// Where its nodes and forces begin.
-    first: u32,
-    /// Where its stencil begins, in `numbers` or in `pooled`, and how long it is.
-    stencil: u32,
-    numbers: u32,
-}
-
-/// What the elements of a block have in common; each with the number of its material.
-#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-enum Home {
-    /// Whole cells with nodes in their corners only.
-    Plain(u8),
-    /// One class.
-    Class(u8, u32),
-    /// A number of nodes.
-    Pool(u8, u32),
-}
-
-impl Home {
-    fn material(self) -> u8 {
-        match self {
-            Self::Plain(material) | Self::Class(material, _) | Self::Pool(material, _) => material,
-        }
-    }
-
-    fn is_pool(self) -> bool {
-        matches!(self, Self::Pool(..))
-    }
-}
-
 /// What changes velocities in a substep, beside the elastic forces.
 #[derive(Copy, Clone, Debug)]
 pub struct Kick<'a> {
@@ -135,119 +81,6 @@ pub struct Kick<'a> {
     pub duration: f32,
     /// [m/s²]
     pub gravity: Row,
-}
-
-/// What all blocks read.
-#[derive(Copy, Clone)]
-struct Shared<'a> {
-    law: Law,
-    moduli: &'a [Moduli],
-    numbers: &'a [f32],
-    pooled: &'a [Eight],
-    nodes: &'a [u32],
-}
-
-/// Some blocks, and the forces that they write, the first of which has the number `first`.
-struct Group<'a> {
-    blocks: &'a mut [Block],
-    forces: &'a mut [f32],
-    first: usize,
-    shared: Shared<'a>,
-}
-
-impl Block {
-    /// Where its forces end.
-    fn end(&self) -> usize {
-        self.first as usize + self.node_count as usize * LANES
-    }
-
-    /// Its stencil: one for all lanes, or else one for each.
-    #[inline(always)]
-    fn stencil<'a>(&self, shared: &Shared<'a>) -> (&'a [f32], &'a [Eight]) {
-        let places = self.stencil as usize..(self.stencil + self.numbers) as usize;
-        match self.home {
-            Home::Plain(_) => (&[], &[]),
-            Home::Class(..) => (&shared.numbers[places], &[]),
-            Home::Pool(..) => (&[], &shared.pooled[places]),
-        }
-    }
-
-    /// What the kernel works on; `first` is the number of the first of the forces.
-    #[inline(always)]
-    fn view<'a, D: Dim>(
-        &'a mut self,
-        shared: &Shared<'a>,
-        forces: &'a mut [f32],
-        first: usize,
-    ) -> BlockView<'a> {
-        let places = self.first as usize..self.end();
-        BlockView {
-            nodes: &shared.nodes[places.clone()],
-            half_size: &self.half_size,
-            rotation: &mut self.rotation,
-            forces: &mut forces[(places.start - first) * D::N..(places.end - first) * D::N],
-            inverted: &mut self.inverted,
-        }
-    }
-}
-
-/// The forces of the blocks of a group that are awake.
-#[inline(always)]
-fn evaluate_group<D: Dim, S: Simd>(
-    simd: S,
-    group: Group,
-    position: &[Row],
-    scratch: &mut [Scratch; GROUP],
-) {
-    let Group {
-        blocks,
-        forces: all,
-        first,
-        shared,
-    } = group;
-    let law = shared.law;
-    for (block, scratch) in blocks.iter_mut().zip(&mut *scratch) {
-        if block.asleep == ALL_LANES {
-            continue;
-        }
-        let (home, stencil) = (block.home, block.stencil(&shared));
-        let view = block.view::<D>(&shared, all, first);
-        match (home, stencil) {
-            (Home::Plain(_), _) => plain_gradient::<D, S>(simd, position, &view, scratch),
-            (_, (one, [])) => gradient::<D, S>(simd, &Uniform(one), position, &view, scratch),
-            (_, (_, each)) => gradient::<D, S>(simd, &PerLane(each), position, &view, scratch),
-        }
-    }
-    for (block, scratch) in blocks.iter_mut().zip(&mut *scratch) {
-        if block.asleep == ALL_LANES {
-            continue;
-        }
-        let moduli = &shared.moduli[block.home.material() as usize - 1];
-        let mut view = block.view::<D>(&shared, all, first);
-        stress::<D, S>(simd, law, moduli, &mut view, scratch);
-    }
-    for (block, scratch) in blocks.iter_mut().zip(&*scratch) {
-        if block.asleep == ALL_LANES {
-            continue;
-        }
-        let (home, stencil) = (block.home, block.stencil(&shared));
-        let moduli = &shared.moduli[home.material() as usize - 1];
-        let view = &mut block.view::<D>(&shared, all, first);
-        match (home, stencil) {
-            (Home::Plain(_), _) => plain_forces::<D, S>(simd, moduli, view, scratch),
-            (_, (one, [])) => {
-                forces::<D, S>(simd, law, moduli, &Uniform(one), view, scratch);
-            }
-            (_, (_, each)) => {
-                forces::<D, S>(simd, law, moduli, &PerLane(each), view, scratch);
-            }
-        }
-    }
-}
-
-/// The forces of a group, by the widest lanes the machine has.
-fn evaluate_best<D: Dim>(group: Group, position: &[Row], scratch: &mut [Scratch; GROUP]) {
-    on_widest_lanes!(simd => evaluate_group::<D, _>(simd, group, position, scratch));
 }
 
 impl<D: Dim> Blocks<D> {
@@ -367,7 +200,7 @@ impl<D: Dim> Blocks<D> {
             return [[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]];
         }
         on_widest_lanes!(simd => {
-            let matrix = matrix_of(simd, turned.map(|part| splat(simd, part)));
+            let matrix = turn::matrix_of(simd, turned.map(|part| splat(simd, part)));
             matrix.map(|row| row.map(|entry| entry[0]))
         })
     }
@@ -442,6 +275,7 @@ fn moduli<D: Dim>(elasticities: &[Elasticity]) -> Vec<Moduli> {
 
 #[cfg(test)]
 mod tests {
+    use super::block::evaluate_group;
     use super::*;
     use crate::dim::{Dim2, Dim3};
     use crate::grid::VoxelGrid;

@@ -1,8 +1,8 @@
 //! The way out for who is inside another piece: along with it, and towards the exit.
 
 use super::motion::Motion;
-use super::row::PUSH_OUT_SPEED;
-use super::{Grip, inner};
+use super::row::{PUSH_OUT_SPEED, inner};
+use super::sides::Grip;
 use crate::body::Body;
 use crate::dim::Dim;
 use crate::solve::Row;

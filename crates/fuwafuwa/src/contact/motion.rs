@@ -1,6 +1,6 @@
 //! The velocities that contacts push on, side by side.
 
-use super::{Grip, NodeContact, push_hand};
+use super::sides::{Grip, NodeContact, push_hand};
 use crate::body::Body;
 use crate::dim::Dim;
 use crate::manipulator::Manipulator;

@@ -1,7 +1,9 @@
 //! Which block and lane an element is in: how blocks follow a remodelling.
 
+use super::block::{ALL_LANES, Block, Home, VACANT};
 use super::kernel::{numbers, numbers_a_node, symmetric};
-use super::{ALL_LANES, Block, Blocks, Home, LANES, PAD, VACANT};
+use super::lanes::LANES;
+use super::{Blocks, PAD};
 use crate::chains::ascending;
 use crate::dim::Dim;
 use crate::grid::VoxelGrid;

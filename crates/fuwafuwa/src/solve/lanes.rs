@@ -4,8 +4,13 @@
 //! operation works within a lane and rounds once, so that all machines give the same bits: only
 //! + − × ÷ √, comparisons and choices are used, nothing fused and nothing approximate.
 
-use super::{LANES, Row};
 use fearless_simd::{f32x4, f32x8, prelude::*};
+
+/// Three coordinates and a pad, so that a row is one aligned load; in 2D the third is 0.
+pub type Row = [f32; 4];
+
+/// Elements in a block.
+pub const LANES: usize = 8;
 
 /// One number for each element of a block.
 pub type Lanes<S> = f32x8<S>;

@@ -1,0 +1,143 @@
+//! Which nodes an element has, and so which class: what its surroundings ask for.
+
+use super::remodel::{Inheritance, Past};
+use super::{Defect, Element, Mesh, Node};
+use crate::dim::{Dim, Point, add, corner, scale, voxel_around};
+use crate::pyramid::Cell;
+use crate::sharing::Sharing;
+use crate::stencil::{Stencil, cell_corners, slot_at};
+
+impl<D: Dim> Mesh<D> {
+    /// Gives an element the nodes and the class that its surroundings ask for; false when it has
+    /// them already. A new node inherits from the past, where there is one.
+    pub(super) fn seat(
+        &mut self,
+        id: u32,
+        sharing: &Sharing<D>,
+        mut past: Option<&mut Past>,
+    ) -> Result<bool, Defect> {
+        let (cell, children) = (self.alive(id).cell, self.alive(id).children);
+        let corners = cell_corners::<D>();
+        let (mut slots, mut seated, mut count) = (0u32, [0u32; 27], 0);
+        for slot in 0..D::SLOTS {
+            let is_corner = corners >> slot & 1 == 1;
+            if !is_corner && cell.level == 0 {
+                continue;
+            }
+            let Some((at, octant)) = seat_of::<D>(cell, children, slot) else {
+                continue;
+            };
+            let node = Node {
+                at,
+                group: sharing.groups(at).group_of(octant),
+            };
+            let on_surface = self.dense_surface && node.group != D::ALL_CORNERS;
+            if !is_corner && !on_surface && !self.is_node_beside(id, node) {
+                continue;
+            }
+            let (node, is_new) = self.node_id(node, sharing.index(at));
+            if let (true, Some(past)) = (is_new, &mut past) {
+                let from = past.shares(self, voxel_around::<D>(at, octant), at)?;
+                past.inherited.push(Inheritance { node, from });
+            }
+            slots |= 1 << slot;
+            seated[count] = node;
+            count += 1;
+        }
+        let seated = &seated[..count];
+        // The nodes tell the slots, and so the class.
+        if self.alive(id).nodes == seated {
+            return Ok(false);
+        }
+        let stencil = self.class(children, slots)?;
+        let element = Element {
+            cell,
+            children,
+            stencil,
+            nodes: seated.to_vec(),
+        };
+        let old = self.elements[id as usize].replace(element);
+        let old = old.expect("seated elements are alive");
+        for &node in seated {
+            self.carriers[node as usize] += 1;
+        }
+        for &node in &old.nodes {
+            self.carriers[node as usize] -= 1;
+        }
+        if let Some(past) = past {
+            past.replaced.push((id, old));
+        }
+        Ok(true)
+    }
+
+    /// Whether a (point, group) is a corner of the own cell of an element beside one of which it is
+    /// no corner.
+    fn is_node_beside(&self, id: u32, node: Node) -> bool {
+        // Up to this level, and no further, a cell can have a corner here.
+        let [x, y, z] = node.at;
+        let highest = (x | y | z).trailing_zeros();
+        self.owners_around(node.at, node.group)
+            .any(|owner| owner != id && u32::from(self.alive(owner).cell.level) <= highest)
+    }
+
+    /// The id of a node at the lattice point with this index, and whether it was made just now.
+    fn node_id(&mut self, node: Node, point: usize) -> (u32, bool) {
+        let mut present = self.by_point.at(point);
+        if let Some(id) = present.find(|&id| self.node(id).group == node.group) {
+            return (id, false);
+        }
+        drop(present);
+        let id = self.free_nodes.pop().unwrap_or(self.nodes.len() as u32);
+        if id as usize == self.nodes.len() {
+            self.nodes.push(node);
+            self.carriers.push(0);
+        } else {
+            self.nodes[id as usize] = node;
+        }
+        self.by_point.append(point, id);
+        (id, true)
+    }
+
+    fn class(&mut self, children: u8, slots: u32) -> Result<u32, Defect> {
+        if let Some(&class) = self.classes.get(&(children, slots)) {
+            return Ok(class);
+        }
+        let class = self.stencils.len() as u32;
+        self.stencils.push(Stencil::new(children, slots)?);
+        self.classes.insert((children, slots), class);
+        Ok(class)
+    }
+}
+
+/// The lattice point of a slot, and an octant there that belongs to the element; nothing where the
+/// slot is no corner of any of its children.
+fn seat_of<D: Dim>(cell: Cell, children: u8, slot: usize) -> Option<(Point, usize)> {
+    let steps = slot_at(slot);
+    let touching = children & TOUCHING[slot];
+    if touching == 0 {
+        return None;
+    }
+    let low = corner(touching.trailing_zeros() as usize);
+    let at = add(scale(cell.at, 2), steps).map(|k| (k << cell.level) / 2);
+    let octant = (0..D::N).fold(0, |octant, axis| {
+        octant | usize::from(steps[axis] == low[axis]) << axis
+    });
+    Some((at, octant))
+}
+
+/// The children that each slot is a corner of.
+const TOUCHING: [u8; 27] = {
+    // Along one axis: the near child, both, the far one.
+    let along = [
+        [0b0101_0101, 0b1111_1111, 0b1010_1010],
+        [0b0011_0011, 0b1111_1111, 0b1100_1100],
+        [0b0000_1111, 0b1111_1111, 0b1111_0000],
+    ];
+    let mut touching = [0; 27];
+    let mut slot = 0;
+    while slot < 27 {
+        touching[slot] = along[0][slot % 3] & along[1][slot / 3 % 3] & along[2][slot / 9];
+        slot += 1;
+    }
+    touching
+};
