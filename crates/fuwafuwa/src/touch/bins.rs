@@ -2,6 +2,7 @@
 
 use crate::dim::{Dim, Point};
 use crate::solve::Row;
+use crate::threads::SHARE;
 use std::ops::Range;
 
 /// 1.5 · 2²³: to it and to what is up to 2²² greater or smaller only whole numbers can be added.
@@ -73,6 +74,49 @@ impl Bins {
     pub fn point(&self, place: usize) -> (u32, Row) {
         let [x, y, z] = self.places.each_ref().map(|places| places[place]);
         (self.numbers[place], [x, y, z, 0.0])
+    }
+
+    /// All bins, in shares.
+    pub fn shares(&self) -> impl Iterator<Item = Range<usize>> + use<> {
+        let bins = self.start.len() - 1;
+        let firsts = (0..bins).step_by(SHARE);
+        firsts.map(move |first| first..bins.min(first + SHARE))
+    }
+
+    /// Calls `visit` once with the numbers of any two points that are no further apart than `reach`
+    /// [m], which may be no more than a bin is wide, and of which one lies in these `bins`: all shares
+    /// together make all pairs.
+    #[inline]
+    pub fn pairs<D: Dim>(&self, bins: Range<usize>, reach: f32, mut visit: impl FnMut(u32, u32)) {
+        // Of two bins side by side one looks at the other.
+        let ahead: &[[i32; 2]] = match D::N {
+            2 => &[[1, 0]],
+            _ => &[[1, 0], [-1, 1], [0, 1], [1, 1]],
+        };
+        let mut others: Vec<Range<usize>> = Vec::new();
+        for bin in bins {
+            let own = self.range(bin, bin);
+            if own.is_empty() {
+                continue;
+            }
+            let along = |axis: usize| bin as i32 >> (axis * self.bits) & self.mask;
+            let (x, y, z) = (along(0), along(1), along(2));
+            let next = self.bin([x + 1, y, z]) as usize;
+            others.clear();
+            others.push(self.range(next, next));
+            for [dy, dz] in ahead {
+                others.extend(self.row([x, y + dy, z + dz], 1));
+            }
+            others.retain(|range| !range.is_empty());
+            for place in own.clone() {
+                let (number, at) = self.point(place);
+                let mut visit = |other| visit(number, other);
+                self.look(place + 1..own.end, at, reach, &mut visit);
+                for range in &others {
+                    self.look(range.clone(), at, reach, &mut visit);
+                }
+            }
+        }
     }
 
     /// Calls `visit` with the number of each point that is no further from `at` than `reach` [m].
@@ -185,6 +229,20 @@ mod tests {
         let points: Vec<Row> = (0..900).map(point).collect();
         let reach = 0.4;
         let bins = Bins::new::<D>(&points, reach);
+        let mut found = Vec::new();
+        for share in bins.shares() {
+            bins.pairs::<D>(share, reach, |a, b| {
+                found.push((a.min(b) as usize, a.max(b) as usize));
+            });
+        }
+        found.sort_unstable();
+        let is_near = |a: usize, b: usize| {
+            let apart = minus(points[a], points[b]);
+            dot(apart, apart) <= reach * reach
+        };
+        let all = (0..points.len()).flat_map(|a| (a + 1..points.len()).map(move |b| (a, b)));
+        let expected: Vec<_> = all.filter(|&(a, b)| is_near(a, b)).collect();
+        assert_eq!(found, expected);
         let mut total = 0;
         // A bin, several, and so many that they meet around the grid.
         let reaches = [0.5, 1.0, 2.7, 40.0].into_iter().cycle();

@@ -23,11 +23,9 @@ use crate::vector::{dot, length, minus, plus, scaled};
 /// How far a sphere may stray from its path, in voxels: more makes longer lists, less more looks.
 const STRAY: f32 = 0.35;
 /// The share of spheres whose paths are long, and how long those of the rest may be at the most, as a
-/// share of the reach: who strays compares its path with all long ones, and looks around for short ones.
+/// share of the reach: short ones are looked for bin by bin, long ones look around for themselves.
 const LONG_SHARE: usize = 64;
-const LONGEST_SHORT: f32 = 0.25;
-/// Width of the bins, as a share of the reach: most find all they look for in the bins next to theirs.
-const BIN_WIDTH: f32 = 1.15;
+const LONGEST_SHORT: f32 = 0.125;
 /// Looking for all pairs takes, for each sphere that is awake, as long as comparing so many paths.
 const COMPARED: usize = 64;
 
@@ -220,12 +218,24 @@ impl SpherePairs {
             }
         }
         let middles: Vec<Row> = self.paths.iter().map(|path| path.at(span.middle)).collect();
-        let bins = Bins::new::<D>(&middles, BIN_WIDTH * reach);
-        let this = &*self;
-        let found = threads::map(spheres.awake.chunks(LOOKS), |places| {
+        let width = reach + 2.0 * self.short;
+        let bins = Bins::new::<D>(&middles, width);
+        let (is_loose, this) = (&self.is_loose, &*self);
+        let mut found = threads::map(bins.shares(), |share| {
+            let mut found = Vec::new();
+            bins.pairs::<D>(share, width, |a, b| {
+                let is_short = |place: u32| !is_loose[place as usize];
+                let is_awake = |place: u32| sweeps[place as usize] >= 0.0;
+                if is_short(a) && is_short(b) && (is_awake(a) || is_awake(b)) {
+                    this.meet(a, b, span, spheres, &mut found);
+                }
+            });
+            found
+        });
+        found.extend(threads::map(self.loose.chunks(LOOKS), |places| {
             let mut found = Vec::new();
             for &place in places {
-                // Of two the one with the longer path looks for the other.
+                // Of two long paths the longer one looks for the other.
                 let rank = |place: u32| (sweeps[place as usize], place);
                 let (at, sweep) = (middles[place as usize], sweeps[place as usize]);
                 bins.near::<D>(at, reach + 2.0 * sweep, |other| {
@@ -235,7 +245,7 @@ impl SpherePairs {
                 });
             }
             found
-        });
+        }));
         self.bins = Some(bins);
         merge(&mut self.list, &found, &vec![true; count]);
     }
