@@ -1,7 +1,7 @@
 //! Which contact spheres may touch each other.
 //!
-//! They are looked for once a tick, along the way that each is going to take: a straight *path*, from
-//! which it may stray a little. Only those that have strayed further, woke or came to the surface
+//! They are looked for once a tick, or more often while much is fast, along the way that each is going to
+//! take: a straight *path*, from which it may stray a little. Only those that have strayed further, woke or came to the surface
 //! are looked for again; so no pair can be missed, whatever moves as long as it is finite.
 //!
 //! ```text
@@ -22,9 +22,10 @@ use crate::vector::{dot, length, minus, plus, scaled};
 
 /// How far a sphere may stray from its path, in voxels: more makes longer lists, less more looks.
 const STRAY: f32 = 0.35;
-/// The share of spheres whose paths are long, and how long those of the rest may be at the most, as a
-/// share of the reach: short ones are looked for bin by bin, long ones look around for themselves.
-const LONG_SHARE: usize = 64;
+/// The share of spheres whose paths may be long, and half the length of the longest of the rest, as a share
+/// of the reach: where more is faster, paths end before the tick does. Short ones are looked for bin by
+/// bin, long ones look around for themselves.
+const LONG_SHARE: usize = 16;
 const LONGEST_SHORT: f32 = 0.125;
 /// Looking for all pairs takes, for each sphere that is awake, as long as comparing so many paths.
 const COMPARED: usize = 64;
@@ -81,7 +82,7 @@ pub struct SpherePairs {
     /// Spheres to be looked for again, beside those that stray.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub changed: Vec<u32>,
-    /// Since all were looked for, and from then to the end of the tick [s].
+    /// Since all were looked for, and from then to the end of all paths [s].
     #[cfg_attr(feature = "serde", serde(skip))]
     elapsed: f32,
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -123,7 +124,7 @@ impl SpherePairs {
             self.list.clear();
             return had_some;
         }
-        if self.bins.is_none() {
+        if self.bins.is_none() || self.elapsed > self.duration {
             spheres.move_all(bodies);
             self.find_all(spheres, bodies, left);
             return true;
@@ -186,7 +187,7 @@ impl SpherePairs {
     fn find_all<D: Dim>(&mut self, spheres: &Spheres, bodies: &[Body<D>], left: f32) {
         let count = spheres.list.len();
         self.changed.clear();
-        (self.elapsed, self.duration) = (0.0, left);
+        self.elapsed = 0.0;
         self.pace = 0.0;
         self.paths.resize(count, Path::default());
         (0..count as u32).for_each(|place| self.lay(place, spheres, bodies));
@@ -194,7 +195,6 @@ impl SpherePairs {
         self.is_loose.clear();
         self.is_loose.resize(count, false);
         self.set_frame(spheres);
-        let span = self.span();
         let radii = spheres.list.iter().map(|sphere| sphere.radius);
         let (smallest, largest) = radii.fold((f32::MAX, 0.0), |(low, high), radius| {
             (f32::min(low, radius), f32::max(high, radius))
@@ -203,14 +203,24 @@ impl SpherePairs {
         self.spare = self.least_stray;
         self.reach = widened(2.0 * largest);
         let reach = self.reach;
+        let speed = |path: &Path| length(minus(path.velocity, self.frame));
+        let awake = spheres.awake.iter();
+        let speeds = awake.map(|&place| speed(&self.paths[place as usize]));
+        let most = usual(speeds.filter(|speed| speed.is_finite()).collect());
+        let longest = LONGEST_SHORT * reach;
+        self.duration = if most * left > 2.0 * longest {
+            2.0 * longest / most
+        } else {
+            left
+        };
+        let span = self.span();
+        self.short = most * span.half;
         // Half the length of each path; sleepers have none.
         let sweep = |(path, sphere): (&Path, &ContactSphere)| match sphere.asleep {
             true => -1.0,
-            false => length(minus(path.velocity, self.frame)) * span.half,
+            false => speed(path) * span.half,
         };
         let sweeps: Vec<f32> = self.paths.iter().zip(&spheres.list).map(sweep).collect();
-        let awake = spheres.awake.iter().map(|&place| sweeps[place as usize]);
-        self.short = longest_short(awake.collect(), LONGEST_SHORT * reach);
         for (place, &sweep) in (0..).zip(&sweeps) {
             if sweep > self.short {
                 self.loose.push(place);
@@ -232,13 +242,23 @@ impl SpherePairs {
             });
             found
         });
+        let long: Vec<Row> = { self.loose.iter() }
+            .map(|&place| middles[place as usize])
+            .collect();
+        let long = Bins::new::<D>(&long, width);
         found.extend(threads::map(self.loose.chunks(LOOKS), |places| {
             let mut found = Vec::new();
             for &place in places {
+                let (at, sweep) = (middles[place as usize], sweeps[place as usize]);
+                bins.near::<D>(at, reach + sweep + this.short, |other| {
+                    if !is_loose[other as usize] {
+                        this.meet(place, other, span, spheres, &mut found);
+                    }
+                });
                 // Of two long paths the longer one looks for the other.
                 let rank = |place: u32| (sweeps[place as usize], place);
-                let (at, sweep) = (middles[place as usize], sweeps[place as usize]);
-                bins.near::<D>(at, reach + 2.0 * sweep, |other| {
+                long.near::<D>(at, reach + 2.0 * sweep, |number| {
+                    let other = this.loose[number as usize];
                     if rank(other) < rank(place) {
                         this.meet(place, other, span, spheres, &mut found);
                     }
@@ -295,7 +315,7 @@ impl SpherePairs {
         self.spare = self.spare.min(self.least_stray);
     }
 
-    /// From when all were looked for to the end of the tick.
+    /// From when all were looked for to the end of all paths.
     fn span(&self) -> Span {
         let half = 0.5 * self.duration;
         Span { middle: half, half }
@@ -326,7 +346,11 @@ impl SpherePairs {
         let closing = minus(first.velocity, second.velocity);
         let apart = minus(first.from, second.from);
         let apart = plus(apart, scaled(closing, span.middle));
-        let reach = widened(own.radius + other.radius) + length(closing) * span.half;
+        // Where they come closest, as seen from the middle of the span.
+        let time = -dot(apart, closing) / dot(closing, closing).max(f32::MIN_POSITIVE);
+        let time = time.clamp(-span.half, span.half);
+        let apart = plus(apart, scaled(closing, time));
+        let reach = widened(own.radius + other.radius);
         if dot(apart, apart) <= reach * reach {
             found.push([a.min(b), a.max(b)]);
         }
@@ -345,11 +369,13 @@ fn widened(touching: f32) -> f32 {
     (1.0 + MARGIN + 2.0 * STRAY) * touching
 }
 
-/// What all sweeps but those of a few long paths stay below [m], and `most` [m] at the most.
-fn longest_short(mut sweeps: Vec<f32>, most: f32) -> f32 {
-    let place = sweeps.len() - 1 - sweeps.len() / LONG_SHARE;
-    let (_, &mut short, _) = sweeps.select_nth_unstable_by(place, f32::total_cmp);
-    if short < most { short } else { most }
+/// What all of these but a few stay below, or are.
+fn usual(mut speeds: Vec<f32>) -> f32 {
+    if speeds.is_empty() {
+        return 0.0;
+    }
+    let place = speeds.len() - 1 - speeds.len() / LONG_SHARE;
+    *speeds.select_nth_unstable_by(place, f32::total_cmp).1
 }
 
 #[cfg(test)]
