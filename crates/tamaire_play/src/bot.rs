@@ -190,13 +190,16 @@ impl Bot {
     /// it is small enough; then gathers what is needed.
     fn shave<D: Dim>(&mut self, sight: &Sight) -> Vector {
         self.gathers |= sight.share < self.aim;
-        // What is stuck in front of the mouth has to be smaller still.
-        if self.gathers && self.waited > PATIENCE && !sight.piece.fits {
+        // What is stuck in front of the mouth has to be smaller still; not what is looked at for want of
+        // something better.
+        if self.gathers && self.waited > PATIENCE && self.skips == 0 && !sight.piece.fits {
             (self.gathers, self.aim) = (false, SMALL_ENOUGH * sight.share);
         }
         if self.gathers {
             return self.push(sight);
         }
+        // Patience is for gathering, which begins with the largest piece every time.
+        (self.best, self.waited, self.skips) = (0.0, 0, 0);
         let Sight {
             axis,
             across,
