@@ -187,87 +187,117 @@ impl SpherePairs {
     fn find_all<D: Dim>(&mut self, spheres: &Spheres, bodies: &[Body<D>], left: f32) {
         let count = spheres.list.len();
         self.changed.clear();
-        self.elapsed = 0.0;
-        self.pace = 0.0;
+        (self.elapsed, self.pace) = (0.0, 0.0);
         self.paths.resize(count, Path::default());
         (0..count as u32).for_each(|place| self.lay(place, spheres, bodies));
-        self.loose.clear();
+        self.measure(spheres, left);
+        let sweeps = self.sweeps(spheres);
         self.is_loose.clear();
-        self.is_loose.resize(count, false);
-        self.set_frame(spheres);
+        let short = self.short;
+        self.is_loose
+            .extend(sweeps.iter().map(|&sweep| sweep > short));
+        let all = 0..count as u32;
+        self.loose.clear();
+        let is_loose = &self.is_loose;
+        self.loose
+            .extend(all.filter(|&place| is_loose[place as usize]));
+        let middle = self.span().middle;
+        let middles: Vec<Row> = self.paths.iter().map(|path| path.at(middle)).collect();
+        let bins = Bins::new::<D>(&middles, self.reach + 2.0 * self.short);
+        let mut found = self.short_pairs::<D>(&bins, &sweeps, spheres);
+        found.extend(self.long_pairs::<D>(&bins, &middles, &sweeps, spheres));
+        self.bins = Some(bins);
+        merge(&mut self.list, &found, &vec![true; count]);
+    }
+
+    /// Works out how far is looked: how close spheres may come, how far they may stray, for how long their
+    /// paths hold where `left` [s] of the tick are to come, and how long the short ones are.
+    fn measure(&mut self, spheres: &Spheres, left: f32) {
         let radii = spheres.list.iter().map(|sphere| sphere.radius);
-        let (smallest, largest) = radii.fold((f32::MAX, 0.0), |(low, high), radius| {
-            (f32::min(low, radius), f32::max(high, radius))
+        let (smallest, largest) = radii.fold((f32::MAX, 0.0f32), |(low, high), radius| {
+            (low.min(radius), high.max(radius))
         });
         self.least_stray = 2.0 * STRAY * smallest;
         self.spare = self.least_stray;
         self.reach = widened(2.0 * largest);
-        let reach = self.reach;
-        let speed = |path: &Path| length(minus(path.velocity, self.frame));
-        let awake = spheres.awake.iter();
-        let speeds = awake.map(|&place| speed(&self.paths[place as usize]));
+        self.set_frame(spheres);
+        let speeds = { spheres.awake.iter() }.map(|&place| self.speed(place));
         let most = usual(speeds.filter(|speed| speed.is_finite()).collect());
-        let longest = LONGEST_SHORT * reach;
-        self.duration = if most * left > 2.0 * longest {
-            2.0 * longest / most
-        } else {
-            left
+        let longest = LONGEST_SHORT * self.reach;
+        self.duration = match most * left > 2.0 * longest {
+            true => 2.0 * longest / most,
+            false => left,
         };
-        let span = self.span();
-        self.short = most * span.half;
-        // Half the length of each path; sleepers have none.
-        let sweep = |(path, sphere): (&Path, &ContactSphere)| match sphere.asleep {
+        self.short = most * self.span().half;
+    }
+
+    /// How fast a path goes, as seen from the frame [m/s].
+    fn speed(&self, place: u32) -> f32 {
+        length(minus(self.paths[place as usize].velocity, self.frame))
+    }
+
+    /// Half the length of each path [m]; sleepers have none.
+    fn sweeps(&self, spheres: &Spheres) -> Vec<f32> {
+        let half = self.span().half;
+        let sweep = |(sphere, place): (&ContactSphere, u32)| match sphere.asleep {
             true => -1.0,
-            false => speed(path) * span.half,
+            false => self.speed(place) * half,
         };
-        let sweeps: Vec<f32> = self.paths.iter().zip(&spheres.list).map(sweep).collect();
-        for (place, &sweep) in (0..).zip(&sweeps) {
-            if sweep > self.short {
-                self.loose.push(place);
-                self.is_loose[place as usize] = true;
-            }
-        }
-        let middles: Vec<Row> = self.paths.iter().map(|path| path.at(span.middle)).collect();
-        let width = reach + 2.0 * self.short;
-        let bins = Bins::new::<D>(&middles, width);
-        let (is_loose, this) = (&self.is_loose, &*self);
-        let mut found = threads::map(bins.shares(), |share| {
+        spheres.list.iter().zip(0..).map(sweep).collect()
+    }
+
+    /// The pairs of which both have short paths, or one sleeps.
+    fn short_pairs<D: Dim>(
+        &self,
+        bins: &Bins,
+        sweeps: &[f32],
+        spheres: &Spheres,
+    ) -> Vec<Vec<[u32; 2]>> {
+        let (span, reach) = (self.span(), self.reach + 2.0 * self.short);
+        let is_short = |place: u32| !self.is_loose[place as usize];
+        let is_awake = |place: u32| sweeps[place as usize] >= 0.0;
+        threads::map(bins.shares(), |share| {
             let mut found = Vec::new();
-            bins.pairs::<D>(share, width, |a, b| {
-                let is_short = |place: u32| !is_loose[place as usize];
-                let is_awake = |place: u32| sweeps[place as usize] >= 0.0;
+            bins.pairs::<D>(share, reach, |a, b| {
                 if is_short(a) && is_short(b) && (is_awake(a) || is_awake(b)) {
-                    this.meet(a, b, span, spheres, &mut found);
+                    self.meet(a, b, span, spheres, &mut found);
                 }
             });
             found
-        });
-        let long: Vec<Row> = { self.loose.iter() }
-            .map(|&place| middles[place as usize])
-            .collect();
-        let long = Bins::new::<D>(&long, width);
-        found.extend(threads::map(self.loose.chunks(LOOKS), |places| {
+        })
+    }
+
+    /// The pairs of those with long paths; `middles` [m] are those of all paths.
+    fn long_pairs<D: Dim>(
+        &self,
+        bins: &Bins,
+        middles: &[Row],
+        sweeps: &[f32],
+        spheres: &Spheres,
+    ) -> Vec<Vec<[u32; 2]>> {
+        let span = self.span();
+        let long = { self.loose.iter() }.map(|&place| middles[place as usize]);
+        let long = Bins::new::<D>(&long.collect::<Vec<_>>(), self.reach + 2.0 * self.short);
+        // Of two long paths the longer one looks for the other.
+        let rank = |place: u32| (sweeps[place as usize], place);
+        threads::map(self.loose.chunks(LOOKS), |places| {
             let mut found = Vec::new();
             for &place in places {
                 let (at, sweep) = (middles[place as usize], sweeps[place as usize]);
-                bins.near::<D>(at, reach + sweep + this.short, |other| {
-                    if !is_loose[other as usize] {
-                        this.meet(place, other, span, spheres, &mut found);
+                bins.near::<D>(at, self.reach + sweep + self.short, |other| {
+                    if !self.is_loose[other as usize] {
+                        self.meet(place, other, span, spheres, &mut found);
                     }
                 });
-                // Of two long paths the longer one looks for the other.
-                let rank = |place: u32| (sweeps[place as usize], place);
-                long.near::<D>(at, reach + 2.0 * sweep, |number| {
-                    let other = this.loose[number as usize];
+                long.near::<D>(at, self.reach + 2.0 * sweep, |number| {
+                    let other = self.loose[number as usize];
                     if rank(other) < rank(place) {
-                        this.meet(place, other, span, spheres, &mut found);
+                        self.meet(place, other, span, spheres, &mut found);
                     }
                 });
             }
             found
-        }));
-        self.bins = Some(bins);
-        merge(&mut self.list, &found, &vec![true; count]);
+        })
     }
 
     /// Looks again for the pairs of some, given in ascending order; those of the others stay.
