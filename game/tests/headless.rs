@@ -4,6 +4,7 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
+use tamaire_play::replay::VERSION;
 use tempfile::TempDir;
 
 /// A level with so small a body that it is played in no time.
@@ -210,7 +211,7 @@ fn a_replay_is_genuine_until_someone_changes_it() {
         "level in this replay was changed",
     );
     check(
-        replay.replacen("version = 3", "version = 77", 1),
+        replay.replacen(&format!("version = {VERSION}"), "version = 77", 1),
         "version 77",
     );
     check("hello".into(), "no replay");

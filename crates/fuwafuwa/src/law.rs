@@ -239,7 +239,10 @@ fn turn_of(deformation: &Matrix) -> [f64; 4] {
     if is_greatest(&from_quaternion(turned), deformation) {
         return turned;
     }
-    for axis in 0..3 {
+    // In the plane all turns are about the third axis.
+    let [[.., x], [.., y], third] = deformation;
+    let is_flat = [*x, *y] == [0.0; 2] && *third == IDENTITY[2];
+    for axis in if is_flat { 2..3 } else { 0..3 } {
         let mut start = [0.0; 4];
         start[axis] = 1.0;
         let other = turn_from(start, deformation);

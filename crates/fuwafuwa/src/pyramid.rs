@@ -1,7 +1,7 @@
 //! The multi-level look-up table: which cells of which size exist, and which children each fills.
 //!
 //! One rule gives the first placement and every later one [Endo 2004, §3.2, Figs. 2 and 4]: a
-//! voxel at a open point, or where materials meet, is a cell of level 0; a cell of level l exists
+//! voxel at an open point, or where materials meet, is a cell of level 0; a cell of level l exists
 //! when it contains or touches a cell of level l − 1. A cell fills those of its children that are
 //! solid and do not exist as cells themselves, and every face-connected part of them is one element.
 //! All cells of the topmost level exist: it ends the growth of elements at an eighth of the grid.

@@ -32,6 +32,11 @@ pub enum BadSnapshot {
     },
     /// It is not as it was saved: cut off, damaged or changed.
     Damaged,
+    /// It is as it was written, but not of a world.
+    NoWorld {
+        /// What is wrong with it.
+        defect: &'static str,
+    },
     /// It is as it was written, but not of a world: a body in it cannot be.
     Broken {
         /// Which body.
@@ -55,6 +60,7 @@ impl fmt::Display for BadSnapshot {
             Self::Broken { body, defect } => {
                 write!(f, "the snapshot is of no world: of body {body}, {defect}")
             }
+            Self::NoWorld { defect } => write!(f, "the snapshot is of no world: {defect}"),
             Self::Damaged => write!(f, "the snapshot is damaged: its checksum does not fit"),
         }
     }
@@ -79,7 +85,8 @@ pub fn save<D: Dim>(world: &World<D>) -> Vec<u8> {
 ///
 /// # Errors
 /// [`BadSnapshot`] when it is none, has another format or other dimensions, was damaged, or when the
-/// voxels, connections, elements, nodes or pieces of a body in it contradict each other.
+/// voxels, connections, elements, nodes or pieces of a body in it contradict each other. What elements are
+/// deformed by (their rotations and last forces) is taken as it stands: do not step snapshots of strangers.
 #[inline(never)]
 pub fn load<D: Dim>(bytes: &[u8]) -> Result<World<D>, BadSnapshot> {
     if bytes.len() < HEADER || bytes[..4] != MAGIC {
@@ -101,6 +108,9 @@ pub fn load<D: Dim>(bytes: &[u8]) -> Result<World<D>, BadSnapshot> {
         return Err(BadSnapshot::Damaged);
     }
     let mut world: World<D> = postcard::from_bytes(state).map_err(|_| BadSnapshot::Damaged)?;
+    if let Some(defect) = world.defect() {
+        return Err(BadSnapshot::NoWorld { defect });
+    }
     for (place, body) in world.bodies().iter().enumerate() {
         let checked = body.check();
         checked.map_err(|defect| BadSnapshot::Broken {

@@ -6,6 +6,10 @@ use fuwafuwa::{Dim2, Dim3, entries};
 #[test]
 fn who_uses_the_engine_calls_what_was_compiled_with_it() {
     let called = [entries!(Dim2), entries!(Dim3)];
+    assert_eq!(
+        called.each_ref().map(Vec::len),
+        compiled().each_ref().map(Vec::len)
+    );
     for (called, compiled) in called
         .into_iter()
         .flatten()

@@ -3,6 +3,7 @@
 use fuwafuwa::{Dim, Dim2, Dim3};
 use std::sync::Arc;
 use tamaire_play::level::{NAMED, NAMED_3D};
+use tamaire_play::replay::VERSION;
 use tamaire_play::{Bot, BotKind, InputFrame, Level, Playback, Replay, ReplayError, Round};
 
 #[test]
@@ -114,7 +115,7 @@ fn a_replay_goes_as_it_went_and_a_changed_one_is_found_out() {
         matches!(differs, ReplayError::Differs { second: 2 }),
         "{differs}"
     );
-    let other = changed("version = 3", "version = 99");
+    let other = changed(&format!("version = {VERSION}"), "version = 99");
     assert!(
         matches!(other, ReplayError::Version { found: 99 }),
         "{other}"

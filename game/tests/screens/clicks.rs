@@ -10,6 +10,7 @@ use tamaire::platform::{Files, Pads, Sound};
 use tamaire::settings::Settings;
 use tamaire::words::Language;
 use tamaire_play::Route;
+use tamaire_play::replay::VERSION;
 
 #[test]
 fn from_the_title_to_a_round_and_back() {
@@ -108,7 +109,11 @@ fn a_round_is_won_kept_watched_raced_and_deleted() {
 
     // Somebody else's, or none at all.
     let path = files.replays()[0].path.clone();
-    fs::write(&path, saved.replacen("version = 3", "version = 999", 1)).unwrap();
+    fs::write(
+        &path,
+        saved.replacen(&format!("version = {VERSION}"), "version = 999", 1),
+    )
+    .unwrap();
     frames(&mut window, 2);
     click(&mut window, "Watch");
     assert!(

@@ -201,6 +201,31 @@ impl<D: Dim> World<D> {
         hash.number()
     }
 
+    /// What could not have come about by [`World::new`] and by adding things, if anything.
+    #[cfg(feature = "serde")]
+    pub(crate) fn defect(&self) -> Option<&'static str> {
+        let are_sound = { self.obstacles.iter() }.all(|obstacle| {
+            obstacle.shape.check().is_ok() && (0.0..=f32::MAX).contains(&obstacle.friction)
+        });
+        let checks = [
+            (
+                "its settings are out of range",
+                Self::new(self.settings).is_ok(),
+            ),
+            ("an obstacle cannot be", are_sound),
+            (
+                "a hand cannot be",
+                { self.manipulators.iter() }.all(|hand| hand.check().is_ok()),
+            ),
+            (
+                "it has cooldowns for other bodies",
+                self.cooldowns.len() == self.bodies.len(),
+            ),
+        ];
+        let wrong = checks.into_iter().find(|(_, is_good)| !is_good);
+        wrong.map(|(defect, _)| defect)
+    }
+
     /// Works out what is not saved.
     #[cfg(feature = "serde")]
     pub(crate) fn rebuild(&mut self) {

@@ -67,12 +67,16 @@ impl BodyText {
         let blades: usize = grid.size()[..D::N].iter().map(blades).sum();
         let voxels = grid.voxels().count();
         let expected = format!("{blades} blades through {voxels} voxels are too many");
-        require(blades * voxels <= MAX_CROSSINGS, "diced", expected)
+        require(
+            blades as u64 * voxels as u64 <= MAX_CROSSINGS,
+            "diced",
+            expected,
+        )
     }
 }
 
 /// Most voxels times blades of a diced body.
-const MAX_CROSSINGS: usize = 1 << 26;
+const MAX_CROSSINGS: u64 = 1 << 26;
 
 /// Planes a distance apart on every axis, through the whole body.
 fn grid_of_blades<D: Dim>(body: &Body<D>, spacing: f32) -> Vec<Blade> {
