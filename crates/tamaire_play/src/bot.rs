@@ -183,6 +183,13 @@ impl Bot {
             false => 0.25,
         } + 0.02 * self.temper[1];
         let goal = plus(piece.centre, scaled(piece.way, depth - piece.reach));
+        // What is wedged in the mouth goes in corner by corner.
+        let side = match (firm > 0.0 && !piece.fits, self.waited / 30 % 2) {
+            (false, _) => 0.0,
+            (true, 0) => -0.35,
+            (true, _) => 0.35,
+        };
+        let goal = plus(goal, scaled(sight.across, side * piece.reach));
         straight(sight, goal, GENTLE * (1.0 + 0.1 * self.temper[2]))
     }
 
@@ -191,8 +198,9 @@ impl Bot {
     fn shave<D: Dim>(&mut self, sight: &Sight) -> Vector {
         self.gathers |= sight.share < self.aim;
         // What is stuck in front of the mouth has to be smaller still; not what is looked at for want of
-        // something better.
-        if self.gathers && self.waited > PATIENCE && self.skips == 0 && !sight.piece.fits {
+        // something better, nor when so little is missing that the next piece may do.
+        let is_stuck = self.skips == 0 && !sight.piece.fits && sight.surplus < -0.05;
+        if self.gathers && self.waited > PATIENCE && is_stuck {
             (self.gathers, self.aim) = (false, SMALL_ENOUGH * sight.share);
         }
         if self.gathers {
