@@ -53,8 +53,9 @@ impl Nearby {
     /// anything and anywhere.
     pub fn start_tick<D: Dim>(&mut self, bodies: &[Body<D>], duration: f32) {
         self.nodes.start_tick();
-        self.pairs.start_tick();
-        if let Some(places) = self.spheres.start_tick(bodies) {
+        let places = self.spheres.start_tick(bodies, &mut self.pairs.changed);
+        self.pairs.start_tick(places.is_some());
+        if let Some(places) = places {
             renumber(&mut self.pairs.list, &places);
         }
         self.captives = Captives::default();
@@ -85,7 +86,7 @@ impl Nearby {
     /// Follows the bodies, and brings the lists up to date; a substep takes `duration` [s].
     pub fn follow<D: Dim>(&mut self, bodies: &[Body<D>], colliders: &[Collider], duration: f32) {
         self.nodes.follow(bodies, colliders, duration, self.left);
-        let changed = self.pairs.follow(&mut self.spheres, bodies, self.left);
+        let changed = self.pairs.follow(&mut self.spheres, bodies);
         if !self.knows_captives {
             self.captives.find(&self.spheres, &self.pairs.list, bodies);
             self.knows_captives = true;

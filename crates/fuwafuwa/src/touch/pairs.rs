@@ -1,7 +1,7 @@
 //! Which contact spheres may touch each other.
 //!
-//! They are looked for once a tick, or more often while much is fast, along the way that each is going to
-//! take: a straight *path*, from which it may stray a little. Only those that have strayed further, woke or came to the surface
+//! They are looked for along the way that each is going to take: a straight *path*, from which it may stray
+//! a little, and which holds the shorter the faster things are. Only those that have strayed further, woke or came to the surface
 //! are looked for again; so no pair can be missed, whatever moves as long as it is finite.
 //!
 //! ```text
@@ -23,10 +23,12 @@ use crate::vector::{dot, length, minus, plus, scaled};
 /// How far a sphere may stray from its path, in voxels: more makes longer lists, less more looks.
 const STRAY: f32 = 0.35;
 /// The share of spheres whose paths may be long, and half the length of the longest of the rest, as a share
-/// of the reach: where more is faster, paths end before the tick does. Short ones are looked for bin by
+/// of the reach: where more is faster, paths end sooner. Short ones are looked for bin by
 /// bin, long ones look around for themselves.
 const LONG_SHARE: usize = 16;
 const LONGEST_SHORT: f32 = 0.125;
+/// Paths hold for so long at the most [s]: what falls has strayed then.
+const LONGEST_TIME: f32 = 0.1;
 /// Looking for all pairs takes, for each sphere that is awake, as long as comparing so many paths.
 const COMPARED: usize = 64;
 
@@ -79,6 +81,9 @@ pub struct SpherePairs {
     loose: Vec<u32>,
     #[cfg_attr(feature = "serde", serde(skip))]
     is_loose: Vec<bool>,
+    /// Whether the list is that of the last tick still.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    is_new_tick: bool,
     /// Spheres to be looked for again, beside those that stray.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub changed: Vec<u32>,
@@ -101,10 +106,12 @@ pub struct SpherePairs {
 }
 
 impl SpherePairs {
-    /// All pairs will be looked for.
-    pub fn start_tick(&mut self) {
-        self.bins = None;
-        self.changed.clear();
+    /// What passed in the last tick is settled. Where spheres are listed anew, all pairs will be looked for.
+    pub fn start_tick(&mut self, is_listed_anew: bool) {
+        if is_listed_anew {
+            self.bins = None;
+        }
+        self.is_new_tick = true;
         for pair in &mut self.list {
             pair.impulse.total = 0.0;
         }
@@ -116,20 +123,21 @@ impl SpherePairs {
         self.spare -= distance + self.pace * duration;
     }
 
-    /// Follows the spheres, and brings the list up to date; `left` [s] of the tick are to come. Returns
-    /// whether it changed.
-    pub fn follow<D: Dim>(&mut self, spheres: &mut Spheres, bodies: &[Body<D>], left: f32) -> bool {
+    /// Follows the spheres, and brings the list up to date. Returns whether it changed, or is that of a new
+    /// tick.
+    pub fn follow<D: Dim>(&mut self, spheres: &mut Spheres, bodies: &[Body<D>]) -> bool {
+        let is_new_tick = std::mem::take(&mut self.is_new_tick);
         if spheres.awake.is_empty() {
-            let had_some = !self.list.is_empty();
             self.list.clear();
-            return had_some;
+            self.bins = None;
+            return is_new_tick;
         }
         if self.bins.is_none() || self.elapsed > self.duration {
             spheres.move_all(bodies);
-            self.find_all(spheres, bodies, left);
+            self.find_all(spheres, bodies);
             return true;
         }
-        if self.spare > 0.0 && self.changed.is_empty() {
+        if self.spare > 0.0 && self.changed.is_empty() && !is_new_tick {
             spheres.move_close(bodies);
         } else {
             spheres.move_all(bodies);
@@ -137,13 +145,13 @@ impl SpherePairs {
         }
         let mut changed = std::mem::take(&mut self.changed);
         if changed.is_empty() {
-            return false;
+            return is_new_tick;
         }
         changed.sort_unstable();
         changed.dedup();
         let compared = changed.len() * (self.loose.len() + changed.len());
         if compared > COMPARED * spheres.awake.len() {
-            self.find_all(spheres, bodies, left);
+            self.find_all(spheres, bodies);
         } else {
             self.find_again(&changed, spheres, bodies);
         }
@@ -184,13 +192,13 @@ impl SpherePairs {
     }
 
     /// Looks for all pairs.
-    fn find_all<D: Dim>(&mut self, spheres: &Spheres, bodies: &[Body<D>], left: f32) {
+    fn find_all<D: Dim>(&mut self, spheres: &Spheres, bodies: &[Body<D>]) {
         let count = spheres.list.len();
         self.changed.clear();
         (self.elapsed, self.pace) = (0.0, 0.0);
         self.paths.resize(count, Path::default());
         (0..count as u32).for_each(|place| self.lay(place, spheres, bodies));
-        self.measure(spheres, left);
+        self.measure(spheres);
         let sweeps = self.sweeps(spheres);
         self.is_loose.clear();
         let short = self.short;
@@ -211,8 +219,8 @@ impl SpherePairs {
     }
 
     /// Works out how far is looked: how close spheres may come, how far they may stray, for how long their
-    /// paths hold where `left` [s] of the tick are to come, and how long the short ones are.
-    fn measure(&mut self, spheres: &Spheres, left: f32) {
+    /// paths hold, and how long the short ones are.
+    fn measure(&mut self, spheres: &Spheres) {
         let radii = spheres.list.iter().map(|sphere| sphere.radius);
         let (smallest, largest) = radii.fold((f32::MAX, 0.0f32), |(low, high), radius| {
             (low.min(radius), high.max(radius))
@@ -224,9 +232,9 @@ impl SpherePairs {
         let speeds = { spheres.awake.iter() }.map(|&place| self.speed(place));
         let most = usual(speeds.filter(|speed| speed.is_finite()).collect());
         let longest = LONGEST_SHORT * self.reach;
-        self.duration = match most * left > 2.0 * longest {
+        self.duration = match most * LONGEST_TIME > 2.0 * longest {
             true => 2.0 * longest / most,
-            false => left,
+            false => LONGEST_TIME,
         };
         self.short = most * self.span().half;
     }

@@ -50,16 +50,27 @@ impl Spheres {
         self.is_listed = false;
     }
 
-    /// A tick begins: lists the spheres, where some may be new, gone or in another order. Returns then the
-    /// place that each of those before has now, or [`NONE`].
-    pub fn start_tick<D: Dim>(&mut self, bodies: &[Body<D>]) -> Option<Vec<u32>> {
+    /// A tick begins: lists the spheres, where some may be new, gone or in another order, and returns then the
+    /// place that each of those before has now, or [`NONE`]; else adds those that fell asleep to `changed`.
+    pub fn start_tick<D: Dim>(
+        &mut self,
+        bodies: &[Body<D>],
+        changed: &mut Vec<u32>,
+    ) -> Option<Vec<u32>> {
         let places = (!self.is_listed).then(|| self.list_anew(bodies));
         self.is_listed = true;
-        for (sphere, centre) in self.list.iter_mut().zip(&mut self.centres) {
+        if places.is_some() {
+            changed.clear();
+        }
+        let all = self.list.iter_mut().zip(&mut self.centres).zip(0..);
+        for ((sphere, centre), place) in all {
             let body = &bodies[sphere.body as usize];
             let was_asleep = sphere.asleep;
             sphere.asleep = body.pieces.list[sphere.piece as usize].asleep;
             // Nobody looks after sleepers: this is where they stay.
+            if sphere.asleep != was_asleep {
+                changed.push(place);
+            }
             if sphere.asleep && !was_asleep {
                 *centre = sphere.mean::<D>(&body.position);
             }

@@ -12,6 +12,15 @@ fn random(seed: &mut u32) -> f32 {
     (*seed >> 8) as f32 / (1 << 24) as f32 - 0.5
 }
 
+/// A tick begins, as for a world.
+fn start_tick<D: Dim>(spheres: &mut Spheres, pairs: &mut SpherePairs, bodies: &[Body<D>]) {
+    let places = spheres.start_tick(bodies, &mut pairs.changed);
+    pairs.start_tick(places.is_some());
+    if let Some(places) = places {
+        renumber(&mut pairs.list, &places);
+    }
+}
+
 /// The list against all pairs that there are.
 fn compare<D: Dim>(pairs: &SpherePairs, spheres: &Spheres, bodies: &[Body<D>], when: &str) {
     assert!(pairs.list.is_sorted_by(|a, b| a.spheres < b.spheres));
@@ -74,10 +83,7 @@ fn check<D: Dim>(n: usize) {
             }
         };
         velocity(&mut body, &|_| 1.0);
-        pairs.start_tick();
-        if let Some(places) = spheres.start_tick(std::slice::from_ref(&body)) {
-            renumber(&mut pairs.list, &places);
-        }
+        start_tick(&mut spheres, &mut pairs, std::slice::from_ref(&body));
         for substep in 0..SUBSTEPS {
             if substep == 3 {
                 velocity(&mut body, &|piece| if piece % 3 == 0 { -1.0 } else { 1.0 });
@@ -92,9 +98,8 @@ fn check<D: Dim>(n: usize) {
                 spheres.wake(&woken, &mut pairs.changed);
             }
             let bodies = std::slice::from_ref(&body);
-            let left = (SUBSTEPS - substep) as f32 * SUBSTEP;
             whole += u32::from(pairs.bins.is_none());
-            again += u32::from(pairs.follow(&mut spheres, bodies, left));
+            again += u32::from(pairs.follow(&mut spheres, bodies));
             compare(
                 &pairs,
                 &spheres,
@@ -132,13 +137,10 @@ fn check_tears<D: Dim>(n: usize) {
     let mut below = |count: usize| ((random(&mut seed) + 0.5) * count as f32) as usize % count;
     let (mut spheres, mut pairs) = (Spheres::default(), SpherePairs::default());
     for tick in 0..20 {
-        pairs.start_tick();
-        if let Some(places) = spheres.start_tick(std::slice::from_ref(&body)) {
-            renumber(&mut pairs.list, &places);
-        }
+        start_tick(&mut spheres, &mut pairs, std::slice::from_ref(&body));
         for round in 0..4 {
             let bodies = std::slice::from_ref(&body);
-            pairs.follow(&mut spheres, bodies, SUBSTEP);
+            pairs.follow(&mut spheres, bodies);
             compare(
                 &pairs,
                 &spheres,
@@ -158,12 +160,12 @@ fn check_tears<D: Dim>(n: usize) {
             let mut kept = spheres.list.clone();
             kept.sort_by_key(ContactSphere::key);
             let mut anew = Spheres::default();
-            anew.start_tick(std::slice::from_ref(&body));
+            anew.start_tick(std::slice::from_ref(&body), &mut Vec::new());
             assert_eq!(kept, anew.list);
             let mut rebuilt = body.clone();
             rebuilt.rebuild();
             let mut anew = Spheres::default();
-            anew.start_tick(std::slice::from_ref(&rebuilt));
+            anew.start_tick(std::slice::from_ref(&rebuilt), &mut Vec::new());
             assert_eq!(kept, anew.list, "what tears kept up, and a fresh look");
         }
         for b in 0..spheres.list.len() {
