@@ -30,7 +30,7 @@ const LONGEST_SHORT: f32 = 0.125;
 /// Paths hold for so long at the most [s]: what falls has strayed then.
 const LONGEST_TIME: f32 = 0.1;
 /// Looking for all pairs takes, for each sphere that is awake, as long as comparing so many paths.
-const COMPARED: usize = 64;
+const COMPARED: usize = 12;
 
 /// Spheres whose pairs one thread looks for at a time.
 const LOOKS: usize = SHARE / 8;
