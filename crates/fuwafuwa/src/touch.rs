@@ -1,9 +1,9 @@
-//! Finding what may touch, once a tick, with a margin for how far things can come.
+//! Finding what may touch, ahead of time, with a margin for how far things can come.
 //!
 //! Against rigid shapes every node counts (`nodes`). Against each other, bodies touch with their
 //! *contact spheres* (`sphere`, `spheres`): every surface element is of level 0, so a ball of one
-//! voxel's width around the middle of each is enough. `pairs` finds which of them may meet in this
-//! tick, `captives` who was forced into another piece. What outruns its margin is looked for again.
+//! voxel's width around the middle of each is enough. `pairs` finds which of them may meet
+//! soon, `captives` who was forced into another piece. What outruns its margin is looked for again.
 
 mod bins;
 mod captives;

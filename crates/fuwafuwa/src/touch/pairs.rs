@@ -59,7 +59,7 @@ struct Span {
     half: f32,
 }
 
-/// The pairs of spheres that may touch in this tick.
+/// The pairs of spheres that may touch while their paths hold.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SpherePairs {

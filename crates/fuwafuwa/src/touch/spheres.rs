@@ -1,4 +1,4 @@
-//! The contact spheres of all bodies: listed once a tick, kept up while bodies tear, followed while they
+//! The contact spheres of all bodies: listed anew where some are new, kept up while bodies tear, followed while they
 //! move.
 
 use super::sphere::ContactSphere;
