@@ -143,7 +143,7 @@ fn build(compiler: &Compiler) -> Result<PathBuf, Failure> {
     Ok(folder().join(TARGET).join("release/fuwafuwa_golden.wasm"))
 }
 
-/// How long each scene takes natively on one thread [ms], in their order.
+/// How long each scene takes natively on one thread \[ms\], in their order.
 fn native_times() -> Result<Vec<String>, Failure> {
     let mut command = cargo();
     command.args([
