@@ -12,6 +12,7 @@ mod impulse;
 mod nodes;
 mod pair;
 mod pairs;
+mod path;
 mod sphere;
 mod spheres;
 

@@ -69,11 +69,16 @@ impl Bins {
         ranges.filter(|range| !range.is_empty())
     }
 
-    /// The number of a point, by its place among all, and where it is [m].
+    /// The number of each point, by its place in the bins.
+    pub fn numbers(&self) -> &[u32] {
+        &self.numbers
+    }
+
+    /// Where the point at a place is [m].
     #[inline(always)]
-    pub fn point(&self, place: usize) -> (u32, Row) {
+    pub fn point(&self, place: usize) -> Row {
         let [x, y, z] = self.places.each_ref().map(|places| places[place]);
-        (self.numbers[place], [x, y, z, 0.0])
+        [x, y, z, 0.0]
     }
 
     /// All bins, in shares.
@@ -83,11 +88,16 @@ impl Bins {
         firsts.map(move |first| first..bins.min(first + SHARE))
     }
 
-    /// Calls `visit` once with the numbers of any two points that are no further apart than `reach`
+    /// Calls `visit` once with the places of any two points that are no further apart than `reach`
     /// [m], which may be no more than a bin is wide, and of which one lies in these `bins`: all shares
     /// together make all pairs.
     #[inline]
-    pub fn pairs<D: Dim>(&self, bins: Range<usize>, reach: f32, mut visit: impl FnMut(u32, u32)) {
+    pub fn pairs<D: Dim>(
+        &self,
+        bins: Range<usize>,
+        reach: f32,
+        mut visit: impl FnMut(usize, usize),
+    ) {
         // Of two bins side by side one looks at the other.
         let ahead: &[[i32; 2]] = match D::N {
             2 => &[[1, 0]],
@@ -109,8 +119,8 @@ impl Bins {
             }
             others.retain(|range| !range.is_empty());
             for place in own.clone() {
-                let (number, at) = self.point(place);
-                let mut visit = |other| visit(number, other);
+                let at = self.point(place);
+                let mut visit = |other| visit(place, other);
                 self.look(place + 1..own.end, at, reach, &mut visit);
                 for range in &others {
                     self.look(range.clone(), at, reach, &mut visit);
@@ -119,9 +129,9 @@ impl Bins {
         }
     }
 
-    /// Calls `visit` with the number of each point that is no further from `at` than `reach` [m].
+    /// Calls `visit` with the place of each point that is no further from `at` than `reach` [m].
     #[inline]
-    pub fn near<D: Dim>(&self, at: Row, reach: f32, mut visit: impl FnMut(u32)) {
+    pub fn near<D: Dim>(&self, at: Row, reach: f32, mut visit: impl FnMut(usize)) {
         let steps = (reach * self.inverse).ceil();
         // So far around the grid meets itself.
         if steps.is_nan() || 2.0 * steps >= self.mask as f32 {
@@ -140,10 +150,10 @@ impl Bins {
         }
     }
 
-    /// Calls `visit` with the numbers of those of some points that are no further from `at` than
+    /// Calls `visit` with the places of those of some points that are no further from `at` than
     /// `reach` [m].
     #[inline(always)]
-    fn look(&self, range: Range<usize>, at: Row, reach: f32, mut visit: impl FnMut(u32)) {
+    fn look(&self, range: Range<usize>, at: Row, reach: f32, mut visit: impl FnMut(usize)) {
         let [xs, ys, zs] = &self.places;
         let mut first = range.start;
         while first < range.end {
@@ -164,7 +174,7 @@ impl Bins {
                 near &= (1 << left) - 1;
             }
             while near != 0 {
-                visit(self.numbers[first + near.trailing_zeros() as usize]);
+                visit(first + near.trailing_zeros() as usize);
                 near &= near - 1;
             }
             first += LANES;
@@ -232,7 +242,8 @@ mod tests {
         let mut found = Vec::new();
         for share in bins.shares() {
             bins.pairs::<D>(share, reach, |a, b| {
-                found.push((a.min(b) as usize, a.max(b) as usize));
+                let [a, b] = [a, b].map(|place| bins.numbers()[place] as usize);
+                found.push((a.min(b), a.max(b)));
             });
         }
         found.sort_unstable();
@@ -253,7 +264,9 @@ mod tests {
                 dot(apart, apart) <= reach * reach
             };
             let mut found = Vec::new();
-            bins.near::<D>(at, reach, |number| found.push(number));
+            bins.near::<D>(at, reach, |place| {
+                found.push(bins.numbers()[place]);
+            });
             found.sort_unstable();
             let numbers = 0..points.len() as u32;
             let expected: Vec<u32> = numbers

@@ -103,8 +103,9 @@ impl Captives {
             let widest = same.iter().map(|inner| inner.radius).fold(0.0, f32::max);
             let bins = Bins::new::<D>(&centres, widest);
             for inner in same {
-                bins.near::<D>(inner.centre, inner.radius, |number| {
-                    let (place, at) = (near[number as usize], three(centres[number as usize]));
+                bins.near::<D>(inner.centre, inner.radius, |at| {
+                    let number = bins.numbers()[at] as usize;
+                    let (place, at) = (near[number], three(centres[number]));
                     let body = &bodies[inner.captor.0 as usize];
                     if own(&pieces, place) < inner.count && body.holds(inner.element, at) {
                         self.captors[place as usize] = Some(inner.captor);
@@ -183,8 +184,8 @@ impl Exits {
         };
         let none = (f32::INFINITY, u32::MAX);
         let mut nearest = none;
-        self.bins.near::<D>(at, self.reach, |number| {
-            nearest = nearer(nearest, number);
+        self.bins.near::<D>(at, self.reach, |place| {
+            nearest = nearer(nearest, self.bins.numbers()[place]);
         });
         if nearest == none {
             nearest = (0..self.places.len() as u32).fold(none, nearer);

@@ -335,9 +335,9 @@ impl Squares {
             if !is_near(square.centre, square.radius + square.reach + range) {
                 continue;
             }
-            for (number, at) in square.points.clone().map(|place| self.bins.point(place)) {
-                let (node, reach) = self.nodes[number as usize];
-                if is_near(at, reach + range) {
+            for place in square.points.clone() {
+                let (node, reach) = self.nodes[self.bins.numbers()[place] as usize];
+                if is_near(self.bins.point(place), reach + range) {
                     near.push(node);
                 }
             }
@@ -348,12 +348,13 @@ impl Squares {
 impl Square {
     fn around(bins: &Bins, points: Range<usize>, nodes: &[(u32, f32)]) -> Self {
         let (mut low, mut high, mut furthest) = ([f32::MAX; 4], [f32::MIN; 4], 0.0f32);
-        for (number, at) in points.clone().map(|place| bins.point(place)) {
+        for place in points.clone() {
+            let at = bins.point(place);
             for axis in 0..4 {
                 low[axis] = low[axis].min(at[axis]);
                 high[axis] = high[axis].max(at[axis]);
             }
-            furthest = furthest.max(nodes[number as usize].1);
+            furthest = furthest.max(nodes[bins.numbers()[place] as usize].1);
         }
         let centre = scaled(plus(low, high), 0.5);
         Self {

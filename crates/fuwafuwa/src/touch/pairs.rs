@@ -11,17 +11,15 @@
 //! ```
 
 use super::bins::Bins;
-use super::pair::{MARGIN, SpherePair, merge};
-use super::sphere::ContactSphere;
-use super::spheres::Spheres;
+use super::pair::{SpherePair, merge};
+use super::path::{Path, STRAY, Span, Traveller, widened};
+use super::spheres::{NONE, Spheres};
 use crate::body::Body;
 use crate::dim::Dim;
 use crate::solve::Row;
 use crate::threads::{self, SHARE};
 use crate::vector::{dot, length, minus, plus, scaled};
 
-/// How far a sphere may stray from its path, in voxels: more makes longer lists, less more looks.
-const STRAY: f32 = 0.35;
 /// The share of spheres whose paths may be long, and half the length of the longest of the rest, as a share
 /// of the reach: where more is faster, paths end sooner. Short ones are looked for bin by
 /// bin, long ones look around for themselves.
@@ -35,41 +33,21 @@ const COMPARED: usize = 12;
 /// Spheres whose pairs one thread looks for at a time.
 const LOOKS: usize = SHARE / 8;
 
-/// The way of a sphere while its pairs hold.
-#[derive(Copy, Clone, Debug, Default)]
-struct Path {
-    /// Where it was, or would have been, when all were looked for [m].
-    from: Row,
-    /// [m/s]
-    velocity: Row,
-}
-
-impl Path {
-    /// Where it is so long [s] after all were looked for [m].
-    #[inline(always)]
-    fn at(&self, time: f32) -> Row {
-        plus(self.from, scaled(self.velocity, time))
-    }
-}
-
-/// A stretch of time since all were looked for: its middle and half its length [s].
-#[derive(Copy, Clone, Debug, Default)]
-struct Span {
-    middle: f32,
-    half: f32,
-}
-
 /// The pairs of spheres that may touch while their paths hold.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SpherePairs {
     /// Ascending.
     pub list: Vec<SpherePair>,
+    /// By sphere.
     #[cfg_attr(feature = "serde", serde(skip))]
     paths: Vec<Path>,
     /// Where the middles of all paths are; nothing while all must be looked for.
     #[cfg_attr(feature = "serde", serde(skip))]
     bins: Option<Bins>,
+    /// The spheres in the order of the bins, as of when all were looked for.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    binned: Vec<Traveller>,
     /// The mean velocity of what moves, as seen from which paths are short or long [m/s], and half the
     /// length of the longest of the short ones [m].
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -78,9 +56,10 @@ pub struct SpherePairs {
     short: f32,
     /// Spheres that bins do not find: with long paths, or with other ones than they began with.
     #[cfg_attr(feature = "serde", serde(skip))]
-    loose: Vec<u32>,
+    loose: Vec<Traveller>,
+    /// The place of each sphere among them, or [`NONE`].
     #[cfg_attr(feature = "serde", serde(skip))]
-    is_loose: Vec<bool>,
+    loose_at: Vec<u32>,
     /// Whether the list is that of the last tick still.
     #[cfg_attr(feature = "serde", serde(skip))]
     is_new_tick: bool,
@@ -191,6 +170,19 @@ impl SpherePairs {
         self.pace = if speed > self.pace { speed } else { self.pace };
     }
 
+    /// A sphere on its path.
+    fn traveller(&self, place: u32, spheres: &Spheres) -> Traveller {
+        let sphere = &spheres.list[place as usize];
+        Traveller {
+            path: self.paths[place as usize],
+            sweep: self.speed(place) * self.span().half,
+            radius: sphere.radius,
+            site: sphere.site(),
+            place,
+            asleep: sphere.asleep,
+        }
+    }
+
     /// Looks for all pairs.
     fn find_all<D: Dim>(&mut self, spheres: &Spheres, bodies: &[Body<D>]) {
         let count = spheres.list.len();
@@ -199,21 +191,24 @@ impl SpherePairs {
         self.paths.resize(count, Path::default());
         (0..count as u32).for_each(|place| self.lay(place, spheres, bodies));
         self.measure(spheres);
-        let sweeps = self.sweeps(spheres);
-        self.is_loose.clear();
-        let short = self.short;
-        self.is_loose
-            .extend(sweeps.iter().map(|&sweep| sweep > short));
-        let all = 0..count as u32;
-        self.loose.clear();
-        let is_loose = &self.is_loose;
-        self.loose
-            .extend(all.filter(|&place| is_loose[place as usize]));
         let middle = self.span().middle;
         let middles: Vec<Row> = self.paths.iter().map(|path| path.at(middle)).collect();
         let bins = Bins::new::<D>(&middles, self.reach + 2.0 * self.short);
-        let mut found = self.short_pairs::<D>(&bins, &sweeps, spheres);
-        found.extend(self.long_pairs::<D>(&bins, &middles, &sweeps, spheres));
+        let binned = bins.numbers().iter();
+        self.binned = binned
+            .map(|&place| self.traveller(place, spheres))
+            .collect();
+        self.loose.clear();
+        self.loose_at.clear();
+        self.loose_at.resize(count, NONE);
+        for traveller in &self.binned {
+            if !traveller.asleep && traveller.sweep > self.short {
+                self.loose_at[traveller.place as usize] = self.loose.len() as u32;
+                self.loose.push(*traveller);
+            }
+        }
+        let mut found = self.short_pairs::<D>(&bins);
+        found.extend(self.long_pairs::<D>(&bins));
         self.bins = Some(bins);
         merge(&mut self.list, &found, &vec![true; count]);
     }
@@ -244,63 +239,49 @@ impl SpherePairs {
         length(minus(self.paths[place as usize].velocity, self.frame))
     }
 
-    /// Half the length of each path [m]; sleepers have none.
-    fn sweeps(&self, spheres: &Spheres) -> Vec<f32> {
-        let half = self.span().half;
-        let sweep = |(sphere, place): (&ContactSphere, u32)| match sphere.asleep {
-            true => -1.0,
-            false => self.speed(place) * half,
-        };
-        spheres.list.iter().zip(0..).map(sweep).collect()
+    /// Whether the bins find it: its path is short, and the one it began with.
+    #[inline(always)]
+    fn is_binned(&self, traveller: &Traveller) -> bool {
+        self.loose_at[traveller.place as usize] == NONE
     }
 
     /// The pairs of which both have short paths, or one sleeps.
-    fn short_pairs<D: Dim>(
-        &self,
-        bins: &Bins,
-        sweeps: &[f32],
-        spheres: &Spheres,
-    ) -> Vec<Vec<[u32; 2]>> {
+    fn short_pairs<D: Dim>(&self, bins: &Bins) -> Vec<Vec<[u32; 2]>> {
         let (span, reach) = (self.span(), self.reach + 2.0 * self.short);
-        let is_short = |place: u32| !self.is_loose[place as usize];
-        let is_awake = |place: u32| sweeps[place as usize] >= 0.0;
         threads::map(bins.shares(), |share| {
             let mut found = Vec::new();
             bins.pairs::<D>(share, reach, |a, b| {
-                if is_short(a) && is_short(b) && (is_awake(a) || is_awake(b)) {
-                    self.meet(a, b, span, spheres, &mut found);
+                let [a, b] = [a, b].map(|at| &self.binned[at]);
+                if a.meets(b, span) && self.is_binned(a) && self.is_binned(b) {
+                    found.push(pair(a, b));
                 }
             });
             found
         })
     }
 
-    /// The pairs of those with long paths; `middles` [m] are those of all paths.
-    fn long_pairs<D: Dim>(
-        &self,
-        bins: &Bins,
-        middles: &[Row],
-        sweeps: &[f32],
-        spheres: &Spheres,
-    ) -> Vec<Vec<[u32; 2]>> {
+    /// The pairs of those with long paths.
+    fn long_pairs<D: Dim>(&self, bins: &Bins) -> Vec<Vec<[u32; 2]>> {
         let span = self.span();
-        let long = { self.loose.iter() }.map(|&place| middles[place as usize]);
-        let long = Bins::new::<D>(&long.collect::<Vec<_>>(), self.reach + 2.0 * self.short);
+        let middles = self.loose.iter().map(|long| long.path.at(span.middle));
+        let middles: Vec<Row> = middles.collect();
+        let long = Bins::new::<D>(&middles, self.reach + 2.0 * self.short);
         // Of two long paths the longer one looks for the other.
-        let rank = |place: u32| (sweeps[place as usize], place);
-        threads::map(self.loose.chunks(LOOKS), |places| {
+        let rank = |long: &Traveller| (long.sweep, long.place);
+        threads::map(self.loose.chunks(LOOKS), |share| {
             let mut found = Vec::new();
-            for &place in places {
-                let (at, sweep) = (middles[place as usize], sweeps[place as usize]);
-                bins.near::<D>(at, self.reach + sweep + self.short, |other| {
-                    if !self.is_loose[other as usize] {
-                        self.meet(place, other, span, spheres, &mut found);
+            for own in share {
+                let at = own.path.at(span.middle);
+                bins.near::<D>(at, self.reach + own.sweep + self.short, |at| {
+                    let other = &self.binned[at];
+                    if own.meets(other, span) && self.is_binned(other) {
+                        found.push(pair(own, other));
                     }
                 });
-                long.near::<D>(at, self.reach + 2.0 * sweep, |number| {
-                    let other = self.loose[number as usize];
-                    if rank(other) < rank(place) {
-                        self.meet(place, other, span, spheres, &mut found);
+                long.near::<D>(at, self.reach + 2.0 * own.sweep, |at| {
+                    let other = &self.loose[long.numbers()[at] as usize];
+                    if rank(other) < rank(own) && own.meets(other, span) {
+                        found.push(pair(own, other));
                     }
                 });
             }
@@ -312,13 +293,19 @@ impl SpherePairs {
     fn find_again<D: Dim>(&mut self, changed: &[u32], spheres: &Spheres, bodies: &[Body<D>]) {
         let count = spheres.list.len();
         self.paths.resize(count, Path::default());
-        self.is_loose.resize(count, false);
+        self.loose_at.resize(count, NONE);
         let mut is_changed = vec![false; count];
         for &place in changed {
             self.lay(place, spheres, bodies);
             is_changed[place as usize] = true;
-            if !std::mem::replace(&mut self.is_loose[place as usize], true) {
-                self.loose.push(place);
+            let traveller = self.traveller(place, spheres);
+            let at = &mut self.loose_at[place as usize];
+            match self.loose.get_mut(*at as usize) {
+                Some(own) => *own = traveller,
+                None => {
+                    *at = self.loose.len() as u32;
+                    self.loose.push(traveller);
+                }
             }
         }
         let span = Span {
@@ -330,19 +317,20 @@ impl SpherePairs {
         let found = threads::map(changed.chunks(LOOKS), |places| {
             let mut found = Vec::new();
             for &place in places {
-                let path = &this.paths[place as usize];
+                let own = &this.loose[this.loose_at[place as usize] as usize];
                 // In the frame, where the others hardly move.
                 let shift = scaled(this.frame, span.middle - this.span().middle);
-                let at = minus(path.at(span.middle), shift);
-                let sweep = length(minus(path.velocity, this.frame)) * span.half;
-                bins.near::<D>(at, this.reach + this.short + sweep, |other| {
-                    if !this.is_loose[other as usize] {
-                        this.meet(place, other, span, spheres, &mut found);
+                let at = minus(own.path.at(span.middle), shift);
+                bins.near::<D>(at, this.reach + this.short + own.sweep, |at| {
+                    let other = &this.binned[at];
+                    if own.meets(other, span) && this.is_binned(other) {
+                        found.push(pair(own, other));
                     }
                 });
-                for &other in &this.loose {
-                    if !is_changed[other as usize] || other > place {
-                        this.meet(place, other, span, spheres, &mut found);
+                for other in &this.loose {
+                    let is_first = !is_changed[other.place as usize] || other.place > place;
+                    if own.meets(other, span) && is_first {
+                        found.push(pair(own, other));
                     }
                 }
             }
@@ -372,39 +360,18 @@ impl SpherePairs {
             self.frame = mean;
         }
     }
+}
 
-    /// Adds two spheres to those found, if they may touch in a span of time.
-    #[inline(always)]
-    fn meet(&self, a: u32, b: u32, span: Span, spheres: &Spheres, found: &mut Vec<[u32; 2]>) {
-        let [own, other] = [a, b].map(|place| &spheres.list[place as usize]);
-        if own.asleep && other.asleep || own.is_held_to(other) {
-            return;
-        }
-        let [first, second] = [a, b].map(|place| &self.paths[place as usize]);
-        let closing = minus(first.velocity, second.velocity);
-        let apart = minus(first.from, second.from);
-        let apart = plus(apart, scaled(closing, span.middle));
-        // Where they come closest, as seen from the middle of the span.
-        let time = -dot(apart, closing) / dot(closing, closing).max(f32::MIN_POSITIVE);
-        let time = time.clamp(-span.half, span.half);
-        let apart = plus(apart, scaled(closing, time));
-        let reach = widened(own.radius + other.radius);
-        if dot(apart, apart) <= reach * reach {
-            found.push([a.min(b), a.max(b)]);
-        }
-    }
+/// The places of two, ascending.
+#[inline(always)]
+fn pair(a: &Traveller, b: &Traveller) -> [u32; 2] {
+    [a.place.min(b.place), a.place.max(b.place)]
 }
 
 /// How far a sphere may stray from its path [m].
 #[inline(always)]
 fn most_stray(spheres: &Spheres, place: u32) -> f32 {
     STRAY * 2.0 * spheres.list[place as usize].radius
-}
-
-/// How close two paths must come for a pair, whose spheres touch at this distance [m].
-#[inline(always)]
-fn widened(touching: f32) -> f32 {
-    (1.0 + MARGIN + 2.0 * STRAY) * touching
 }
 
 /// What all of these but a few stay below, or are.

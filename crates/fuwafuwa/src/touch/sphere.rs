@@ -67,6 +67,15 @@ impl ContactSphere {
         (self.body, self.element)
     }
 
+    /// Where in its body it is.
+    pub fn site(&self) -> Site {
+        Site {
+            body: self.body,
+            voxel: self.voxel,
+            bound: self.bound,
+        }
+    }
+
     /// The mean of something at its corners.
     #[inline]
     pub fn mean<D: Dim>(&self, rows: &[Row]) -> Row {
@@ -109,13 +118,18 @@ impl ContactSphere {
         let sum: f32 = nodes.map(|&node| all[node as usize]).sum();
         sum / (D::CORNERS * D::CORNERS) as f32
     }
+}
 
-    /// From its voxel to another one's in the same body.
-    #[inline(always)]
-    pub fn way_to(&self, other: &Self) -> [i32; 3] {
-        [0, 1, 2].map(|axis: usize| i32::from(other.voxel[axis]) - i32::from(self.voxel[axis]))
-    }
+/// Where in its body the element of a sphere is, and what it hangs together with there.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Site {
+    pub body: u32,
+    pub voxel: [i16; 3],
+    /// As of the sphere.
+    pub bound: u32,
+}
 
+impl Site {
     /// Whether the body itself keeps the two at their distance, so that contact need not: neighbours
     /// that share a node, and those one voxel apart that each share one with the same voxel between
     /// them.
@@ -129,7 +143,8 @@ impl ContactSphere {
         if self.body != other.body {
             return false;
         }
-        let step = self.way_to(other);
+        let along = |axis: usize| i32::from(other.voxel[axis]) - i32::from(self.voxel[axis]);
+        let step = [0, 1, 2].map(along);
         let [x, y, z] = step.map(i32::abs);
         let shift = step[0] + 3 * step[1] + 9 * step[2];
         match x.max(y).max(z) {

@@ -2,7 +2,8 @@ use super::*;
 use crate::dim::{Dim2, Dim3};
 use crate::grid::VoxelGrid;
 use crate::material::Material;
-use crate::touch::pair::renumber;
+use crate::touch::pair::{MARGIN, renumber};
+use crate::touch::sphere::ContactSphere;
 
 const SUBSTEPS: u32 = 8;
 const SUBSTEP: f32 = 1.0 / 480.0;
@@ -36,7 +37,7 @@ fn compare<D: Dim>(pairs: &SpherePairs, spheres: &Spheres, bodies: &[Body<D>], w
                 .binary_search_by(|pair| pair.spheres.cmp(&[a, b]))
                 .is_ok();
             let both_sleep = first.asleep && second.asleep;
-            let may_touch = is_close && !both_sleep && !first.is_held_to(second);
+            let may_touch = is_close && !both_sleep && !first.site().is_held_to(&second.site());
             assert!(is_found || !may_touch, "{when}: {a} and {b} are missing");
             assert!(!is_found || !both_sleep, "{when}: {a} and {b} sleep");
         }
@@ -170,14 +171,16 @@ fn check_tears<D: Dim>(n: usize) {
         }
         for b in 0..spheres.list.len() {
             for a in 0..b {
-                let [own, other] = [a, b].map(|place| &spheres.list[place]);
-                let apart = own.way_to(other).map(i32::abs).into_iter().max();
-                let [first, second] = [own, other].map(|sphere| &sphere.nodes[..D::CORNERS]);
+                let both = [a, b].map(|place| &spheres.list[place]);
+                let [own, other] = both.map(ContactSphere::site);
+                let axes = own.voxel.iter().zip(other.voxel);
+                let apart = axes.map(|(own, other)| own.abs_diff(other)).max();
+                let [first, second] = both.map(|sphere| &sphere.nodes[..D::CORNERS]);
                 let shares = first.iter().any(|node| second.contains(node));
-                if apart <= Some(1) {
-                    assert_eq!(own.is_held_to(other), shares);
+                if apart.is_some_and(|apart| apart <= 1) {
+                    assert_eq!(own.is_held_to(&other), shares);
                 }
-                assert_eq!(own.is_held_to(other), other.is_held_to(own));
+                assert_eq!(own.is_held_to(&other), other.is_held_to(&own));
             }
         }
     }

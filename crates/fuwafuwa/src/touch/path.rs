@@ -1,0 +1,75 @@
+//! The way that a contact sphere is expected to take, and whether two of them come close.
+
+use super::pair::MARGIN;
+use super::sphere::Site;
+use crate::solve::Row;
+use crate::vector::{dot, minus, plus, scaled};
+
+/// How far a sphere may stray from its path, in voxels: more makes longer lists, less more looks.
+pub const STRAY: f32 = 0.35;
+
+/// The way of a sphere while its pairs hold: a straight line.
+#[derive(Copy, Clone, Debug, Default)]
+pub struct Path {
+    /// Where it was, or would have been, when all were looked for [m].
+    pub from: Row,
+    /// [m/s]
+    pub velocity: Row,
+}
+
+impl Path {
+    /// Where it is so long [s] after all were looked for [m].
+    #[inline(always)]
+    pub fn at(&self, time: f32) -> Row {
+        plus(self.from, scaled(self.velocity, time))
+    }
+}
+
+/// A stretch of time since all were looked for: its middle and half its length [s].
+#[derive(Copy, Clone, Debug, Default)]
+pub struct Span {
+    pub middle: f32,
+    pub half: f32,
+}
+
+/// A sphere on its path, with all that says whether it makes a pair with another one: side by side
+/// with those around it, that is read fast.
+#[derive(Copy, Clone, Debug)]
+pub struct Traveller {
+    pub path: Path,
+    /// Half the length of its path at the most, as all see it [m].
+    pub sweep: f32,
+    pub radius: f32,
+    pub site: Site,
+    /// Its place among the spheres.
+    pub place: u32,
+    pub asleep: bool,
+}
+
+impl Traveller {
+    /// Whether the two may touch in a span of time.
+    #[inline(always)]
+    pub fn meets(&self, other: &Self, span: Span) -> bool {
+        let closing = minus(self.path.velocity, other.path.velocity);
+        let apart = minus(self.path.from, other.path.from);
+        let apart = plus(apart, scaled(closing, span.middle));
+        let reach = widened(self.radius + other.radius);
+        // Most are too far apart whichever way they go; what is no number is near nothing.
+        let furthest = reach + self.sweep + other.sweep;
+        let is_near = dot(apart, apart) <= furthest * furthest;
+        if !is_near || self.asleep && other.asleep || self.site.is_held_to(&other.site) {
+            return false;
+        }
+        // Where they come closest, as seen from the middle of the span.
+        let time = -dot(apart, closing) / dot(closing, closing).max(f32::MIN_POSITIVE);
+        let time = time.clamp(-span.half, span.half);
+        let apart = plus(apart, scaled(closing, time));
+        dot(apart, apart) <= reach * reach
+    }
+}
+
+/// How close two paths must come for a pair, whose spheres touch at this distance [m].
+#[inline(always)]
+pub fn widened(touching: f32) -> f32 {
+    (1.0 + MARGIN + 2.0 * STRAY) * touching
+}
