@@ -40,6 +40,7 @@ pub mod event;
 mod fracture;
 pub mod grid;
 pub mod hash;
+mod lanes;
 pub mod law;
 pub mod manipulator;
 pub mod material;

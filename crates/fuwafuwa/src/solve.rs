@@ -12,19 +12,18 @@
 mod assign;
 mod block;
 mod kernel;
-mod lanes;
 mod turn;
 
-pub use lanes::Row;
+pub use crate::lanes::Row;
 
 use crate::dim::Dim;
+use crate::lanes::{Eight, LANES, on_widest_lanes, splat, sum};
 use crate::law::{Elasticity, Law};
 use crate::threads::{self, Rows};
 use crate::vector::{plus, scaled};
 use block::{Block, GROUP, Group, Home, Shared, VACANT, evaluate_best};
 use fearless_simd::Simd;
 use kernel::{Moduli, Scratch};
-use lanes::{Eight, LANES, on_widest_lanes, splat};
 use std::collections::{BTreeMap, BTreeSet};
 use std::marker::PhantomData;
 
@@ -187,7 +186,7 @@ impl<D: Dim> Blocks<D> {
 
     #[inline(always)]
     fn force_by<S: Simd>(&self, simd: S, node: u32) -> Row {
-        let mut sum = lanes::sum(simd, &self.forces, &self.slots[node as usize][..D::CORNERS]);
+        let mut sum = sum(simd, &self.forces, &self.slots[node as usize][..D::CORNERS]);
         sum[D::N..].fill(0.0);
         sum
     }

@@ -2,11 +2,11 @@
 
 use super::block::{ALL_LANES, Block, Home, VACANT};
 use super::kernel::{numbers, numbers_a_node, symmetric};
-use super::lanes::LANES;
 use super::{Blocks, PAD};
 use crate::chains::ascending;
 use crate::dim::Dim;
 use crate::grid::VoxelGrid;
+use crate::lanes::LANES;
 use crate::law::Law;
 use crate::mesh::{Element, Mesh};
 use crate::stencil::Stencil;

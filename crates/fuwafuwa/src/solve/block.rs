@@ -4,8 +4,8 @@ use super::kernel::{
     BlockView, Moduli, PerLane, Scratch, Uniform, forces, gradient, plain_forces, plain_gradient,
     stress,
 };
-use super::lanes::{Eight, LANES, Row, on_widest_lanes};
 use crate::dim::Dim;
+use crate::lanes::{Eight, LANES, Row, on_widest_lanes};
 use crate::law::Law;
 use fearless_simd::Simd;
 

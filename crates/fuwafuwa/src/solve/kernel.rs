@@ -16,9 +16,9 @@
 //! A plain cell, all of whose nodes are corners, has w = 1, b and r of ±1 and no skew: its sums
 //! are sums and differences. Four of five elements are plain.
 
-use super::lanes::{Eight, LANES, Lanes, Row, at_least, gather, load, positive, scatter, splat};
 use super::turn::{Matrix, turn};
 use crate::dim::Dim;
+use crate::lanes::{Eight, LANES, Lanes, Row, at_least, gather, load, positive, scatter, splat};
 use crate::law::{Elasticity, Law, SQUASH_LIMIT};
 use fearless_simd::prelude::*;
 

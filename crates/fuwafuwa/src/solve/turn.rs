@@ -1,7 +1,7 @@
 //! The rotation of a deformation, all lanes at once.
 
-use super::lanes::{Eight, Lanes, if_positive, load, splat};
 use crate::dim::Dim;
+use crate::lanes::{Eight, Lanes, if_positive, load, splat};
 use fearless_simd::prelude::*;
 
 pub type Matrix<S> = [[Lanes<S>; 3]; 3];

@@ -1,15 +1,13 @@
 //! Points sorted into square bins, so that those near a place are found without looking at all.
 
 use crate::dim::{Dim, Point};
-use crate::solve::Row;
+use crate::lanes::{LANES, Lanes, Row, splat};
 use crate::threads::SHARE;
+use fearless_simd::prelude::*;
 use std::ops::Range;
 
 /// 1.5 · 2²³: to it and to what is up to 2²² greater or smaller only whole numbers can be added.
 const LARGE: f32 = 12_582_912.0;
-
-/// Points that are looked at together.
-const LANES: usize = 4;
 
 /// Points in the bins of a grid that goes round and round: what lies a multiple of the grid's
 /// extent apart shares a bin, so bodies may fly off, for two million bins.
@@ -23,7 +21,7 @@ pub struct Bins {
     /// The points at `start[b]..start[b + 1]` lie in bin b, by ascending numbers.
     start: Vec<u32>,
     numbers: Vec<u32>,
-    /// Where they are, axis by axis [m]; a few more, so that four can be read from the last on.
+    /// Where they are, axis by axis [m]; a few more, so that eight can be read from the last on.
     places: [Vec<f32>; 3],
 }
 
@@ -91,9 +89,10 @@ impl Bins {
     /// Calls `visit` once with the places of any two points that are no further apart than `reach`
     /// [m], which may be no more than a bin is wide, and of which one lies in these `bins`: all shares
     /// together make all pairs.
-    #[inline]
-    pub fn pairs<D: Dim>(
+    #[inline(always)]
+    pub fn pairs<D: Dim, S: Simd>(
         &self,
+        simd: S,
         bins: Range<usize>,
         reach: f32,
         mut visit: impl FnMut(usize, usize),
@@ -121,21 +120,27 @@ impl Bins {
             for place in own.clone() {
                 let at = self.point(place);
                 let mut visit = |other| visit(place, other);
-                self.look(place + 1..own.end, at, reach, &mut visit);
+                self.look(simd, place + 1..own.end, at, reach, &mut visit);
                 for range in &others {
-                    self.look(range.clone(), at, reach, &mut visit);
+                    self.look(simd, range.clone(), at, reach, &mut visit);
                 }
             }
         }
     }
 
     /// Calls `visit` with the place of each point that is no further from `at` than `reach` [m].
-    #[inline]
-    pub fn near<D: Dim>(&self, at: Row, reach: f32, mut visit: impl FnMut(usize)) {
+    #[inline(always)]
+    pub fn near<D: Dim, S: Simd>(
+        &self,
+        simd: S,
+        at: Row,
+        reach: f32,
+        mut visit: impl FnMut(usize),
+    ) {
         let steps = (reach * self.inverse).ceil();
         // So far around the grid meets itself.
         if steps.is_nan() || 2.0 * steps >= self.mask as f32 {
-            self.look(0..self.numbers.len(), at, reach, visit);
+            self.look(simd, 0..self.numbers.len(), at, reach, &mut visit);
             return;
         }
         let steps = steps as i32;
@@ -144,7 +149,7 @@ impl Bins {
         for dz in layers {
             for dy in -steps..=steps {
                 for range in self.row([x, y.wrapping_add(dy), z.wrapping_add(dz)], steps) {
-                    self.look(range, at, reach, &mut visit);
+                    self.look(simd, range, at, reach, &mut visit);
                 }
             }
         }
@@ -153,21 +158,23 @@ impl Bins {
     /// Calls `visit` with the places of those of some points that are no further from `at` than
     /// `reach` [m].
     #[inline(always)]
-    fn look(&self, range: Range<usize>, at: Row, reach: f32, mut visit: impl FnMut(usize)) {
-        let [xs, ys, zs] = &self.places;
-        let mut first = range.start;
-        while first < range.end {
-            let four = |along: &Vec<f32>| -> [f32; LANES] {
-                let four = &along[first..first + LANES];
-                [four[0], four[1], four[2], four[3]]
+    fn look<S: Simd>(
+        &self,
+        simd: S,
+        range: Range<usize>,
+        at: Row,
+        reach: f32,
+        visit: &mut impl FnMut(usize),
+    ) {
+        let own = [0, 1, 2].map(|axis: usize| splat(simd, at[axis]));
+        for first in range.clone().step_by(LANES) {
+            let along = |axis: usize| {
+                let eight = &self.places[axis][first..first + LANES];
+                Lanes::from_slice(simd, eight) - own[axis]
             };
-            let [x, y, z] = [four(xs), four(ys), four(zs)];
-            let mut near = 0;
-            for lane in 0..LANES {
-                let apart = [x[lane] - at[0], y[lane] - at[1], z[lane] - at[2]];
-                let squared = apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2];
-                near |= u32::from(squared <= reach * reach) << lane;
-            }
+            let (x, y, z) = (along(0), along(1), along(2));
+            let squared = x * x + y * y + z * z;
+            let mut near = squared.simd_le(reach * reach).to_bitmask();
             // The last lanes may be of another bin.
             let left = range.end - first;
             if left < LANES {
@@ -177,13 +184,12 @@ impl Bins {
                 visit(first + near.trailing_zeros() as usize);
                 near &= near - 1;
             }
-            first += LANES;
         }
     }
 
     /// Where the points in the bin of a square and in those so many steps before and after it on the
     /// first axis begin and end: one stretch, and another where the grid goes round.
-    #[inline]
+    #[inline(always)]
     fn row(&self, [x, y, z]: Point, steps: i32) -> [Range<usize>; 2] {
         let (x, start) = (x & self.mask, self.bin([0, y, z]) as usize);
         let from =
@@ -199,20 +205,20 @@ impl Bins {
     }
 
     /// Where the points in the bins from the first to the last begin and end.
-    #[inline]
+    #[inline(always)]
     fn range(&self, first: usize, last: usize) -> Range<usize> {
         self.start[first] as usize..self.start[last + 1] as usize
     }
 
     /// The square of the endless grid that a place lies in.
-    #[inline]
+    #[inline(always)]
     fn square(&self, at: &Row) -> Point {
         // The last bits of a number so large are the whole ones: quicker than to ask whether they fit.
         let whole = |along: f32| (along * self.inverse + LARGE).to_bits() as i32;
         [whole(at[0]), whole(at[1]), whole(at[2])]
     }
 
-    #[inline]
+    #[inline(always)]
     fn bin(&self, square: Point) -> u32 {
         let [x, y, z] = square;
         let along = |k: i32| (k & self.mask) as u32;
@@ -224,9 +230,14 @@ impl Bins {
 mod tests {
     use super::*;
     use crate::dim::{Dim2, Dim3};
+    use crate::lanes::on_widest_lanes;
     use crate::vector::{dot, minus};
 
     fn check<D: Dim>() {
+        on_widest_lanes!(simd => check_on::<D, _>(simd));
+    }
+
+    fn check_on<D: Dim, S: Simd>(simd: S) {
         let mut seed = 7u32;
         let mut random = || {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -241,7 +252,7 @@ mod tests {
         let bins = Bins::new::<D>(&points, reach);
         let mut found = Vec::new();
         for share in bins.shares() {
-            bins.pairs::<D>(share, reach, |a, b| {
+            bins.pairs::<D, _>(simd, share, reach, |a, b| {
                 let [a, b] = [a, b].map(|place| bins.numbers()[place] as usize);
                 found.push((a.min(b), a.max(b)));
             });
@@ -264,7 +275,7 @@ mod tests {
                 dot(apart, apart) <= reach * reach
             };
             let mut found = Vec::new();
-            bins.near::<D>(at, reach, |place| {
+            bins.near::<D, _>(simd, at, reach, |place| {
                 found.push(bins.numbers()[place]);
             });
             found.sort_unstable();

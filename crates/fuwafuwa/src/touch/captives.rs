@@ -11,6 +11,7 @@ use super::sphere::ContactSphere;
 use super::spheres::Spheres;
 use crate::body::Body;
 use crate::dim::Dim;
+use crate::lanes::on_widest_lanes;
 use crate::shape::Vector;
 use crate::solve::Row;
 use crate::vector::{dot, minus, plus, scaled, three};
@@ -103,14 +104,16 @@ impl Captives {
             let widest = same.iter().map(|inner| inner.radius).fold(0.0, f32::max);
             let bins = Bins::new::<D>(&centres, widest);
             for inner in same {
-                bins.near::<D>(inner.centre, inner.radius, |at| {
+                let mut visit = |at: usize| {
                     let number = bins.numbers()[at] as usize;
                     let (place, at) = (near[number], three(centres[number]));
                     let body = &bodies[inner.captor.0 as usize];
                     if own(&pieces, place) < inner.count && body.holds(inner.element, at) {
                         self.captors[place as usize] = Some(inner.captor);
                     }
-                });
+                };
+                let (at, reach) = (inner.centre, inner.radius);
+                on_widest_lanes!(simd => bins.near::<D, _>(simd, at, reach, &mut visit));
             }
         }
         let mut exits: BTreeMap<(u32, u32), Exits> = BTreeMap::new();
@@ -184,9 +187,9 @@ impl Exits {
         };
         let none = (f32::INFINITY, u32::MAX);
         let mut nearest = none;
-        self.bins.near::<D>(at, self.reach, |place| {
+        on_widest_lanes!(simd => self.bins.near::<D, _>(simd, at, self.reach, |place| {
             nearest = nearer(nearest, self.bins.numbers()[place]);
-        });
+        }));
         if nearest == none {
             nearest = (0..self.places.len() as u32).fold(none, nearer);
         }

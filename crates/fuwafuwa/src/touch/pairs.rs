@@ -16,6 +16,7 @@ use super::path::{Path, STRAY, Span, Traveller, widened};
 use super::spheres::{NONE, Spheres};
 use crate::body::Body;
 use crate::dim::Dim;
+use crate::lanes::on_widest_lanes;
 use crate::solve::Row;
 use crate::threads::{self, SHARE};
 use crate::vector::{dot, length, minus, plus, scaled};
@@ -27,7 +28,9 @@ const LONG_SHARE: usize = 16;
 const LONGEST_SHORT: f32 = 0.125;
 /// Paths hold for so long at the most [s]: what falls has strayed then.
 const LONGEST_TIME: f32 = 0.1;
-/// Looking for all pairs takes, for each sphere that is awake, as long as comparing so many paths.
+/// Looking for all pairs is quicker than for those of this share of what is awake one by one; and sorting
+/// a sphere into bins takes as long as comparing so many paths.
+const MANY: usize = 4;
 const COMPARED: usize = 12;
 
 /// Spheres whose pairs one thread looks for at a time.
@@ -45,7 +48,9 @@ pub struct SpherePairs {
     /// Where the middles of all paths are; nothing while all must be looked for.
     #[cfg_attr(feature = "serde", serde(skip))]
     bins: Option<Bins>,
-    /// The spheres in the order of the bins, as of when all were looked for.
+    /// When they are there [s], and the spheres in the order of the bins.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    binned_at: f32,
     #[cfg_attr(feature = "serde", serde(skip))]
     binned: Vec<Traveller>,
     /// The mean velocity of what moves, as seen from which paths are short or long [m/s], and half the
@@ -54,7 +59,7 @@ pub struct SpherePairs {
     frame: Row,
     #[cfg_attr(feature = "serde", serde(skip))]
     short: f32,
-    /// Spheres that bins do not find: with long paths, or with other ones than they began with.
+    /// Spheres that bins do not find: with long paths, or with other ones than when they were sorted.
     #[cfg_attr(feature = "serde", serde(skip))]
     loose: Vec<Traveller>,
     /// The place of each sphere among them, or [`NONE`].
@@ -128,8 +133,7 @@ impl SpherePairs {
         }
         changed.sort_unstable();
         changed.dedup();
-        let compared = changed.len() * (self.loose.len() + changed.len());
-        if compared > COMPARED * spheres.awake.len() {
+        if MANY * changed.len() > spheres.awake.len() {
             self.find_all(spheres, bodies);
         } else {
             self.find_again(&changed, spheres, bodies);
@@ -191,8 +195,18 @@ impl SpherePairs {
         self.paths.resize(count, Path::default());
         (0..count as u32).for_each(|place| self.lay(place, spheres, bodies));
         self.measure(spheres);
-        let middle = self.span().middle;
-        let middles: Vec<Row> = self.paths.iter().map(|path| path.at(middle)).collect();
+        let bins = self.bin::<D>(spheres);
+        let mut found = self.short_pairs::<D>(&bins);
+        found.extend(self.long_pairs::<D>(&bins));
+        self.bins = Some(bins);
+        merge(&mut self.list, &found, &vec![true; count]);
+    }
+
+    /// Sorts all into bins, by the middle of what is left of their paths.
+    fn bin<D: Dim>(&mut self, spheres: &Spheres) -> Bins {
+        self.binned_at = self.rest().middle;
+        let middles = self.paths.iter().map(|path| path.at(self.binned_at));
+        let middles: Vec<Row> = middles.collect();
         let bins = Bins::new::<D>(&middles, self.reach + 2.0 * self.short);
         let binned = bins.numbers().iter();
         self.binned = binned
@@ -200,17 +214,14 @@ impl SpherePairs {
             .collect();
         self.loose.clear();
         self.loose_at.clear();
-        self.loose_at.resize(count, NONE);
+        self.loose_at.resize(middles.len(), NONE);
         for traveller in &self.binned {
             if !traveller.asleep && traveller.sweep > self.short {
                 self.loose_at[traveller.place as usize] = self.loose.len() as u32;
                 self.loose.push(*traveller);
             }
         }
-        let mut found = self.short_pairs::<D>(&bins);
-        found.extend(self.long_pairs::<D>(&bins));
-        self.bins = Some(bins);
-        merge(&mut self.list, &found, &vec![true; count]);
+        bins
     }
 
     /// Works out how far is looked: how close spheres may come, how far they may stray, for how long their
@@ -250,12 +261,12 @@ impl SpherePairs {
         let (span, reach) = (self.span(), self.reach + 2.0 * self.short);
         threads::map(bins.shares(), |share| {
             let mut found = Vec::new();
-            bins.pairs::<D>(share, reach, |a, b| {
+            on_widest_lanes!(simd => bins.pairs::<D, _>(simd, share, reach, |a, b| {
                 let [a, b] = [a, b].map(|at| &self.binned[at]);
                 if a.meets(b, span) && self.is_binned(a) && self.is_binned(b) {
                     found.push(pair(a, b));
                 }
-            });
+            }));
             found
         })
     }
@@ -270,21 +281,21 @@ impl SpherePairs {
         let rank = |long: &Traveller| (long.sweep, long.place);
         threads::map(self.loose.chunks(LOOKS), |share| {
             let mut found = Vec::new();
-            for own in share {
+            on_widest_lanes!(simd => for own in share {
                 let at = own.path.at(span.middle);
-                bins.near::<D>(at, self.reach + own.sweep + self.short, |at| {
+                bins.near::<D, _>(simd, at, self.reach + own.sweep + self.short, |at| {
                     let other = &self.binned[at];
                     if own.meets(other, span) && self.is_binned(other) {
                         found.push(pair(own, other));
                     }
                 });
-                long.near::<D>(at, self.reach + 2.0 * own.sweep, |at| {
+                long.near::<D, _>(simd, at, self.reach + 2.0 * own.sweep, |at| {
                     let other = &self.loose[long.numbers()[at] as usize];
                     if rank(other) < rank(own) && own.meets(other, span) {
                         found.push(pair(own, other));
                     }
                 });
-            }
+            });
             found
         })
     }
@@ -298,47 +309,66 @@ impl SpherePairs {
         for &place in changed {
             self.lay(place, spheres, bodies);
             is_changed[place as usize] = true;
-            let traveller = self.traveller(place, spheres);
-            let at = &mut self.loose_at[place as usize];
-            match self.loose.get_mut(*at as usize) {
-                Some(own) => *own = traveller,
-                None => {
-                    *at = self.loose.len() as u32;
-                    self.loose.push(traveller);
-                }
-            }
         }
-        let span = Span {
-            middle: 0.5 * (self.elapsed + self.duration),
-            half: 0.5 * (self.duration - self.elapsed).max(0.0),
-        };
+        if changed.len() * (self.loose.len() + changed.len()) > COMPARED * count {
+            self.bins = Some(self.bin::<D>(spheres));
+        } else {
+            changed
+                .iter()
+                .for_each(|&place| self.loosen(place, spheres));
+        }
+        let span = self.rest();
         let bins = self.bins.as_ref().expect("all were looked for before");
         let this = &*self;
         let found = threads::map(changed.chunks(LOOKS), |places| {
             let mut found = Vec::new();
-            for &place in places {
-                let own = &this.loose[this.loose_at[place as usize] as usize];
+            on_widest_lanes!(simd => for &place in places {
+                let own = &this.traveller(place, spheres);
+                let is_first = |other: &Traveller| match is_changed[other.place as usize] {
+                    true => other.place > place,
+                    false => true,
+                };
                 // In the frame, where the others hardly move.
-                let shift = scaled(this.frame, span.middle - this.span().middle);
+                let shift = scaled(this.frame, span.middle - this.binned_at);
                 let at = minus(own.path.at(span.middle), shift);
-                bins.near::<D>(at, this.reach + this.short + own.sweep, |at| {
+                bins.near::<D, _>(simd, at, this.reach + this.short + own.sweep, |at| {
                     let other = &this.binned[at];
-                    if own.meets(other, span) && this.is_binned(other) {
+                    if is_first(other) && this.is_binned(other) && own.meets(other, span) {
                         found.push(pair(own, other));
                     }
                 });
                 for other in &this.loose {
-                    let is_first = !is_changed[other.place as usize] || other.place > place;
-                    if own.meets(other, span) && is_first {
+                    if own.meets(other, span) && is_first(other) {
                         found.push(pair(own, other));
                     }
                 }
-            }
+            });
             found
         });
         merge(&mut self.list, &found, &is_changed);
         // `find_strayed` found out about the others.
         self.spare = self.spare.min(self.least_stray);
+    }
+
+    /// Takes a sphere out of the bins, for it has another path now.
+    fn loosen(&mut self, place: u32, spheres: &Spheres) {
+        let traveller = self.traveller(place, spheres);
+        let at = &mut self.loose_at[place as usize];
+        match self.loose.get_mut(*at as usize) {
+            Some(own) => *own = traveller,
+            None => {
+                *at = self.loose.len() as u32;
+                self.loose.push(traveller);
+            }
+        }
+    }
+
+    /// From now to the end of all paths.
+    fn rest(&self) -> Span {
+        Span {
+            middle: 0.5 * (self.elapsed + self.duration),
+            half: 0.5 * (self.duration - self.elapsed).max(0.0),
+        }
     }
 
     /// From when all were looked for to the end of all paths.

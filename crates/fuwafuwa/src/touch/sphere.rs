@@ -143,45 +143,48 @@ impl Site {
         if self.body != other.body {
             return false;
         }
-        let along = |axis: usize| i32::from(other.voxel[axis]) - i32::from(self.voxel[axis]);
-        let step = [0, 1, 2].map(along);
-        let [x, y, z] = step.map(i32::abs);
-        let shift = step[0] + 3 * step[1] + 9 * step[2];
-        match x.max(y).max(z) {
-            0 | 1 => self.bound >> (MIDDLE + shift) & 1 == 1,
-            2 => {
-                let [x, y, z] = [0, 1, 2].map(|axis: usize| SEEN[axis][(step[axis] + 2) as usize]);
-                let theirs = match shift {
-                    0.. => other.bound << shift,
-                    _ => other.bound >> -shift,
-                };
-                self.bound & theirs & x & y & z != 0
-            }
-            _ => false,
+        let along = |axis: usize| {
+            let step = i32::from(other.voxel[axis]) - i32::from(self.voxel[axis]);
+            (step + 2).clamp(-1, 5) as u32
+        };
+        let (x, y, z) = (along(0), along(1), along(2));
+        if x.max(y).max(z) > 4 {
+            return false;
         }
+        let (common, turn) = COMMON[(x + 5 * y + 25 * z) as usize];
+        self.bound & other.bound.rotate_left(turn) & common != 0
     }
+}
+
+/// For each way from a voxel to another one no more than two steps away on any axis, x + 5 y + 25 z from
+/// −2: the voxels around the first that can bind the two, which are also around the second, and by how much
+/// bits for the second are turned to stand where they do for the first. Of neighbours it is the second
+/// itself, which each has among those that it is bound to.
+const COMMON: [(u32, u32); 125] = common();
+
+const fn common() -> [(u32, u32); 125] {
+    let mut all = [(0, 0); 125];
+    let mut way = 0;
+    while way < 125 {
+        let step = [way % 5 - 2, way / 5 % 5 - 2, way / 25 - 2];
+        let shift = step[0] + 3 * step[1] + 9 * step[2];
+        let is_near = step[0] * step[0] <= 1 && step[1] * step[1] <= 1 && step[2] * step[2] <= 1;
+        let mut seen = 0;
+        let mut bit = 0;
+        while bit < 27 {
+            let at = [bit % 3 - step[0], bit / 3 % 3 - step[1], bit / 9 - step[2]];
+            let is_seen =
+                at[0] >= 0 && at[0] < 3 && at[1] >= 0 && at[1] < 3 && at[2] >= 0 && at[2] < 3;
+            if is_seen && (!is_near || bit == MIDDLE + shift) {
+                seen |= 1 << bit;
+            }
+            bit += 1;
+        }
+        all[way as usize] = (seen, shift.rem_euclid(32) as u32);
+        way += 1;
+    }
+    all
 }
 
 /// The bit of the voxel itself among those around it.
 const MIDDLE: i32 = 13;
-
-/// Of the voxels around one, those that are also around another one, which is −2 to 2 steps away on
-/// an axis.
-const SEEN: [[u32; 5]; 3] = [seen(0), seen(1), seen(2)];
-
-const fn seen(axis: u32) -> [u32; 5] {
-    let mut masks = [0; 5];
-    let mut bit = 0;
-    while bit < 27 {
-        let along = (bit / 3u32.pow(axis) % 3) as i32;
-        let mut step = -2;
-        while step <= 2 {
-            if along - step >= 0 && along - step < 3 {
-                masks[(step + 2) as usize] |= 1 << bit;
-            }
-            step += 1;
-        }
-        bit += 1;
-    }
-    masks
-}

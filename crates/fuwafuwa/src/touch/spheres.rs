@@ -1,5 +1,5 @@
-//! The contact spheres of all bodies: listed anew where some are new, kept up while bodies tear, followed while they
-//! move.
+//! The contact spheres of all bodies: in the order in which they came to the surface, so that a tear
+//! moves none; followed while they move.
 
 use super::sphere::ContactSphere;
 use crate::body::Body;
@@ -14,15 +14,15 @@ pub const NONE: u32 = u32::MAX;
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Spheres {
-    /// Body and element of each: what their pairs are known by when they are listed anew.
+    /// Body and element of each: the order of the list, wherever it is made anew.
     keys: Vec<(u32, u32)>,
-    /// By body and element as of the start of the tick, then those that came to the surface since.
+    /// Those that were first by body and element, then those that came to the surface since.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub list: Vec<ContactSphere>,
     /// The place in the list of each element's sphere, by body and element; [`NONE`] inside.
     #[cfg_attr(feature = "serde", serde(skip))]
     by_element: Vec<Vec<u32>>,
-    /// Whether the list is as it would be if it were made anew.
+    /// Whether nothing but tears happened to bodies since it was made.
     #[cfg_attr(feature = "serde", serde(skip))]
     is_listed: bool,
     /// Places of those awake.
@@ -50,8 +50,8 @@ impl Spheres {
         self.is_listed = false;
     }
 
-    /// A tick begins: lists the spheres, where some may be new, gone or in another order, and returns then the
-    /// place that each of those before has now, or [`NONE`]; else adds those that fell asleep to `changed`.
+    /// A tick begins: lists the spheres anew, where bodies may be anything, and returns then the place that
+    /// each of those before has now, or [`NONE`]; else adds those that fell asleep to `changed`.
     pub fn start_tick<D: Dim>(
         &mut self,
         bodies: &[Body<D>],
@@ -87,18 +87,24 @@ impl Spheres {
         places
     }
 
+    /// Lists those known before that are there still, in their order, then the others by body and element.
     fn list_anew<D: Dim>(&mut self, bodies: &[Body<D>]) -> Vec<u32> {
-        let before = std::mem::take(&mut self.keys);
+        let known = std::mem::take(&mut self.keys);
         self.list.clear();
-        self.by_element.resize(bodies.len(), Vec::new());
-        for ((body, place), by_element) in bodies.iter().zip(0..).zip(&mut self.by_element) {
-            by_element.clear();
-            by_element.resize(body.mesh.element_capacity(), NONE);
-            for (id, own) in (0..).zip(by_element) {
-                if let Some(sphere) = ContactSphere::of(place, body, id) {
-                    *own = self.list.len() as u32;
-                    self.list.push(sphere);
-                }
+        let capacities = bodies.iter().map(|body| body.mesh.element_capacity());
+        let by_element = capacities.clone().map(|capacity| vec![NONE; capacity]);
+        self.by_element = by_element.collect();
+        let all = (0..).zip(capacities);
+        let all = all.flat_map(|(body, capacity)| (0..capacity as u32).map(move |id| (body, id)));
+        for (body, id) in known.iter().copied().chain(all) {
+            let by_element = self.by_element.get_mut(body as usize);
+            let own = by_element.and_then(|places| places.get_mut(id as usize));
+            let Some(own) = own.filter(|own| **own == NONE) else {
+                continue;
+            };
+            if let Some(sphere) = ContactSphere::of(body, &bodies[body as usize], id) {
+                *own = self.list.len() as u32;
+                self.list.push(sphere);
             }
         }
         self.keys.extend(self.list.iter().map(ContactSphere::key));
@@ -109,7 +115,7 @@ impl Spheres {
         self.centres.clear();
         self.centres.extend(self.list.iter().map(centre));
         self.make_room();
-        let places = before.iter().map(|&key| self.place(key));
+        let places = known.iter().map(|&key| self.place(key));
         places.collect()
     }
 
@@ -138,7 +144,6 @@ impl Spheres {
                 }
                 self.keys.push(sphere.key());
                 self.list.push(sphere);
-                self.is_listed = false;
                 self.centres.push(sphere.mean::<D>(&body.position));
             } else {
                 self.list[*own as usize] = sphere;

@@ -49,7 +49,7 @@ macro_rules! on_widest_lanes {
     };
 }
 
-pub(super) use on_widest_lanes;
+pub(crate) use on_widest_lanes;
 
 /// The same number in every lane.
 #[inline(always)]
