@@ -13,6 +13,7 @@
 use super::bins::Bins;
 use super::pair::{SpherePair, merge};
 use super::path::{Path, STRAY, Span, Traveller, widened};
+use super::sphere::Site;
 use super::spheres::{NONE, Spheres};
 use crate::body::Body;
 use crate::dim::Dim;
@@ -48,11 +49,13 @@ pub struct SpherePairs {
     /// Where the middles of all paths are; nothing while all must be looked for.
     #[cfg_attr(feature = "serde", serde(skip))]
     bins: Option<Bins>,
-    /// When they are there [s], and the spheres in the order of the bins.
+    /// When they are there [s]; and in the order of the bins the spheres, and where in their bodies they are.
     #[cfg_attr(feature = "serde", serde(skip))]
     binned_at: f32,
     #[cfg_attr(feature = "serde", serde(skip))]
     binned: Vec<Traveller>,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    sites: Vec<Site>,
     /// The mean velocity of what moves, as seen from which paths are short or long [m/s], and half the
     /// length of the longest of the short ones [m].
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -181,7 +184,6 @@ impl SpherePairs {
             path: self.paths[place as usize],
             sweep: self.speed(place) * self.span().half,
             radius: sphere.radius,
-            site: sphere.site(),
             place,
             asleep: sphere.asleep,
         }
@@ -197,7 +199,7 @@ impl SpherePairs {
         self.measure(spheres);
         let bins = self.bin::<D>(spheres);
         let mut found = self.short_pairs::<D>(&bins);
-        found.extend(self.long_pairs::<D>(&bins));
+        found.extend(self.long_pairs::<D>(&bins, spheres));
         self.bins = Some(bins);
         merge(&mut self.list, &found, &vec![true; count]);
     }
@@ -209,6 +211,8 @@ impl SpherePairs {
         let middles: Vec<Row> = middles.collect();
         let bins = Bins::new::<D>(&middles, self.reach + 2.0 * self.short);
         let binned = bins.numbers().iter();
+        let site = |&place: &u32| spheres.list[place as usize].site();
+        self.sites = binned.clone().map(site).collect();
         self.binned = binned
             .map(|&place| self.traveller(place, spheres))
             .collect();
@@ -262,6 +266,10 @@ impl SpherePairs {
         threads::map(bins.shares(), |share| {
             let mut found = Vec::new();
             on_widest_lanes!(simd => bins.pairs::<D, _>(simd, share, reach, |a, b| {
+                // Most are neighbours.
+                if self.sites[a].is_held_to(&self.sites[b]) {
+                    return;
+                }
                 let [a, b] = [a, b].map(|at| &self.binned[at]);
                 if a.meets(b, span) && self.is_binned(a) && self.is_binned(b) {
                     found.push(pair(a, b));
@@ -272,7 +280,7 @@ impl SpherePairs {
     }
 
     /// The pairs of those with long paths.
-    fn long_pairs<D: Dim>(&self, bins: &Bins) -> Vec<Vec<[u32; 2]>> {
+    fn long_pairs<D: Dim>(&self, bins: &Bins, spheres: &Spheres) -> Vec<Vec<[u32; 2]>> {
         let span = self.span();
         let middles = self.loose.iter().map(|long| long.path.at(span.middle));
         let middles: Vec<Row> = middles.collect();
@@ -283,15 +291,17 @@ impl SpherePairs {
             let mut found = Vec::new();
             on_widest_lanes!(simd => for own in share {
                 let at = own.path.at(span.middle);
+                let site = spheres.list[own.place as usize].site();
                 bins.near::<D, _>(simd, at, self.reach + own.sweep + self.short, |at| {
-                    let other = &self.binned[at];
-                    if own.meets(other, span) && self.is_binned(other) {
+                    let (held, other) = (site.is_held_to(&self.sites[at]), &self.binned[at]);
+                    if !held && own.meets(other, span) && self.is_binned(other) {
                         found.push(pair(own, other));
                     }
                 });
                 long.near::<D, _>(simd, at, self.reach + 2.0 * own.sweep, |at| {
                     let other = &self.loose[long.numbers()[at] as usize];
-                    if rank(other) < rank(own) && own.meets(other, span) {
+                    let first = rank(other) < rank(own);
+                    if first && own.meets(other, span) && !spheres.holds(own.place, other.place) {
                         found.push(pair(own, other));
                     }
                 });
@@ -324,6 +334,7 @@ impl SpherePairs {
             let mut found = Vec::new();
             on_widest_lanes!(simd => for &place in places {
                 let own = &this.traveller(place, spheres);
+                let site = spheres.list[place as usize].site();
                 let is_first = |other: &Traveller| match is_changed[other.place as usize] {
                     true => other.place > place,
                     false => true,
@@ -333,12 +344,14 @@ impl SpherePairs {
                 let at = minus(own.path.at(span.middle), shift);
                 bins.near::<D, _>(simd, at, this.reach + this.short + own.sweep, |at| {
                     let other = &this.binned[at];
-                    if is_first(other) && this.is_binned(other) && own.meets(other, span) {
+                    let is_other = is_first(other) && this.is_binned(other);
+                    if is_other && !site.is_held_to(&this.sites[at]) && own.meets(other, span) {
                         found.push(pair(own, other));
                     }
                 });
                 for other in &this.loose {
-                    if own.meets(other, span) && is_first(other) {
+                    let is_met = own.meets(other, span) && is_first(other);
+                    if is_met && !spheres.holds(place, other.place) {
                         found.push(pair(own, other));
                     }
                 }

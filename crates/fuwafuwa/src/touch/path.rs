@@ -1,7 +1,6 @@
 //! The way that a contact sphere is expected to take, and whether two of them come close.
 
 use super::pair::MARGIN;
-use super::sphere::Site;
 use crate::solve::Row;
 use crate::vector::{dot, minus, plus, scaled};
 
@@ -40,14 +39,13 @@ pub struct Traveller {
     /// Half the length of its path at the most, as all see it [m].
     pub sweep: f32,
     pub radius: f32,
-    pub site: Site,
     /// Its place among the spheres.
     pub place: u32,
     pub asleep: bool,
 }
 
 impl Traveller {
-    /// Whether the two may touch in a span of time.
+    /// Whether the two come close in a span of time.
     #[inline(always)]
     pub fn meets(&self, other: &Self, span: Span) -> bool {
         let closing = minus(self.path.velocity, other.path.velocity);
@@ -57,7 +55,7 @@ impl Traveller {
         // Most are too far apart whichever way they go; what is no number is near nothing.
         let furthest = reach + self.sweep + other.sweep;
         let is_near = dot(apart, apart) <= furthest * furthest;
-        if !is_near || self.asleep && other.asleep || self.site.is_held_to(&other.site) {
+        if !is_near || self.asleep && other.asleep {
             return false;
         }
         // Where they come closest, as seen from the middle of the span.

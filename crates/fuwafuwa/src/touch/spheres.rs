@@ -215,6 +215,12 @@ impl Spheres {
         sphere.mean::<D>(&bodies[sphere.body as usize].velocity)
     }
 
+    /// Whether their body itself holds two at their distance.
+    pub fn holds(&self, a: u32, b: u32) -> bool {
+        let [a, b] = [a, b].map(|place| self.list[place as usize].site());
+        a.is_held_to(&b)
+    }
+
     fn follow<D: Dim>(&mut self, place: u32, bodies: &[Body<D>]) {
         let place = place as usize;
         let sphere = &self.list[place];
