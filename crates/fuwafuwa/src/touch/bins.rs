@@ -103,6 +103,7 @@ impl Bins {
             _ => &[[1, 0], [-1, 1], [0, 1], [1, 1]],
         };
         let mut others: Vec<Range<usize>> = Vec::new();
+        let mut near: Vec<u32> = Vec::new();
         for bin in bins {
             let own = self.range(bin, bin);
             if own.is_empty() {
@@ -119,28 +120,26 @@ impl Bins {
             others.retain(|range| !range.is_empty());
             for place in own.clone() {
                 let at = self.point(place);
-                let mut visit = |other| visit(place, other);
-                self.look(simd, place + 1..own.end, at, reach, &mut visit);
+                near.clear();
+                self.look(simd, place + 1..own.end, at, reach, &mut near);
                 for range in &others {
-                    self.look(simd, range.clone(), at, reach, &mut visit);
+                    self.look(simd, range.clone(), at, reach, &mut near);
+                }
+                for &other in &near {
+                    visit(place, other as usize);
                 }
             }
         }
     }
 
-    /// Calls `visit` with the place of each point that is no further from `at` than `reach` [m].
+    /// Finds the places of the points that are no further from `at` than `reach` [m].
     #[inline(always)]
-    pub fn near<D: Dim, S: Simd>(
-        &self,
-        simd: S,
-        at: Row,
-        reach: f32,
-        mut visit: impl FnMut(usize),
-    ) {
+    pub fn near<D: Dim, S: Simd>(&self, simd: S, at: Row, reach: f32, near: &mut Vec<u32>) {
+        near.clear();
         let steps = (reach * self.inverse).ceil();
         // So far around the grid meets itself.
         if steps.is_nan() || 2.0 * steps >= self.mask as f32 {
-            self.look(simd, 0..self.numbers.len(), at, reach, &mut visit);
+            self.look(simd, 0..self.numbers.len(), at, reach, near);
             return;
         }
         let steps = steps as i32;
@@ -149,14 +148,13 @@ impl Bins {
         for dz in layers {
             for dy in -steps..=steps {
                 for range in self.row([x, y.wrapping_add(dy), z.wrapping_add(dz)], steps) {
-                    self.look(simd, range, at, reach, &mut visit);
+                    self.look(simd, range, at, reach, near);
                 }
             }
         }
     }
 
-    /// Calls `visit` with the places of those of some points that are no further from `at` than
-    /// `reach` [m].
+    /// Adds the places of those of some points that are no further from `at` than `reach` [m].
     #[inline(always)]
     fn look<S: Simd>(
         &self,
@@ -164,7 +162,7 @@ impl Bins {
         range: Range<usize>,
         at: Row,
         reach: f32,
-        visit: &mut impl FnMut(usize),
+        near: &mut Vec<u32>,
     ) {
         let own = [0, 1, 2].map(|axis: usize| splat(simd, at[axis]));
         for first in range.clone().step_by(LANES) {
@@ -174,15 +172,15 @@ impl Bins {
             };
             let (x, y, z) = (along(0), along(1), along(2));
             let squared = x * x + y * y + z * z;
-            let mut near = squared.simd_le(reach * reach).to_bitmask();
-            // The last lanes may be of another bin.
+            let mut lanes = squared.simd_le(reach * reach).to_bitmask();
+            // The last ones may be of another bin.
             let left = range.end - first;
             if left < LANES {
-                near &= (1 << left) - 1;
+                lanes &= (1 << left) - 1;
             }
-            while near != 0 {
-                visit(first + near.trailing_zeros() as usize);
-                near &= near - 1;
+            while lanes != 0 {
+                near.push(first as u32 + lanes.trailing_zeros());
+                lanes &= lanes - 1;
             }
         }
     }
@@ -275,9 +273,10 @@ mod tests {
                 dot(apart, apart) <= reach * reach
             };
             let mut found = Vec::new();
-            bins.near::<D, _>(simd, at, reach, |place| {
-                found.push(bins.numbers()[place]);
-            });
+            bins.near::<D, _>(simd, at, reach, &mut found);
+            for found in &mut found {
+                *found = bins.numbers()[*found as usize];
+            }
             found.sort_unstable();
             let numbers = 0..points.len() as u32;
             let expected: Vec<u32> = numbers

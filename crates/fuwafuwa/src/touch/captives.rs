@@ -103,17 +103,18 @@ impl Captives {
         for same in inner_elements(bodies, &pieces).chunk_by(|a, b| a.level == b.level) {
             let widest = same.iter().map(|inner| inner.radius).fold(0.0, f32::max);
             let bins = Bins::new::<D>(&centres, widest);
+            let mut inside = Vec::new();
             for inner in same {
-                let mut visit = |at: usize| {
-                    let number = bins.numbers()[at] as usize;
+                let (at, reach) = (inner.centre, inner.radius);
+                on_widest_lanes!(simd => bins.near::<D, _>(simd, at, reach, &mut inside));
+                for &at in &inside {
+                    let number = bins.numbers()[at as usize] as usize;
                     let (place, at) = (near[number], three(centres[number]));
                     let body = &bodies[inner.captor.0 as usize];
                     if own(&pieces, place) < inner.count && body.holds(inner.element, at) {
                         self.captors[place as usize] = Some(inner.captor);
                     }
-                };
-                let (at, reach) = (inner.centre, inner.radius);
-                on_widest_lanes!(simd => bins.near::<D, _>(simd, at, reach, &mut visit));
+                }
             }
         }
         let mut exits: BTreeMap<(u32, u32), Exits> = BTreeMap::new();
@@ -187,9 +188,10 @@ impl Exits {
         };
         let none = (f32::INFINITY, u32::MAX);
         let mut nearest = none;
-        on_widest_lanes!(simd => self.bins.near::<D, _>(simd, at, self.reach, |place| {
-            nearest = nearer(nearest, self.bins.numbers()[place]);
-        }));
+        let mut near = Vec::new();
+        on_widest_lanes!(simd => self.bins.near::<D, _>(simd, at, self.reach, &mut near));
+        let near = { near.iter() }.map(|&place| self.bins.numbers()[place as usize]);
+        nearest = near.fold(nearest, nearer);
         if nearest == none {
             nearest = (0..self.places.len() as u32).fold(none, nearer);
         }

@@ -288,23 +288,28 @@ impl SpherePairs {
         // Of two long paths the longer one looks for the other.
         let rank = |long: &Traveller| (long.sweep, long.place);
         threads::map(self.loose.chunks(LOOKS), |share| {
-            let mut found = Vec::new();
+            let (mut found, mut near) = (Vec::new(), Vec::new());
             on_widest_lanes!(simd => for own in share {
                 let at = own.path.at(span.middle);
                 let site = spheres.list[own.place as usize].site();
-                bins.near::<D, _>(simd, at, self.reach + own.sweep + self.short, |at| {
+                let reach = self.reach + own.sweep + self.short;
+                bins.near::<D, _>(simd, at, reach, &mut near);
+                for &at in &near {
+                    let at = at as usize;
                     let (held, other) = (site.is_held_to(&self.sites[at]), &self.binned[at]);
                     if !held && own.meets(other, span) && self.is_binned(other) {
                         found.push(pair(own, other));
                     }
-                });
-                long.near::<D, _>(simd, at, self.reach + 2.0 * own.sweep, |at| {
-                    let other = &self.loose[long.numbers()[at] as usize];
+                }
+                let reach = self.reach + 2.0 * own.sweep;
+                long.near::<D, _>(simd, at, reach, &mut near);
+                for &at in &near {
+                    let other = &self.loose[long.numbers()[at as usize] as usize];
                     let first = rank(other) < rank(own);
                     if first && own.meets(other, span) && !spheres.holds(own.place, other.place) {
                         found.push(pair(own, other));
                     }
-                });
+                }
             });
             found
         })
@@ -331,7 +336,7 @@ impl SpherePairs {
         let bins = self.bins.as_ref().expect("all were looked for before");
         let this = &*self;
         let found = threads::map(changed.chunks(LOOKS), |places| {
-            let mut found = Vec::new();
+            let (mut found, mut near) = (Vec::new(), Vec::new());
             on_widest_lanes!(simd => for &place in places {
                 let own = &this.traveller(place, spheres);
                 let site = spheres.list[place as usize].site();
@@ -342,13 +347,16 @@ impl SpherePairs {
                 // In the frame, where the others hardly move.
                 let shift = scaled(this.frame, span.middle - this.binned_at);
                 let at = minus(own.path.at(span.middle), shift);
-                bins.near::<D, _>(simd, at, this.reach + this.short + own.sweep, |at| {
-                    let other = &this.binned[at];
+                let reach = this.reach + this.short + own.sweep;
+                bins.near::<D, _>(simd, at, reach, &mut near);
+                for &at in &near {
+                    let at = at as usize;
+                    let (held, other) = (site.is_held_to(&this.sites[at]), &this.binned[at]);
                     let is_other = is_first(other) && this.is_binned(other);
-                    if is_other && !site.is_held_to(&this.sites[at]) && own.meets(other, span) {
+                    if !held && is_other && own.meets(other, span) {
                         found.push(pair(own, other));
                     }
-                });
+                }
                 for other in &this.loose {
                     let is_met = own.meets(other, span) && is_first(other);
                     if is_met && !spheres.holds(place, other.place) {
