@@ -9,6 +9,7 @@ mod bins;
 mod captives;
 mod collider;
 mod impulse;
+mod kin;
 mod nodes;
 mod pair;
 mod pairs;
@@ -67,7 +68,7 @@ impl Nearby {
     pub fn tear<D: Dim>(&mut self, place: u32, body: &Body<D>, torn: &Torn) {
         self.nodes.tear(place, &torn.nodes);
         let changed = &mut self.pairs.changed;
-        self.spheres.tear(place, body, &torn.elements, changed);
+        self.spheres.tear(place, body, torn, changed);
         self.captives.tear(&self.spheres);
     }
 

@@ -88,13 +88,15 @@ impl Bins {
 
     /// Calls `visit` once with the places of any two points that are no further apart than `reach`
     /// [m], which may be no more than a bin is wide, and of which one lies in these `bins`: all shares
-    /// together make all pairs.
+    /// together make all pairs. Of a point and eight from the other place on, `is_out` tells as a mask
+    /// which are left out.
     #[inline(always)]
     pub fn pairs<D: Dim, S: Simd>(
         &self,
         simd: S,
         bins: Range<usize>,
         reach: f32,
+        is_out: impl Fn(usize, usize) -> u64,
         mut visit: impl FnMut(usize, usize),
     ) {
         // Of two bins side by side one looks at the other.
@@ -121,9 +123,17 @@ impl Bins {
             for place in own.clone() {
                 let at = self.point(place);
                 near.clear();
-                self.look(simd, place + 1..own.end, at, reach, &mut near);
-                for range in &others {
-                    self.look(simd, range.clone(), at, reach, &mut near);
+                let rest = std::iter::once(place + 1..own.end);
+                for range in rest.chain(others.iter().cloned()) {
+                    self.look(
+                        simd,
+                        range,
+                        at,
+                        reach,
+                        #[inline(always)]
+                        |first| is_out(place, first),
+                        &mut near,
+                    );
                 }
                 for &other in &near {
                     visit(place, other as usize);
@@ -132,14 +142,22 @@ impl Bins {
         }
     }
 
-    /// Finds the places of the points that are no further from `at` than `reach` [m].
+    /// Finds the places of the points that are no further from `at` than `reach` [m]. Of eight from a
+    /// place on, `is_out` tells as a mask which are left out.
     #[inline(always)]
-    pub fn near<D: Dim, S: Simd>(&self, simd: S, at: Row, reach: f32, near: &mut Vec<u32>) {
+    pub fn near<D: Dim, S: Simd>(
+        &self,
+        simd: S,
+        at: Row,
+        reach: f32,
+        is_out: impl Fn(usize) -> u64 + Copy,
+        near: &mut Vec<u32>,
+    ) {
         near.clear();
         let steps = (reach * self.inverse).ceil();
         // So far around the grid meets itself.
         if steps.is_nan() || 2.0 * steps >= self.mask as f32 {
-            self.look(simd, 0..self.numbers.len(), at, reach, near);
+            self.look(simd, 0..self.numbers.len(), at, reach, is_out, near);
             return;
         }
         let steps = steps as i32;
@@ -148,7 +166,7 @@ impl Bins {
         for dz in layers {
             for dy in -steps..=steps {
                 for range in self.row([x, y.wrapping_add(dy), z.wrapping_add(dz)], steps) {
-                    self.look(simd, range, at, reach, near);
+                    self.look(simd, range, at, reach, is_out, near);
                 }
             }
         }
@@ -162,6 +180,7 @@ impl Bins {
         range: Range<usize>,
         at: Row,
         reach: f32,
+        is_out: impl Fn(usize) -> u64,
         near: &mut Vec<u32>,
     ) {
         let own = [0, 1, 2].map(|axis: usize| splat(simd, at[axis]));
@@ -177,6 +196,9 @@ impl Bins {
             let left = range.end - first;
             if left < LANES {
                 lanes &= (1 << left) - 1;
+            }
+            if lanes != 0 {
+                lanes &= !is_out(first);
             }
             while lanes != 0 {
                 near.push(first as u32 + lanes.trailing_zeros());
@@ -250,10 +272,16 @@ mod tests {
         let bins = Bins::new::<D>(&points, reach);
         let mut found = Vec::new();
         for share in bins.shares() {
-            bins.pairs::<D, _>(simd, share, reach, |a, b| {
-                let [a, b] = [a, b].map(|place| bins.numbers()[place] as usize);
-                found.push((a.min(b), a.max(b)));
-            });
+            bins.pairs::<D, _>(
+                simd,
+                share,
+                reach,
+                |_, _| 0,
+                |a, b| {
+                    let [a, b] = [a, b].map(|place| bins.numbers()[place] as usize);
+                    found.push((a.min(b), a.max(b)));
+                },
+            );
         }
         found.sort_unstable();
         let is_near = |a: usize, b: usize| {
@@ -273,7 +301,7 @@ mod tests {
                 dot(apart, apart) <= reach * reach
             };
             let mut found = Vec::new();
-            bins.near::<D, _>(simd, at, reach, &mut found);
+            bins.near::<D, _>(simd, at, reach, |_| 0, &mut found);
             for found in &mut found {
                 *found = bins.numbers()[*found as usize];
             }

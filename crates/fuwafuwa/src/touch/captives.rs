@@ -106,7 +106,7 @@ impl Captives {
             let mut inside = Vec::new();
             for inner in same {
                 let (at, reach) = (inner.centre, inner.radius);
-                on_widest_lanes!(simd => bins.near::<D, _>(simd, at, reach, &mut inside));
+                on_widest_lanes!(simd => bins.near::<D, _>(simd, at, reach, |_| 0, &mut inside));
                 for &at in &inside {
                     let number = bins.numbers()[at as usize] as usize;
                     let (place, at) = (near[number], three(centres[number]));
@@ -189,7 +189,7 @@ impl Exits {
         let none = (f32::INFINITY, u32::MAX);
         let mut nearest = none;
         let mut near = Vec::new();
-        on_widest_lanes!(simd => self.bins.near::<D, _>(simd, at, self.reach, &mut near));
+        on_widest_lanes!(simd => self.bins.near::<D, _>(simd, at, self.reach, |_| 0, &mut near));
         let near = { near.iter() }.map(|&place| self.bins.numbers()[place as usize]);
         nearest = near.fold(nearest, nearer);
         if nearest == none {

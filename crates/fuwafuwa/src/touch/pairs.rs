@@ -11,9 +11,9 @@
 //! ```
 
 use super::bins::Bins;
+use super::kin::Kin;
 use super::pair::{SpherePair, merge};
 use super::path::{Path, STRAY, Span, Traveller, widened};
-use super::sphere::Site;
 use super::spheres::{NONE, Spheres};
 use crate::body::Body;
 use crate::dim::Dim;
@@ -49,13 +49,16 @@ pub struct SpherePairs {
     /// Where the middles of all paths are; nothing while all must be looked for.
     #[cfg_attr(feature = "serde", serde(skip))]
     bins: Option<Bins>,
-    /// When they are there [s]; and in the order of the bins the spheres, and where in their bodies they are.
+    /// When they are there [s]; and in the order of the bins the spheres, and where in their pieces they are.
     #[cfg_attr(feature = "serde", serde(skip))]
     binned_at: f32,
     #[cfg_attr(feature = "serde", serde(skip))]
     binned: Vec<Traveller>,
     #[cfg_attr(feature = "serde", serde(skip))]
-    sites: Vec<Site>,
+    kin: Kin,
+    /// The place of each sphere in that order.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    order: Vec<u32>,
     /// The mean velocity of what moves, as seen from which paths are short or long [m/s], and half the
     /// length of the longest of the short ones [m].
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -197,25 +200,29 @@ impl SpherePairs {
         self.paths.resize(count, Path::default());
         (0..count as u32).for_each(|place| self.lay(place, spheres, bodies));
         self.measure(spheres);
-        let bins = self.bin::<D>(spheres);
+        let bins = self.bin(spheres, bodies);
         let mut found = self.short_pairs::<D>(&bins);
         found.extend(self.long_pairs::<D>(&bins, spheres));
+        found.extend(self.lips(spheres));
         self.bins = Some(bins);
         merge(&mut self.list, &found, &vec![true; count]);
     }
 
     /// Sorts all into bins, by the middle of what is left of their paths.
-    fn bin<D: Dim>(&mut self, spheres: &Spheres) -> Bins {
+    fn bin<D: Dim>(&mut self, spheres: &Spheres, bodies: &[Body<D>]) -> Bins {
         self.binned_at = self.rest().middle;
         let middles = self.paths.iter().map(|path| path.at(self.binned_at));
         let middles: Vec<Row> = middles.collect();
         let bins = Bins::new::<D>(&middles, self.reach + 2.0 * self.short);
+        self.kin = Kin::of(bins.numbers(), spheres, bodies);
         let binned = bins.numbers().iter();
-        let site = |&place: &u32| spheres.list[place as usize].site();
-        self.sites = binned.clone().map(site).collect();
         self.binned = binned
             .map(|&place| self.traveller(place, spheres))
             .collect();
+        self.order.resize(middles.len(), 0);
+        for (&place, at) in bins.numbers().iter().zip(0..) {
+            self.order[place as usize] = at;
+        }
         self.loose.clear();
         self.loose_at.clear();
         self.loose_at.resize(middles.len(), NONE);
@@ -260,26 +267,44 @@ impl SpherePairs {
         self.loose_at[traveller.place as usize] == NONE
     }
 
-    /// The pairs of which both have short paths, or one sleeps.
+    /// The pairs of which both have short paths, or one sleeps, but for lips of cracks.
     fn short_pairs<D: Dim>(&self, bins: &Bins) -> Vec<Vec<[u32; 2]>> {
         let (span, reach) = (self.span(), self.reach + 2.0 * self.short);
         threads::map(bins.shares(), |share| {
             let mut found = Vec::new();
-            on_widest_lanes!(simd => bins.pairs::<D, _>(simd, share, reach, |a, b| {
-                // Most are neighbours.
-                if self.sites[a].is_held_to(&self.sites[b]) {
-                    return;
-                }
-                let [a, b] = [a, b].map(|at| &self.binned[at]);
-                if a.meets(b, span) && self.is_binned(a) && self.is_binned(b) {
-                    found.push(pair(a, b));
-                }
-            }));
+            on_widest_lanes!(simd => bins.pairs::<D, _>(
+                simd,
+                share,
+                reach,
+                #[inline(always)]
+                |own, first| self.kin.of_eight(simd, self.kin.at(own), first),
+                |a, b| {
+                    let [a, b] = [a, b].map(|at| &self.binned[at]);
+                    if a.meets(b, span) && self.is_binned(a) && self.is_binned(b) {
+                        found.push(pair(a, b));
+                    }
+                },
+            ));
             found
         })
     }
 
-    /// The pairs of those with long paths.
+    /// The pairs of lips of a crack.
+    fn lips(&self, spheres: &Spheres) -> Vec<Vec<[u32; 2]>> {
+        let span = self.span();
+        threads::map(spheres.lips.chunks(SHARE), |share| {
+            let mut found = Vec::new();
+            for &lips in share {
+                let [a, b] = lips.map(|place| &self.binned[self.order[place as usize] as usize]);
+                if a.meets(b, span) {
+                    found.push(pair(a, b));
+                }
+            }
+            found
+        })
+    }
+
+    /// The pairs of those with long paths, but for lips of cracks.
     fn long_pairs<D: Dim>(&self, bins: &Bins, spheres: &Spheres) -> Vec<Vec<[u32; 2]>> {
         let span = self.span();
         let middles = self.loose.iter().map(|long| long.path.at(span.middle));
@@ -291,22 +316,29 @@ impl SpherePairs {
             let (mut found, mut near) = (Vec::new(), Vec::new());
             on_widest_lanes!(simd => for own in share {
                 let at = own.path.at(span.middle);
-                let site = spheres.list[own.place as usize].site();
+                let relative = self.kin.relative(own.place, spheres);
                 let reach = self.reach + own.sweep + self.short;
-                bins.near::<D, _>(simd, at, reach, &mut near);
+                bins.near::<D, _>(
+                    simd,
+                    at,
+                    reach,
+                    #[inline(always)]
+                    |first| self.kin.of_eight(simd, relative, first),
+                    &mut near,
+                );
                 for &at in &near {
-                    let at = at as usize;
-                    let (held, other) = (site.is_held_to(&self.sites[at]), &self.binned[at]);
-                    if !held && own.meets(other, span) && self.is_binned(other) {
+                    let other = &self.binned[at as usize];
+                    if own.meets(other, span) && self.is_binned(other) {
                         found.push(pair(own, other));
                     }
                 }
                 let reach = self.reach + 2.0 * own.sweep;
-                long.near::<D, _>(simd, at, reach, &mut near);
+                long.near::<D, _>(simd, at, reach, |_| 0, &mut near);
                 for &at in &near {
                     let other = &self.loose[long.numbers()[at as usize] as usize];
                     let first = rank(other) < rank(own);
-                    if first && own.meets(other, span) && !spheres.holds(own.place, other.place) {
+                    let is_kin = || relative.is_near(&self.kin.relative(other.place, spheres));
+                    if first && own.meets(other, span) && !is_kin() {
                         found.push(pair(own, other));
                     }
                 }
@@ -326,7 +358,7 @@ impl SpherePairs {
             is_changed[place as usize] = true;
         }
         if changed.len() * (self.loose.len() + changed.len()) > COMPARED * count {
-            self.bins = Some(self.bin::<D>(spheres));
+            self.bins = Some(self.bin(spheres, bodies));
         } else {
             changed
                 .iter()
@@ -339,7 +371,6 @@ impl SpherePairs {
             let (mut found, mut near) = (Vec::new(), Vec::new());
             on_widest_lanes!(simd => for &place in places {
                 let own = &this.traveller(place, spheres);
-                let site = spheres.list[place as usize].site();
                 let is_first = |other: &Traveller| match is_changed[other.place as usize] {
                     true => other.place > place,
                     false => true,
@@ -348,12 +379,11 @@ impl SpherePairs {
                 let shift = scaled(this.frame, span.middle - this.binned_at);
                 let at = minus(own.path.at(span.middle), shift);
                 let reach = this.reach + this.short + own.sweep;
-                bins.near::<D, _>(simd, at, reach, &mut near);
+                bins.near::<D, _>(simd, at, reach, |_| 0, &mut near);
                 for &at in &near {
-                    let at = at as usize;
-                    let (held, other) = (site.is_held_to(&this.sites[at]), &this.binned[at]);
+                    let other = &this.binned[at as usize];
                     let is_other = is_first(other) && this.is_binned(other);
-                    if !held && is_other && own.meets(other, span) {
+                    if is_other && own.meets(other, span) && !spheres.holds(place, other.place) {
                         found.push(pair(own, other));
                     }
                 }

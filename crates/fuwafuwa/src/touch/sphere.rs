@@ -1,7 +1,7 @@
 //! The ball that stands for a surface element where bodies touch each other.
 
 use crate::body::Body;
-use crate::dim::Dim;
+use crate::dim::{Dim, Point};
 use crate::solve::Row;
 use crate::vector::{plus, scaled};
 
@@ -41,7 +41,7 @@ pub fn mean<D: Dim>(rows: &[Row], nodes: &[u32; 8]) -> Row {
 impl ContactSphere {
     /// That of an element of the body at a place among all, if it is at the surface.
     pub fn of<D: Dim>(place: u32, body: &Body<D>, id: u32) -> Option<Self> {
-        let bare = body.bare[id as usize];
+        let bare = *body.bare.get(id as usize)?;
         if bare == 0 {
             return None;
         }
@@ -65,6 +65,11 @@ impl ContactSphere {
     /// Body and element.
     pub fn key(&self) -> (u32, u32) {
         (self.body, self.element)
+    }
+
+    /// Its voxel.
+    pub fn voxel(&self) -> Point {
+        self.voxel.map(i32::from)
     }
 
     /// Where in its body it is.

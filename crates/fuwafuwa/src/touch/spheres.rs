@@ -4,6 +4,7 @@
 use super::sphere::ContactSphere;
 use crate::body::Body;
 use crate::dim::Dim;
+use crate::release::Torn;
 use crate::solve::Row;
 use crate::vector::{dot, minus};
 
@@ -19,9 +20,13 @@ pub struct Spheres {
     /// Those that were first by body and element, then those that came to the surface since.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub list: Vec<ContactSphere>,
-    /// The place in the list of each element's sphere, by body and element; [`NONE`] inside.
+    /// The place in the list of each voxel's sphere, by body and place of the voxel; [`NONE`] inside.
     #[cfg_attr(feature = "serde", serde(skip))]
-    by_element: Vec<Vec<u32>>,
+    by_voxel: Vec<Vec<u32>>,
+    /// The pairs that are lips of a crack: in one piece, no more than two voxels apart on any axis as the body
+    /// was built, and yet not held by it.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub lips: Vec<[u32; 2]>,
     /// Whether nothing but tears happened to bodies since it was made.
     #[cfg_attr(feature = "serde", serde(skip))]
     is_listed: bool,
@@ -91,18 +96,20 @@ impl Spheres {
     fn list_anew<D: Dim>(&mut self, bodies: &[Body<D>]) -> Vec<u32> {
         let known = std::mem::take(&mut self.keys);
         self.list.clear();
-        let capacities = bodies.iter().map(|body| body.mesh.element_capacity());
-        let by_element = capacities.clone().map(|capacity| vec![NONE; capacity]);
-        self.by_element = by_element.collect();
-        let all = (0..).zip(capacities);
-        let all = all.flat_map(|(body, capacity)| (0..capacity as u32).map(move |id| (body, id)));
-        for (body, id) in known.iter().copied().chain(all) {
-            let by_element = self.by_element.get_mut(body as usize);
-            let own = by_element.and_then(|places| places.get_mut(id as usize));
-            let Some(own) = own.filter(|own| **own == NONE) else {
+        let none = |body: &Body<D>| vec![NONE; body.grid.voxels().count()];
+        self.by_voxel = bodies.iter().map(none).collect();
+        let all = bodies.iter().zip(0..).flat_map(|(body, place)| {
+            let ids = body.mesh.elements().map(|(id, _)| id);
+            ids.map(move |id| (place, id))
+        });
+        for (place, id) in known.iter().copied().chain(all) {
+            let body = bodies.get(place as usize);
+            let sphere = body.and_then(|body| ContactSphere::of(place, body, id));
+            let Some((sphere, body)) = sphere.zip(body) else {
                 continue;
             };
-            if let Some(sphere) = ContactSphere::of(body, &bodies[body as usize], id) {
+            let own = &mut self.by_voxel[place as usize][body.grid.index(sphere.voxel())];
+            if *own == NONE {
                 *own = self.list.len() as u32;
                 self.list.push(sphere);
             }
@@ -115,44 +122,94 @@ impl Spheres {
         self.centres.clear();
         self.centres.extend(self.list.iter().map(centre));
         self.make_room();
-        let places = known.iter().map(|&key| self.place(key));
+        self.lips.clear();
+        for place in 0..self.list.len() as u32 {
+            let body = &bodies[self.list[place as usize].body as usize];
+            self.find_lips(place, body, |other| other > place);
+        }
+        let place = |&(body, id): &(u32, u32)| {
+            let sphere = ContactSphere::of(body, bodies.get(body as usize)?, id)?;
+            Some(*self.at_voxel(&sphere, &bodies[body as usize]))
+        };
+        let places = known.iter().map(|key| place(key).unwrap_or(NONE));
         places.collect()
     }
 
-    /// Keeps up with a tear of a body at elements that are gone or new, or have other nodes or other
-    /// bare faces; adds the places of their spheres to `changed`.
+    /// Keeps up with a tear of a body; adds the places of the spheres whose elements are new, or have other
+    /// nodes or other bare faces, to `changed`.
     pub fn tear<D: Dim>(
         &mut self,
         place: u32,
         body: &Body<D>,
-        elements: &[u32],
+        torn: &Torn,
         changed: &mut Vec<u32>,
     ) {
-        let by_element = &mut self.by_element[place as usize];
-        by_element.resize(body.mesh.element_capacity(), NONE);
-        for &id in elements {
+        let mut touched = Vec::new();
+        for &id in &torn.elements {
             let Some(sphere) = ContactSphere::of(place, body, id) else {
-                // What has once come to the surface stays there.
-                debug_assert_eq!(by_element[id as usize], NONE);
                 continue;
             };
-            let own = &mut by_element[id as usize];
-            if *own == NONE {
-                *own = self.list.len() as u32;
+            // What has once come to the surface stays there.
+            let own = *self.at_voxel(&sphere, body);
+            if own == NONE {
+                let own = self.list.len() as u32;
+                self.by_voxel[place as usize][body.grid.index(sphere.voxel())] = own;
                 if !sphere.asleep {
-                    self.awake.push(*own);
+                    self.awake.push(own);
                 }
                 self.keys.push(sphere.key());
                 self.list.push(sphere);
                 self.centres.push(sphere.mean::<D>(&body.position));
+                touched.push(own);
             } else {
-                self.list[*own as usize] = sphere;
+                self.list[own as usize] = sphere;
+                touched.push(own);
             }
-            changed.push(*own);
         }
         self.make_room();
-        for sphere in self.list.iter_mut().filter(|sphere| sphere.body == place) {
-            sphere.piece = body.pieces.of_element(sphere.element);
+        touched.sort_unstable();
+        touched.dedup();
+        changed.extend(&touched);
+        let mut is_touched = vec![false; self.list.len()];
+        touched
+            .iter()
+            .for_each(|&own| is_touched[own as usize] = true);
+        let is_known = |lips: &[u32; 2]| lips.iter().all(|&own| !is_touched[own as usize]);
+        self.lips.retain(is_known);
+        if !torn.parted.is_empty() {
+            for sphere in self.list.iter_mut().filter(|sphere| sphere.body == place) {
+                sphere.piece = body.pieces.of_element(sphere.element);
+            }
+            let list = &self.list;
+            let piece = |own: u32| (list[own as usize].body, list[own as usize].piece);
+            self.lips.retain(|&[a, b]| piece(a) == piece(b));
+        }
+        for own in touched {
+            self.find_lips(own, body, |other| {
+                !is_touched[other as usize] || other > own
+            });
+        }
+    }
+
+    /// Adds the lips that a sphere is one of, with those others that a condition holds for.
+    fn find_lips<D: Dim>(&mut self, place: u32, body: &Body<D>, applies: impl Fn(u32) -> bool) {
+        let own = &self.list[place as usize];
+        let (site, voxel, size) = (own.site(), own.voxel(), body.grid.size());
+        let by_voxel = &self.by_voxel[own.body as usize];
+        let low = [0, 1, 2].map(|axis: usize| (voxel[axis] - 2).max(0));
+        let high = [0, 1, 2].map(|axis: usize| (voxel[axis] + 2).min(size[axis] - 1));
+        for z in low[2]..=high[2] {
+            for y in low[1]..=high[1] {
+                let row = body.grid.index([low[0], y, z])..=body.grid.index([high[0], y, z]);
+                let others = by_voxel[row].iter().copied();
+                for other in others.filter(|&other| other != NONE && applies(other)) {
+                    let sphere = &self.list[other as usize];
+                    let is_held = other == place || site.is_held_to(&sphere.site());
+                    if !is_held && sphere.piece == own.piece {
+                        self.lips.push([place, other]);
+                    }
+                }
+            }
         }
     }
 
@@ -232,10 +289,9 @@ impl Spheres {
         self.centres[place] = centre;
     }
 
-    fn place(&self, (body, element): (u32, u32)) -> u32 {
-        let by_element = self.by_element.get(body as usize);
-        let place = by_element.and_then(|places| places.get(element as usize));
-        place.copied().unwrap_or(NONE)
+    /// The place in the list of what stands at the voxel of a sphere, or [`NONE`].
+    fn at_voxel<D: Dim>(&self, sphere: &ContactSphere, body: &Body<D>) -> &u32 {
+        &self.by_voxel[sphere.body as usize][body.grid.index(sphere.voxel())]
     }
 
     fn make_room(&mut self) {

@@ -157,7 +157,7 @@ fn check_tears<D: Dim>(n: usize) {
             });
             let torn = body.tear(&sides.collect::<Vec<_>>());
             let torn = torn.expect("a release leaves the mesh whole");
-            spheres.tear(0, &body, &torn.elements, &mut pairs.changed);
+            spheres.tear(0, &body, &torn, &mut pairs.changed);
             let mut kept = spheres.list.clone();
             kept.sort_by_key(ContactSphere::key);
             let mut anew = Spheres::default();
