@@ -11,7 +11,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Number of the format and of the rules; it changes when an older round would run differently.
-pub const VERSION: u32 = 4;
+pub const VERSION: u32 = 5;
 
 /// A round: the level itself, what was played in it, and what came of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
