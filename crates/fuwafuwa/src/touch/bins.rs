@@ -3,6 +3,7 @@
 use crate::dim::{Dim, Point};
 use crate::lanes::{LANES, Lanes, Row, splat};
 use crate::threads::SHARE;
+use crate::vector::{minus, plus};
 use fearless_simd::prelude::*;
 use std::ops::Range;
 
@@ -117,7 +118,7 @@ impl Bins {
             others.clear();
             others.push(self.range(next, next));
             for [dy, dz] in ahead {
-                others.extend(self.row([x, y + dy, z + dz], 1));
+                others.extend(self.row([x - 1, y + dy, z + dz], 3));
             }
             others.retain(|range| !range.is_empty());
             for place in own.clone() {
@@ -154,18 +155,23 @@ impl Bins {
         near: &mut Vec<u32>,
     ) {
         near.clear();
-        let steps = (reach * self.inverse).ceil();
+        // With a little for rounding.
+        let mut aside = [0.0; 4];
+        aside[..D::N].fill(1.01 * reach);
+        let low = self.square(&minus(at, aside));
+        let high = self.square(&plus(at, aside));
+        let count = |axis: usize| high[axis].wrapping_sub(low[axis]).wrapping_add(1);
         // So far around the grid meets itself.
-        if steps.is_nan() || 2.0 * steps >= self.mask as f32 {
+        let is_far = |axis: usize| !(1..=self.mask).contains(&count(axis));
+        if reach.is_nan() || (0..D::N).any(is_far) {
             self.look(simd, 0..self.numbers.len(), at, reach, is_out, near);
             return;
         }
-        let steps = steps as i32;
-        let [x, y, z] = self.square(&at);
-        let layers = if D::N == 3 { -steps..=steps } else { 0..=0 };
-        for dz in layers {
-            for dy in -steps..=steps {
-                for range in self.row([x, y.wrapping_add(dy), z.wrapping_add(dz)], steps) {
+        let layers = if D::N == 3 { count(2) } else { 1 };
+        for z in 0..layers {
+            for y in 0..count(1) {
+                let first = [low[0], low[1].wrapping_add(y), low[2].wrapping_add(z)];
+                for range in self.row(first, count(0)) {
                     self.look(simd, range, at, reach, is_out, near);
                 }
             }
@@ -207,20 +213,18 @@ impl Bins {
         }
     }
 
-    /// Where the points in the bin of a square and in those so many steps before and after it on the
-    /// first axis begin and end: one stretch, and another where the grid goes round.
+    /// Where the points in so many bins in a row, from the one of a square on, begin and end: one stretch,
+    /// and another where the grid goes round.
     #[inline(always)]
-    fn row(&self, [x, y, z]: Point, steps: i32) -> [Range<usize>; 2] {
+    fn row(&self, [x, y, z]: Point, count: i32) -> [Range<usize>; 2] {
         let (x, start) = (x & self.mask, self.bin([0, y, z]) as usize);
         let from =
             |first: i32, last: i32| self.range(start + first as usize, start + last as usize);
-        let (first, last, count) = (x - steps, x + steps, self.mask + 1);
-        if first < 0 {
-            [from(0, last), from(first + count, self.mask)]
-        } else if last >= count {
-            [from(first, self.mask), from(0, last - count)]
+        let (last, all) = (x + count - 1, self.mask + 1);
+        if last < all {
+            [from(x, last), 0..0]
         } else {
-            [from(first, last), 0..0]
+            [from(x, all - 1), from(0, last - all)]
         }
     }
 
@@ -251,7 +255,7 @@ mod tests {
     use super::*;
     use crate::dim::{Dim2, Dim3};
     use crate::lanes::on_widest_lanes;
-    use crate::vector::{dot, minus};
+    use crate::vector::dot;
 
     fn check<D: Dim>() {
         on_widest_lanes!(simd => check_on::<D, _>(simd));

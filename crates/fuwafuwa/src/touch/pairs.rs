@@ -2,7 +2,8 @@
 //!
 //! They are looked for along the way that each is going to take: a straight *path*, from which it may stray
 //! a little, and which holds the shorter the faster things are. Only those that have strayed further, woke or came to the surface
-//! are looked for again; so no pair can be missed, whatever moves as long as it is finite.
+//! are looked for again; so no pair can be missed, whatever moves as long as it is finite. Who is near whom in
+//! its own piece is left out of the search: the body knows which of those are lips of a crack.
 //!
 //! ```text
 //!    ●──────────┤        two paths make a pair when their spheres, widened by what they may stray,
