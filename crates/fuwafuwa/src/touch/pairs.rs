@@ -26,7 +26,7 @@ use crate::vector::{dot, length, minus, plus, scaled};
 /// The share of spheres whose paths may be long, and half the length of the longest of the rest, as a share
 /// of the reach: where more is faster, paths end sooner. Short ones are looked for bin by
 /// bin, long ones look around for themselves.
-const LONG_SHARE: usize = 16;
+const LONG_SHARE: usize = 32;
 const LONGEST_SHORT: f32 = 0.125;
 /// Paths hold for so long at the most [s]: what falls has strayed then.
 const LONGEST_TIME: f32 = 0.1;
