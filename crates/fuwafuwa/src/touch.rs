@@ -9,7 +9,7 @@ mod bins;
 mod captives;
 mod collider;
 mod impulse;
-mod kin;
+mod neighbours;
 mod nodes;
 mod pair;
 mod pairs;

@@ -22,8 +22,8 @@ const PATIENCE: u32 = 210;
 const GRAZING: [f32; 2] = [0.78, 0.55];
 /// The shaving bot gathers when the largest piece has this share of what it had.
 const SMALL_ENOUGH: f32 = 0.92;
-/// A piece of which so much is in the basket, beyond what is needed, is shaved with care.
-const IN_THE_MOUTH: f32 = -0.48;
+/// With so much of all mass in the basket, strokes are no faster than brisk.
+const IN_THE_MOUTH: f32 = 0.1;
 /// It presses for so many ticks when enough is in the basket, and lets go.
 const LONG_ENOUGH: u32 = 30;
 
@@ -243,7 +243,7 @@ impl Bot {
                     false => Stroke::Cut(to, patience - 1),
                 };
                 // In the mouth nothing gives way: a hand at full force would break the piece up.
-                match sight.surplus > IN_THE_MOUTH {
+                match sight.within > IN_THE_MOUTH {
                     true => straight(sight, to, BRISK),
                     false => to,
                 }

@@ -2,8 +2,8 @@
 //!
 //! They are looked for along the way that each is going to take: a straight *path*, from which it may stray
 //! a little, and which holds the shorter the faster things are. Only those that have strayed further, woke or came to the surface
-//! are looked for again; so no pair can be missed, whatever moves as long as it is finite. Who is near whom in
-//! its own piece is left out of the search: the body knows which of those are lips of a crack.
+//! are looked for again; so no pair can be missed, whatever moves as long as it is finite. A search
+//! for all leaves neighbours in one piece out: which of those are lips of a crack is known without it.
 //!
 //! ```text
 //!    ●──────────┤        two paths make a pair when their spheres, widened by what they may stray,
@@ -12,7 +12,7 @@
 //! ```
 
 use super::bins::Bins;
-use super::kin::Kin;
+use super::neighbours::Neighbours;
 use super::pair::{SpherePair, merge};
 use super::path::{Path, STRAY, Span, Traveller, widened};
 use super::spheres::{NONE, Spheres};
@@ -50,13 +50,14 @@ pub struct SpherePairs {
     /// Where the middles of all paths are; nothing while all must be looked for.
     #[cfg_attr(feature = "serde", serde(skip))]
     bins: Option<Bins>,
-    /// When they are there [s]; and in the order of the bins the spheres, and where in their pieces they are.
+    /// When they are there [s].
     #[cfg_attr(feature = "serde", serde(skip))]
     binned_at: f32,
+    /// In the order of the bins: the spheres, and where in their pieces they are.
     #[cfg_attr(feature = "serde", serde(skip))]
     binned: Vec<Traveller>,
     #[cfg_attr(feature = "serde", serde(skip))]
-    kin: Kin,
+    neighbours: Neighbours,
     /// The place of each sphere in that order.
     #[cfg_attr(feature = "serde", serde(skip))]
     order: Vec<u32>,
@@ -215,7 +216,7 @@ impl SpherePairs {
         let middles = self.paths.iter().map(|path| path.at(self.binned_at));
         let middles: Vec<Row> = middles.collect();
         let bins = Bins::new::<D>(&middles, self.reach + 2.0 * self.short);
-        self.kin = Kin::of(bins.numbers(), spheres, bodies);
+        self.neighbours = Neighbours::of(bins.numbers(), spheres, bodies);
         let binned = bins.numbers().iter();
         self.binned = binned
             .map(|&place| self.traveller(place, spheres))
@@ -228,7 +229,7 @@ impl SpherePairs {
         self.loose_at.clear();
         self.loose_at.resize(middles.len(), NONE);
         for traveller in &self.binned {
-            if !traveller.asleep && traveller.sweep > self.short {
+            if traveller.sweep > self.short {
                 self.loose_at[traveller.place as usize] = self.loose.len() as u32;
                 self.loose.push(*traveller);
             }
@@ -262,13 +263,13 @@ impl SpherePairs {
         length(minus(self.paths[place as usize].velocity, self.frame))
     }
 
-    /// Whether the bins find it: its path is short, and the one it began with.
+    /// Whether the bins find it: its path is short, and the one that it had when it was sorted.
     #[inline(always)]
     fn is_binned(&self, traveller: &Traveller) -> bool {
         self.loose_at[traveller.place as usize] == NONE
     }
 
-    /// The pairs of which both have short paths, or one sleeps, but for lips of cracks.
+    /// The pairs of which both have short paths, but for neighbours in a piece.
     fn short_pairs<D: Dim>(&self, bins: &Bins) -> Vec<Vec<[u32; 2]>> {
         let (span, reach) = (self.span(), self.reach + 2.0 * self.short);
         threads::map(bins.shares(), |share| {
@@ -278,7 +279,7 @@ impl SpherePairs {
                 share,
                 reach,
                 #[inline(always)]
-                |own, first| self.kin.of_eight(simd, self.kin.at(own), first),
+                |own, first| self.neighbours.of_eight(simd, self.neighbours.at(own), first),
                 |a, b| {
                     let [a, b] = [a, b].map(|at| &self.binned[at]);
                     if a.meets(b, span) && self.is_binned(a) && self.is_binned(b) {
@@ -305,7 +306,7 @@ impl SpherePairs {
         })
     }
 
-    /// The pairs of those with long paths, but for lips of cracks.
+    /// The pairs of those with long paths, but for neighbours in a piece.
     fn long_pairs<D: Dim>(&self, bins: &Bins, spheres: &Spheres) -> Vec<Vec<[u32; 2]>> {
         let span = self.span();
         let middles = self.loose.iter().map(|long| long.path.at(span.middle));
@@ -317,14 +318,14 @@ impl SpherePairs {
             let (mut found, mut near) = (Vec::new(), Vec::new());
             on_widest_lanes!(simd => for own in share {
                 let at = own.path.at(span.middle);
-                let relative = self.kin.relative(own.place, spheres);
+                let site = self.neighbours.site(own.place, spheres);
                 let reach = self.reach + own.sweep + self.short;
                 bins.near::<D, _>(
                     simd,
                     at,
                     reach,
                     #[inline(always)]
-                    |first| self.kin.of_eight(simd, relative, first),
+                    |first| self.neighbours.of_eight(simd, site, first),
                     &mut near,
                 );
                 for &at in &near {
@@ -338,8 +339,8 @@ impl SpherePairs {
                 for &at in &near {
                     let other = &self.loose[long.numbers()[at as usize] as usize];
                     let first = rank(other) < rank(own);
-                    let is_kin = || relative.is_near(&self.kin.relative(other.place, spheres));
-                    if first && own.meets(other, span) && !is_kin() {
+                    let is_neighbour = || site.is_neighbour(&self.neighbours.site(other.place, spheres));
+                    if first && own.meets(other, span) && !is_neighbour() {
                         found.push(pair(own, other));
                     }
                 }
@@ -360,6 +361,11 @@ impl SpherePairs {
         }
         if changed.len() * (self.loose.len() + changed.len()) > COMPARED * count {
             self.bins = Some(self.bin(spheres, bodies));
+            // Where too many are fast, paths have to end sooner.
+            if changed.len() * self.loose.len() > COMPARED * count {
+                self.find_all(spheres, bodies);
+                return;
+            }
         } else {
             changed
                 .iter()

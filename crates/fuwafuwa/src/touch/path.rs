@@ -36,7 +36,7 @@ pub struct Span {
 #[derive(Copy, Clone, Debug)]
 pub struct Traveller {
     pub path: Path,
-    /// Half the length of its path at the most, as all see it [m].
+    /// Half the length of its path at the most, as seen from the frame [m].
     pub sweep: f32,
     pub radius: f32,
     /// Its place among the spheres.

@@ -1,6 +1,7 @@
 //! The contact spheres of all bodies: in the order in which they came to the surface, so that a tear
 //! moves none; followed while they move.
 
+use super::neighbours::NEAR;
 use super::sphere::ContactSphere;
 use crate::body::Body;
 use crate::dim::Dim;
@@ -23,8 +24,7 @@ pub struct Spheres {
     /// The place in the list of each voxel's sphere, by body and place of the voxel; [`NONE`] inside.
     #[cfg_attr(feature = "serde", serde(skip))]
     by_voxel: Vec<Vec<u32>>,
-    /// The pairs that are lips of a crack: in one piece, no more than two voxels apart on any axis as the body
-    /// was built, and yet not held by it.
+    /// The pairs that are lips of a crack: neighbours in one piece, and yet not held by it.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub lips: Vec<[u32; 2]>,
     /// Whether nothing but tears happened to bodies since it was made.
@@ -96,7 +96,10 @@ impl Spheres {
     fn list_anew<D: Dim>(&mut self, bodies: &[Body<D>]) -> Vec<u32> {
         let known = std::mem::take(&mut self.keys);
         self.list.clear();
-        let none = |body: &Body<D>| vec![NONE; body.grid.voxels().count()];
+        let none = |body: &Body<D>| {
+            let voxels = body.grid.size().map(|extent| extent as usize);
+            vec![NONE; voxels.iter().product()]
+        };
         self.by_voxel = bodies.iter().map(none).collect();
         let all = bodies.iter().zip(0..).flat_map(|(body, place)| {
             let ids = body.mesh.elements().map(|(id, _)| id);
@@ -196,8 +199,9 @@ impl Spheres {
         let own = &self.list[place as usize];
         let (site, voxel, size) = (own.site(), own.voxel(), body.grid.size());
         let by_voxel = &self.by_voxel[own.body as usize];
-        let low = [0, 1, 2].map(|axis: usize| (voxel[axis] - 2).max(0));
-        let high = [0, 1, 2].map(|axis: usize| (voxel[axis] + 2).min(size[axis] - 1));
+        let near = i32::from(NEAR);
+        let low = [0, 1, 2].map(|axis: usize| (voxel[axis] - near).max(0));
+        let high = [0, 1, 2].map(|axis: usize| (voxel[axis] + near).min(size[axis] - 1));
         for z in low[2]..=high[2] {
             for y in low[1]..=high[1] {
                 let row = body.grid.index([low[0], y, z])..=body.grid.index([high[0], y, z]);

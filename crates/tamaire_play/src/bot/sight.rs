@@ -25,6 +25,8 @@ pub(super) struct Sight {
     pub piece: Piece,
     /// Share of all mass in the largest piece of all.
     pub share: f32,
+    /// Share of it in the basket.
+    pub within: f32,
     /// Share of it in the basket beyond what is needed, moving or not.
     pub surplus: f32,
     /// Where the hand is, and where it is to go [m].
@@ -110,6 +112,7 @@ impl Sight {
             across: across::<D>(basket.axis),
             piece,
             share: largest.mass / mass,
+            within,
             surplus: within - round.level().game().share,
             hand: hand.position(),
             goal: hand.goal(),

@@ -129,7 +129,18 @@ fn no_pair_is_missed() {
     check::<Dim3>(6);
 }
 
-/// A body is torn at random; the spheres kept up against those listed anew, and who is bound to whom
+/// The lips of cracks, by element.
+fn lips(spheres: &Spheres) -> Vec<[(u32, u32); 2]> {
+    let key = |place: u32| spheres.list[place as usize].key();
+    let ascending = |[a, b]: [(u32, u32); 2]| [a.min(b), a.max(b)];
+    let mut lips: Vec<_> = { spheres.lips.iter() }
+        .map(|lips| ascending(lips.map(key)))
+        .collect();
+    lips.sort_unstable();
+    lips
+}
+
+/// A body is torn at random; the spheres and lips kept up against those listed anew, and who is bound to whom
 /// against the nodes they have.
 fn check_tears<D: Dim>(n: usize) {
     let grid = VoxelGrid::<D>::ball(n, 1.0).expect("a ball is not empty");
@@ -163,6 +174,7 @@ fn check_tears<D: Dim>(n: usize) {
             let mut anew = Spheres::default();
             anew.start_tick(std::slice::from_ref(&body), &mut Vec::new());
             assert_eq!(kept, anew.list);
+            assert_eq!(lips(&spheres), lips(&anew));
             let mut rebuilt = body.clone();
             rebuilt.rebuild();
             let mut anew = Spheres::default();
