@@ -1,14 +1,12 @@
 //! Who is so close to whom in their piece that a search for all pairs may leave the two out: either their body
 //! holds them at their distance, or they are lips of a crack, which are known without a search.
 
+use super::sphere::NEAR;
 use super::spheres::Spheres;
 use crate::body::Body;
 use crate::dim::Dim;
 use crate::lanes::LANES;
 use fearless_simd::{prelude::*, u16x8, u32x8};
-
-/// Neighbours are of one piece, and no more than so many voxels apart on any axis as it was built.
-pub const NEAR: u16 = 2;
 
 /// Where in which piece contact spheres are, in columns, so that eight can be asked at once.
 #[derive(Clone, Debug, Default)]

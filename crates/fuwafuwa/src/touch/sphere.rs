@@ -5,6 +5,9 @@ use crate::dim::{Dim, Point};
 use crate::solve::Row;
 use crate::vector::{plus, scaled};
 
+/// Neighbours are of one piece, and no more than so many voxels apart on any axis as it was built.
+pub const NEAR: u16 = 2;
+
 /// The ball around a surface element.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct ContactSphere {

@@ -1,8 +1,7 @@
 //! The contact spheres of all bodies: in the order in which they came to the surface, so that a tear
 //! moves none; followed while they move.
 
-use super::neighbours::NEAR;
-use super::sphere::ContactSphere;
+use super::sphere::{ContactSphere, NEAR};
 use crate::body::Body;
 use crate::dim::Dim;
 use crate::release::Torn;
