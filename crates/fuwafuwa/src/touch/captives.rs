@@ -187,11 +187,10 @@ impl Exits {
             if found < nearest { found } else { nearest }
         };
         let none = (f32::INFINITY, u32::MAX);
-        let mut nearest = none;
         let mut near = Vec::new();
         on_widest_lanes!(simd => self.bins.near::<D, _>(simd, at, self.reach, |_| 0, &mut near));
         let near = { near.iter() }.map(|&place| self.bins.numbers()[place as usize]);
-        nearest = near.fold(nearest, nearer);
+        let mut nearest = near.fold(none, nearer);
         if nearest == none {
             nearest = (0..self.places.len() as u32).fold(none, nearer);
         }

@@ -53,14 +53,9 @@ pub struct SpherePairs {
     /// When they are there [s].
     #[cfg_attr(feature = "serde", serde(skip))]
     binned_at: f32,
-    /// In the order of the bins: the spheres, and where in their pieces they are.
+    /// The spheres in the order of the bins.
     #[cfg_attr(feature = "serde", serde(skip))]
     binned: Vec<Traveller>,
-    #[cfg_attr(feature = "serde", serde(skip))]
-    neighbours: Neighbours,
-    /// The place of each sphere in that order.
-    #[cfg_attr(feature = "serde", serde(skip))]
-    order: Vec<u32>,
     /// The mean velocity of what moves, as seen from which paths are short or long [m/s], and half the
     /// length of the longest of the short ones [m].
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -202,29 +197,25 @@ impl SpherePairs {
         self.paths.resize(count, Path::default());
         (0..count as u32).for_each(|place| self.lay(place, spheres, bodies));
         self.measure(spheres);
-        let bins = self.bin(spheres, bodies);
-        let mut found = self.short_pairs::<D>(&bins);
-        found.extend(self.long_pairs::<D>(&bins, spheres));
-        found.extend(self.lips(spheres));
+        let bins = self.bin::<D>(spheres);
+        let neighbours = Neighbours::of(bins.numbers(), spheres, bodies);
+        let mut found = self.short_pairs::<D>(&bins, &neighbours);
+        found.extend(self.long_pairs::<D>(&bins, &neighbours, spheres));
+        found.extend(self.lips(&bins, spheres));
         self.bins = Some(bins);
         merge(&mut self.list, &found, &vec![true; count]);
     }
 
     /// Sorts all into bins, by the middle of what is left of their paths.
-    fn bin<D: Dim>(&mut self, spheres: &Spheres, bodies: &[Body<D>]) -> Bins {
+    fn bin<D: Dim>(&mut self, spheres: &Spheres) -> Bins {
         self.binned_at = self.rest().middle;
         let middles = self.paths.iter().map(|path| path.at(self.binned_at));
         let middles: Vec<Row> = middles.collect();
         let bins = Bins::new::<D>(&middles, self.reach + 2.0 * self.short);
-        self.neighbours = Neighbours::of(bins.numbers(), spheres, bodies);
         let binned = bins.numbers().iter();
         self.binned = binned
             .map(|&place| self.traveller(place, spheres))
             .collect();
-        self.order.resize(middles.len(), 0);
-        for (&place, at) in bins.numbers().iter().zip(0..) {
-            self.order[place as usize] = at;
-        }
         self.loose.clear();
         self.loose_at.clear();
         self.loose_at.resize(middles.len(), NONE);
@@ -270,7 +261,7 @@ impl SpherePairs {
     }
 
     /// The pairs of which both have short paths, but for neighbours in a piece.
-    fn short_pairs<D: Dim>(&self, bins: &Bins) -> Vec<Vec<[u32; 2]>> {
+    fn short_pairs<D: Dim>(&self, bins: &Bins, neighbours: &Neighbours) -> Vec<Vec<[u32; 2]>> {
         let (span, reach) = (self.span(), self.reach + 2.0 * self.short);
         threads::map(bins.shares(), |share| {
             let mut found = Vec::new();
@@ -279,7 +270,7 @@ impl SpherePairs {
                 share,
                 reach,
                 #[inline(always)]
-                |own, first| self.neighbours.of_eight(simd, self.neighbours.at(own), first),
+                |own, first| neighbours.of_eight(simd, neighbours.at(own), first),
                 |a, b| {
                     let [a, b] = [a, b].map(|at| &self.binned[at]);
                     if a.meets(b, span) && self.is_binned(a) && self.is_binned(b) {
@@ -292,12 +283,17 @@ impl SpherePairs {
     }
 
     /// The pairs of lips of a crack.
-    fn lips(&self, spheres: &Spheres) -> Vec<Vec<[u32; 2]>> {
+    fn lips(&self, bins: &Bins, spheres: &Spheres) -> Vec<Vec<[u32; 2]>> {
+        // The place of each sphere in the order of the bins.
+        let mut order = vec![0u32; self.binned.len()];
+        for (&place, at) in bins.numbers().iter().zip(0..) {
+            order[place as usize] = at;
+        }
         let span = self.span();
         threads::map(spheres.lips.chunks(SHARE), |share| {
             let mut found = Vec::new();
             for &lips in share {
-                let [a, b] = lips.map(|place| &self.binned[self.order[place as usize] as usize]);
+                let [a, b] = lips.map(|place| &self.binned[order[place as usize] as usize]);
                 if a.meets(b, span) {
                     found.push(pair(a, b));
                 }
@@ -307,7 +303,12 @@ impl SpherePairs {
     }
 
     /// The pairs of those with long paths, but for neighbours in a piece.
-    fn long_pairs<D: Dim>(&self, bins: &Bins, spheres: &Spheres) -> Vec<Vec<[u32; 2]>> {
+    fn long_pairs<D: Dim>(
+        &self,
+        bins: &Bins,
+        neighbours: &Neighbours,
+        spheres: &Spheres,
+    ) -> Vec<Vec<[u32; 2]>> {
         let span = self.span();
         let middles = self.loose.iter().map(|long| long.path.at(span.middle));
         let middles: Vec<Row> = middles.collect();
@@ -318,14 +319,14 @@ impl SpherePairs {
             let (mut found, mut near) = (Vec::new(), Vec::new());
             on_widest_lanes!(simd => for own in share {
                 let at = own.path.at(span.middle);
-                let site = self.neighbours.site(own.place, spheres);
+                let site = neighbours.site(own.place, spheres);
                 let reach = self.reach + own.sweep + self.short;
                 bins.near::<D, _>(
                     simd,
                     at,
                     reach,
                     #[inline(always)]
-                    |first| self.neighbours.of_eight(simd, site, first),
+                    |first| neighbours.of_eight(simd, site, first),
                     &mut near,
                 );
                 for &at in &near {
@@ -339,7 +340,7 @@ impl SpherePairs {
                 for &at in &near {
                     let other = &self.loose[long.numbers()[at as usize] as usize];
                     let first = rank(other) < rank(own);
-                    let is_neighbour = || site.is_neighbour(&self.neighbours.site(other.place, spheres));
+                    let is_neighbour = || site.is_neighbour(&neighbours.site(other.place, spheres));
                     if first && own.meets(other, span) && !is_neighbour() {
                         found.push(pair(own, other));
                     }
@@ -360,7 +361,7 @@ impl SpherePairs {
             is_changed[place as usize] = true;
         }
         if changed.len() * (self.loose.len() + changed.len()) > COMPARED * count {
-            self.bins = Some(self.bin(spheres, bodies));
+            self.bins = Some(self.bin::<D>(spheres));
             // Where too many are fast, paths have to end sooner.
             if changed.len() * self.loose.len() > COMPARED * count {
                 self.find_all(spheres, bodies);

@@ -130,8 +130,8 @@ impl Spheres {
             self.find_lips(place, body, |other| other > place);
         }
         let place = |&(body, id): &(u32, u32)| {
-            let sphere = ContactSphere::of(body, bodies.get(body as usize)?, id)?;
-            Some(*self.at_voxel(&sphere, &bodies[body as usize]))
+            let (at, by_voxel) = (bodies.get(body as usize)?, &self.by_voxel[body as usize]);
+            Some(by_voxel[at.grid.index(ContactSphere::of(body, at, id)?.voxel())])
         };
         let places = known.iter().map(|key| place(key).unwrap_or(NONE));
         places.collect()
@@ -152,21 +152,19 @@ impl Spheres {
                 continue;
             };
             // What has once come to the surface stays there.
-            let own = *self.at_voxel(&sphere, body);
-            if own == NONE {
-                let own = self.list.len() as u32;
-                self.by_voxel[place as usize][body.grid.index(sphere.voxel())] = own;
+            let own = &mut self.by_voxel[place as usize][body.grid.index(sphere.voxel())];
+            if *own == NONE {
+                *own = self.list.len() as u32;
                 if !sphere.asleep {
-                    self.awake.push(own);
+                    self.awake.push(*own);
                 }
                 self.keys.push(sphere.key());
                 self.list.push(sphere);
                 self.centres.push(sphere.mean::<D>(&body.position));
-                touched.push(own);
             } else {
-                self.list[own as usize] = sphere;
-                touched.push(own);
+                self.list[*own as usize] = sphere;
             }
+            touched.push(*own);
         }
         self.make_room();
         touched.sort_unstable();
@@ -290,11 +288,6 @@ impl Spheres {
             self.moved[place] = dot(moved, moved);
         }
         self.centres[place] = centre;
-    }
-
-    /// The place in the list of what stands at the voxel of a sphere, or [`NONE`].
-    fn at_voxel<D: Dim>(&self, sphere: &ContactSphere, body: &Body<D>) -> &u32 {
-        &self.by_voxel[sphere.body as usize][body.grid.index(sphere.voxel())]
     }
 
     fn make_room(&mut self) {
