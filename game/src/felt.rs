@@ -2,7 +2,7 @@
 
 use force_feedback::Stop;
 use fuwafuwa::world::TICK;
-use fuwafuwa::{Event, Manipulator, Vector};
+use fuwafuwa::{Event, Rigid, Vector};
 use tamaire_play::{AnyRound, PLAYERS};
 
 /// A round has begun once it is so old [s]: until then hands are elsewhere.
@@ -12,7 +12,7 @@ const TEAR: f32 = 0.2;
 const MORE: f32 = 0.05;
 
 /// With what everything that a hand touches pushed it, averaged over the last tick [N].
-pub fn contact(hand: &Manipulator) -> Vector {
+pub fn contact(hand: &Rigid) -> Vector {
     let all = hand.reactions();
     let mean = |axis: usize| {
         let sum: f32 = all.iter().map(|reaction| reaction.contact[axis]).sum();
@@ -38,11 +38,11 @@ pub fn tears(round: &AnyRound) -> [f32; PLAYERS] {
         let Event::Released { at, .. } = *event else {
             continue;
         };
-        let away = |hand: &Manipulator| {
+        let away = |hand: &Rigid| {
             let square = |axis: usize| (hand.position()[axis] - at[axis]).powi(2);
             square(0) + square(1) + square(2)
         };
-        let hands = round.hands().iter().take(PLAYERS).enumerate();
+        let hands = round.hands().into_iter().take(PLAYERS).enumerate();
         let hands = hands.filter(|(_, hand)| contact(hand) != [0.0; 3]);
         let nearest = hands.min_by(|(_, a), (_, b)| away(a).total_cmp(&away(b)));
         if let Some((player, _)) = nearest {

@@ -1,7 +1,7 @@
 //! The same scenes in fuwafuwa.
 
 use fuwafuwa::law::Elasticity;
-use fuwafuwa::{Body, Dim, Material, Settings, Shape, VoxelGrid, World};
+use fuwafuwa::{Body, Dim, Material, Rigid, Settings, Shape, VoxelGrid, World};
 
 use crate::world::{Falling, Span};
 use crate::{Drop, Result, WIDTH};
@@ -28,7 +28,7 @@ pub fn world<D: Dim>(scene: &Drop) -> Result<World<D>> {
         most_substeps: MOST_SUBSTEPS,
     })?;
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_obstacle(floor, scene.friction)?;
+    world.add_rigid(Rigid::fixed(floor, scene.friction))?;
     let body = Body::new(VoxelGrid::<D>::ball(scene.n, WIDTH)?, &[material])?;
     let lowest = span(&body).lowest;
     world.add_body(body.moved([0.0, scene.height - lowest, 0.0]));
@@ -46,7 +46,7 @@ fn span<D: Dim>(body: &Body<D>) -> Span {
 
 impl<D: Dim> Falling for World<D> {
     fn engine(&self) -> String {
-        let elements = self.bodies()[0].mesh().element_count();
+        let elements = self.bodies().first().unwrap().mesh().element_count();
         format!("fuwafuwa, {elements} elements")
     }
 
@@ -55,7 +55,7 @@ impl<D: Dim> Falling for World<D> {
     }
 
     fn span(&self) -> Span {
-        span(&self.bodies()[0])
+        span(self.bodies().first().unwrap())
     }
 
     fn substeps(&self) -> usize {
@@ -63,15 +63,15 @@ impl<D: Dim> Falling for World<D> {
     }
 
     fn stiffness_scale(&self) -> f64 {
-        self.bodies()[0].stiffness_scale()
+        self.bodies().first().unwrap().stiffness_scale()
     }
 
     fn pieces(&self) -> usize {
-        self.bodies()[0].pieces().list.len()
+        self.bodies().first().unwrap().pieces().list.len()
     }
 
     fn asleep(&self) -> f64 {
-        let pieces = &self.bodies()[0].pieces().list;
+        let pieces = &self.bodies().first().unwrap().pieces().list;
         let asleep = pieces.iter().filter(|piece| piece.asleep).count();
         asleep as f64 / pieces.len() as f64
     }

@@ -2,12 +2,12 @@
 //!
 //! `cargo run --release -p fuwafuwa --example drop`
 
-use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, Settings, Shape, VoxelGrid, World};
+use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, Rigid, Settings, Shape, VoxelGrid, World};
 
 fn drop<D: Dim>(n: usize) -> Result<(), Box<dyn std::error::Error>> {
     let mut world = World::<D>::new(Settings::default())?;
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_obstacle(floor, 0.5)?;
+    world.add_rigid(Rigid::fixed(floor, 0.5))?;
     let ball = VoxelGrid::ball(n, 1.0)?;
     let stiff = Material {
         strength: f32::INFINITY,
@@ -17,10 +17,16 @@ fn drop<D: Dim>(n: usize) -> Result<(), Box<dyn std::error::Error>> {
     println!("{}D ball, {n} voxels across:", D::N);
     for tick in 0..180 {
         let report = world.step();
-        let heights = world.bodies()[0].mesh().nodes().map(|(id, _)| {
-            let (position, _, _) = world.bodies()[0].node_state(id);
-            position[1]
-        });
+        let heights = world
+            .bodies()
+            .first()
+            .unwrap()
+            .mesh()
+            .nodes()
+            .map(|(id, _)| {
+                let (position, _, _) = world.bodies().first().unwrap().node_state(id);
+                position[1]
+            });
         let (low, high) = heights.fold((f32::MAX, f32::MIN), |(low, high), y| {
             (low.min(y), high.max(y))
         });

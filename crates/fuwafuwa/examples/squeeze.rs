@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p fuwafuwa --example squeeze`
 
-use fuwafuwa::{Body, Dim2, Manipulator, Material, Settings, Shape, VoxelGrid, World};
+use fuwafuwa::{Body, Dim2, Material, Rigid, Settings, Shape, VoxelGrid, World};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut world = World::<Dim2>::new(Settings {
@@ -16,20 +16,20 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             to: [1.2, to, 0.0],
             radius: 0.05,
         };
-        world.add_obstacle(bar, 0.2)?;
+        world.add_rigid(Rigid::fixed(bar, 0.2))?;
     }
     let unbreakable = Material {
         strength: f32::INFINITY,
         ..Material::default()
     };
     world.add_body(Body::new(VoxelGrid::ball(64, 1.0)?, &[unbreakable])?);
-    let hand = world.add_manipulator(Manipulator::new([-0.2, 0.5, 0.0], 0.15))?;
+    let hand = world.add_rigid(Rigid::hand([-0.2, 0.5, 0.0], 0.15))?;
     for tick in 0..=300u16 {
         let x = (-0.2 + 0.008 * f32::from(tick)).min(1.5);
-        world.set_goal(hand, [x, 0.5, 0.0]);
+        world.set_goal(hand, [x, 0.5, 0.0])?;
         world.step();
         if tick % 30 == 0 {
-            let body = &world.bodies()[0];
+            let body = world.bodies().first().unwrap();
             let view = body.piece_views()[0];
             let through = body.mass_where(|at| at[0] > 1.2) / view.mass;
             println!(

@@ -2,9 +2,7 @@
 //!
 //! `cargo run --release -p fuwafuwa --example tear`
 
-use fuwafuwa::{
-    Body, Dim2, Drive, Event, Manipulator, Material, Settings, Shape, VoxelGrid, World,
-};
+use fuwafuwa::{Body, Dim2, Drive, Event, Material, Rigid, Settings, Shape, VoxelGrid, World};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut world = World::<Dim2>::new(Settings {
@@ -12,7 +10,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         drag: 1.0,
         ..Settings::default()
     })?;
-    world.add_obstacle(Shape::half_space([-1.0, 0.0, 0.0], [1.1, 0.0, 0.0]), 0.2)?;
+    world.add_rigid(Rigid::fixed(
+        Shape::half_space([-1.0, 0.0, 0.0], [1.1, 0.0, 0.0]),
+        0.2,
+    ))?;
     world.add_body(Body::new(
         VoxelGrid::ball(64, 1.0)?,
         &[Material::default()],
@@ -24,9 +25,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         damping: 0.9,
         limit: f32::INFINITY,
     };
-    let hand = world.add_manipulator(Manipulator::new([-0.2, 0.5, 0.0], 0.1).driven(strong))?;
+    let hand = world.add_rigid(Rigid::hand([-0.2, 0.5, 0.0], 0.1).with_drive(strong))?;
     for tick in 0..120u8 {
-        world.set_goal(hand, [-0.2 + 0.012 * f32::from(tick), 0.5, 0.0]);
+        world.set_goal(hand, [-0.2 + 0.012 * f32::from(tick), 0.5, 0.0])?;
         let report = world.step();
         let energy: f32 = world
             .events()
@@ -36,7 +37,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 _ => 0.0,
             })
             .sum();
-        let felt = world.manipulators()[hand].reactions().last();
+        let felt = world.rigids()[hand].reactions().last();
         let felt = felt.map_or(0.0, |reaction| -reaction.coupling[0]);
         if report.released > 0 || tick % 20 == 0 {
             println!(
@@ -45,7 +46,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             );
         }
     }
-    let mut pieces = world.bodies()[0].piece_views();
+    let mut pieces = world.bodies().first().unwrap().piece_views();
     pieces.sort_by(|a, b| b.mass.total_cmp(&a.mass));
     for piece in pieces.iter().take(5) {
         println!("a piece of {:.2} kg at {:.2?}", piece.mass, piece.centre);

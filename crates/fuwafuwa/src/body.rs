@@ -2,6 +2,7 @@
 
 mod asleep;
 mod blend;
+pub(crate) mod cooldowns;
 mod derived;
 mod motion;
 #[cfg(feature = "serde")]
@@ -10,6 +11,7 @@ mod sound;
 use crate::breakable::BreakableNodes;
 use crate::dim::{Dim, Point};
 use crate::grid::VoxelGrid;
+use crate::handle::{Arena, BodyId};
 use crate::law::Law;
 use crate::material::{BodyError, Material};
 use crate::mesh::{Element, Mesh};
@@ -20,6 +22,10 @@ use crate::sharing::Sharing;
 use crate::solve::{Blocks, Row};
 use crate::vector::{as_row, dot, three};
 use blend::{Blend, elasticities};
+use cooldowns::Cooldowns;
+
+/// The bodies of a world.
+pub type Bodies<D> = Arena<BodyId, Body<D>>;
 
 /// One soft thing, whole or in pieces.
 #[derive(Clone, Debug)]
@@ -54,6 +60,7 @@ pub struct Body<D: Dim> {
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) breakable: BreakableNodes,
     pub(crate) damage: Vec<f32>,
+    pub(crate) cooldowns: Cooldowns,
     /// Which faces of an element of level 0 are bare: bit 2 · axis + side; by element id.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) bare: Vec<u8>,
@@ -114,6 +121,7 @@ impl<D: Dim> Body<D> {
             awake_is_stale: true,
             breakable: BreakableNodes::default(),
             damage: Vec::new(),
+            cooldowns: Cooldowns::default(),
             bare: Vec::new(),
             bound: Vec::new(),
             ahead: Vec::new(),

@@ -11,17 +11,17 @@ mod motion;
 mod row;
 mod sides;
 
-use crate::body::Body;
+use crate::body::{Bodies, Body};
 use crate::dim::Dim;
-use crate::manipulator::Manipulator;
+use crate::rigid::Rigids;
 use crate::solve::Row;
 use crate::threads;
-use crate::touch::{Collider, ContactSphere, Impulse, MARGIN, Nearby, NodePairs};
+use crate::touch::{ContactSphere, Impulse, MARGIN, Nearby, NodePairs};
 use crate::vector::{as_row, minus, scaled, three};
 use exit::Exit;
 use motion::Motion;
 use row::{Contact, inner};
-use sides::{HandContact, NodeContact, SphereContact, push_hand};
+use sides::{HandContact, NodeContact, SphereContact};
 
 /// A crumb is behind a sphere when the way to it goes this far inwards (cosine).
 const BEHIND: f32 = 0.3;
@@ -49,14 +49,14 @@ impl Contacts {
     /// Finds the contacts of this substep among what is nearby. Returns the sleepers that were hit.
     pub fn find<D: Dim>(
         &mut self,
-        bodies: &[Body<D>],
-        colliders: &[Collider],
+        bodies: &Bodies<D>,
+        rigids: &Rigids,
         nearby: &mut Nearby,
         duration: f32,
     ) -> Vec<Hit> {
         let mut hits = Vec::new();
         self.motion.clear(bodies);
-        self.find_nodes(bodies, colliders, &mut nearby.nodes, duration, &mut hits);
+        self.find_nodes(bodies, rigids, &mut nearby.nodes, duration, &mut hits);
         self.find_spheres(bodies, nearby, duration, &mut hits);
         self.exits.clear();
         let (spheres, motion) = (&nearby.spheres, &mut self.motion);
@@ -64,6 +64,7 @@ impl Contacts {
         let exits =
             exits.filter_map(|captive| Exit::new(captive, bodies, spheres, motion, duration));
         self.exits.extend(exits);
+        self.find_hands(rigids, duration);
         hits.sort_unstable();
         hits.dedup();
         hits
@@ -71,37 +72,35 @@ impl Contacts {
 
     fn find_nodes<D: Dim>(
         &mut self,
-        bodies: &[Body<D>],
-        colliders: &[Collider],
+        bodies: &Bodies<D>,
+        rigids: &Rigids,
         pairs: &mut NodePairs,
         duration: f32,
         hits: &mut Vec<Hit>,
     ) {
         self.nodes.clear();
-        let obstacles = colliders.iter().filter(|collider| !collider.is_hand);
-        let first_hand = obstacles.count() as u32;
         let travel = pairs.travel;
         let shares = threads::shares(&mut pairs.list);
         let found = threads::map(shares, |(first, pairs)| {
             let (mut contacts, mut hits) = (Vec::new(), Vec::new());
             for (pair, place) in pairs.iter_mut().zip(first..) {
-                let body = &bodies[pair.body as usize];
-                let collider = &colliders[pair.collider as usize];
+                let body = bodies.at(pair.body);
+                let rigid = rigids.at(pair.rigid);
                 let node = pair.node as usize;
                 // What sleeps is touched by hands alone.
-                if body.inverse_mass[node] == 0.0 && !collider.is_hand {
+                if body.inverse_mass[node] == 0.0 && !rigid.is_driven() {
                     pair.impulse.release();
                     continue;
                 }
                 let (at, velocity) = (body.position[node], body.velocity[node]);
                 // Most are so far from a wall that they could not come to it at any direction.
                 let reachable = (pair.clear - travel).max(0.0) / (AHEAD * duration);
-                if !collider.is_hand && inner::<D>(velocity, velocity) < reachable * reachable {
+                if !rigid.is_driven() && inner::<D>(velocity, velocity) < reachable * reachable {
                     continue;
                 }
-                let (gap, normal) = collider.shape.distance(three(at));
+                let (gap, normal) = rigid.shape().distance(three(at));
                 let normal = as_row(normal);
-                let relative = minus(velocity, collider.velocity);
+                let relative = minus(velocity, as_row(rigid.velocity()));
                 let size = body.grid.voxel_size();
                 if !is_close(gap, inner::<D>(relative, normal), size, duration) {
                     pair.impulse.release();
@@ -110,14 +109,14 @@ impl Contacts {
                     continue;
                 }
                 pair.clear = 0.0;
-                if collider.is_hand && gap < 0.1 * size && body.pieces.sleeps(pair.node) {
+                if rigid.is_driven() && gap < 0.1 * size && body.pieces.sleeps(pair.node) {
                     hits.push((pair.body, body.pieces.of_node(pair.node)));
                 }
-                let inverse_mass = body.inverse_mass[node] + collider.inverse_mass;
+                let inverse_mass = body.inverse_mass[node] + rigid.inverse_mass();
                 if body.inverse_mass[node] == 0.0 {
                     continue;
                 }
-                let friction = collider.friction;
+                let friction = rigid.friction;
                 let contact = Contact::new(normal, gap, duration, 1.0 / inverse_mass, friction);
                 contacts.push((contact.known_as::<D>(place, &pair.impulse), &*pair));
             }
@@ -129,21 +128,22 @@ impl Contacts {
                 .extend(contacts.into_iter().map(|(contact, pair)| NodeContact {
                     contact,
                     node: self.motion.place(pair.body, pair.node),
-                    hand: pair.collider.checked_sub(first_hand),
+                    hand: rigids.at(pair.rigid).is_driven().then_some(pair.rigid),
                 }));
         }
     }
 
     fn find_spheres<D: Dim>(
         &mut self,
-        bodies: &[Body<D>],
+        bodies: &Bodies<D>,
         nearby: &mut Nearby,
         duration: f32,
         hits: &mut Vec<Hit>,
     ) {
         self.spheres.clear();
         let waking = WAKE_SPEED * duration;
-        let frictions: Vec<f32> = bodies.iter().map(Body::friction).collect();
+        let friction = |body: Option<&Body<D>>| body.map_or(0.0, Body::friction);
+        let frictions: Vec<f32> = bodies.places().map(friction).collect();
         let (all, captives) = (&nearby.spheres, &nearby.captives);
         let shares = threads::shares(&mut nearby.pairs.list);
         let found = threads::map(shares, |(first, pairs)| {
@@ -207,32 +207,22 @@ impl Contacts {
         }
     }
 
-    /// Finds the contacts of the hands with obstacles, the first `obstacles` of the colliders, and
-    /// with each other.
-    pub fn find_hands(&mut self, hands: &[Manipulator], obstacles: &[Collider], duration: f32) {
+    /// Finds the contacts of the hands with what is fixed, and with each other.
+    fn find_hands(&mut self, rigids: &Rigids, duration: f32) {
         self.hands.clear();
-        for (index, hand) in hands.iter().enumerate() {
-            let mut add = |gap: f32, normal: [f32; 3], inverse_mass: f32, other: Option<usize>| {
-                if inverse_mass > 0.0 && gap < hand.radius {
-                    let normal = as_row(normal);
+        for (place, hand) in rigids.placed().filter(|(_, rigid)| rigid.is_driven()) {
+            let others = rigids.placed();
+            for (other, rigid) in others.filter(|&(at, rigid)| at < place || !rigid.is_driven()) {
+                let inverse_mass = hand.inverse_mass() + rigid.inverse_mass();
+                if inverse_mass > 0.0 {
+                    let (gap, normal) = hand.shape().gap(rigid.shape());
+                    let (normal, inertia) = (as_row(normal), 1.0 / inverse_mass);
                     let friction = hand.friction;
-                    let contact = Contact::new(normal, gap, duration, 1.0 / inverse_mass, friction);
-                    let hand = index;
                     self.hands.push(HandContact {
-                        contact,
-                        hand,
-                        other,
+                        contact: Contact::new(normal, gap, duration, inertia, friction),
+                        both: [place, other],
                     });
                 }
-            };
-            for obstacle in obstacles {
-                let (gap, normal) = obstacle.shape.distance(hand.position);
-                add(gap - hand.radius, normal, hand.inverse_mass(), None);
-            }
-            for (other, second) in hands.iter().enumerate().take(index) {
-                let (gap, normal) = second.shape().distance(hand.position);
-                let inverse_mass = hand.inverse_mass() + second.inverse_mass();
-                add(gap - hand.radius, normal, inverse_mass, Some(other));
             }
         }
     }
@@ -240,15 +230,15 @@ impl Contacts {
     /// Changes velocities so that the contacts hold.
     pub fn solve<D: Dim>(
         &mut self,
-        bodies: &mut [Body<D>],
-        hands: &mut [Manipulator],
+        bodies: &mut Bodies<D>,
+        rigids: &mut Rigids,
         nearby: &mut Nearby,
         duration: f32,
     ) {
         let motion = &mut self.motion;
         motion.load(bodies);
         for row in &self.nodes {
-            motion.push_node(row, hands, row.contact.start(), duration);
+            motion.push_node(row, rigids, row.contact.start(), duration);
         }
         for row in self.spheres.iter().filter(|row| row.contact.pressed > 0.0) {
             motion.push_spheres::<D>(&row.grips, row.contact.start());
@@ -266,19 +256,15 @@ impl Contacts {
                 }
             });
             for_each(&mut self.nodes, backwards, |row| {
-                let change = row.contact.solve::<D>(motion.of_node(row, hands));
-                motion.push_node(row, hands, change, duration);
+                let change = row.contact.solve::<D>(motion.of_node(row, rigids));
+                motion.push_node(row, rigids, change, duration);
             });
             for_each(&mut self.hands, backwards, |row| {
-                let own = as_row(hands[row.hand].velocity);
-                let other = row
-                    .other
-                    .map_or([0.0; 4], |other| as_row(hands[other].velocity));
+                let [own, other] = row.both.map(|place| as_row(rigids.at(place).velocity()));
                 let change = row.contact.solve::<D>(minus(own, other));
-                push_hand(&mut hands[row.hand], change, duration);
-                if let Some(other) = row.other {
-                    push_hand(&mut hands[other], scaled(change, -1.0), duration);
-                }
+                rigids.at_mut(row.both[0]).push(three(change), duration);
+                let other = rigids.at_mut(row.both[1]);
+                other.push(three(scaled(change, -1.0)), duration);
             });
         }
         motion.store(bodies);
@@ -295,12 +281,7 @@ impl Contacts {
     }
 
     /// After the move: takes back the speed of what was pushed out.
-    pub fn relax<D: Dim>(
-        &mut self,
-        bodies: &mut [Body<D>],
-        hands: &mut [Manipulator],
-        duration: f32,
-    ) {
+    pub fn relax<D: Dim>(&mut self, bodies: &mut Bodies<D>, rigids: &mut Rigids, duration: f32) {
         let motion = &mut self.motion;
         motion.load(bodies);
         for exit in &self.exits {
@@ -314,8 +295,8 @@ impl Contacts {
         }
         for row in &mut self.nodes {
             if row.contact.was_pushed_out() {
-                let change = row.contact.relax::<D>(motion.of_node(row, hands));
-                motion.push_node(row, hands, change, duration);
+                let change = row.contact.relax::<D>(motion.of_node(row, rigids));
+                motion.push_node(row, rigids, change, duration);
             }
         }
         motion.store(bodies);
@@ -342,7 +323,7 @@ impl Impulse {
 /// For a crumb whose middle is behind a sphere of a surface: the direction out of the surface, as it
 /// pushes the first of both, and how far in front of it the crumb is [m], less than 0.
 fn behind_surface<D: Dim>(
-    bodies: &[Body<D>],
+    bodies: &Bodies<D>,
     [a, b]: [&ContactSphere; 2],
     apart: Row,
 ) -> Option<(Row, f32)> {
@@ -351,7 +332,7 @@ fn behind_surface<D: Dim>(
         (false, true) => (a, -1.0),
         _ => return None,
     };
-    let out = wall.outward::<D>(&bodies[wall.body as usize].position);
+    let out = wall.outward::<D>(&bodies.at(wall.body).position);
     let length = inner::<D>(out, out).sqrt();
     let normal = scaled(out, sign / length.max(1e-9));
     let ahead = inner::<D>(apart, normal);

@@ -1,5 +1,6 @@
 //! What happened in a tick.
 
+use crate::handle::{BodyId, RigidId};
 use crate::shape::Vector;
 
 /// Something that happened in the last tick, for sound, score and show.
@@ -8,8 +9,8 @@ use crate::shape::Vector;
 pub enum Event {
     /// Voxels stopped sharing a node: a crack went on.
     Released {
-        /// Place among the bodies.
-        body: u32,
+        /// The body.
+        body: BodyId,
         /// Where [m].
         at: Vector,
         /// Elastic energy set free [J]; 0 where it was cut on purpose.
@@ -17,15 +18,15 @@ pub enum Event {
     },
     /// A piece came off.
     Parted {
-        /// Place among the bodies.
-        body: u32,
+        /// The body.
+        body: BodyId,
         /// Number of the new piece.
         piece: u32,
     },
     /// Things pressed on each other.
     Touched {
-        /// Place among the bodies.
-        body: u32,
+        /// The body.
+        body: BodyId,
         /// Number of the piece.
         piece: u32,
         /// What it pressed on.
@@ -37,22 +38,22 @@ pub enum Event {
     },
     /// A piece came to rest.
     FellAsleep {
-        /// Place among the bodies.
-        body: u32,
+        /// The body.
+        body: BodyId,
         /// Number of the piece.
         piece: u32,
     },
     /// A resting piece was disturbed.
     Woke {
-        /// Place among the bodies.
-        body: u32,
+        /// The body.
+        body: BodyId,
         /// Number of the piece.
         piece: u32,
     },
     /// A piece went out of hand and was stopped for good, so that it spoils nothing else.
     Quarantined {
-        /// Place among the bodies.
-        body: u32,
+        /// The body.
+        body: BodyId,
         /// Number of the piece.
         piece: u32,
     },
@@ -62,14 +63,14 @@ pub enum Event {
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum With {
-    /// A rigid shape, by its place among the obstacles.
-    Obstacle(u32),
-    /// A hand, by its place among the manipulators.
-    Manipulator(u32),
+    /// Something rigid that stands still.
+    Obstacle(RigidId),
+    /// A hand.
+    Hand(RigidId),
     /// Another piece, or itself.
     Piece {
-        /// Place among the bodies.
-        body: u32,
+        /// The body.
+        body: BodyId,
         /// Number of the piece.
         piece: u32,
     },

@@ -13,6 +13,7 @@
 //! tip of a crack. A node gives way when it was overstrained for some milliseconds.
 
 use crate::body::Body;
+use crate::body::cooldowns::is_near;
 use crate::breakable::{BreakableNode, Cut};
 use crate::dim::{Dim, Point};
 use crate::solve::Row;
@@ -36,49 +37,18 @@ pub struct Failure {
     pub energy: f32,
 }
 
-/// Where releases happened a short while ago: their surroundings cool down.
-#[derive(Clone, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Cooldowns {
-    /// Lattice points and for how much longer they cool down [s].
-    points: Vec<(Point, f32)>,
-    /// Rounds so far.
-    rounds: u32,
-}
-
 /// How long a node has to be overstrained by half before it gives way [s]. Shorter: knocks shatter
 /// the surface. Longer: fast hands push through without cutting.
 const DAMAGE_TIME: f32 = 0.004;
 /// How much more it takes to set a single voxel free: else a crack leaves a trail of crumbs.
 const CRUMB_FACTOR: f32 = 1.3;
-/// Lattice steps around a release that cool down after it.
-const COOLDOWN_REACH: i32 = 2;
 /// How many voxels a wave travels before the surroundings of a release are judged again.
 const COOLDOWN_VOXELS: f64 = 4.0;
 
-impl Cooldowns {
-    /// Lets a round of some time pass [s].
-    pub fn pass(&mut self, duration: f32) {
-        self.rounds = self.rounds.wrapping_add(1);
-        self.points.retain_mut(|(_, left)| {
-            *left -= duration;
-            *left > 0.0
-        });
-    }
-
-    fn covers(&self, at: Point) -> bool {
-        self.points.iter().any(|&(point, _)| is_near(at, point))
-    }
-}
-
 /// Looks at all breakable nodes after a time of `duration` [s]: adds up their damage, and picks those
 /// that give way now, the worst first, no two of them near each other but along a crack's front.
-pub fn failures<D: Dim>(
-    body: &mut Body<D>,
-    cooldowns: &mut Cooldowns,
-    duration: f32,
-) -> Vec<Failure> {
-    cooldowns.pass(duration);
+pub fn failures<D: Dim>(body: &mut Body<D>, duration: f32) -> Vec<Failure> {
+    body.cooldowns.pass(duration);
     if !body.can_tear() {
         return Vec::new();
     }
@@ -89,7 +59,7 @@ pub fn failures<D: Dim>(
         for (id, node) in body.breakable.among(first..first + damage.len()) {
             let damage = &mut damage[id as usize - first];
             // What is not damaged yet is looked at in every other round.
-            if body.pieces.sleeps(id) || *damage == 0.0 && (id ^ cooldowns.rounds) & 1 == 1 {
+            if body.pieces.sleeps(id) || *damage == 0.0 && (id ^ body.cooldowns.rounds) & 1 == 1 {
                 continue;
             }
             let Some(failure) = worst_cut(body, id, node) else {
@@ -99,7 +69,7 @@ pub fn failures<D: Dim>(
             };
             let over = (failure.excess - 1.0).min(3.0);
             *damage += duration / DAMAGE_TIME * 2.0 * over;
-            if *damage >= 1.0 && !cooldowns.covers(failure.at) {
+            if *damage >= 1.0 && !body.cooldowns.covers(failure.at) {
                 found.push(failure);
             }
         }
@@ -110,8 +80,8 @@ pub fn failures<D: Dim>(
     found.sort_by(|a, b| b.excess.total_cmp(&a.excess).then(a.node.cmp(&b.node)));
     let cooldown = (COOLDOWN_VOXELS * f64::from(size) / body.fastest_wave()) as f32;
     let chosen = undisturbed(found);
-    let cooling = chosen.iter().map(|failure| (failure.at, cooldown));
-    cooldowns.points.extend(cooling);
+    let cooling = chosen.iter().map(|failure| failure.at);
+    body.cooldowns.start(cooling, cooldown);
     chosen
 }
 
@@ -130,10 +100,6 @@ fn undisturbed(found: Vec<Failure>) -> Vec<Failure> {
         }
     }
     chosen
-}
-
-fn is_near(a: Point, b: Point) -> bool {
-    (0..3).all(|axis| (a[axis] - b[axis]).abs() <= COOLDOWN_REACH)
 }
 
 /// The cut through a breakable node that is overstrained most, if one is.

@@ -3,6 +3,8 @@
 //! The same shapes serve both dimensions. In 2D the third coordinate is 0 everywhere, so that a
 //! ball is a disc and a capsule a bar with round ends.
 
+mod between;
+
 use crate::dim::Dim;
 use crate::vector::{dot, length, minus, plus, scaled};
 use std::fmt;
@@ -127,6 +129,15 @@ impl Shape {
                 let (distance, normal) = away(minus(point, centre));
                 (distance - radius, normal)
             }
+        }
+    }
+
+    /// Radius of the largest ball that fits into it [m].
+    pub fn inradius(&self) -> f32 {
+        match *self {
+            Self::HalfSpace { .. } => f32::INFINITY,
+            Self::Box { half, .. } => half.into_iter().fold(f32::INFINITY, f32::min),
+            Self::Capsule { radius, .. } | Self::Ball { radius, .. } => radius,
         }
     }
 

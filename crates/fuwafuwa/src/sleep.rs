@@ -4,7 +4,7 @@
 //! neighbour that moves wakes it, whichever way it goes: so a heap freezes from the ground up
 //! while its top still settles, and nothing is left hanging when its support is pulled away.
 
-use crate::body::Body;
+use crate::body::Bodies;
 use crate::contact::Hit;
 use crate::damping::PieceMotion;
 use crate::dim::Dim;
@@ -17,7 +17,7 @@ const STILL_TIME: f32 = 0.5;
 /// Counts for how long each piece has been slow, and puts to sleep those that have been long
 /// enough. Pieces in `handled`, which a hand touches, stay awake. Returns who fell asleep.
 pub fn fall_asleep<D: Dim>(
-    bodies: &mut [Body<D>],
+    bodies: &mut Bodies<D>,
     motions: &[Vec<PieceMotion>],
     handled: &[Hit],
     duration: f32,
@@ -29,7 +29,7 @@ pub fn fall_asleep<D: Dim>(
         }
     }
     for &(body, piece) in handled {
-        bodies[body as usize].pieces.list[piece as usize].still = 0.0;
+        bodies.at_mut(body).pieces.list[piece as usize].still = 0.0;
     }
     change(bodies, true, |_, _, piece| {
         !piece.asleep && piece.still >= STILL_TIME
@@ -37,7 +37,7 @@ pub fn fall_asleep<D: Dim>(
 }
 
 /// Wakes the pieces that were hit; returns who woke.
-pub fn wake<D: Dim>(bodies: &mut [Body<D>], hits: &[Hit]) -> Vec<Hit> {
+pub fn wake<D: Dim>(bodies: &mut Bodies<D>, hits: &[Hit]) -> Vec<Hit> {
     if hits.is_empty() {
         return Vec::new();
     }
@@ -48,18 +48,18 @@ pub fn wake<D: Dim>(bodies: &mut [Body<D>], hits: &[Hit]) -> Vec<Hit> {
 
 /// Puts to sleep or wakes all pieces that a condition on body, number and piece holds for.
 fn change<D: Dim>(
-    bodies: &mut [Body<D>],
+    bodies: &mut Bodies<D>,
     asleep: bool,
     applies: impl Fn(u32, u32, &crate::piece::Piece) -> bool,
 ) -> Vec<Hit> {
     let mut changed = Vec::new();
-    for (place, body) in bodies.iter_mut().enumerate() {
+    for (place, body) in bodies.placed_mut() {
         let pieces = body.pieces.list.iter().enumerate();
         let marked: Vec<bool> = pieces
-            .map(|(number, piece)| applies(place as u32, number as u32, piece))
+            .map(|(number, piece)| applies(place, number as u32, piece))
             .collect();
         let numbers = (0..marked.len() as u32).filter(|&piece| marked[piece as usize]);
-        changed.extend(numbers.map(|piece| (place as u32, piece)));
+        changed.extend(numbers.map(|piece| (place, piece)));
         if marked.contains(&true) {
             body.set_asleep(&marked, asleep);
         }

@@ -10,7 +10,7 @@ use crate::world::World;
 use std::fmt;
 
 /// Number of the format. It changes when an older world would be misread or go on differently.
-pub const VERSION: u32 = 10;
+pub const VERSION: u32 = 11;
 
 const MAGIC: [u8; 4] = *b"fuwa";
 const HEADER: usize = 17;
@@ -111,10 +111,10 @@ pub fn load<D: Dim>(bytes: &[u8]) -> Result<World<D>, BadSnapshot> {
     if let Some(defect) = world.defect() {
         return Err(BadSnapshot::NoWorld { defect });
     }
-    for (place, body) in world.bodies().iter().enumerate() {
+    for (id, body) in world.bodies().entries() {
         let checked = body.check();
         checked.map_err(|defect| BadSnapshot::Broken {
-            body: place,
+            body: id.place() as usize,
             defect: defect.to_string(),
         })?;
     }

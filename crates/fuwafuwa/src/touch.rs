@@ -7,8 +7,8 @@
 
 mod bins;
 mod captives;
-mod collider;
 mod impulse;
+mod leaning;
 mod neighbours;
 mod nodes;
 mod pair;
@@ -17,13 +17,14 @@ mod path;
 mod sphere;
 mod spheres;
 
-use crate::body::Body;
+use crate::body::{Bodies, Body};
 use crate::dim::Dim;
 use crate::release::Torn;
+use crate::rigid::Rigids;
 pub use captives::{Captive, Captives};
-pub use collider::Collider;
 pub use impulse::Impulse;
-pub use nodes::NodePairs;
+pub use leaning::{leaning_on_body, leaning_on_rigid};
+pub use nodes::{NodePair, NodePairs};
 pub use pair::MARGIN;
 use pair::renumber;
 pub use pairs::SpherePairs;
@@ -53,7 +54,7 @@ pub struct Nearby {
 impl Nearby {
     /// A tick of `duration` [s] begins: what passed in the last one is settled, and bodies may be
     /// anything and anywhere.
-    pub fn start_tick<D: Dim>(&mut self, bodies: &[Body<D>], duration: f32) {
+    pub fn start_tick<D: Dim>(&mut self, bodies: &Bodies<D>, duration: f32) {
         self.nodes.start_tick();
         let places = self.spheres.start_tick(bodies, &mut self.pairs.changed);
         self.pairs.start_tick(places.is_some());
@@ -72,8 +73,23 @@ impl Nearby {
         self.captives.tear(&self.spheres);
     }
 
+    /// A body was taken out: another one may come to its place.
+    pub fn remove_body(&mut self, place: u32) {
+        let is_of_it = |sphere: &ContactSphere| sphere.body == place;
+        let spheres = &self.spheres.list;
+        let stays = |pair: &pair::SpherePair| !pair.both(spheres).into_iter().any(is_of_it);
+        self.pairs.list.retain(stays);
+        self.nodes.list.retain(|pair| pair.body != place);
+        self.spheres.remove_body(place);
+    }
+
+    /// Something rigid was taken out.
+    pub fn remove_rigid(&mut self, place: u32) {
+        self.nodes.list.retain(|pair| pair.rigid != place);
+    }
+
     /// Pieces woke, given by body and number in ascending order.
-    pub fn wake<D: Dim>(&mut self, pieces: &[(u32, u32)], bodies: &[Body<D>]) {
+    pub fn wake<D: Dim>(&mut self, pieces: &[(u32, u32)], bodies: &Bodies<D>) {
         self.nodes.wake(pieces, bodies);
         self.spheres.wake(pieces, &mut self.pairs.changed);
     }
@@ -86,8 +102,8 @@ impl Nearby {
     }
 
     /// Follows the bodies, and brings the lists up to date; a substep takes `duration` [s].
-    pub fn follow<D: Dim>(&mut self, bodies: &[Body<D>], colliders: &[Collider], duration: f32) {
-        self.nodes.follow(bodies, colliders, duration, self.left);
+    pub fn follow<D: Dim>(&mut self, bodies: &Bodies<D>, rigids: &Rigids, duration: f32) {
+        self.nodes.follow(bodies, rigids, duration, self.left);
         let changed = self.pairs.follow(&mut self.spheres, bodies);
         if !self.knows_captives {
             self.captives.find(&self.spheres, &self.pairs.list, bodies);
@@ -103,7 +119,7 @@ impl Nearby {
     }
 
     /// Pieces that press on something, by body and number, some more than once.
-    pub fn pressed<D: Dim>(&self, bodies: &[Body<D>]) -> impl Iterator<Item = (u32, u32)> {
+    pub fn pressed<D: Dim>(&self, bodies: &Bodies<D>) -> impl Iterator<Item = (u32, u32)> {
         let nodes = { self.nodes.list.iter() }.filter(|pair| pair.impulse.pressed > 0.0);
         let nodes = nodes.filter_map(|pair| Some((pair.body, pair.piece(bodies)?)));
         let pairs = { self.pairs.list.iter() }.filter(|pair| pair.impulse.pressed > 0.0);

@@ -2,18 +2,19 @@
 
 mod contents;
 
-use crate::body::Body;
+use crate::body::{Bodies, Body};
 use crate::contact::{Contacts, Hit};
 use crate::damping::{PieceMotion, Slowing, motions, slow_down};
 use crate::dim::{Dim, Point};
 use crate::event::{Event, StepReport, With};
-use crate::fracture::{Cooldowns, Failure, failures};
-use crate::manipulator::{BadManipulator, Manipulator};
-use crate::shape::{BadShape, Shape, Vector};
+use crate::fracture::{Failure, failures};
+use crate::handle::{BodyId, Gone};
+use crate::rigid::{BadRigid, Rigids};
+use crate::shape::Vector;
 use crate::sleep::{fall_asleep, wake};
 use crate::solve::Row;
-use crate::touch::{Collider, Nearby};
-use crate::vector::{as_row, three};
+use crate::touch::{Nearby, NodePair};
+use crate::vector::three;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -61,17 +62,7 @@ impl Default for Settings {
     }
 }
 
-/// Something rigid that never moves.
-#[derive(Copy, Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Obstacle {
-    /// What it is.
-    pub shape: Shape,
-    /// Coulomb friction; about 0.2.
-    pub friction: f32,
-}
-
-/// Why something was not let into the world.
+/// Why something was not let into the world, or could not be done with what is in it.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum Refused {
     /// A setting is out of range.
@@ -81,12 +72,22 @@ pub enum Refused {
         /// What was expected.
         expected: &'static str,
     },
-    /// A shape is not one.
-    Shape(BadShape),
-    /// Friction is negative or not finite.
-    Friction(f32),
-    /// A manipulator cannot be.
-    Manipulator(BadManipulator),
+    /// Something rigid cannot be so.
+    Rigid(BadRigid),
+    /// It is not there.
+    Gone(Gone),
+}
+
+impl From<BadRigid> for Refused {
+    fn from(bad: BadRigid) -> Self {
+        Self::Rigid(bad)
+    }
+}
+
+impl From<Gone> for Refused {
+    fn from(gone: Gone) -> Self {
+        Self::Gone(gone)
+    }
 }
 
 impl fmt::Display for Refused {
@@ -95,11 +96,8 @@ impl fmt::Display for Refused {
             Self::Setting { field, expected } => {
                 write!(f, "the setting {field} must be {expected}")
             }
-            Self::Shape(bad) => bad.fmt(f),
-            Self::Friction(friction) => {
-                write!(f, "friction {friction} must be 0 or more, and finite")
-            }
-            Self::Manipulator(bad) => bad.fmt(f),
+            Self::Rigid(bad) => bad.fmt(f),
+            Self::Gone(gone) => gone.fmt(f),
         }
     }
 }
@@ -112,12 +110,10 @@ impl std::error::Error for Refused {}
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct World<D: Dim> {
     settings: Settings,
-    bodies: Vec<Body<D>>,
-    obstacles: Vec<Obstacle>,
-    manipulators: Vec<Manipulator>,
+    bodies: Bodies<D>,
+    rigids: Rigids,
     ticks: u64,
     nearby: Nearby,
-    cooldowns: Vec<Cooldowns>,
     events: Vec<Event>,
     #[cfg_attr(feature = "serde", serde(skip))]
     contacts: Contacts,
@@ -151,12 +147,10 @@ impl<D: Dim> World<D> {
         }
         Ok(Self {
             settings,
-            bodies: Vec::new(),
-            obstacles: Vec::new(),
-            manipulators: Vec::new(),
+            bodies: Bodies::default(),
+            rigids: Rigids::default(),
             ticks: 0,
             nearby: Nearby::default(),
-            cooldowns: Vec::new(),
             events: Vec::new(),
             contacts: Contacts::default(),
         })
@@ -203,15 +197,15 @@ impl<D: Dim> World<D> {
     }
 
     fn start_tick(&mut self) {
-        for hand in &mut self.manipulators {
-            hand.start_tick(TICK);
+        for rigid in self.rigids.iter_mut() {
+            rigid.start_tick(TICK);
         }
         self.nearby.start_tick(&self.bodies, TICK);
     }
 
     fn end_tick(&mut self) {
-        for hand in &mut self.manipulators {
-            hand.end_tick();
+        for rigid in self.rigids.iter_mut() {
+            rigid.end_tick();
         }
         self.note_touches();
         self.ticks += 1;
@@ -220,14 +214,13 @@ impl<D: Dim> World<D> {
     /// Releases what is overstrained, and remodels around it.
     fn fracture(&mut self, report: &mut StepReport) {
         let duration = TICK / FRACTURE_ROUNDS as f32;
-        for (place, body) in self.bodies.iter_mut().enumerate() {
-            let failures = failures(body, &mut self.cooldowns[place], duration);
+        for (id, body) in self.bodies.entries_mut() {
+            let failures = failures(body, duration);
             if failures.is_empty() {
                 continue;
             }
-            let index = place as u32;
             let released = |failure: &Failure| Event::Released {
-                body: index,
+                body: id,
                 at: three(body.position[failure.node as usize]),
                 energy: failure.energy,
             };
@@ -238,9 +231,9 @@ impl<D: Dim> World<D> {
             report.released += failures.len() as u32;
             report.parted += torn.parted.len() as u32;
             let parts = torn.parted.iter();
-            let events = parts.map(|&piece| Event::Parted { body: index, piece });
+            let events = parts.map(|&piece| Event::Parted { body: id, piece });
             self.events.extend(events);
-            self.nearby.tear(index, body, &torn);
+            self.nearby.tear(id.place(), body, &torn);
         }
     }
 
@@ -248,14 +241,14 @@ impl<D: Dim> World<D> {
     fn damp(&mut self, substep: f32) {
         let duration = TICK / DAMPING_ROUNDS as f32;
         let touching = self.touching();
-        for (body, touching) in self.bodies.iter_mut().zip(touching) {
+        for (place, body) in self.bodies.placed_mut() {
             body.refresh_awake();
             let motions = motions(body);
             let (_, rate) = body.damping(substep);
             let slowing: Vec<Slowing> = motions
                 .iter()
-                .zip(touching)
-                .map(|(motion, touches)| {
+                .zip(&touching[place as usize])
+                .map(|(motion, &touches)| {
                     slowing(motion, touches, rate, self.settings.drag, D::CORNERS)
                 })
                 .map(|slowing| slowing.over(duration))
@@ -266,51 +259,47 @@ impl<D: Dim> World<D> {
 
     /// Adds elastic forces, gravity and the pull of the coupling to the velocities.
     fn push(&mut self, duration: f32) {
-        for body in &mut self.bodies {
+        for body in self.bodies.iter_mut() {
             body.push(duration, self.settings.gravity);
         }
-        for hand in &mut self.manipulators {
-            hand.pull(duration);
+        for rigid in self.rigids.iter_mut() {
+            rigid.pull(duration);
         }
     }
 
     /// Changes velocities so that nothing goes through anything else. Returns the sleepers that were hit: in
     /// this substep they are walls still.
     fn touch(&mut self, duration: f32) -> Vec<Hit> {
-        let colliders = self.colliders();
-        let obstacles = &colliders[..self.obstacles.len()];
-        let (bodies, nearby) = (&self.bodies, &mut self.nearby);
-        nearby.follow(bodies, &colliders, duration);
-        let hits = self.contacts.find(bodies, &colliders, nearby, duration);
-        let hands = &mut self.manipulators;
-        self.contacts.find_hands(hands, obstacles, duration);
-        let bodies = &mut self.bodies;
-        self.contacts.solve(bodies, hands, nearby, duration);
+        let (bodies, rigids) = (&mut self.bodies, &mut self.rigids);
+        let nearby = &mut self.nearby;
+        nearby.follow(bodies, rigids, duration);
+        let hits = self.contacts.find(bodies, rigids, nearby, duration);
+        self.contacts.solve(bodies, rigids, nearby, duration);
         hits
     }
 
     /// Moves everything by its velocity, and takes back what only pushed overlaps out.
     fn drift(&mut self, duration: f32) {
         let mut furthest = 0.0f32;
-        for body in &mut self.bodies {
+        for body in self.bodies.iter_mut() {
             let (lead, _) = body.damping(duration);
             furthest = furthest.max(body.drift(duration, lead));
         }
         self.nearby.pass(duration, furthest);
-        for hand in &mut self.manipulators {
-            hand.drift(duration);
+        for rigid in self.rigids.iter_mut() {
+            rigid.drift(duration);
         }
-        let (bodies, hands) = (&mut self.bodies, &mut self.manipulators);
-        self.contacts.relax(bodies, hands, duration);
+        let (bodies, rigids) = (&mut self.bodies, &mut self.rigids);
+        self.contacts.relax(bodies, rigids, duration);
     }
 
     /// Stops pieces that went out of hand where they were before the tick, for good.
     fn quarantine(&mut self, before: &[Vec<(Point, Row)>], report: &mut StepReport) {
-        for (place, body) in self.bodies.iter_mut().enumerate() {
+        for ((body_id, body), before) in self.bodies.entries_mut().zip(before) {
             body.refresh_awake();
-            for piece in body.quarantine(&before[place], TOP_SPEED) {
+            for piece in body.quarantine(before, TOP_SPEED) {
                 report.quarantined += 1;
-                let body = place as u32;
+                let body = body_id;
                 self.events.push(Event::Quarantined { body, piece });
             }
         }
@@ -326,19 +315,21 @@ impl<D: Dim> World<D> {
                 motions(body)
             })
             .collect();
-        let first_hand = self.obstacles.len() as u32;
         let pairs = self.nearby.nodes.list.iter();
-        let handled =
-            pairs.filter(|pair| pair.collider >= first_hand && pair.impulse.pressed > 0.0);
+        let is_hand = |pair: &&NodePair| self.rigids.at(pair.rigid).is_driven();
+        let handled = pairs
+            .filter(is_hand)
+            .filter(|pair| pair.impulse.pressed > 0.0);
         let handled = handled.filter_map(|pair| Some((pair.body, pair.piece(&self.bodies)?)));
         let captives = self.nearby.captives.list.iter();
         let captives = captives.map(|captive| &self.nearby.spheres.list[captive.sphere as usize]);
         let captives = captives.map(|sphere| (sphere.body, sphere.piece));
         let handled: Vec<Hit> = handled.chain(captives).collect();
         let fallen = fall_asleep(&mut self.bodies, &motions, &handled, TICK);
-        let events = fallen
-            .iter()
-            .map(|&(body, piece)| Event::FellAsleep { body, piece });
+        let events = fallen.iter().map(|&(body, piece)| Event::FellAsleep {
+            body: self.bodies.id(body),
+            piece,
+        });
         self.events.extend(events);
     }
 
@@ -348,42 +339,26 @@ impl<D: Dim> World<D> {
         if woken.is_empty() {
             return;
         }
-        for body in &mut self.bodies {
+        for body in self.bodies.iter_mut() {
             body.refresh_awake();
         }
         self.nearby.wake(&woken, &self.bodies);
-        let events = woken
-            .iter()
-            .map(|&(body, piece)| Event::Woke { body, piece });
+        let events = woken.iter().map(|&(body, piece)| Event::Woke {
+            body: self.bodies.id(body),
+            piece,
+        });
         self.events.extend(events);
-    }
-
-    /// Everything rigid as nodes meet it: obstacles first, then hands.
-    fn colliders(&self) -> Vec<Collider> {
-        let fixed = |obstacle: &Obstacle| Collider {
-            shape: obstacle.shape,
-            velocity: [0.0; 4],
-            inverse_mass: 0.0,
-            friction: obstacle.friction,
-            is_hand: false,
-        };
-        let moving = |hand: &Manipulator| Collider {
-            shape: hand.shape(),
-            velocity: as_row(hand.velocity),
-            inverse_mass: hand.inverse_mass(),
-            friction: hand.friction,
-            is_hand: true,
-        };
-        let fixed = self.obstacles.iter().map(fixed);
-        fixed.chain(self.manipulators.iter().map(moving)).collect()
     }
 
     /// Which pieces of each body touch anything.
     fn touching(&self) -> Vec<Vec<bool>> {
-        let none = |body: &Body<D>| vec![false; body.pieces.list.len()];
-        let mut touching: Vec<Vec<bool>> = self.bodies.iter().map(none).collect();
+        let none = |body: Option<&Body<D>>| {
+            let pieces = body.map_or(0, |body| body.pieces.list.len());
+            vec![false; pieces]
+        };
+        let mut touching: Vec<Vec<bool>> = self.bodies.places().map(none).collect();
         for (body, piece) in self.nearby.pressed(&self.bodies) {
-            // The lists are of the last substep: another body may stand here since.
+            // The lists are of the last substep: the body may be another one since.
             if let Some(touches) = touching[body as usize].get_mut(piece as usize) {
                 *touches = true;
             }
@@ -393,7 +368,7 @@ impl<D: Dim> World<D> {
 
     /// Adds up what pressed on what over the tick.
     fn note_touches(&mut self) {
-        let mut sums: BTreeMap<(u32, u32, With), (f32, f32, Vector)> = BTreeMap::new();
+        let mut sums: BTreeMap<(BodyId, u32, With), (f32, f32, Vector)> = BTreeMap::new();
         let mut add = |body, piece, with, impulse: f32, at: Row| {
             let sum = sums
                 .entry((body, piece, with))
@@ -403,26 +378,28 @@ impl<D: Dim> World<D> {
                 (sum.1, sum.2) = (impulse, three(at));
             }
         };
-        let first_hand = self.obstacles.len() as u32;
         let pairs = self.nearby.nodes.list.iter();
         for pair in pairs.filter(|pair| pair.impulse.total > 0.0) {
-            let with = match pair.collider.checked_sub(first_hand) {
-                Some(hand) => With::Manipulator(hand),
-                None => With::Obstacle(pair.collider),
+            let rigid = self.rigids.id(pair.rigid);
+            let with = match self.rigids[rigid].is_driven() {
+                true => With::Hand(rigid),
+                false => With::Obstacle(rigid),
             };
-            let body = &self.bodies[pair.body as usize];
+            let id = self.bodies.id(pair.body);
+            let body = &self.bodies[id];
             let piece = body.pieces.of_node(pair.node);
             let at = body.position[pair.node as usize];
-            add(pair.body, piece, with, pair.impulse.total, at);
+            add(id, piece, with, pair.impulse.total, at);
         }
         let spheres = &self.nearby.spheres;
         let pairs = self.nearby.pairs.list.iter();
         for pair in pairs.filter(|pair| pair.impulse.total > 0.0) {
             let [a, b] = pair.both(&spheres.list);
-            let (body, piece) = (b.body, b.piece);
+            let (body, piece) = (self.bodies.id(b.body), b.piece);
             let with = With::Piece { body, piece };
             let at = spheres.centres[pair.spheres[0] as usize];
-            add(a.body, a.piece, with, pair.impulse.total, at);
+            let id = self.bodies.id(a.body);
+            add(id, a.piece, with, pair.impulse.total, at);
         }
         for ((body, piece, with), (impulse, _, at)) in sums {
             self.events.push(Event::Touched {

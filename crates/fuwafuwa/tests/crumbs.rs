@@ -2,8 +2,7 @@
 
 use fuwafuwa::vector::{cross, dot, length, minus, plus, scaled};
 use fuwafuwa::{
-    Body, Dim, Dim2, Dim3, Elasticity, Manipulator, Material, Settings, Shape, Vector, VoxelGrid,
-    World,
+    Body, Dim, Dim2, Dim3, Elasticity, Material, Rigid, Settings, Shape, Vector, VoxelGrid, World,
 };
 
 /// A crumb is well inside a piece when its middle is in an element and this far from all faces, in
@@ -110,7 +109,9 @@ fn check<D: Dim>(
 ) {
     let mut stays = std::collections::BTreeMap::new();
     for tick in 0..ticks {
-        world.set_goal(0, goal(f32::from(tick) / 60.0));
+        world
+            .set_goal(world.nth_hand(0).unwrap(), goal(f32::from(tick) / 60.0))
+            .unwrap();
         world.step();
         let (inside, _) = crumbs_inside(&world);
         stays.retain(|crumb, _| inside.contains(crumb));
@@ -142,7 +143,7 @@ fn weightless<D: Dim>() -> World<D> {
 fn check_grinding<D: Dim>(n: usize, least: usize) {
     let mut world = weightless::<D>();
     let wall = Shape::half_space([-1.0, 0.0, 0.0], [1.05, 0.0, 0.0]);
-    world.add_obstacle(wall, 0.2).unwrap();
+    world.add_rigid(Rigid::fixed(wall, 0.2)).unwrap();
     let tough = Material {
         strength: f32::INFINITY,
         ..Material::default()
@@ -154,7 +155,7 @@ fn check_grinding<D: Dim>(n: usize, least: usize) {
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
     world.add_body(dust.moved([-0.36, 0.33, depth - 0.17]));
     world
-        .add_manipulator(Manipulator::new([-0.55, 0.5, depth], 0.2))
+        .add_rigid(Rigid::hand([-0.55, 0.5, depth], 0.2))
         .unwrap();
     check(world, 240, 30, least, |seconds| {
         let in_and_out = seconds.min(0.8) - (seconds - 2.2).max(0.0);
@@ -176,11 +177,11 @@ fn dust_ground_into_a_body_comes_out_again() {
 fn crumbs_of_a_tear_stay_outside() {
     let mut world = weightless::<Dim2>();
     let wall = Shape::half_space([-1.0, 0.0, 0.0], [1.15, 0.0, 0.0]);
-    world.add_obstacle(wall, 0.2).unwrap();
+    world.add_rigid(Rigid::fixed(wall, 0.2)).unwrap();
     let disc = VoxelGrid::ball(64, 1.0).unwrap();
     world.add_body(Body::new(disc, &[Material::default()]).unwrap());
     world
-        .add_manipulator(Manipulator::new([-0.3, 0.55, 0.0], 0.08))
+        .add_rigid(Rigid::hand([-0.3, 0.55, 0.0], 0.08))
         .unwrap();
     check(world, 150, 30, 20, |seconds| {
         [-0.3 + 0.9 * seconds.min(1.5), 0.55, 0.0]
@@ -208,7 +209,7 @@ fn check_way_out<D: Dim>(n: usize) {
     assert!(5 * before.len() > 4 * count, "{} of {count}", before.len());
     for tick in 0..60 {
         world.step();
-        for crumb in world.bodies()[0].piece_views() {
+        for crumb in world.bodies().first().unwrap().piece_views() {
             let speed = length(crumb.velocity);
             assert!(speed < 1.5, "tick {tick}: {speed} m/s");
         }
@@ -216,7 +217,7 @@ fn check_way_out<D: Dim>(n: usize) {
         if tick < 10 {
             let linear = world.bodies().iter().map(|body| body.momentum().linear);
             let linear = linear.fold([0.0; 3], plus);
-            let most = 1e-3 * world.bodies()[0].total_mass();
+            let most = 1e-3 * world.bodies().first().unwrap().total_mass();
             assert!(linear.iter().all(|k| k.abs() < most), "{linear:?} kg m/s");
         }
     }
@@ -254,7 +255,7 @@ fn left_of_a_swing<D: Dim>(poisson: f64, substeps: u32) -> f32 {
         u8::from(at == [0; 3] || at[0] as usize > WIDE / 2)
     });
     world.add_body(Body::new(grid.unwrap(), &[material]).unwrap());
-    let body = world.body_mut(0);
+    let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
     let views = body.piece_views();
     let crumb = views.iter().find(|view| view.element_count == 1).unwrap();
     let ids = body.mesh().nodes().map(|(id, _)| id);
@@ -270,7 +271,7 @@ fn left_of_a_swing<D: Dim>(poisson: f64, substeps: u32) -> f32 {
     }
     let speeds = nodes
         .iter()
-        .map(|&node| world.bodies()[0].node_state(node).1);
+        .map(|&node| world.bodies().first().unwrap().node_state(node).1);
     speeds.map(length).fold(0.0, f32::max)
 }
 
@@ -296,13 +297,13 @@ fn depth_of_a_sleeper<D: Dim>(size: usize, speed: f32) -> f32 {
     };
     let mut world = World::<D>::new(settings).unwrap();
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_obstacle(floor, 0.4).unwrap();
+    world.add_rigid(Rigid::fixed(floor, 0.4)).unwrap();
     let crumb = VoxelGrid::<D>::cube(1, VOXEL).unwrap();
     world.add_body(Body::new(crumb, &[Material::default()]).unwrap());
     for _ in 0..90 {
         world.step();
     }
-    assert!(world.bodies()[0].pieces().list[0].asleep);
+    assert!(world.bodies().first().unwrap().pieces().list[0].asleep);
     let block = VoxelGrid::<D>::cube(size, size as f32 * VOXEL).unwrap();
     let mut heavy = Material::default();
     heavy.density *= 10.0;
@@ -312,11 +313,14 @@ fn depth_of_a_sleeper<D: Dim>(size: usize, speed: f32) -> f32 {
     let mut lowest = f32::INFINITY;
     for _ in 0..20 {
         world.step();
-        let crumb = &world.bodies()[0];
+        let crumb = world.bodies().first().unwrap();
         let nodes = crumb.mesh().nodes();
         lowest = nodes.fold(lowest, |low, (id, _)| low.min(crumb.node_state(id).0[1]));
     }
-    assert!(!world.bodies()[0].pieces().list[0].asleep, "it was missed");
+    assert!(
+        !world.bodies().first().unwrap().pieces().list[0].asleep,
+        "it was missed"
+    );
     -lowest / VOXEL
 }
 

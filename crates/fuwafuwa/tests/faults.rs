@@ -1,7 +1,7 @@
 //! Faults that there were, each with what brought it about.
 
 use fuwafuwa::{
-    Blade, Body, Dim, Dim2, Dim3, Drive, Event, Manipulator, Material, Settings, VoxelGrid, World,
+    Blade, Body, Dim, Dim2, Dim3, Drive, Event, Material, Rigid, Settings, VoxelGrid, World,
 };
 
 fn weightless<D: Dim>() -> World<D> {
@@ -28,7 +28,7 @@ fn check_cut_twice<D: Dim>(n: usize) {
         across: [0.0, 3.0, 0.0],
         along: [0.0, 0.0, 3.0],
     };
-    let first = world.cut(0, &blade);
+    let first = world.cut(world.nth_body(0).unwrap(), &blade).unwrap();
     let points = (n - 1) * (D::N - 1);
     assert!(first >= points && first < n * n, "{first}");
     let told = |world: &World<D>| {
@@ -36,17 +36,23 @@ fn check_cut_twice<D: Dim>(n: usize) {
         world.events().iter().filter(is_release).count()
     };
     assert_eq!(told(&world), first);
-    assert_eq!(world.bodies()[0].pieces().list.len(), 2);
-    assert_eq!((world.cut(0, &blade), told(&world)), (0, first));
+    assert_eq!(world.bodies().first().unwrap().pieces().list.len(), 2);
+    assert_eq!(
+        (
+            world.cut(world.nth_body(0).unwrap(), &blade).unwrap(),
+            told(&world)
+        ),
+        (0, first)
+    );
     // A blade that crosses it releases only what it adds.
     let across = Blade {
         from: [-1.0, 0.5, -1.0],
         across: [3.0, 0.0, 0.0],
         along: [0.0, 0.0, 3.0],
     };
-    assert!(world.cut(0, &across) >= points);
-    assert_eq!(world.cut(0, &across), 0);
-    assert_eq!(world.bodies()[0].pieces().list.len(), 4);
+    assert!(world.cut(world.nth_body(0).unwrap(), &across).unwrap() >= points);
+    assert_eq!(world.cut(world.nth_body(0).unwrap(), &across).unwrap(), 0);
+    assert_eq!(world.bodies().first().unwrap().pieces().list.len(), 4);
 }
 
 #[test]
@@ -97,9 +103,9 @@ fn a_body_turned_round_stays_whole() {
             assert_eq!(world.step().released, 0);
         }
         assert!(
-            fastest(&world.bodies()[0]) < 1e-3,
+            fastest(world.bodies().first().unwrap()) < 1e-3,
             "{}",
-            fastest(&world.bodies()[0])
+            fastest(world.bodies().first().unwrap())
         );
     }
 }
@@ -116,22 +122,25 @@ fn a_cut_through_a_body_turned_round_moves_nothing() {
         world.step();
         let (across, along) = ([0.3, 1.0, 0.0], [0.0, 0.0, 1.0]);
         assert!(
-            world.cut(
-                0,
-                &Blade {
-                    from,
-                    across,
-                    along
-                }
-            ) > 20
+            world
+                .cut(
+                    world.nth_body(0).unwrap(),
+                    &Blade {
+                        from,
+                        across,
+                        along
+                    }
+                )
+                .unwrap()
+                > 20
         );
         for _ in 0..5 {
             assert_eq!(world.step().released, 0);
         }
         assert!(
-            fastest(&world.bodies()[0]) < 1e-2,
+            fastest(world.bodies().first().unwrap()) < 1e-2,
             "{}",
-            fastest(&world.bodies()[0])
+            fastest(world.bodies().first().unwrap())
         );
     }
 }
@@ -153,17 +162,19 @@ fn all_of_a_body_crumbles() {
 #[test]
 fn a_hand_from_space_stays_in_the_plane() {
     let mut space = weightless::<Dim3>();
-    let hand = Manipulator::new([0.0, 0.0, 0.5], 0.1);
-    space.add_manipulator(hand).expect("the hand is good");
-    space.set_goal(0, [0.0, 0.0, 1.0]);
+    let hand = Rigid::hand([0.0, 0.0, 0.5], 0.1);
+    space.add_rigid(hand).expect("the hand is good");
+    space
+        .set_goal(space.nth_hand(0).unwrap(), [0.0, 0.0, 1.0])
+        .unwrap();
     space.step();
-    let hand = space.remove_manipulator(0);
+    let hand = space.remove_rigid(space.nth_hand(0).unwrap()).unwrap();
     assert!(hand.velocity()[2] > 0.1);
     let mut plane = weightless::<Dim2>();
-    plane.add_manipulator(hand).expect("the hand is good");
+    plane.add_rigid(hand).expect("the hand is good");
     for _ in 0..3 {
         plane.step();
-        let hand = &plane.manipulators()[0];
+        let (_, hand) = plane.hands().next().unwrap();
         assert_eq!((hand.position()[2], hand.velocity()[2]), (0.0, 0.0));
     }
 }
@@ -181,12 +192,25 @@ fn a_weaker_material_that_no_voxel_has_changes_nothing() {
         let mut world = weightless::<Dim2>();
         let grid = VoxelGrid::ball(16, 1.0).expect("a ball is not empty");
         world.add_body(Body::new(grid, materials).expect("the materials are good"));
-        assert!(world.cut(0, &Blade::segment([0.5, 0.4], [0.5, 2.0])) > 0);
-        let hand = Manipulator::new([0.5, 1.1, 0.0], 0.1).driven(Drive::Kinematic);
-        world.add_manipulator(hand).expect("the hand is good");
+        assert!(
+            world
+                .cut(
+                    world.nth_body(0).unwrap(),
+                    &Blade::segment([0.5, 0.4], [0.5, 2.0])
+                )
+                .unwrap()
+                > 0
+        );
+        let hand = Rigid::hand([0.5, 1.1, 0.0], 0.1).with_drive(Drive::Kinematic);
+        world.add_rigid(hand).expect("the hand is good");
         let mut released = 0;
         for tick in 0..40u8 {
-            world.set_goal(0, [0.5, 1.1 - 0.02 * f32::from(tick), 0.0]);
+            world
+                .set_goal(
+                    world.nth_hand(0).unwrap(),
+                    [0.5, 1.1 - 0.02 * f32::from(tick), 0.0],
+                )
+                .unwrap();
             released += world.step().released;
         }
         (released, world.hash())
@@ -204,18 +228,21 @@ fn a_crumb_out_of_hand_inside_a_ball_leaves_the_ball() {
         world.add_body(ball(16));
         let grid = VoxelGrid::cube(1, 1.0 / 16.0).expect("a cube is not empty");
         let crumb = Body::new(grid, &[Material::default()]).expect("the material is good");
-        world.add_body(crumb.moved([0.45, 0.45, 0.0]));
+        let crumb = world.add_body(crumb.moved([0.45, 0.45, 0.0]));
         for _ in 0..3 {
             world.step();
         }
-        let crumb = world.body_mut(1);
+        let crumb = world.body_mut(crumb).unwrap();
         *crumb = crumb.clone().thrown([0.0, nowhere, 0.0]);
         let mut quarantined = 0;
         for _ in 0..10 {
             quarantined += world.step().quarantined;
         }
-        let pieces = |body: usize| world.bodies()[body].pieces().list.iter();
-        assert!(pieces(0).all(|piece| !piece.quarantined), "{nowhere}");
+        let ball = world.bodies().first().unwrap();
+        assert!(
+            ball.pieces().list.iter().all(|piece| !piece.quarantined),
+            "{nowhere}"
+        );
         assert!(quarantined <= 1);
     }
 }

@@ -1,30 +1,35 @@
 //! The same bits after saving and loading.
 #![cfg(feature = "serde")]
 
+use fuwafuwa::Rigid;
 use fuwafuwa::hash::Hash;
-use fuwafuwa::manipulator::Manipulator;
 use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, Settings, Shape, VoxelGrid, World};
 
 /// A ball that falls on a floor while a hand pushes it against a wall and through.
 fn torn_world<D: Dim>(n: usize) -> World<D> {
     let mut world = World::<D>::new(Settings::default()).unwrap();
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_obstacle(floor, 0.4).unwrap();
+    world.add_rigid(Rigid::fixed(floor, 0.4)).unwrap();
     let wall = Shape::half_space([-1.0, 0.0, 0.0], [1.1, 0.0, 0.0]);
-    world.add_obstacle(wall, 0.2).unwrap();
+    world.add_rigid(Rigid::fixed(wall, 0.2)).unwrap();
     let ball = VoxelGrid::ball(n, 1.0).unwrap();
     let body = Body::new(ball, &[Material::default()]).unwrap();
     world.add_body(body.moved([0.0, 0.05, 0.0]));
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
-    let hand = Manipulator::new([-0.3, 0.5, depth], 0.08);
-    world.add_manipulator(hand).unwrap();
+    let hand = Rigid::hand([-0.3, 0.5, depth], 0.08);
+    world.add_rigid(hand).unwrap();
     world
 }
 
 fn push<D: Dim>(world: &mut World<D>, ticks: std::ops::Range<u32>) {
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
     for tick in ticks {
-        world.set_goal(0, [-0.3 + tick as f32 * 0.03, 0.5, depth]);
+        world
+            .set_goal(
+                world.nth_hand(0).unwrap(),
+                [-0.3 + tick as f32 * 0.03, 0.5, depth],
+            )
+            .unwrap();
         world.step();
     }
 }

@@ -1,9 +1,9 @@
 //! Worlds: things fall, rest, sleep, are cut, pushed, torn and looked at.
 
 use fuwafuwa::blade::Blade;
-use fuwafuwa::manipulator::{Drive, Manipulator};
 use fuwafuwa::view::PieceView;
 use fuwafuwa::{Body, Dim, Dim2, Dim3, Event, Material, Settings, Shape, VoxelGrid, World};
+use fuwafuwa::{Drive, Rigid};
 
 const WEIGHTLESS: Settings = Settings {
     gravity: [0.0; 3],
@@ -51,15 +51,15 @@ fn volume_inside<D: Dim>(body: &Body<D>) -> f32 {
 fn check_cut_in_two<D: Dim>(n: usize, blade: Blade) {
     let mut world = World::<D>::new(WEIGHTLESS).unwrap();
     world.add_body(ball::<D>(n, unbreakable()));
-    let mass = world.bodies()[0].total_mass();
-    let volume = volume_inside(&world.bodies()[0]);
+    let mass = world.bodies().first().unwrap().total_mass();
+    let volume = volume_inside(world.bodies().first().unwrap());
     assert!(
         (f64::from(volume) * 100.0 / mass - 1.0).abs() < 1e-3,
         "{volume}"
     );
-    assert!(world.cut(0, &blade) > n / 2);
+    assert!(world.cut(world.nth_body(0).unwrap(), &blade).unwrap() > n / 2);
     validate(&world);
-    let body = &world.bodies()[0];
+    let body = world.bodies().first().unwrap();
     let views = body.piece_views();
     assert_eq!(views.len(), 2);
     let total: f32 = views.iter().map(|view| view.mass).sum();
@@ -71,7 +71,7 @@ fn check_cut_in_two<D: Dim>(n: usize, blade: Blade) {
     for _ in 0..30 {
         world.step();
     }
-    let kept: f64 = world.bodies()[0].total_mass();
+    let kept: f64 = world.bodies().first().unwrap().total_mass();
     assert!((kept / mass - 1.0).abs() < 1e-4);
 }
 
@@ -91,7 +91,7 @@ fn what_a_cut_changed_is_told_by_bare_faces_and_nodes() {
     let mut world = World::<Dim3>::new(WEIGHTLESS).unwrap();
     world.add_body(ball(16, unbreakable()));
     let forms = |world: &World<Dim3>| -> Vec<(u8, Vec<u32>)> {
-        let body = &world.bodies()[0];
+        let body = world.bodies().first().unwrap();
         let form = |id| {
             let nodes = body.mesh().element(id).map(|element| element.nodes.clone());
             (body.bare_faces(id), nodes.unwrap_or_default())
@@ -102,15 +102,17 @@ fn what_a_cut_changed_is_told_by_bare_faces_and_nodes() {
     };
     let before = forms(&world);
     let (from, across, along) = ([0.5, -0.2, -0.2], [0.0, 0.4, 0.0], [0.0, 0.0, 1.4]);
-    world.cut(
-        0,
-        &Blade {
-            from,
-            across,
-            along,
-        },
-    );
-    let (after, body) = (forms(&world), &world.bodies()[0]);
+    world
+        .cut(
+            world.nth_body(0).unwrap(),
+            &Blade {
+                from,
+                across,
+                along,
+            },
+        )
+        .unwrap();
+    let (after, body) = (forms(&world), world.bodies().first().unwrap());
     let told: u32 = after.iter().map(|(bare, _)| bare.count_ones()).sum();
     assert_eq!(told as usize, body.facets().count());
     for facet in body.facets() {
@@ -131,22 +133,42 @@ fn what_a_cut_changed_is_told_by_bare_faces_and_nodes() {
 fn a_short_blade_leaves_a_slit() {
     let mut world = World::<Dim2>::new(WEIGHTLESS).unwrap();
     world.add_body(ball(24, unbreakable()));
-    assert!(world.cut(0, &Blade::segment([0.5, -0.1], [0.5, 0.5])) > 5);
+    assert!(
+        world
+            .cut(
+                world.nth_body(0).unwrap(),
+                &Blade::segment([0.5, -0.1], [0.5, 0.5])
+            )
+            .unwrap()
+            > 5
+    );
     validate(&world);
-    assert_eq!(world.bodies()[0].pieces().list.len(), 1);
+    assert_eq!(world.bodies().first().unwrap().pieces().list.len(), 1);
     assert_eq!(
-        world.bodies()[0].outlines().len(),
+        world.bodies().first().unwrap().outlines().len(),
         1,
         "the slit joins the rim"
     );
-    assert!(world.cut(0, &Blade::segment([0.5, 0.7], [0.5, 0.8])) > 0);
-    assert_eq!(world.bodies()[0].outlines().len(), 2, "a hole of its own");
+    assert!(
+        world
+            .cut(
+                world.nth_body(0).unwrap(),
+                &Blade::segment([0.5, 0.7], [0.5, 0.8])
+            )
+            .unwrap()
+            > 0
+    );
+    assert_eq!(
+        world.bodies().first().unwrap().outlines().len(),
+        2,
+        "a hole of its own"
+    );
 }
 
 fn check_falls_rests_and_sleeps<D: Dim>(n: usize) {
     let mut world = World::<D>::new(Settings::default()).unwrap();
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_obstacle(floor, 0.5).unwrap();
+    world.add_rigid(Rigid::fixed(floor, 0.5)).unwrap();
     let damped = Material {
         damping: 0.3,
         ..unbreakable()
@@ -163,19 +185,24 @@ fn check_falls_rests_and_sleeps<D: Dim>(n: usize) {
             break;
         }
     }
-    let view = world.bodies()[0].piece_views()[0];
+    let view = world.bodies().first().unwrap().piece_views()[0];
     assert!(hit && slept && view.asleep, "{view:?}");
     assert!(view.low[1] > -0.01 && view.high[1] > 0.5, "{view:?}");
     let still = world.hash();
     world.step();
-    let mut hand = Manipulator::new([0.5, 2.0, if D::N == 3 { 0.5 } else { 0.0 }], 0.1);
+    let mut hand = Rigid::hand([0.5, 2.0, if D::N == 3 { 0.5 } else { 0.0 }], 0.1);
     hand.drive = Drive::Kinematic;
-    world.add_manipulator(hand).unwrap();
+    world.add_rigid(hand).unwrap();
     assert_ne!(world.hash(), still, "ticks count");
     let mut woke = false;
     for tick in 0..60 {
         let height = 2.0 - 1.5 * tick as f32 / 60.0;
-        world.set_goal(0, [0.5, height, if D::N == 3 { 0.5 } else { 0.0 }]);
+        world
+            .set_goal(
+                world.nth_hand(0).unwrap(),
+                [0.5, height, if D::N == 3 { 0.5 } else { 0.0 }],
+            )
+            .unwrap();
         world.step();
         woke |= world
             .events()
@@ -183,7 +210,15 @@ fn check_falls_rests_and_sleeps<D: Dim>(n: usize) {
             .any(|event| matches!(event, Event::Woke { .. }));
     }
     assert!(woke, "a hand wakes what it touches");
-    let felt = world.manipulators()[0].reactions().last().unwrap().contact;
+    let felt = world
+        .hands()
+        .next()
+        .unwrap()
+        .1
+        .reactions()
+        .last()
+        .unwrap()
+        .contact;
     assert!(felt[1] > 1.0, "the body pushes back: {felt:?}");
 }
 
@@ -198,15 +233,20 @@ fn check_slam<D: Dim>(n: usize, drive: Drive) {
     let mut world = World::<D>::new(WEIGHTLESS).unwrap();
     world.add_body(ball::<D>(n, Material::default()));
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
-    let hand = Manipulator::new([-0.5, 0.5, depth], 0.1).driven(drive);
-    world.add_manipulator(hand).unwrap();
+    let hand = Rigid::hand([-0.5, 0.5, depth], 0.1).with_drive(drive);
+    world.add_rigid(hand).unwrap();
     for tick in 0..60 {
-        world.set_goal(0, [-0.5 + tick as f32 * 20.0 / 60.0, 0.5, depth]);
+        world
+            .set_goal(
+                world.nth_hand(0).unwrap(),
+                [-0.5 + tick as f32 * 20.0 / 60.0, 0.5, depth],
+            )
+            .unwrap();
         let report = world.step();
         assert_eq!(report.quarantined, 0, "tick {tick}");
     }
     validate(&world);
-    let body = &world.bodies()[0];
+    let body = world.bodies().first().unwrap();
     for (id, _) in body.mesh().nodes() {
         let (at, velocity, _) = body.node_state(id);
         assert!(at.iter().chain(&velocity).all(|k| k.is_finite()));
@@ -224,20 +264,18 @@ fn a_slammed_hand_leaves_a_finite_world() {
 #[test]
 fn what_is_not_finite_is_refused() {
     let mut world = World::<Dim2>::new(WEIGHTLESS).unwrap();
-    world
-        .add_manipulator(Manipulator::new([0.0; 3], 0.1))
-        .unwrap();
-    assert!(!world.set_goal(0, [f32::NAN, 0.0, 0.0]));
+    world.add_rigid(Rigid::hand([0.0; 3], 0.1)).unwrap();
     assert!(
         world
-            .add_manipulator(Manipulator::new([0.0; 3], -1.0))
+            .set_goal(world.nth_hand(0).unwrap(), [f32::NAN, 0.0, 0.0])
             .is_err()
     );
+    assert!(world.add_rigid(Rigid::hand([0.0; 3], -1.0)).is_err());
     let nowhere = Shape::Ball {
         centre: [f32::INFINITY, 0.0, 0.0],
         radius: 1.0,
     };
-    assert!(world.add_obstacle(nowhere, 0.1).is_err());
+    assert!(world.add_rigid(Rigid::fixed(nowhere, 0.1)).is_err());
     assert!(
         World::<Dim2>::new(Settings {
             drag: -1.0,
@@ -260,7 +298,7 @@ fn an_inverted_start_stays_finite() {
     let inverted: Vec<u32> = (0..120).map(|_| world.step().inverted).collect();
     assert!(inverted[0] > 0, "reported: {inverted:?}");
     assert!(inverted[119] < inverted[0], "turned back: {inverted:?}");
-    let view = world.bodies()[0].piece_views()[0];
+    let view = world.bodies().first().unwrap().piece_views()[0];
     assert!(view.high[0] - view.low[0] < 2.0, "{view:?}");
 }
 
@@ -269,16 +307,16 @@ fn an_inverted_start_stays_finite() {
 fn a_body_too_stiff_is_softened() {
     let mut world = World::<Dim2>::new(Settings::default()).unwrap();
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_obstacle(floor, 0.5).unwrap();
+    world.add_rigid(Rigid::fixed(floor, 0.5)).unwrap();
     let mut steel = unbreakable();
     steel.elasticity.young = 1e9;
     world.add_body(ball::<Dim2>(24, steel).moved([0.0, 0.1, 0.0]));
-    assert!(world.bodies()[0].stiffness_scale() < 0.1);
+    assert!(world.bodies().first().unwrap().stiffness_scale() < 0.1);
     assert_eq!(world.substeps(), 64);
     for _ in 0..60 {
         assert_eq!(world.step().quarantined, 0);
     }
-    let view = world.bodies()[0].piece_views()[0];
+    let view = world.bodies().first().unwrap().piece_views()[0];
     assert!(view.low[1] > -0.05 && view.high[1] < 1.5, "{view:?}");
 }
 
@@ -295,9 +333,9 @@ fn check_no_tunnelling<D: Dim>(n: usize) {
         world.add_body(ball::<D>(n, unbreakable()));
         for tick in 0..40 {
             world.step();
-            let target = world.bodies()[1].piece_views()[0];
+            let target = world.bodies()[world.nth_body(1).unwrap()].piece_views()[0];
             let is_aside = |axis: usize, at: f32| (at - target.centre[axis]).abs() > 0.3;
-            let pieces = world.bodies()[0].piece_views();
+            let pieces = world.bodies().first().unwrap().piece_views();
             let is_through = |piece: &&PieceView| {
                 let aside = (1..D::N).any(|axis| is_aside(axis, piece.centre[axis]));
                 !aside && piece.centre[0] > target.centre[0]
@@ -319,17 +357,17 @@ fn what_is_fast_does_not_pass_through() {
 fn check_smooth_reaction<D: Dim>(n: usize) {
     let mut world = World::<D>::new(Settings::default()).unwrap();
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_obstacle(floor, 0.5).unwrap();
+    world.add_rigid(Rigid::fixed(floor, 0.5)).unwrap();
     world.add_body(ball::<D>(n, unbreakable()));
     let z = if D::N == 3 { 0.5 } else { 0.0 };
-    let hand = Manipulator::new([0.5, 1.2, z], 0.15);
-    let hand = world.add_manipulator(hand).unwrap();
+    let hand = Rigid::hand([0.5, 1.2, z], 0.15);
+    let hand = world.add_rigid(hand).unwrap();
     let (mut steps, mut pressed) = (Vec::new(), Vec::new());
     for tick in 0..480u16 {
         let down = 0.5 * f32::from(tick.min(120)) / 120.0;
-        world.set_goal(hand, [0.5, 1.2 - down, z]);
+        world.set_goal(hand, [0.5, 1.2 - down, z]).unwrap();
         world.step();
-        let felt = world.manipulators()[hand].reactions();
+        let felt = world.rigids()[hand].reactions();
         let up = felt.iter().map(|reaction| reaction.coupling[1]);
         // The start is a jerk of the goal, and felt as one.
         if (1..120).contains(&tick) {
@@ -367,19 +405,21 @@ fn eight_substeps_squash_a_soft_ball_as_sixteen_do() {
         })
         .unwrap();
         let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-        world.add_obstacle(floor, 0.4).unwrap();
+        world.add_rigid(Rigid::fixed(floor, 0.4)).unwrap();
         world.add_body(ball::<Dim3>(16, unbreakable()));
-        let hand = Manipulator::new([0.5, 1.2, 0.5], 0.2);
-        world.add_manipulator(hand).unwrap();
+        let hand = Rigid::hand([0.5, 1.2, 0.5], 0.2);
+        world.add_rigid(hand).unwrap();
         let mut lowest = 0.0_f32;
         for tick in 0..90 {
             let height = 1.2 - 0.01 * tick.min(60) as f32;
-            world.set_goal(0, [0.5, height, 0.5]);
+            world
+                .set_goal(world.nth_hand(0).unwrap(), [0.5, height, 0.5])
+                .unwrap();
             assert_eq!(world.step().substeps, most_substeps);
-            lowest = lowest.min(world.bodies()[0].piece_views()[0].low[1]);
+            lowest = lowest.min(world.bodies().first().unwrap().piece_views()[0].low[1]);
         }
-        assert_eq!(world.bodies()[0].stiffness_scale(), 1.0);
-        (world.manipulators()[0].position()[1], lowest)
+        assert_eq!(world.bodies().first().unwrap().stiffness_scale(), 1.0);
+        (world.hands().next().unwrap().1.position()[1], lowest)
     });
     assert!(
         (eight.0 - sixteen.0).abs() < 0.002,

@@ -8,7 +8,7 @@ use anyhow::Result;
 use clap::ValueEnum;
 use fuwafuwa::law::Law;
 use fuwafuwa::pyramid::Grading;
-use fuwafuwa::{Body, Dim, Dim2, Dim3, Manipulator, Material, Settings, Shape, VoxelGrid, World};
+use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, Rigid, Settings, Shape, VoxelGrid, World};
 use fuwafuwa_scenes::Scene;
 use serde::Serialize;
 use std::process::ExitCode;
@@ -204,9 +204,7 @@ fn scene_in<D: Dim>(name: &str, scene: &Scene, progress: &Progress) -> Result<Ve
     for _ in 0..RUNS {
         let mut world = scene.build::<D>()?;
         for (tick, time) in times.iter_mut().enumerate() {
-            for (hand, goal) in scene.goals(tick as u64).into_iter().enumerate() {
-                world.set_goal(hand, goal);
-            }
+            scene.send(&mut world, tick as u64);
             let start = Instant::now();
             let report = world.step();
             *time = time.min(start.elapsed().as_secs_f64());
@@ -236,14 +234,17 @@ fn scene_in<D: Dim>(name: &str, scene: &Scene, progress: &Progress) -> Result<Ve
 fn pushed_ball<D: Dim>(n: usize) -> Result<Measure> {
     const TICKS: u16 = 60;
     let mut world = World::<D>::new(Settings::default())?;
-    world.add_obstacle(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.5)?;
+    world.add_rigid(Rigid::fixed(
+        Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]),
+        0.5,
+    ))?;
     world.add_body(Body::new(VoxelGrid::ball(n, 1.0)?, &[Material::default()])?);
     let z = if D::N == 3 { 0.5 } else { 0.0 };
-    let hand = world.add_manipulator(Manipulator::new([0.5, 1.2, z], 0.2))?;
+    let hand = world.add_rigid(Rigid::hand([0.5, 1.2, z], 0.2))?;
     let mut times = Vec::new();
     for tick in 1..=TICKS {
         let down = 0.35 * f32::from(tick) / f32::from(TICKS);
-        world.set_goal(hand, [0.5, 1.2 - down, z]);
+        world.set_goal(hand, [0.5, 1.2 - down, z])?;
         let start = Instant::now();
         world.step();
         times.push(start.elapsed().as_secs_f64());

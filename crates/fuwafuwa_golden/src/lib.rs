@@ -11,8 +11,7 @@ pub mod exports;
 use fuwafuwa::law::Law;
 use fuwafuwa::world::FEWEST_SUBSTEPS;
 use fuwafuwa::{
-    Blade, Body, Dim, Dim2, Dim3, Event, Manipulator, Material, Settings, Shape, VoxelGrid, With,
-    World,
+    Blade, Body, Dim, Dim2, Dim3, Event, Material, Rigid, Settings, Shape, VoxelGrid, With, World,
 };
 
 /// A simulation without input, and the bits it must end in.
@@ -65,7 +64,7 @@ fn floor<D: Dim>(settings: Settings) -> World<D> {
     let mut world = World::new(settings).expect("the scenes are sound");
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
     world
-        .add_obstacle(floor, 0.4)
+        .add_rigid(Rigid::fixed(floor, 0.4))
         .expect("the scenes are sound");
     world
 }
@@ -74,13 +73,15 @@ fn floor<D: Dim>(settings: Settings) -> World<D> {
 fn torn_world<D: Dim>(n: usize) -> World<D> {
     let mut world = floor::<D>(Settings::default());
     let wall = Shape::half_space([-1.0, 0.0, 0.0], [1.1, 0.0, 0.0]);
-    world.add_obstacle(wall, 0.2).expect("the scenes are sound");
+    world
+        .add_rigid(Rigid::fixed(wall, 0.2))
+        .expect("the scenes are sound");
     let ball = VoxelGrid::ball(n, 1.0).expect("the scenes are sound");
     let body = Body::new(ball, &[Material::default()]).expect("the scenes are sound");
     world.add_body(body.moved([0.0, 0.05, 0.0]));
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
-    let hand = Manipulator::new([-0.3, 0.5, depth], 0.08);
-    world.add_manipulator(hand).expect("the scenes are sound");
+    let hand = Rigid::hand([-0.3, 0.5, depth], 0.08);
+    world.add_rigid(hand).expect("the scenes are sound");
     world
 }
 
@@ -89,7 +90,12 @@ fn hash_of_torn_world<D: Dim>(n: usize, ticks: u32) -> u64 {
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
     let mut released = 0;
     for tick in 0..ticks {
-        world.set_goal(0, [-0.3 + tick as f32 * 0.03, 0.5, depth]);
+        world
+            .set_goal(
+                world.nth_hand(0).expect("the scenes are sound"),
+                [-0.3 + tick as f32 * 0.03, 0.5, depth],
+            )
+            .expect("the scenes are sound");
         released += world.step().released;
     }
     assert!(released > 10, "{released} releases: the body must tear");
@@ -112,13 +118,20 @@ fn hash_of_heap() -> u64 {
             across: [3.0, 3.0 * slant, 0.0],
             along: [0.0, 0.0, 3.0],
         };
-        world.cut(0, &blade);
+        world
+            .cut(world.nth_body(0).expect("the scenes are sound"), &blade)
+            .expect("the scenes are sound");
     }
-    let hand = Manipulator::new([0.4, 1.2, 0.5], 0.12);
-    world.add_manipulator(hand).expect("the scenes are sound");
+    let hand = Rigid::hand([0.4, 1.2, 0.5], 0.12);
+    world.add_rigid(hand).expect("the scenes are sound");
     let (mut released, mut touched) = (0, 0.0);
     for tick in 0..50 {
-        world.set_goal(0, [0.4, 1.2 - tick as f32 * 0.03, 0.5]);
+        world
+            .set_goal(
+                world.nth_hand(0).expect("the scenes are sound"),
+                [0.4, 1.2 - tick as f32 * 0.03, 0.5],
+            )
+            .expect("the scenes are sound");
         let report = world.step();
         assert_eq!(report.substeps, FEWEST_SUBSTEPS);
         released += report.released;

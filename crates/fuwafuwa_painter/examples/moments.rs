@@ -31,9 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut moments = Vec::new();
     let mut last_tear = None;
     for tick in 0..scene.ticks() {
-        for (hand, goal) in scene.goals(tick).into_iter().enumerate() {
-            world.set_goal(hand, goal);
-        }
+        scene.send(&mut world, tick);
         world.step();
         let is_torn = world
             .events()
@@ -47,8 +45,8 @@ fn main() -> Result<(), Box<dyn Error>> {
                 _ if is_squeezed(&world) => Mood::Wince,
                 _ => Mood::Calm,
             };
-            let hand = world.manipulators().first();
-            let look_at = hand.map_or([0.0, 2.0, 0.0], |hand| hand.position());
+            let hand = world.hands().next();
+            let look_at = hand.map_or([0.0, 2.0, 0.0], |(_, hand)| hand.position());
             let extras = Extras {
                 basket: Some(basket),
                 faces: world

@@ -10,7 +10,7 @@ use crate::smoothing::{self, Curve};
 use crate::stage;
 use crate::{Frame, Painter, Role, Spot};
 use fuwafuwa::shape::{Shape, Vector};
-use fuwafuwa::{Body, Dim2, World};
+use fuwafuwa::{Body, Dim2, Rigid, World};
 use std::collections::BTreeMap;
 
 /// How far the roundness of a body reaches in from its rim [m].
@@ -46,10 +46,10 @@ pub fn world(painter: &mut Painter, frame: Frame, world: &World<Dim2>, extras: &
     }
     // A smooth outline may reach a little into what the body touches: on top, that stays whole.
     for obstacle in world.obstacles() {
-        bar(painter, frame, obstacle.shape);
+        bar(painter, frame, *obstacle.shape());
     }
-    for (number, each) in world.manipulators().iter().enumerate() {
-        hand(painter, frame, each.position(), each.radius, number);
+    for (number, (_, each)) in world.hands().enumerate() {
+        hand(painter, frame, each, number);
     }
 }
 
@@ -71,10 +71,10 @@ pub fn bar(painter: &mut Painter, frame: Frame, shape: Shape) {
 /// Paints a hand; the look of player 1 has `number` 0, that of player 2 has 1, and so in turns.
 ///
 /// Besides its colour, a paw tells the first from the second, which has a star.
-pub fn hand(painter: &mut Painter, frame: Frame, at: Vector, radius: f32, number: usize) {
+pub fn hand(painter: &mut Painter, frame: Frame, hand: &Rigid, number: usize) {
     let role = [Role::Hand, Role::OtherHand][number % 2];
-    let disc = Shape::Ball { centre: at, radius };
-    let rings = vec![spots(frame, &stage::rim(disc, 0.0))];
+    let (at, radius) = (hand.position(), hand.shape().inradius());
+    let rings = vec![spots(frame, &stage::rim(*hand.shape(), 0.0))];
     toy(painter, frame, &rings, 0.4 * radius, role);
     let place = |[u, v]: Spot| frame.spot([at[0] + u * radius, at[1] + v * radius, 0.0]);
     let pad = |painter: &mut Painter, middle: Spot, size: Spot| {
@@ -244,8 +244,8 @@ mod tests {
             across: [0.6, 0.0, 0.0],
             along: [0.0, 0.0, 1.0],
         };
-        assert!(world.cut(0, &blade) > 0);
-        world.remove_body(0)
+        assert!(world.cut(world.nth_body(0).unwrap(), &blade).unwrap() > 0);
+        world.remove_body(world.nth_body(0).unwrap()).unwrap()
     }
 
     #[test]
@@ -268,7 +268,12 @@ mod tests {
     fn two_hands_differ_in_more_than_colour() {
         let marks = [0, 1].map(|number| {
             let mut painter = paper();
-            hand(&mut painter, FRAME, [0.5, 0.5, 0.0], 0.3, number);
+            hand(
+                &mut painter,
+                FRAME,
+                &Rigid::hand([0.5, 0.5, 0.0], 0.3),
+                number,
+            );
             let pixels = painter.pixels().unwrap();
             let mark = tone(Role::HandMark);
             let cells =
@@ -288,7 +293,7 @@ mod tests {
     #[test]
     fn what_is_off_the_paper_or_nowhere_leaves_it_empty() {
         let mut painter = paper();
-        hand(&mut painter, FRAME, [50.0, 0.0, 0.0], 0.1, 0);
+        hand(&mut painter, FRAME, &Rigid::hand([50.0, 0.0, 0.0], 0.1), 0);
         let far = cut_disc().moved([0.0, -30.0, 0.0]);
         body(&mut painter, FRAME, &far);
         bar(
@@ -308,7 +313,7 @@ mod tests {
             half: [0.3, 0.3, 1.0],
         };
         let mut painter = paper();
-        hand(&mut painter, FRAME, [0.5, 0.5, 0.0], 0.1, 0);
+        hand(&mut painter, FRAME, &Rigid::hand([0.5, 0.5, 0.0], 0.1), 0);
         let before = at(&painter.pixels().unwrap(), [0.5, 0.5]);
         basket(&mut painter, FRAME, region);
         let pixels = painter.pixels().unwrap();

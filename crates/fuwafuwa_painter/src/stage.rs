@@ -21,15 +21,17 @@ const ROUND: usize = 24;
 /// Paints a world of the plane, each body as `draw` does.
 pub fn plane(painter: &mut Painter, frame: Frame, world: &World<Dim2>, draw: DrawPlane) {
     for obstacle in world.obstacles() {
-        obstacle_outline(painter, frame, obstacle.shape);
+        rigid(painter, frame, *obstacle.shape(), Role::Obstacle);
     }
     for body in world.bodies() {
         draw(painter, frame, body);
     }
-    for hand in world.manipulators() {
-        let at = frame.spot(hand.position());
-        painter.dot(at, hand.radius * frame.unit + 1.5, Role::Ink);
-        painter.dot(at, hand.radius * frame.unit, Role::Hand);
+    for (_, hand) in world.hands() {
+        if let Shape::Ball { centre, radius } = *hand.shape() {
+            let radius = radius * frame.unit + 1.5;
+            painter.dot(frame.spot(centre), radius, Role::Ink);
+        }
+        rigid(painter, frame, *hand.shape(), Role::Hand);
     }
 }
 
@@ -152,20 +154,28 @@ pub fn slots(level: u8, children: u8) -> BTreeSet<usize> {
 /// Paints a world of space, each body as `draw` does.
 pub fn space(solid: &mut Solid, world: &World<Dim3>, draw: DrawSpace) {
     for obstacle in world.obstacles() {
-        match obstacle.shape {
+        match *obstacle.shape() {
             Shape::HalfSpace { normal, offset } if normal[1] > 0.99 => solid.floor(offset),
             // The other walls would hide what is inside.
             Shape::HalfSpace { .. } => {}
-            Shape::Box { centre, half } => solid.block(centre, half, Role::Bar),
-            Shape::Capsule { from, to, radius } => solid.bar([from, to], radius, Role::Bar),
-            Shape::Ball { centre, radius } => solid.ball(centre, radius, Role::Bar),
+            shape => solid_shape(solid, shape, Role::Bar),
         }
     }
     for body in world.bodies() {
         draw(solid, body);
     }
-    for hand in world.manipulators() {
-        solid.ball(hand.position(), hand.radius, Role::Hand);
+    for (_, hand) in world.hands() {
+        solid_shape(solid, *hand.shape(), Role::Hand);
+    }
+}
+
+/// Paints a rigid shape that ends somewhere.
+fn solid_shape(solid: &mut Solid, shape: Shape, role: Role) {
+    match shape {
+        Shape::HalfSpace { .. } => {}
+        Shape::Box { centre, half } => solid.block(centre, half, role),
+        Shape::Capsule { from, to, radius } => solid.bar([from, to], radius, role),
+        Shape::Ball { centre, radius } => solid.ball(centre, radius, role),
     }
 }
 
@@ -296,15 +306,15 @@ fn crumbs<D: Dim>(body: &Body<D>) -> BTreeSet<u32> {
         .collect()
 }
 
-fn obstacle_outline(painter: &mut Painter, frame: Frame, shape: Shape) {
+fn rigid(painter: &mut Painter, frame: Frame, shape: Shape, role: Role) {
     match shape {
         Shape::Ball { centre, radius } => {
-            painter.dot(frame.spot(centre), radius * frame.unit, Role::Obstacle);
+            painter.dot(frame.spot(centre), radius * frame.unit, role);
         }
         _ => {
             let round = rim(shape, 0.0);
             let spots = round.iter().map(|&at| frame.spot(at));
-            painter.area(spots.collect(), Role::Obstacle);
+            painter.area(spots.collect(), role);
         }
     }
 }

@@ -19,9 +19,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let scene = Scene::open(name, &[])?;
         let mut world = scene.build::<Dim2>()?;
         for tick in 0..ticks {
-            for (hand, goal) in scene.goals(tick).into_iter().enumerate() {
-                world.set_goal(hand, goal);
-            }
+            scene.send(&mut world, tick);
             world.step();
         }
         let theme = Theme::candy();

@@ -181,9 +181,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             .basket::<Dim3>()?
             .map(|region| Basket { region, fill: 0.3 });
         for tick in 0..=moments.iter().copied().max().unwrap_or(0) {
-            for (hand, goal) in scene.goals(tick).into_iter().enumerate() {
-                world.set_goal(hand, goal);
-            }
+            scene.send(&mut world, tick);
             world.step();
             ages.follow(&world, 1.0 / 60.0);
             if !moments.contains(&tick) {
@@ -239,13 +237,13 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Dust beside the first hand, to see what particles look like.
 fn dust(world: &World<Dim3>) -> Vec<Particle> {
-    let Some(hand) = world.manipulators().first() else {
+    let Some((_, hand)) = world.hands().next() else {
         return Vec::new();
     };
     let [x, y, z] = hand.position();
     let around = (0..12).map(|k| {
         let (angle, reach) = (k as f32 * 2.4, 1.3 + 0.08 * k as f32);
-        let reach = reach * hand.radius;
+        let reach = reach * hand.shape().inradius();
         Particle {
             at: [
                 x + reach * angle.cos(),

@@ -64,7 +64,12 @@ mod tests {
         ages.follow(&world, 0.0);
         let young = |ages: &Ages| ages.seconds[0].iter().filter(|&&age| age < 0.2).count();
         assert_eq!(young(&ages), 0);
-        world.cut(0, &Blade::segment([0.5, 0.5], [0.5, 2.0]));
+        world
+            .cut(
+                world.nth_body(0).unwrap(),
+                &Blade::segment([0.5, 0.5], [0.5, 2.0]),
+            )
+            .unwrap();
         ages.follow(&world, 0.1);
         let remodelled = young(&ages);
         assert!(

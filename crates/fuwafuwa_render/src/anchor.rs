@@ -139,14 +139,19 @@ mod tests {
         let mut world = World::<Dim2>::new(Settings::default()).unwrap();
         let grid = VoxelGrid::ball(24, 1.0).unwrap();
         world.add_body(Body::new(grid, &[Material::default()]).unwrap());
-        let rest = anchor(&world.bodies()[0]);
+        let rest = anchor(world.bodies().first().unwrap());
         assert!(
             (rest.scale - 0.48).abs() < 0.02 && (rest.axes[0][0] - 1.0).abs() < 1e-6,
             "{rest:?}"
         );
 
-        world.cut(0, &Blade::segment([0.25, -1.0], [0.25, 2.0]));
-        let body = world.body_mut(0);
+        world
+            .cut(
+                world.nth_body(0).unwrap(),
+                &Blade::segment([0.25, -1.0], [0.25, 2.0]),
+            )
+            .unwrap();
+        let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
         let ids: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
         let (sin, cos) = 2.5f32.sin_cos();
         for id in ids {
@@ -163,7 +168,7 @@ mod tests {
                 body.set_node_state(id, [place[0] + gone, place[1], 0.0], [0.0; 3]);
             }
         }
-        let now = anchor(&world.bodies()[0]);
+        let now = anchor(world.bodies().first().unwrap());
         let [right, up, _] = now.axes;
         assert!(
             (right[0] - cos).abs() < 1e-3 && (right[1] - sin).abs() < 1e-3,
@@ -178,7 +183,7 @@ mod tests {
         let mut world = World::<Dim3>::new(Settings::default()).unwrap();
         let grid = VoxelGrid::ball(12, 1.0).unwrap();
         world.add_body(Body::new(grid, &[Material::default()]).unwrap());
-        let body = world.body_mut(0);
+        let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
         let ids: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in ids {
             // Half as high, then turned so that x leads to y, y to z and z to x.
@@ -186,7 +191,11 @@ mod tests {
             body.set_node_state(id, [z, x, 0.5 * y], [0.0; 3]);
         }
         let wanted = [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]];
-        for (axis, wanted) in anchor(&world.bodies()[0]).axes.into_iter().zip(wanted) {
+        for (axis, wanted) in anchor(world.bodies().first().unwrap())
+            .axes
+            .into_iter()
+            .zip(wanted)
+        {
             assert!(dot(axis, wanted) > 0.9999, "{axis:?}, not {wanted:?}");
         }
     }

@@ -4,7 +4,7 @@ use crate::elements::ElementMesh;
 use crate::frame::{Frame, Look};
 use crate::plane::Flat;
 use crate::rest::Rest;
-use crate::rigid::Rigid;
+use crate::rigid::RigidShapes;
 use crate::rings::Rings;
 use crate::skin::SkinMesh;
 use crate::theme::bytes;
@@ -17,7 +17,7 @@ pub struct Geometry {
     pub(crate) skin: SkinMesh,
     pub(crate) bodies: Vec<BodyParts>,
     pub(crate) elements: ElementMesh,
-    pub(crate) rigid: Rigid,
+    pub(crate) rigid: RigidShapes,
     /// Radius of a disc with the area of the largest body at rest [m].
     pub(crate) radius: f32,
     /// All bodies lie between these corners [m], the low one above the high one if there are none.

@@ -41,7 +41,7 @@ pub struct DotInstance {
 
 /// Everything rigid.
 #[derive(Clone, Debug, Default)]
-pub struct Rigid {
+pub struct RigidShapes {
     /// Outward normal and offset of each half-space [m].
     pub walls: Vec<[f32; 4]>,
     /// First the bars, then the hands, then the basket.
@@ -54,7 +54,7 @@ pub struct Rigid {
     pub dots: Vec<DotInstance>,
 }
 
-impl Rigid {
+impl RigidShapes {
     /// Forgets what was there and gathers what is.
     pub fn gather(
         &mut self,
@@ -67,18 +67,17 @@ impl Rigid {
         self.shapes.clear();
         self.dots.clear();
         for obstacle in world.obstacles() {
-            if let Shape::HalfSpace { normal, offset } = obstacle.shape {
+            if let Shape::HalfSpace { normal, offset } = *obstacle.shape() {
                 self.walls.push([normal[0], normal[1], offset, 0.0]);
             }
-            self.shapes.extend(instance(obstacle.shape, theme.bar, 0.0));
+            let bar = instance(*obstacle.shape(), theme.bar, 0.0);
+            self.shapes.extend(bar);
         }
         self.walls.truncate(MOST_WALLS);
         self.bar_count = self.shapes.len() as u32;
-        for (player, hand) in world.manipulators().iter().enumerate() {
-            let (centre, radius) = (hand.position(), hand.radius);
-            let ball = Shape::Ball { centre, radius };
-            self.shapes
-                .extend(instance(ball, theme.hand(player), player as f32));
+        for (player, (_, hand)) in world.hands().enumerate() {
+            let hand = instance(*hand.shape(), theme.hand(player), player as f32);
+            self.shapes.extend(hand);
         }
         self.hand_count = self.shapes.len() as u32 - self.bar_count;
         if let Some(basket) = basket {
@@ -115,24 +114,23 @@ fn instance(shape: Shape, colour: Colour, number: f32) -> Option<RigidInstance> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::{Manipulator, Settings};
+    use fuwafuwa::{Rigid, Settings};
 
     #[test]
     fn walls_bars_hands_and_basket_each_have_their_place() {
         let mut world = World::<Dim2>::new(Settings::default()).unwrap();
         let (from, to, radius) = ([0.0; 3], [1.0, 0.0, 0.0], 0.1);
         world
-            .add_obstacle(Shape::half_space([0.0, 1.0, 0.0], [0.0, -2.0, 0.0]), 0.2)
+            .add_rigid(Rigid::fixed(
+                Shape::half_space([0.0, 1.0, 0.0], [0.0, -2.0, 0.0]),
+                0.2,
+            ))
             .unwrap();
         world
-            .add_obstacle(Shape::Capsule { from, to, radius }, 0.2)
+            .add_rigid(Rigid::fixed(Shape::Capsule { from, to, radius }, 0.2))
             .unwrap();
-        world
-            .add_manipulator(Manipulator::new([0.0, 3.0, 0.0], 0.2))
-            .unwrap();
-        world
-            .add_manipulator(Manipulator::new([1.0, 3.0, 0.0], 0.2))
-            .unwrap();
+        world.add_rigid(Rigid::hand([0.0, 3.0, 0.0], 0.2)).unwrap();
+        world.add_rigid(Rigid::hand([1.0, 3.0, 0.0], 0.2)).unwrap();
         let region = Shape::Box {
             centre: [0.5; 3],
             half: [0.25; 3],
@@ -143,7 +141,7 @@ mod tests {
             radius: 0.01,
             colour: [1.0; 4],
         };
-        let mut rigid = Rigid::default();
+        let mut rigid = RigidShapes::default();
         for _ in 0..2 {
             rigid.gather(&world, &Theme::candy(), Some(&basket), &[dot]);
         }

@@ -256,7 +256,7 @@ mod tests {
     use fuwafuwa::{Blade, Material, Settings, VoxelGrid, World};
 
     fn rings(world: &World<Dim2>) -> Rings {
-        let body = &world.bodies()[0];
+        let body = world.bodies().first().unwrap();
         let mut rings = Rings::default();
         rings.trace(body, &Rest::new(body.grid()));
         rings
@@ -271,7 +271,7 @@ mod tests {
 
     /// The radius of a disc of as many voxels [m].
     fn round(world: &World<Dim2>) -> f32 {
-        let grid = world.bodies()[0].grid();
+        let grid = world.bodies().first().unwrap().grid();
         grid.voxel_size() * (grid.solid_count() as f32 / std::f32::consts::PI).sqrt()
     }
 
@@ -298,7 +298,7 @@ mod tests {
     fn a_stretched_disc_is_an_ellipse() {
         let mut world = disc(64);
         let round = round(&world);
-        let body = world.body_mut(0);
+        let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
         let ids: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in ids {
             let [x, y, _] = body.node_state(id).0;
@@ -316,7 +316,12 @@ mod tests {
     fn both_lips_of_a_closed_cut_lie_on_each_other() {
         let mut world = disc(32);
         let whole = total_area(&rings(&world));
-        world.cut(0, &Blade::segment([0.5, -1.0], [0.5, 2.0]));
+        world
+            .cut(
+                world.nth_body(0).unwrap(),
+                &Blade::segment([0.5, -1.0], [0.5, 2.0]),
+            )
+            .unwrap();
         let halves = rings(&world);
         assert_eq!(halves.spans.len(), 2);
         let gap = (total_area(&halves) - whole).abs() / whole;

@@ -4,7 +4,7 @@
 mod shared;
 
 use fuwafuwa::{
-    Blade, Body, Dim, Dim2, Grading, Law, Manipulator, Material, Settings, Shape, VoxelGrid, World,
+    Blade, Body, Dim, Dim2, Grading, Law, Material, Rigid, Settings, Shape, VoxelGrid, World,
 };
 use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_render::{Basket, Camera, Colour, Frame, Look, Particle, Renderer, Theme};
@@ -90,7 +90,7 @@ fn a_disc_is_warm_on_a_cool_floor_and_its_edge_has_no_stairs() {
     let floor = picture.around([0.0, 1.0]);
     assert!(floor[2] > 0.8 && !is_warm(floor), "{floor:?}");
 
-    let grid = world.bodies()[0].grid();
+    let grid = world.bodies().first().unwrap().grid();
     let voxel = grid.voxel_size();
     let round = voxel * (grid.solid_count() as f32 / std::f32::consts::PI).sqrt();
     let warmth = |angle: f32, radius: f32| {
@@ -115,8 +115,13 @@ fn a_disc_is_warm_on_a_cool_floor_and_its_edge_has_no_stairs() {
 #[test]
 fn a_torn_face_shows_a_lighter_inside() {
     let mut world = disc();
-    world.cut(0, &Blade::segment([0.5, -1.0], [0.5, 2.0]));
-    let body = world.body_mut(0);
+    world
+        .cut(
+            world.nth_body(0).unwrap(),
+            &Blade::segment([0.5, -1.0], [0.5, 2.0]),
+        )
+        .unwrap();
+    let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
     let ids: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
     let pieces: Vec<u32> = ids.iter().map(|&id| body.pieces().of_node(id)).collect();
     for (id, piece) in ids.into_iter().zip(pieces) {
@@ -151,15 +156,16 @@ fn elements_have_the_colour_of_their_level() {
     let Some(picture) = take(&world, TextureFormat::Rgba8Unorm, |frame| frame.look = look) else {
         return;
     };
-    let views = world.bodies()[0].element_views();
+    let views = world.bodies().first().unwrap().element_views();
     let views: Vec<_> = views
         .filter(|view| view.level > 1 && view.children == Dim2::ALL_CORNERS)
         .collect();
     assert!(views.len() > 8, "{} large elements", views.len());
     for view in views {
         let [x, y, _] = view.child_corners::<Dim2>(0)[3];
-        let quarter =
-            world.bodies()[0].grid().voxel_size() * 0.5 * f32::from(1u8 << (view.level - 1));
+        let quarter = world.bodies().first().unwrap().grid().voxel_size()
+            * 0.5
+            * f32::from(1u8 << (view.level - 1));
         let seen = picture.around([x - quarter, y - quarter]);
         let wanted = THEME.level(view.level);
         assert!(
@@ -175,15 +181,16 @@ fn bars_hands_walls_basket_and_particles_are_there() {
     let mut world = floating();
     let (from, to, radius) = ([0.2, 0.9, 0.0], [0.8, 0.9, 0.0], 0.06);
     world
-        .add_obstacle(Shape::Capsule { from, to, radius }, 0.2)
+        .add_rigid(Rigid::fixed(Shape::Capsule { from, to, radius }, 0.2))
         .unwrap();
     world
-        .add_obstacle(Shape::half_space([0.0, 1.0, 0.0], [0.0, 0.05, 0.0]), 0.2)
+        .add_rigid(Rigid::fixed(
+            Shape::half_space([0.0, 1.0, 0.0], [0.0, 0.05, 0.0]),
+            0.2,
+        ))
         .unwrap();
     for x in [0.2, 0.5] {
-        world
-            .add_manipulator(Manipulator::new([x, 0.6, 0.0], 0.1))
-            .unwrap();
+        world.add_rigid(Rigid::hand([x, 0.6, 0.0], 0.1)).unwrap();
     }
     let region = Shape::Box {
         centre: [0.85, 0.4, 0.0],

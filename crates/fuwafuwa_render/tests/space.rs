@@ -3,7 +3,7 @@
 
 mod shared;
 
-use fuwafuwa::{Blade, Body, Dim3, Manipulator, Material, Settings, Shape, VoxelGrid, World};
+use fuwafuwa::{Blade, Body, Dim3, Material, Rigid, Settings, Shape, VoxelGrid, World};
 use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_render::space::{Camera, Cut, Renderer};
 use fuwafuwa_render::{Basket, Colour, Frame, Look, Mark, Particle, Sticker, Theme};
@@ -66,7 +66,7 @@ fn floating() -> World<Dim3> {
     };
     let mut world = World::new(settings).unwrap();
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-    world.add_obstacle(floor, 0.2).unwrap();
+    world.add_rigid(Rigid::fixed(floor, 0.2)).unwrap();
     world
 }
 
@@ -128,16 +128,18 @@ fn a_ball_is_warm_on_a_cool_floor_with_a_round_edge_and_a_shadow() {
 fn a_torn_face_shows_a_paler_inside_and_no_gap_where_it_begins() {
     let mut world = ball();
     let (from, across, along) = ([0.5, -0.2, -0.2], [0.0, 1.4, 0.0], [0.0, 0.0, 1.4]);
-    world.cut(
-        0,
-        &Blade {
-            from,
-            across,
-            along,
-        },
-    );
+    world
+        .cut(
+            world.nth_body(0).unwrap(),
+            &Blade {
+                from,
+                across,
+                along,
+            },
+        )
+        .unwrap();
     let closed = take(&world, TextureFormat::Rgba8Unorm, |_| ());
-    let body = world.body_mut(0);
+    let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
     let ids: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
     let left = (ids.iter()).find(|&&id| body.mesh().node(id).at[0] < 8);
     let left = body.pieces().of_node(*left.unwrap());
@@ -194,8 +196,9 @@ fn a_cut_through_the_elements_shows_their_levels() {
     };
     let hue = |[red, green, blue]: Colour| [red / green, blue / green, 0.0];
     let mut count = 0;
-    for view in world.bodies()[0].element_views() {
-        let width = world.bodies()[0].grid().voxel_size() * f32::from(1u8 << view.level);
+    for view in world.bodies().first().unwrap().element_views() {
+        let width =
+            world.bodies().first().unwrap().grid().voxel_size() * f32::from(1u8 << view.level);
         let [x, y, z] = view.slots[13];
         // Those whose front lies in the cut.
         if view.level < 2 || view.children != 255 || (z + 0.5 * width - 0.5).abs() > 1e-3 {
@@ -247,7 +250,7 @@ fn a_sticker_is_seen_from_its_side_and_not_through_a_bar() {
     assert_eq!(is_seen(&world, std::f32::consts::PI), Some(false));
     let (from, to, radius) = ([0.0, 0.5, 1.2], [1.0, 0.5, 1.2], 0.1);
     let bar = Shape::Capsule { from, to, radius };
-    world.add_obstacle(bar, 0.2).unwrap();
+    world.add_rigid(Rigid::fixed(bar, 0.2)).unwrap();
     assert_eq!(is_seen(&world, 0.0), Some(false));
 }
 
@@ -277,12 +280,12 @@ fn bars_hands_walls_basket_and_particles_are_there() {
     let mut world = floating();
     let (from, to, radius) = ([0.1, 0.1, 0.2], [0.4, 0.1, 0.2], 0.06);
     let bar = Shape::Capsule { from, to, radius };
-    world.add_obstacle(bar, 0.2).unwrap();
+    world.add_rigid(Rigid::fixed(bar, 0.2)).unwrap();
     let wall = Shape::half_space([0.0, 0.0, 1.0], [0.0, 0.0, -0.6]);
-    world.add_obstacle(wall, 0.2).unwrap();
+    world.add_rigid(Rigid::fixed(wall, 0.2)).unwrap();
     for x in [0.3, 0.7] {
-        let hand = Manipulator::new([x, 0.9, -0.1], 0.1);
-        world.add_manipulator(hand).unwrap();
+        let hand = Rigid::hand([x, 0.9, -0.1], 0.1);
+        world.add_rigid(hand).unwrap();
     }
     let region = Shape::Box {
         centre: [0.9, 0.2, 0.2],

@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p fuwafuwa_scenes --example from_png -- drawing.png`
 
-use fuwafuwa::{Body, Dim2, Material, Settings, Shape, World};
+use fuwafuwa::{Body, Dim2, Material, Rigid, Settings, Shape, World};
 use fuwafuwa_scenes::import;
 use std::path::Path;
 
@@ -17,12 +17,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         grid.size()
     );
     let mut world = World::<Dim2>::new(Settings::default())?;
-    world.add_obstacle(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.5)?;
+    world.add_rigid(Rigid::fixed(
+        Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]),
+        0.5,
+    ))?;
     world.add_body(Body::new(grid, &[Material::default()])?.moved([0.0, 0.3, 0.0]));
     for tick in 1..=120 {
         world.step();
         if tick % 20 == 0 {
-            for piece in world.bodies()[0].piece_views().iter().take(4) {
+            for piece in world.bodies().first().unwrap().piece_views().iter().take(4) {
                 println!("{tick:3}: piece {} at {:.2?}", piece.number, piece.centre);
             }
         }

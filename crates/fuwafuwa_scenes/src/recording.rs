@@ -1,5 +1,6 @@
 //! What hands did in a scene, tick by tick, so that it can be run again and compared.
 
+use crate::scene::send;
 use crate::scene::{MAX_SECONDS, Scene, SceneError, shortened, text_of};
 use fuwafuwa::{Dim, World};
 use serde::{Deserialize, Serialize};
@@ -170,13 +171,6 @@ impl Recording {
             ticks: self.goals.len(),
             differs_at,
         })
-    }
-}
-
-fn send<D: Dim>(world: &mut World<D>, goals: &[[f32; 3]]) {
-    let hands = world.manipulators().len();
-    for (hand, &goal) in goals.iter().enumerate().take(hands) {
-        world.set_goal(hand, goal);
     }
 }
 

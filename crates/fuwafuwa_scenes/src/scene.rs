@@ -33,7 +33,7 @@
 //! half_space = { normal = [0.0, 1.0, 0.0], point = [0.0, 0.0, 0.0] }
 //!
 //! [[hand]]
-//! radius = 0.1                    # [m]
+//! radius = 0.1                    # [m]; or a box or a capsule
 //! path = [[0.0, -0.3, 0.5, 0.0], [1.0, 1.2, 0.5, 0.0]]   # seconds, then where [m]
 //!
 //! [game]                          # only where a scene is a level of the game
@@ -56,6 +56,7 @@ mod rigid;
 pub use body::{BodyText, Form, MaterialText, PartText};
 pub use error::{SceneError, shortened};
 pub use game::{GameText, RouteText, WishText, Words};
+pub(crate) use rigid::send;
 pub use rigid::{BallText, BoxText, CapsuleText, HalfSpaceText, HandText, ObstacleText};
 
 use error::{Origin, Wrong, require, require_vector};
@@ -313,6 +314,11 @@ impl Scene {
     pub fn goals(&self, tick: u64) -> Vec<[f32; 3]> {
         let seconds = (tick + 1) as f32 / 60.0;
         self.hand.iter().map(|hand| hand.goal(seconds)).collect()
+    }
+
+    /// Sends the hands of its world to where they are to be at the end of a tick.
+    pub fn send<D: Dim>(&self, world: &mut World<D>, tick: u64) {
+        send(world, &self.goals(tick));
     }
 
     /// How many ticks to watch it.

@@ -11,7 +11,9 @@ fn bodies<D: Dim>(text: &str) -> Vec<Body<D>> {
     world
         .unwrap_or_else(|error| panic!("{error}"))
         .bodies()
-        .to_vec()
+        .iter()
+        .cloned()
+        .collect()
 }
 
 /// The materials of a flat body, or of the middle layer of a solid one; the highest row first.
@@ -100,11 +102,11 @@ fn a_crack_does_not_enter_what_is_unbreakable() {
     let mut world = scene.build::<Dim2>().unwrap();
     let mut released = 0;
     for tick in 0..80 {
-        world.set_goal(0, scene.goals(tick)[0]);
+        scene.send(&mut world, tick);
         released += world.step().released;
     }
     assert!(released > 50, "{released}");
-    let views = world.bodies()[0].element_views();
+    let views = world.bodies().first().unwrap().element_views();
     let mut of_core: Vec<u32> = views
         .filter(|view| view.material == 2)
         .map(|view| view.piece)
@@ -112,6 +114,31 @@ fn a_crack_does_not_enter_what_is_unbreakable() {
     of_core.sort_unstable();
     of_core.dedup();
     assert_eq!(of_core.len(), 1, "in one piece");
+}
+
+#[test]
+fn a_hand_may_be_a_ball_a_box_or_a_bar() {
+    let shapes = [
+        ("radius = 0.1", 0.1),
+        ("box = { centre = [0, 0, 0], half = [0.4, 0.2, 0] }", 0.2),
+        (
+            "capsule = { from = [-1, 0, 0], to = [1, 0, 0], radius = 0.3 }",
+            0.3,
+        ),
+    ];
+    for (text, thick) in shapes {
+        let text = format!("dim = 2\n[[hand]]\n{text}\npath = [[0, 0, 2, 0], [1, 0, 1, 0]]\n");
+        let scene = Scene::read("toy.toml", &text, &[]).unwrap();
+        let mut world = scene.build::<Dim2>().unwrap();
+        (0..120).for_each(|tick| {
+            scene.send(&mut world, tick);
+            world.step();
+        });
+        let (_, hand) = world.hands().next().unwrap();
+        assert_eq!(hand.shape().inradius(), thick);
+        let (distance, _) = hand.shape().distance([0.0, 2.0, 0.0]);
+        assert!((distance + thick - 1.0).abs() < 0.01, "{text}: {distance}");
+    }
 }
 
 /// A folder of its own for a test, with a scene in it.
@@ -167,9 +194,9 @@ at = [0.0, 3.0, 0.0]
     std::fs::write(folder.join("painting.png"), painting(&["rb. ", "rrrr"])).unwrap();
     let scene = open(&folder).unwrap();
     let world = scene.build::<Dim2>().unwrap();
-    assert_eq!(picture(&world.bodies()[0]), ["21..", "2222"]);
-    assert_eq!(world.bodies()[0].grid().voxel_size(), 0.5);
-    assert_eq!(picture(&world.bodies()[1]), ["33"]);
+    assert_eq!(picture(world.bodies().first().unwrap()), ["21..", "2222"]);
+    assert_eq!(world.bodies().first().unwrap().grid().voxel_size(), 0.5);
+    assert_eq!(picture(&world.bodies()[world.nth_body(1).unwrap()]), ["33"]);
 
     // It can be recorded, and run again from the text of the recording.
     let recording = Recording::of::<Dim2>(&scene, 3, |_| {}).unwrap();
@@ -201,7 +228,7 @@ fn a_model_beside_the_scene_becomes_a_body() {
         std::fs::write(folder.join("a.vox"), MODEL).unwrap();
         let world = open(&folder).unwrap().build::<Dim3>();
         world
-            .map(|world| picture(&world.bodies()[0]))
+            .map(|world| picture(world.bodies().first().unwrap()))
             .map_err(|error| error.to_string())
     };
     let expected = ["1", "3"].map(String::from).to_vec();

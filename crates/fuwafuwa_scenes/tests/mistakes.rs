@@ -90,7 +90,7 @@ fn a_mistake_is_told_with_file_line_field_and_what_was_expected() {
         (
             "radius = 0.1",
             "",
-            ", line 13: [[hand]]: missing field `radius`",
+            ", line 13: hand 1, radius: expected exactly one of radius, box and capsule",
         ),
         // What cannot be.
         (

@@ -175,7 +175,7 @@ fn depth<D: Dim>(round: &Round<D>) -> Result<f32, String> {
         let axes = (0..D::N).map(|axis| (low[axis] - from[axis]).max(to[axis] - high[axis]));
         axes.fold(f32::MIN, f32::max)
     };
-    for hand in round.world().manipulators() {
+    for hand in round.hands() {
         let at = hand.position();
         let is_in = at.iter().all(|k| k.is_finite()) && beyond(at, at) <= HAND_MARGIN;
         if !is_in {

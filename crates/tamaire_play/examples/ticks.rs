@@ -7,7 +7,7 @@
 //! `--json` prints an object a line in place of each row. `--help` tells the rest.
 
 use clap::Parser;
-use fuwafuwa::{Dim, Dim2, Dim3, StepReport, Vector};
+use fuwafuwa::{Dim, Dim2, Dim3, RigidId, StepReport, Vector};
 use serde::Serialize;
 use std::error::Error;
 use std::io::{self, Write};
@@ -245,7 +245,7 @@ fn play<D: Dim>(level: &Arc<Level>, kind: BotKind, seed: u64, most: usize) -> (V
         let start = Instant::now();
         let report = round.step(frame);
         let whole = milliseconds(start);
-        let hands = round.world().manipulators().iter();
+        let hands = round.hands();
         ticks.push(Tick {
             report,
             goals: hands.map(|hand| hand.goal()).collect(),
@@ -260,15 +260,17 @@ fn play<D: Dim>(level: &Arc<Level>, kind: BotKind, seed: u64, most: usize) -> (V
 /// more goes to the rules. Not beside the round, where both would have to share the caches.
 fn step_alone<D: Dim>(level: &Arc<Level>, ticks: &mut [Tick]) {
     let mut world = Round::<D>::new(level.clone()).world().clone();
+    let mut hands: Vec<RigidId> = world.hands().map(|(hand, _)| hand).collect();
     for tick in ticks {
-        for player in world.manipulators().len()..tick.goals.len() {
+        for player in hands.len()..tick.goals.len() {
             let scene = level.scene().build::<D>();
             let scene = scene.expect("the level was built once");
-            let joins = world.add_manipulator(scene.manipulators()[player].clone());
-            joins.expect("it is in the round");
+            let hand = scene.nth_hand(player).expect("the level has one");
+            let joins = world.add_rigid(scene.rigids()[hand].clone());
+            hands.push(joins.expect("it is in the round"));
         }
-        for (player, &goal) in tick.goals.iter().enumerate() {
-            world.set_goal(player, goal);
+        for (&hand, &goal) in hands.iter().zip(&tick.goals) {
+            world.set_goal(hand, goal).expect("it was one in the round");
         }
         let start = Instant::now();
         assert_eq!(world.step(), tick.report, "both worlds are the same");

@@ -1,7 +1,7 @@
 //! Rounds whose dimension is that of their level: for those who do not look into bodies.
 
 use crate::{InputFrame, Level, Progress, Round};
-use fuwafuwa::{Dim2, Dim3, Event, Manipulator, Shape, StepReport, Vector};
+use fuwafuwa::{Dim2, Dim3, Event, Rigid, Shape, StepReport, Vector};
 use std::sync::Arc;
 
 /// A round in the plane or in space.
@@ -70,9 +70,9 @@ impl AnyRound {
         both!(self, round => round.frames())
     }
 
-    /// The hands.
-    pub fn hands(&self) -> &[Manipulator] {
-        both!(self, round => round.world().manipulators())
+    /// See [`Round::hands`].
+    pub fn hands(&self) -> Vec<&Rigid> {
+        both!(self, round => round.hands().collect())
     }
 
     /// What happened in the last tick.

@@ -161,7 +161,7 @@ impl Level {
         let room = axes.map(|axis| high[axis] - low[axis]);
         let room = room.fold(f32::INFINITY, f32::min);
         let mut hands = level.scene.hand.iter();
-        if hands.any(|hand| 2.0 * hand.radius > 0.9 * room) {
+        if hands.any(|hand| 2.0 * hand.inradius() > 0.9 * room) {
             return Err(LevelError::NoGame {
                 id: id.into(),
                 field: "hand",

@@ -2,7 +2,7 @@
 
 use crate::{InputFrame, Level, PLAYERS, Progress};
 use fuwafuwa::world::TICK;
-use fuwafuwa::{Dim, Manipulator, Shape, StepReport, Vector, World};
+use fuwafuwa::{Dim, Rigid, RigidId, Shape, StepReport, Vector, World};
 use std::sync::Arc;
 
 /// A hand's goal moves no faster than this [m/s]: what is much faster than a wave in the body
@@ -22,7 +22,9 @@ pub struct Round<D: Dim> {
     world: World<D>,
     basket: Option<Shape>,
     progress: Progress,
-    starts: Vec<Manipulator>,
+    starts: Vec<Rigid>,
+    /// The hand of each player who has joined.
+    players: Vec<RigidId>,
     frames: Vec<InputFrame>,
     hashes: Vec<u64>,
 }
@@ -34,12 +36,15 @@ impl<D: Dim> Round<D> {
     /// When the level is of another dimension.
     pub fn new(level: Arc<Level>) -> Self {
         let (mut world, basket) = level.build::<D>();
-        let starts: Vec<Manipulator> = world.manipulators().to_vec();
+        let hands: Vec<RigidId> = world.hands().map(|(id, _)| id).collect();
+        let starts = hands.iter().map(|&id| world.rigids()[id].clone());
+        let starts: Vec<Rigid> = starts.collect();
         // The others come in when their players join.
-        while world.manipulators().len() > 1 {
-            world.remove_manipulator(1);
+        for &hand in hands.iter().skip(1) {
+            world.remove_rigid(hand).expect("it is in the world");
         }
         Self {
+            players: hands.into_iter().take(1).collect(),
             progress: Progress::of(&world),
             basket,
             world,
@@ -53,9 +58,10 @@ impl<D: Dim> Round<D> {
     /// Lets a tick pass in which the players want what `frame` says.
     pub fn step(&mut self, frame: InputFrame) -> StepReport {
         self.let_players_in(&frame);
-        for player in 0..self.world.manipulators().len() {
+        for player in 0..self.players.len() {
             let goal = self.reachable(player, frame.goal(player));
-            self.world.set_goal(player, goal);
+            let sent = self.world.set_goal(self.players[player], goal);
+            sent.expect("a hand is in the world, and its goal in the arena");
         }
         let report = self.world.step();
         if self.progress.outcome.is_some() {
@@ -80,6 +86,11 @@ impl<D: Dim> Round<D> {
     /// The world as it is now.
     pub fn world(&self) -> &World<D> {
         &self.world
+    }
+
+    /// The hands of the players who have joined, in their order.
+    pub fn hands(&self) -> impl ExactSizeIterator<Item = &Rigid> {
+        self.players.iter().map(|&hand| &self.world.rigids()[hand])
     }
 
     /// The region that has to be filled, where the level has one.
@@ -120,23 +131,24 @@ impl<D: Dim> Round<D> {
     }
 
     fn let_players_in(&mut self, frame: &InputFrame) {
-        for player in self.world.manipulators().len()..self.starts.len().min(PLAYERS) {
+        for player in self.players.len()..self.starts.len().min(PLAYERS) {
             if frame.goals[player].is_none() {
                 break;
             }
             let hand = self.starts[player].clone();
-            let added = self.world.add_manipulator(hand);
-            added.expect("it was in this world when the level was checked");
+            let added = self.world.add_rigid(hand);
+            let added = added.expect("it was in this world when the level was checked");
+            self.players.push(added);
         }
     }
 
     /// The place nearest to a wish to which a goal can move in a tick.
     fn reachable(&self, player: usize, wish: Option<Vector>) -> Vector {
-        let hand = &self.world.manipulators()[player];
+        let hand = &self.world.rigids()[self.players[player]];
         let [low, high] = self.level.arena();
         let mut goal = wish.unwrap_or(hand.goal());
         for axis in 0..D::N {
-            let margin = hand.radius.min(0.5 * (high[axis] - low[axis]));
+            let margin = hand.shape().inradius().min(0.5 * (high[axis] - low[axis]));
             goal[axis] = goal[axis].clamp(low[axis] + margin, high[axis] - margin);
         }
         let goal = near(hand.goal(), goal, TOP_SPEED * TICK);

@@ -33,8 +33,8 @@ fn is_closed<D: Dim>(id: &str) {
     let [low, high] = level.arena();
     let round = Round::<D>::new(level);
     let is_rigid = |at: [f32; 3]| {
-        let mut all = round.world().obstacles().iter();
-        all.any(|obstacle| obstacle.shape.distance(at).0 < 0.0)
+        let mut all = round.world().obstacles();
+        all.any(|obstacle| obstacle.shape().distance(at).0 < 0.0)
     };
     let place =
         |axis: usize, step: i32| low[axis] + (high[axis] - low[axis]) * step as f32 / STEPS as f32;
@@ -83,7 +83,7 @@ fn played<D: Dim>(id: &str, ticks: usize) -> Replay {
         let frame = bot.frame(&round);
         round.step(frame);
     }
-    assert_eq!(round.world().manipulators().len(), 2);
+    assert_eq!(round.hands().len(), 2);
     Replay::of(&round)
 }
 

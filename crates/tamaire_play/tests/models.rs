@@ -77,7 +77,7 @@ fn a_model_of_any_colours_becomes_the_body_of_a_level() {
     assert_eq!(level.game().name.en, "pudding");
     assert_eq!(level.scene().dim, 3);
     let level = level.scene().build::<fuwafuwa::Dim3>().unwrap();
-    assert!(level.bodies()[0].grid().solid_count() > 8000);
+    assert!(level.bodies().first().unwrap().grid().solid_count() > 8000);
 
     let folder = std::env::temp_dir().join(format!("tamaire-models-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();

@@ -53,8 +53,8 @@ fn floor(round: &Round<Dim3>) -> f32 {
     let mut at = round.start(0);
     while at[1] > lowest {
         // So far down there is nothing.
-        let obstacles = round.world().obstacles().iter();
-        let free = obstacles.map(|obstacle| obstacle.shape.distance(at).0);
+        let obstacles = round.world().obstacles();
+        let free = obstacles.map(|obstacle| obstacle.shape().distance(at).0);
         let free = free.fold(f32::MAX, f32::min);
         if free < NEAR {
             return at[1];

@@ -2,7 +2,8 @@
 
 use super::{Game, Screen};
 use crate::look::View;
-use fuwafuwa::{Dim, Event, Vector, With};
+use fuwafuwa::{BodyId, Dim, Event, Vector, With};
+use std::collections::BTreeMap;
 use tamaire_play::rules::CRUMB;
 use tamaire_play::{AnyRound, Round};
 use tamaire_sound::{Cue, Hush, Press, Soundscape};
@@ -49,11 +50,11 @@ pub(super) fn cues(round: &AnyRound, view: Option<View>) -> Vec<Cue> {
 fn cues_of<D: Dim>(round: &Round<D>, view: Option<View>) -> Vec<Cue> {
     let bodies = round.world().bodies();
     // The masses of the pieces of each body, looked up once they are asked for [kg].
-    let mut masses: Vec<Option<Vec<f32>>> = vec![None; bodies.len()];
-    let mut mass_of = |body: u32, piece: u32| {
-        let place = body as usize;
-        let views = || bodies[place].piece_views().into_iter();
-        let masses = masses[place].get_or_insert_with(|| views().map(|view| view.mass).collect());
+    let mut masses: BTreeMap<BodyId, Vec<f32>> = BTreeMap::new();
+    let mut mass_of = |body: BodyId, piece: u32| {
+        let views = || bodies[body].piece_views().into_iter();
+        let masses = masses.entry(body);
+        let masses = masses.or_insert_with(|| views().map(|view| view.mass).collect());
         masses[piece as usize]
     };
     let mut cues = Vec::new();

@@ -8,7 +8,7 @@ use super::report::by_route;
 use crate::look::{Camera, Effects, Mood};
 use fuwafuwa::vector::{plus, scaled};
 use fuwafuwa::world::TICK;
-use fuwafuwa::{Dim2, Dim3, Shape};
+use fuwafuwa::{Dim2, Dim3, Rigid, Shape};
 use fuwafuwa_painter::soft::{self, Extras};
 use fuwafuwa_painter::solid::{Camera as SolidCamera, Solid};
 use fuwafuwa_painter::stage;
@@ -121,8 +121,7 @@ fn plane(round: &Round<Dim2>, effects: &Effects) -> Painter {
     let view = [low.map(|k| k - WALL), high.map(|k| k + WALL)];
     let (mut painter, frame) = Painter::for_view(view, WIDTH);
     let world = round.world();
-    let hand = world.manipulators().first();
-    let look_at = hand.map_or([0.0; 3], |hand| hand.position());
+    let look_at = round.hands().next().map_or([0.0; 3], Rigid::position);
     let bodies = world.bodies().iter().enumerate();
     let faces = bodies.filter_map(|(place, body)| {
         let feeling = effects.feelings.get(place);

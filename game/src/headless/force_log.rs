@@ -97,7 +97,7 @@ impl ForceLog {
             feels.iter_mut().for_each(|feel| feel.tear(size));
         }
         let before = self.aims;
-        for (aim, hand) in self.aims.iter_mut().zip(hands) {
+        for (aim, hand) in self.aims.iter_mut().zip(&hands) {
             *aim = Some(aim_at(hand.goal(), round));
         }
         loop {

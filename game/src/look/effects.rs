@@ -4,7 +4,7 @@ use super::Camera;
 use super::confetti::Confetti;
 use super::feelings::{Fate, Feeling};
 use fuwafuwa::vector::{length, minus, plus, scaled};
-use fuwafuwa::{Body, Dim, Event, Vector, With};
+use fuwafuwa::{Body, Dim, Event, Rigid, Vector, With};
 use tamaire_play::{AnyRound, Round};
 
 /// Most particles at once.
@@ -134,17 +134,18 @@ impl Effects {
         for event in world.events() {
             match *event {
                 Event::Released { body, at, energy } => {
-                    torn[body as usize] = true;
+                    let rank = world.bodies().rank(body);
+                    torn[rank.expect("who tore is there")] = true;
                     camera.shake(0.002 + 0.002 * energy.clamp(0.0, 2.0));
                     if looked_up < LOOKED_UP {
                         looked_up += 1;
-                        material = material_at(&world.bodies()[body as usize], at);
+                        material = material_at(&world.bodies()[body], at);
                     }
                     let count = if still { 1 } else { DUST };
                     (0..count).for_each(|_| self.puff(at, material));
                 }
                 Event::Touched {
-                    with: With::Manipulator(_),
+                    with: With::Hand(_),
                     impulse,
                     ..
                 } => {
@@ -158,16 +159,17 @@ impl Effects {
         self.celebrate(round, still);
         let progress = round.progress();
         let is_in = progress.outcome.is_some() || progress.held > 0.2;
-        for (place, feeling) in self.feelings.iter_mut().enumerate() {
+        let bodies = self.feelings.iter_mut().zip(world.bodies()).zip(torn);
+        for ((feeling, body), torn) in bodies {
             let in_basket = |region: &fuwafuwa::Shape| region.distance(feeling.middle).0 < 0.0;
             let fate = Fate {
                 eye: (D::N == 3).then(|| camera.eye(self.room)),
                 tick: world.ticks(),
-                torn: torn[place],
+                torn,
                 pressed: self.pressure > HURTS,
                 home: is_in && round.basket().is_some_and(in_basket),
             };
-            feeling.see(&world.bodies()[place], fate);
+            feeling.see(body, fate);
         }
     }
 
@@ -203,7 +205,9 @@ impl Effects {
     }
 
     fn watch_hand<D: Dim>(&mut self, round: &Round<D>) {
-        let hand = round.world().manipulators()[0].position();
+        let Some(hand) = round.hands().next().map(Rigid::position) else {
+            return;
+        };
         let start = *self.start.get_or_insert(hand);
         self.has_moved |= length(minus(hand, start)) > MOVED;
     }
@@ -316,9 +320,9 @@ mod tests {
         let AnyRound::Plane(round) = round("twins") else {
             panic!("it is in the plane")
         };
-        let bodies = round.world().bodies();
+        let bodies: Vec<&Body<_>> = round.world().bodies().iter().collect();
         let middle = |body: &Body<_>| body.piece_views()[0].centre;
-        assert_eq!(material_at(&bodies[0], middle(&bodies[0])), 1);
-        assert_eq!(material_at(&bodies[1], middle(&bodies[1])), 2);
+        assert_eq!(material_at(bodies[0], middle(bodies[0])), 1);
+        assert_eq!(material_at(bodies[1], middle(bodies[1])), 2);
     }
 }

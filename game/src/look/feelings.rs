@@ -299,7 +299,7 @@ mod tests {
             u8::from(hole([voxel[0] as f32 + 0.5, voxel[1] as f32 + 0.5]))
         });
         let world = alone(grid.expect("a ring"));
-        let feeling = Feeling::of(&world.bodies()[0], None);
+        let feeling = Feeling::of(world.bodies().first().unwrap(), None);
         let away = [feeling.at[0] - 0.5, feeling.at[1] - 0.5];
         let radius = length(away);
         assert!((0.25..0.45).contains(&radius), "{feeling:?}");
@@ -312,22 +312,27 @@ mod tests {
     #[test]
     fn the_face_glides_to_what_is_left_and_dust_has_none() {
         let mut world = alone(VoxelGrid::ball(32, 1.0).expect("a ball"));
-        let mut feeling = Feeling::of(&world.bodies()[0], None);
+        let mut feeling = Feeling::of(world.bodies().first().unwrap(), None);
         let (before, size) = (feeling.at, feeling.size);
-        world.cut(0, &Blade::segment([0.375, -1.0], [0.375, 2.0]));
+        world
+            .cut(
+                world.nth_body(0).unwrap(),
+                &Blade::segment([0.375, -1.0], [0.375, 2.0]),
+            )
+            .unwrap();
         let fate = Fate {
             tick: LOOK,
             ..Fate::default()
         };
-        feeling.see(&world.bodies()[0], fate);
+        feeling.see(world.bodies().first().unwrap(), fate);
         let step = feeling.at[0] - before[0];
         assert!(step.abs() < 0.03, "no leap: {step}");
         for _ in 0..200 {
-            feeling.see(&world.bodies()[0], Fate::default());
+            feeling.see(world.bodies().first().unwrap(), Fate::default());
         }
         assert!(feeling.at[0] > before[0] + 0.05 && feeling.size < size);
         let dust = alone(VoxelGrid::ball(4, 0.05).expect("a crumb"));
-        assert_eq!(Feeling::of(&dust.bodies()[0], None).size, 0.0);
+        assert_eq!(Feeling::of(dust.bodies().first().unwrap(), None).size, 0.0);
     }
 
     #[test]
@@ -335,10 +340,10 @@ mod tests {
         let mut world = World::<Dim3>::new(Settings::default()).expect("usual");
         let grid = VoxelGrid::ball(12, 1.0).expect("a ball");
         world.add_body(Body::new(grid, &[Material::default()]).expect("usual"));
-        let mut feeling = Feeling::of(&world.bodies()[0], None);
+        let mut feeling = Feeling::of(world.bodies().first().unwrap(), None);
         assert!(feeling.axes[2][2] > 0.99, "{feeling:?}");
         // The body turns its back.
-        let body = world.body_mut(0);
+        let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
         let ids: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in ids {
             let [x, y, z] = body.node_state(id).0;
@@ -349,7 +354,7 @@ mod tests {
                 eye,
                 ..Fate::default()
             };
-            (0..ticks).for_each(|_| feeling.see(&world.bodies()[0], fate));
+            (0..ticks).for_each(|_| feeling.see(world.bodies().first().unwrap(), fate));
             feeling.axes
         };
         let [_, up, out] = see(None, 60);
@@ -361,7 +366,7 @@ mod tests {
     #[test]
     fn a_tear_shocks_once_and_then_hurts() {
         let world = alone(VoxelGrid::ball(16, 1.0).expect("a ball"));
-        let body = &world.bodies()[0];
+        let body = world.bodies().first().unwrap();
         let mut feeling = Feeling::of(body, None);
         let torn = Fate {
             tick: 1,

@@ -23,7 +23,7 @@ pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &Look) {
             0.5 + 0.5 * (5.0 * look.time).sin()
         };
         for obstacle in round.world().obstacles() {
-            shine(painter, view, obstacle.shape, 0.55 + 0.45 * breath);
+            shine(painter, view, *obstacle.shape(), 0.55 + 0.45 * breath);
         }
     }
     if let Some(&Shape::Box { centre, half }) = round.basket() {

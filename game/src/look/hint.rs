@@ -3,7 +3,7 @@
 
 use super::{Hint, Look, View};
 use egui::{Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
-use fuwafuwa::{Dim, Dim2, Dim3, Manipulator, Vector};
+use fuwafuwa::{Dim, Dim2, Dim3, Rigid, Vector};
 use tamaire_play::Round;
 
 /// How long it takes from the hand to the basket [s].
@@ -16,7 +16,13 @@ pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &Look) {
     };
     draw_ring(painter, hand, look);
     if look.hint == Hint::Way {
-        draw_way(painter, round, hand.position(), hand.radius, look);
+        draw_way(
+            painter,
+            round,
+            hand.position(),
+            hand.shape().inradius(),
+            look,
+        );
     }
 }
 
@@ -28,15 +34,15 @@ pub(super) fn draw_ring_of_space(painter: &Painter, round: &Round<Dim3>, look: &
 }
 
 /// The first hand, until it has moved.
-fn hand_to_show<'a, D: Dim>(round: &'a Round<D>, look: &Look) -> Option<&'a Manipulator> {
+fn hand_to_show<'a, D: Dim>(round: &'a Round<D>, look: &Look) -> Option<&'a Rigid> {
     let is_shown = look.hint != Hint::None && look.effects.hint != 0.0;
-    round.world().manipulators().first().filter(|_| is_shown)
+    round.hands().next().filter(|_| is_shown)
 }
 
 /// A ring that opens around the hand.
-fn draw_ring(painter: &Painter, hand: &Manipulator, look: &Look) {
+fn draw_ring(painter: &Painter, hand: &Rigid, look: &Look) {
     let at = look.view.on_screen(hand.position());
-    let radius = hand.radius * look.view.scale_at(hand.position());
+    let radius = hand.shape().inradius() * look.view.scale_at(hand.position());
     let tone = look.theme.hand(0).gamma_multiply(look.effects.hint);
     let wave = if look.still {
         0.4

@@ -229,8 +229,7 @@ fn faces<D: Dim>(round: &Round<D>, look: &Look) -> Vec<Face> {
     let face = |(number, feeling): (usize, &Feeling)| {
         // Blinks every four seconds or so, not all at once.
         let phase = (look.time + 1.3 * number as f32).rem_euclid(3.7);
-        let hands = round.world().manipulators().iter();
-        let hands = hands.map(|hand| hand.position());
+        let hands = round.hands().map(|hand| hand.position());
         let away = |hand: &Vector| length(minus(*hand, feeling.at));
         let nearest = hands.min_by(|a, b| away(a).total_cmp(&away(b)));
         let start = match look.still || feeling.mood == Mood::Calm {
@@ -260,10 +259,10 @@ fn draw_ghost(painter: &Painter, round: &Round<Dim2>, view: &View) {
             }
         }
     }
-    for hand in round.world().manipulators() {
+    for hand in round.hands() {
         painter.circle_stroke(
             view.on_screen(hand.position()),
-            view.scale * hand.radius,
+            view.scale * hand.shape().inradius(),
             stroke,
         );
     }

@@ -2,14 +2,14 @@
 
 use crate::stick::Other;
 use fuwafuwa::{
-    Body, Dim2, Drive, Elasticity, Manipulator, Material, Settings as WorldSettings, Shape,
+    Body, Dim2, Drive, Elasticity, Material, Rigid, RigidId, Settings as WorldSettings, Shape,
     VoxelGrid, World,
 };
 
 /// A soft disc between three walls, open to the left.
 pub struct Disc {
     pub world: World<Dim2>,
-    hand: usize,
+    hand: RigidId,
 }
 
 impl Disc {
@@ -40,10 +40,12 @@ impl Disc {
             ([0.0, -1.0, 0.0], [0.0, 1.0, 0.0]),
         ] {
             let wall = Shape::half_space(normal, at);
-            world.add_obstacle(wall, 0.5).expect("it is a shape");
+            world
+                .add_rigid(Rigid::fixed(wall, 0.5))
+                .expect("it is a shape");
         }
-        let hand = Manipulator::new([-0.3, 0.5, 0.0], 0.15).driven(Drive::default());
-        let hand = world.add_manipulator(hand).expect("it is a hand");
+        let hand = Rigid::hand([-0.3, 0.5, 0.0], 0.15).with_drive(Drive::default());
+        let hand = world.add_rigid(hand).expect("it is a hand");
         Self { world, hand }
     }
 }
@@ -51,9 +53,10 @@ impl Disc {
 impl Other for Disc {
     fn tick(&mut self, goal: [f32; 2]) -> ([f32; 2], [f32; 2]) {
         self.world
-            .set_goal(self.hand, [goal[0], 0.5 + goal[1], 0.0]);
+            .set_goal(self.hand, [goal[0], 0.5 + goal[1], 0.0])
+            .expect("it is a place");
         self.world.step();
-        let hand = &self.world.manipulators()[self.hand];
+        let hand = &self.world.rigids()[self.hand];
         let all = hand.reactions();
         let mean =
             |axis: usize| all.iter().map(|one| one.contact[axis]).sum::<f32>() / all.len() as f32;

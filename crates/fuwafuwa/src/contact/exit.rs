@@ -3,7 +3,7 @@
 use super::motion::Motion;
 use super::row::{PUSH_OUT_SPEED, inner};
 use super::sides::Grip;
-use crate::body::Body;
+use crate::body::Bodies;
 use crate::dim::Dim;
 use crate::solve::Row;
 use crate::touch::{Captive, Spheres};
@@ -23,7 +23,7 @@ impl Exit {
     /// The way of a captive to the place in front of its exit; nothing when neither can move.
     pub fn new<D: Dim>(
         captive: &Captive,
-        bodies: &[Body<D>],
+        bodies: &Bodies<D>,
         spheres: &Spheres,
         motion: &mut Motion,
         duration: f32,
@@ -31,7 +31,7 @@ impl Exit {
         let [a, b] = [captive.sphere, captive.exit].map(|place| place as usize);
         let both = [&spheres.list[a], &spheres.list[b]];
         let length = |way: Row| inner::<D>(way, way).sqrt().max(1e-9);
-        let out = both[1].outward::<D>(&bodies[both[1].body as usize].position);
+        let out = both[1].outward::<D>(&bodies.at(both[1].body).position);
         let ahead = (both[0].radius + both[1].radius) / length(out);
         let goal = plus(spheres.centres[b], scaled(out, ahead));
         let way = minus(goal, spheres.centres[a]);

@@ -1,12 +1,12 @@
 //! The velocities that contacts push on, side by side.
 
-use super::sides::{Grip, NodeContact, push_hand};
-use crate::body::Body;
+use super::sides::{Grip, NodeContact};
+use crate::body::Bodies;
 use crate::dim::Dim;
-use crate::manipulator::Manipulator;
+use crate::rigid::Rigids;
 use crate::solve::Row;
 use crate::touch::{ContactSphere, mean};
-use crate::vector::{as_row, minus, plus, scaled};
+use crate::vector::{as_row, minus, plus, scaled, three};
 
 /// Nodes whose velocities are copied together: more copies more in vain, less asks more often.
 const STRETCH: usize = 16;
@@ -25,12 +25,13 @@ pub struct Motion {
 
 impl Motion {
     /// Nothing is touched yet.
-    pub fn clear<D: Dim>(&mut self, bodies: &[Body<D>]) {
+    pub fn clear<D: Dim>(&mut self, bodies: &Bodies<D>) {
         self.first.clear();
         let mut count = 0;
-        for body in bodies {
+        for body in bodies.places() {
             self.first.push(count as u32);
-            count += body.velocity.len().next_multiple_of(STRETCH);
+            let nodes = body.map_or(0, |body| body.velocity.len());
+            count += nodes.next_multiple_of(STRETCH);
         }
         self.rows.resize(count, [0.0; 4]);
         self.is_touched.clear();
@@ -57,8 +58,9 @@ impl Motion {
     }
 
     /// Takes the velocities from the bodies.
-    pub fn load<D: Dim>(&mut self, bodies: &[Body<D>]) {
-        for (body, &first) in bodies.iter().zip(&self.first) {
+    pub fn load<D: Dim>(&mut self, bodies: &Bodies<D>) {
+        for (place, body) in bodies.placed() {
+            let first = self.first[place as usize];
             let nodes = body.velocity.chunks(STRETCH);
             let nodes = nodes.zip(body.inverse_mass.chunks(STRETCH));
             let own = self.rows[first as usize..].chunks_mut(STRETCH).zip(nodes);
@@ -74,8 +76,9 @@ impl Motion {
     }
 
     /// Gives them back.
-    pub fn store<D: Dim>(&self, bodies: &mut [Body<D>]) {
-        for (body, &first) in bodies.iter_mut().zip(&self.first) {
+    pub fn store<D: Dim>(&self, bodies: &mut Bodies<D>) {
+        for (place, body) in bodies.placed_mut() {
+            let first = self.first[place as usize];
             let rows = self.rows[first as usize..].chunks(STRETCH);
             let own = rows.zip(body.velocity.chunks_mut(STRETCH));
             let touched = &self.is_touched[first as usize / STRETCH..];
@@ -108,11 +111,11 @@ impl Motion {
 
     /// How fast a node moves as seen from what it touches.
     #[inline(always)]
-    pub fn of_node(&self, row: &NodeContact, hands: &[Manipulator]) -> Row {
+    pub fn of_node(&self, row: &NodeContact, rigids: &Rigids) -> Row {
         let own = self.rows[row.node as usize];
         let other = row
             .hand
-            .map_or([0.0; 4], |hand| as_row(hands[hand as usize].velocity));
+            .map_or([0.0; 4], |hand| as_row(rigids.at(hand).velocity()));
         with_fourth(minus(own, other), 0.0)
     }
 
@@ -121,14 +124,15 @@ impl Motion {
     pub fn push_node(
         &mut self,
         row: &NodeContact,
-        hands: &mut [Manipulator],
+        rigids: &mut Rigids,
         impulse: Row,
         duration: f32,
     ) {
         let own = &mut self.rows[row.node as usize];
         *own = plus(*own, scaled(impulse, own[3]));
         if let Some(hand) = row.hand {
-            push_hand(&mut hands[hand as usize], scaled(impulse, -1.0), duration);
+            let hand = rigids.at_mut(hand);
+            hand.push(three(scaled(impulse, -1.0)), duration);
         }
     }
 }

@@ -9,7 +9,7 @@ use super::bins::Bins;
 use super::pair::SpherePair;
 use super::sphere::ContactSphere;
 use super::spheres::Spheres;
-use crate::body::Body;
+use crate::body::{Bodies, Body};
 use crate::dim::Dim;
 use crate::lanes::on_widest_lanes;
 use crate::shape::Vector;
@@ -40,14 +40,14 @@ pub struct Captives {
 
 impl Captives {
     /// Finds out who is inside a piece that is larger than its own.
-    pub fn find<D: Dim>(&mut self, spheres: &Spheres, pairs: &[SpherePair], bodies: &[Body<D>]) {
+    pub fn find<D: Dim>(&mut self, spheres: &Spheres, pairs: &[SpherePair], bodies: &Bodies<D>) {
         self.list.clear();
         self.captors.clear();
         self.captors.resize(spheres.list.len(), None);
         if spheres.awake.is_empty() {
             return;
         }
-        let mut pieces: Vec<Vec<Extent>> = bodies.iter().map(extents).collect();
+        let mut pieces: Vec<Vec<Extent>> = bodies.places().map(extents).collect();
         let largest = { pieces.iter().flatten() }.map(|piece| piece.count).max();
         let own = |pieces: &[Vec<Extent>], place: u32| {
             let sphere = &spheres.list[place as usize];
@@ -72,7 +72,7 @@ impl Captives {
                 let place = pair.spheres[inner];
                 let captor = (outer.body, outer.piece);
                 let is_smaller = own(&pieces, place) < own(&pieces, pair.spheres[1 - inner]);
-                let body = &bodies[outer.body as usize];
+                let body = bodies.at(outer.body);
                 if is_smaller && body.holds(outer.element, three(at)) {
                     self.captors[place as usize] = Some(captor);
                 }
@@ -110,7 +110,7 @@ impl Captives {
                 for &at in &inside {
                     let number = bins.numbers()[at as usize] as usize;
                     let (place, at) = (near[number], three(centres[number]));
-                    let body = &bodies[inner.captor.0 as usize];
+                    let body = bodies.at(inner.captor.0);
                     if own(&pieces, place) < inner.count && body.holds(inner.element, at) {
                         self.captors[place as usize] = Some(inner.captor);
                     }
@@ -162,7 +162,7 @@ struct Exits {
 }
 
 impl Exits {
-    fn of<D: Dim>((body, piece): (u32, u32), spheres: &Spheres, bodies: &[Body<D>]) -> Self {
+    fn of<D: Dim>((body, piece): (u32, u32), spheres: &Spheres, bodies: &Bodies<D>) -> Self {
         let all = spheres.list.iter().zip(0..);
         let exits = all.filter(|(sphere, _)| {
             (sphere.body, sphere.piece) == (body, piece) && sphere.leads_out()
@@ -170,7 +170,7 @@ impl Exits {
         let exits: Vec<u32> = exits.map(|(_, place)| place).collect();
         let centres = exits.iter().map(|&place| spheres.centres[place as usize]);
         let centres: Vec<Row> = centres.collect();
-        let reach = EXIT_REACH * bodies[body as usize].grid.voxel_size();
+        let reach = EXIT_REACH * bodies.at(body).grid.voxel_size();
         Self {
             bins: Bins::new::<D>(&centres, reach),
             places: exits,
@@ -210,13 +210,13 @@ struct Inner {
 }
 
 /// The elements without a bare face of the pieces that count as having any, by level.
-fn inner_elements<D: Dim>(bodies: &[Body<D>], pieces: &[Vec<Extent>]) -> Vec<Inner> {
+fn inner_elements<D: Dim>(bodies: &Bodies<D>, pieces: &[Vec<Extent>]) -> Vec<Inner> {
     let mut found = Vec::new();
-    for (place, body) in bodies.iter().enumerate() {
+    for (place, body) in bodies.placed() {
         for (id, element) in body.mesh.elements() {
             let level = element.cell.level;
             let piece = body.pieces.of_element(id);
-            let extent = &pieces[place][piece as usize];
+            let extent = &pieces[place as usize][piece as usize];
             if !extent.has_inner || level == 0 && body.bare[id as usize] != 0 {
                 continue;
             }
@@ -228,7 +228,7 @@ fn inner_elements<D: Dim>(bodies: &[Body<D>], pieces: &[Vec<Extent>]) -> Vec<Inn
             found.push(Inner {
                 level,
                 element: id,
-                captor: (place as u32, piece),
+                captor: (place, piece),
                 count: extent.count,
                 centre,
                 radius: furthest.fold(0.0, f32::max).sqrt(),
@@ -258,7 +258,10 @@ impl Extent {
 }
 
 /// The pieces of a body, by number, without their boxes.
-fn extents<D: Dim>(body: &Body<D>) -> Vec<Extent> {
+fn extents<D: Dim>(body: Option<&Body<D>>) -> Vec<Extent> {
+    let Some(body) = body else {
+        return Vec::new();
+    };
     let none = Extent {
         count: 0,
         has_inner: false,

@@ -3,7 +3,7 @@
 
 use super::sphere::NEAR;
 use super::spheres::Spheres;
-use crate::body::Body;
+use crate::body::Bodies;
 use crate::dim::Dim;
 use crate::lanes::LANES;
 use fearless_simd::{prelude::*, u16x8, u32x8};
@@ -28,12 +28,12 @@ pub struct PieceSite {
 
 impl Neighbours {
     /// Those of the spheres at these places, in their order.
-    pub fn of<D: Dim>(places: &[u32], spheres: &Spheres, bodies: &[Body<D>]) -> Self {
+    pub fn of<D: Dim>(places: &[u32], spheres: &Spheres, bodies: &Bodies<D>) -> Self {
         let mut neighbours = Self::default();
         let mut count = 0;
-        for body in bodies {
+        for body in bodies.places() {
             neighbours.first.push(count);
-            count += body.pieces.list.len() as u32;
+            count += body.map_or(0, |body| body.pieces.list.len()) as u32;
         }
         // Eight can be read from the last on.
         neighbours.pieces.resize(places.len() + LANES, u32::MAX);

@@ -2,11 +2,11 @@
 //! through.
 
 use super::bins::Bins;
-use super::collider::Collider;
 use super::impulse::Impulse;
 use super::pair::MARGIN;
-use crate::body::Body;
+use crate::body::{Bodies, Body};
 use crate::dim::Dim;
+use crate::rigid::{Rigid, Rigids};
 use crate::shape::Shape;
 use crate::solve::Row;
 use crate::vector::{dot, length, minus, plus, scaled, three};
@@ -25,8 +25,8 @@ const SQUARE: f32 = 4.0;
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NodePair {
-    /// Place among the colliders.
-    pub collider: u32,
+    /// Place among what is rigid.
+    pub rigid: u32,
     /// Place among the bodies.
     pub body: u32,
     /// Node id.
@@ -43,7 +43,7 @@ pub struct NodePair {
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NodePairs {
-    /// By collider, body and node, asleep or not.
+    /// By rigid thing, body and node, asleep or not.
     pub list: Vec<NodePair>,
     /// How far the fastest nodes have come since all were looked for [m].
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -57,7 +57,7 @@ pub struct NodePairs {
     spare: f32,
     #[cfg_attr(feature = "serde", serde(skip))]
     least_slack: f32,
-    /// How far each collider may come from where it was, and how far it has come [m]; nothing while all
+    /// How far each rigid thing may come from where it was, and how far it has come [m]; nothing while all
     /// must be looked for.
     #[cfg_attr(feature = "serde", serde(skip))]
     leeways: Vec<Leeway>,
@@ -66,7 +66,7 @@ pub struct NodePairs {
     changed: Vec<(u32, u32)>,
 }
 
-/// How far a collider may come, and how far it has come [m].
+/// How far something rigid may come, and how far it has come [m].
 #[derive(Copy, Clone, Debug)]
 struct Leeway {
     most: f32,
@@ -89,8 +89,8 @@ impl NodePairs {
     }
 
     /// Pieces woke, given by body and number in ascending order: they meet walls again.
-    pub fn wake<D: Dim>(&mut self, pieces: &[(u32, u32)], bodies: &[Body<D>]) {
-        for (body, place) in bodies.iter().zip(0..) {
+    pub fn wake<D: Dim>(&mut self, pieces: &[(u32, u32)], bodies: &Bodies<D>) {
+        for (place, body) in bodies.placed() {
             if pieces.iter().all(|&(body, _)| body != place) {
                 continue;
             }
@@ -114,21 +114,21 @@ impl NodePairs {
     /// come.
     pub fn follow<D: Dim>(
         &mut self,
-        bodies: &[Body<D>],
-        colliders: &[Collider],
+        bodies: &Bodies<D>,
+        rigids: &Rigids,
         duration: f32,
         left: f32,
     ) {
-        if colliders.is_empty() {
+        if rigids.is_empty() {
             self.list.clear();
             return;
         }
-        for (leeway, collider) in self.leeways.iter_mut().zip(colliders) {
-            leeway.come += length(collider.velocity) * duration;
+        for (leeway, rigid) in self.leeways.iter_mut().zip(rigids.iter()) {
+            leeway.come += length(rigid.velocity()) * duration;
         }
         let outrun = self.leeways.iter().any(|leeway| leeway.come > leeway.most);
-        if outrun || self.leeways.len() != colliders.len() {
-            self.find_all(bodies, colliders, left);
+        if outrun || self.leeways.is_empty() {
+            self.find_all(bodies, rigids, left);
             return;
         }
         if self.spare <= 0.0 {
@@ -144,15 +144,15 @@ impl NodePairs {
         for &(place, node) in &changed {
             self.anchor(place, node, bodies, left);
         }
-        for (index, (collider, leeway)) in colliders.iter().zip(&self.leeways).enumerate() {
+        for ((index, rigid), leeway) in rigids.placed().zip(&self.leeways) {
             let is_near = |&&(place, node): &&(u32, u32)| {
-                let body = &bodies[place as usize];
+                let body = bodies.at(place);
                 let reach = self.reach(place, node, body.grid.voxel_size());
                 let at = three(body.position[node as usize]);
-                body.mesh.is_alive(node) && collider.shape.distance(at).0 <= reach + leeway.most
+                body.mesh.is_alive(node) && rigid.shape().distance(at).0 <= reach + leeway.most
             };
             let near = changed.iter().filter(is_near);
-            found.extend(near.map(|&(body, node)| (index as u32, body, node)));
+            found.extend(near.map(|&(body, node)| (index, body, node)));
         }
         self.merge(&found, |pair| {
             let is_changed = changed.binary_search(&(pair.body, pair.node)).is_ok();
@@ -161,53 +161,52 @@ impl NodePairs {
         self.spare = self.spare.min(self.least_slack);
     }
 
-    /// Looks for all nodes that may come to a collider in what is `left` of the tick [s]. Those that
+    /// Looks for all nodes that may come to something rigid in what is `left` of the tick [s]. Those that
     /// sleep meet hands only.
-    fn find_all<D: Dim>(&mut self, bodies: &[Body<D>], colliders: &[Collider], left: f32) {
+    fn find_all<D: Dim>(&mut self, bodies: &Bodies<D>, rigids: &Rigids, left: f32) {
         self.changed.clear();
         self.travel = 0.0;
         let sizes = bodies.iter().map(|body| body.grid.voxel_size());
         self.least_slack = SLACK * sizes.clone().fold(f32::MAX, f32::min);
         self.spare = self.least_slack;
         let size = sizes.fold(0.0, f32::max);
-        let leeway = |collider: &Collider| {
-            let slack = if collider.is_hand {
+        let leeway = |rigid: &Rigid| {
+            let slack = if rigid.is_driven() {
                 HAND_SLACK * size
             } else {
                 0.0
             };
-            let most = slack + length(collider.velocity) * left;
+            let most = slack + length(rigid.velocity()) * left;
             Leeway { most, come: 0.0 }
         };
         self.leeways.clear();
-        self.leeways.extend(colliders.iter().map(leeway));
-        self.anchors.resize(bodies.len(), Vec::new());
+        self.leeways.extend(rigids.iter().map(leeway));
+        self.anchors.resize(bodies.place_count(), Vec::new());
         let mut squares = Vec::new();
-        for (body, place) in bodies.iter().zip(0..) {
+        for (place, body) in bodies.placed() {
             for &node in &body.awake {
                 self.anchor(place, node, bodies, left);
             }
-            squares.push(Squares::of(body, |node| {
-                self.reach(place, node, body.grid.voxel_size())
-            }));
+            let reach = |node| self.reach(place, node, body.grid.voxel_size());
+            squares.push((place, body, Squares::of(body, reach)));
         }
         let mut found = Vec::new();
         let mut near: Vec<u32> = Vec::new();
-        for (index, (collider, leeway)) in colliders.iter().zip(&self.leeways).enumerate() {
-            for (place, (squares, body)) in squares.iter().zip(bodies).enumerate() {
+        for ((index, rigid), leeway) in rigids.placed().zip(&self.leeways) {
+            for (place, body, squares) in &squares {
                 near.clear();
-                squares.within(leeway.most, &collider.shape, &mut near);
-                if collider.is_hand && body.awake.len() < body.mesh.node_count() {
+                squares.within(leeway.most, rigid.shape(), &mut near);
+                if rigid.is_driven() && body.awake.len() < body.mesh.node_count() {
                     let reach = leeway.most + MARGIN * body.grid.voxel_size();
                     let is_near = |&node: &u32| {
                         let at = three(body.position[node as usize]);
-                        body.pieces.sleeps(node) && collider.shape.distance(at).0 <= reach
+                        body.pieces.sleeps(node) && rigid.shape().distance(at).0 <= reach
                     };
                     near.extend(body.mesh.nodes().map(|(node, _)| node).filter(is_near));
                 }
                 // What is near comes square by square.
                 near.sort_unstable();
-                found.extend(near.iter().map(|&node| (index as u32, place as u32, node)));
+                found.extend(near.iter().map(|&node| (index, *place, node)));
             }
         }
         self.merge(&found, |pair| pair.has_touched(bodies));
@@ -215,9 +214,12 @@ impl NodePairs {
 
     /// Adds the nodes that came further than they might to the changed ones; notes what the others have
     /// to spare.
-    fn find_strayed<D: Dim>(&mut self, bodies: &[Body<D>]) {
+    fn find_strayed<D: Dim>(&mut self, bodies: &Bodies<D>) {
         let mut spare = f32::INFINITY;
-        for ((body, place), anchors) in bodies.iter().zip(0..).zip(&self.anchors) {
+        for (place, body) in bodies.placed() {
+            let Some(anchors) = self.anchors.get(place as usize) else {
+                continue;
+            };
             for &node in &body.awake {
                 let Some(&[x, y, z, most]) = anchors.get(node as usize) else {
                     continue;
@@ -236,8 +238,8 @@ impl NodePairs {
     }
 
     /// Notes where a node is, and how far it may come until the end of the tick.
-    fn anchor<D: Dim>(&mut self, place: u32, node: u32, bodies: &[Body<D>], left: f32) {
-        let (body, node) = (&bodies[place as usize], node as usize);
+    fn anchor<D: Dim>(&mut self, place: u32, node: u32, bodies: &Bodies<D>, left: f32) {
+        let (body, node) = (bodies.at(place), node as usize);
         let anchors = &mut self.anchors[place as usize];
         anchors.resize(body.position.len(), [0.0; 4]);
         let [x, y, z, _] = body.position[node];
@@ -262,9 +264,9 @@ impl NodePairs {
                 }
             }
             let known = old.next_if(|pair| pair.key() == key);
-            let (collider, body, node) = key;
+            let (rigid, body, node) = key;
             self.list.push(NodePair {
-                collider,
+                rigid,
                 body,
                 node,
                 impulse: known.map_or(Impulse::default(), |pair| pair.impulse),
@@ -275,22 +277,22 @@ impl NodePairs {
     }
 }
 
-/// What a pair is known by, and sorted by: collider, body and node.
+/// What a pair is known by, and sorted by: rigid thing, body and node.
 type Key = (u32, u32, u32);
 
 impl NodePair {
     fn key(&self) -> Key {
-        (self.collider, self.body, self.node)
+        (self.rigid, self.body, self.node)
     }
 
     /// Whether they touched in this tick, which is to be told when they are far apart too.
-    fn has_touched<D: Dim>(&self, bodies: &[Body<D>]) -> bool {
-        self.impulse.total > 0.0 && bodies[self.body as usize].mesh.is_alive(self.node)
+    fn has_touched<D: Dim>(&self, bodies: &Bodies<D>) -> bool {
+        self.impulse.total > 0.0 && bodies.at(self.body).mesh.is_alive(self.node)
     }
 
     /// The number of the piece; nothing when another body stands here since.
-    pub fn piece<D: Dim>(&self, bodies: &[Body<D>]) -> Option<u32> {
-        let body = bodies.get(self.body as usize)?;
+    pub fn piece<D: Dim>(&self, bodies: &Bodies<D>) -> Option<u32> {
+        let body = bodies.find(self.body)?;
         let is_known = (self.node as usize) < body.mesh.node_capacity();
         is_known.then(|| body.pieces.of_node(self.node))
     }
@@ -377,34 +379,33 @@ mod tests {
     /// A body is torn at random between two walls; the list against all nodes there are.
     fn check<D: Dim>(n: usize) {
         let grid = VoxelGrid::<D>::ball(n, 1.0).expect("a ball is not empty");
-        let mut body = Body::new(grid, &[Material::default()]).expect("the material is good");
+        let body = Body::new(grid, &[Material::default()]).expect("the material is good");
         let size = body.grid.voxel_size();
-        let wall = |normal, offset| Collider {
-            shape: Shape::HalfSpace { normal, offset },
-            velocity: [0.0; 4],
-            inverse_mass: 0.0,
-            friction: 0.0,
-            is_hand: false,
-        };
-        let walls = [wall([0.0, 1.0, 0.0], 0.3), wall([-1.0, 0.0, 0.0], -0.8)];
+        let mut bodies = Bodies::default();
+        bodies.insert(body);
+        let wall = |normal, offset| Rigid::fixed(Shape::HalfSpace { normal, offset }, 0.0);
+        let mut walls = Rigids::default();
+        walls.insert(wall([0.0, 1.0, 0.0], 0.3));
+        walls.insert(wall([-1.0, 0.0, 0.0], -0.8));
         let mut seed = 5u32;
         let mut random = |below: usize| {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             (seed >> 8) as usize % below
         };
         let mut pairs = NodePairs::default();
-        body.refresh_awake();
+        bodies.at_mut(0).refresh_awake();
         let (mut gone, mut new) = (0, 0);
         for _ in 0..60 {
-            pairs.follow(std::slice::from_ref(&body), &walls, 0.001, 0.016);
+            pairs.follow(&bodies, &walls, 0.001, 0.016);
+            let body = bodies.at_mut(0);
             let listed: BTreeSet<Key> = pairs.list.iter().map(NodePair::key).collect();
             assert_eq!(listed.len(), pairs.list.len());
             assert!(pairs.list.is_sorted_by_key(NodePair::key));
             assert!(listed.iter().all(|&(.., node)| body.mesh.is_alive(node)));
             for (node, _) in body.mesh.nodes() {
                 let at = three(body.position[node as usize]);
-                for (wall, index) in walls.iter().zip(0..) {
-                    let is_close = wall.shape.distance(at).0 <= MARGIN * size;
+                for (index, wall) in walls.placed() {
+                    let is_close = wall.shape().distance(at).0 <= MARGIN * size;
                     assert!(!is_close || listed.contains(&(index, 0, node)));
                 }
             }

@@ -16,7 +16,7 @@ use super::neighbours::Neighbours;
 use super::pair::{SpherePair, merge};
 use super::path::{Path, STRAY, Span, Traveller, widened};
 use super::spheres::{NONE, Spheres};
-use crate::body::Body;
+use crate::body::Bodies;
 use crate::dim::Dim;
 use crate::lanes::on_widest_lanes;
 use crate::solve::Row;
@@ -112,7 +112,7 @@ impl SpherePairs {
 
     /// Follows the spheres, and brings the list up to date. Returns whether it changed, or is that of a new
     /// tick.
-    pub fn follow<D: Dim>(&mut self, spheres: &mut Spheres, bodies: &[Body<D>]) -> bool {
+    pub fn follow<D: Dim>(&mut self, spheres: &mut Spheres, bodies: &Bodies<D>) -> bool {
         let is_new_tick = std::mem::take(&mut self.is_new_tick);
         if spheres.awake.is_empty() {
             self.list.clear();
@@ -165,7 +165,7 @@ impl SpherePairs {
     }
 
     /// Lays the path of a sphere anew from where it is.
-    fn lay<D: Dim>(&mut self, place: u32, spheres: &Spheres, bodies: &[Body<D>]) {
+    fn lay<D: Dim>(&mut self, place: u32, spheres: &Spheres, bodies: &Bodies<D>) {
         let mut velocity = [0.0; 4];
         if !spheres.list[place as usize].asleep {
             velocity = spheres.velocity(place, bodies);
@@ -190,7 +190,7 @@ impl SpherePairs {
     }
 
     /// Looks for all pairs.
-    fn find_all<D: Dim>(&mut self, spheres: &Spheres, bodies: &[Body<D>]) {
+    fn find_all<D: Dim>(&mut self, spheres: &Spheres, bodies: &Bodies<D>) {
         let count = spheres.list.len();
         self.changed.clear();
         (self.elapsed, self.pace) = (0.0, 0.0);
@@ -351,7 +351,7 @@ impl SpherePairs {
     }
 
     /// Looks again for the pairs of some, given in ascending order; those of the others stay.
-    fn find_again<D: Dim>(&mut self, changed: &[u32], spheres: &Spheres, bodies: &[Body<D>]) {
+    fn find_again<D: Dim>(&mut self, changed: &[u32], spheres: &Spheres, bodies: &Bodies<D>) {
         let count = spheres.list.len();
         self.paths.resize(count, Path::default());
         self.loose_at.resize(count, NONE);

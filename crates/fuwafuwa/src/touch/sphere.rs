@@ -1,6 +1,6 @@
 //! The ball that stands for a surface element where bodies touch each other.
 
-use crate::body::Body;
+use crate::body::{Bodies, Body};
 use crate::dim::{Dim, Point};
 use crate::solve::Row;
 use crate::vector::{plus, scaled};
@@ -120,8 +120,8 @@ impl ContactSphere {
 
     /// One over the mass that a push on it meets [1/kg].
     #[inline]
-    pub fn inverse_mass<D: Dim>(&self, bodies: &[Body<D>]) -> f32 {
-        let all = &bodies[self.body as usize].inverse_mass;
+    pub fn inverse_mass<D: Dim>(&self, bodies: &Bodies<D>) -> f32 {
+        let all = &bodies.at(self.body).inverse_mass;
         let nodes = self.nodes[..D::CORNERS].iter();
         let sum: f32 = nodes.map(|&node| all[node as usize]).sum();
         sum / (D::CORNERS * D::CORNERS) as f32

@@ -2,7 +2,7 @@
 //! moves none; followed while they move.
 
 use super::sphere::{ContactSphere, NEAR};
-use crate::body::Body;
+use crate::body::{Bodies, Body};
 use crate::dim::Dim;
 use crate::release::Torn;
 use crate::solve::Row;
@@ -54,11 +54,19 @@ impl Spheres {
         self.is_listed = false;
     }
 
+    /// A body was taken out: who comes to its place is somebody else.
+    pub fn remove_body(&mut self, place: u32) {
+        for key in self.keys.iter_mut().filter(|(body, _)| *body == place) {
+            *key = (NONE, NONE);
+        }
+        self.forget();
+    }
+
     /// A tick begins: lists the spheres anew, where bodies may be anything, and returns then the place that
     /// each of those before has now, or [`NONE`]; else adds those that fell asleep to `changed`.
     pub fn start_tick<D: Dim>(
         &mut self,
-        bodies: &[Body<D>],
+        bodies: &Bodies<D>,
         changed: &mut Vec<u32>,
     ) -> Option<Vec<u32>> {
         let places = (!self.is_listed).then(|| self.list_anew(bodies));
@@ -68,7 +76,7 @@ impl Spheres {
         }
         let all = self.list.iter_mut().zip(&mut self.centres).zip(0..);
         for ((sphere, centre), place) in all {
-            let body = &bodies[sphere.body as usize];
+            let body = bodies.at(sphere.body);
             let was_asleep = sphere.asleep;
             sphere.asleep = body.pieces.list[sphere.piece as usize].asleep;
             // Nobody looks after sleepers: this is where they stay.
@@ -92,20 +100,21 @@ impl Spheres {
     }
 
     /// Lists those known before that are there still, in their order, then the others by body and element.
-    fn list_anew<D: Dim>(&mut self, bodies: &[Body<D>]) -> Vec<u32> {
+    fn list_anew<D: Dim>(&mut self, bodies: &Bodies<D>) -> Vec<u32> {
         let known = std::mem::take(&mut self.keys);
         self.list.clear();
-        let none = |body: &Body<D>| {
-            let voxels = body.grid.size().map(|extent| extent as usize);
+        let none = |body: Option<&Body<D>>| {
+            let size = body.map_or([0; 3], |body| body.grid.size());
+            let voxels = size.map(|extent| extent as usize);
             vec![NONE; voxels.iter().product()]
         };
-        self.by_voxel = bodies.iter().map(none).collect();
-        let all = bodies.iter().zip(0..).flat_map(|(body, place)| {
+        self.by_voxel = bodies.places().map(none).collect();
+        let all = bodies.placed().flat_map(|(place, body)| {
             let ids = body.mesh.elements().map(|(id, _)| id);
             ids.map(move |id| (place, id))
         });
         for (place, id) in known.iter().copied().chain(all) {
-            let body = bodies.get(place as usize);
+            let body = bodies.find(place);
             let sphere = body.and_then(|body| ContactSphere::of(place, body, id));
             let Some((sphere, body)) = sphere.zip(body) else {
                 continue;
@@ -118,7 +127,7 @@ impl Spheres {
         }
         self.keys.extend(self.list.iter().map(ContactSphere::key));
         let centre = |sphere: &ContactSphere| {
-            let body = &bodies[sphere.body as usize];
+            let body = bodies.at(sphere.body);
             sphere.mean::<D>(&body.position)
         };
         self.centres.clear();
@@ -126,11 +135,11 @@ impl Spheres {
         self.make_room();
         self.lips.clear();
         for place in 0..self.list.len() as u32 {
-            let body = &bodies[self.list[place as usize].body as usize];
+            let body = bodies.at(self.list[place as usize].body);
             self.find_lips(place, body, |other| other > place);
         }
         let place = |&(body, id): &(u32, u32)| {
-            let (at, by_voxel) = (bodies.get(body as usize)?, &self.by_voxel[body as usize]);
+            let (at, by_voxel) = (bodies.find(body)?, &self.by_voxel[body as usize]);
             Some(by_voxel[at.grid.index(ContactSphere::of(body, at, id)?.voxel())])
         };
         let places = known.iter().map(|key| place(key).unwrap_or(NONE));
@@ -247,30 +256,30 @@ impl Spheres {
     }
 
     /// Moves all that are awake along with the bodies.
-    pub fn move_all<D: Dim>(&mut self, bodies: &[Body<D>]) {
+    pub fn move_all<D: Dim>(&mut self, bodies: &Bodies<D>) {
         for at in 0..self.awake.len() {
             self.follow::<D>(self.awake[at], bodies);
         }
     }
 
     /// Moves those that contact may ask for along with the bodies.
-    pub fn move_close<D: Dim>(&mut self, bodies: &[Body<D>]) {
+    pub fn move_close<D: Dim>(&mut self, bodies: &Bodies<D>) {
         for at in 0..self.close.len() {
             self.follow::<D>(self.close[at], bodies);
         }
     }
 
     /// Takes the velocities of those that contact may ask for from the bodies.
-    pub fn take_velocities<D: Dim>(&mut self, bodies: &[Body<D>]) {
+    pub fn take_velocities<D: Dim>(&mut self, bodies: &Bodies<D>) {
         for &place in &self.close {
             self.velocities[place as usize] = self.velocity(place, bodies);
         }
     }
 
     /// How fast one moves [m/s].
-    pub fn velocity<D: Dim>(&self, place: u32, bodies: &[Body<D>]) -> Row {
+    pub fn velocity<D: Dim>(&self, place: u32, bodies: &Bodies<D>) -> Row {
         let sphere = &self.list[place as usize];
-        sphere.mean::<D>(&bodies[sphere.body as usize].velocity)
+        sphere.mean::<D>(&bodies.at(sphere.body).velocity)
     }
 
     /// Whether their body itself holds two at their distance.
@@ -279,10 +288,10 @@ impl Spheres {
         a.is_held_to(&b)
     }
 
-    fn follow<D: Dim>(&mut self, place: u32, bodies: &[Body<D>]) {
+    fn follow<D: Dim>(&mut self, place: u32, bodies: &Bodies<D>) {
         let place = place as usize;
         let sphere = &self.list[place];
-        let centre = sphere.mean::<D>(&bodies[sphere.body as usize].position);
+        let centre = sphere.mean::<D>(&bodies.at(sphere.body).position);
         if self.is_close[place] {
             let moved = minus(centre, self.centres[place]);
             self.moved[place] = dot(moved, moved);

@@ -9,7 +9,7 @@ fn a_body_in_the_place_of_another_may_have_fewer_nodes_and_pieces() {
     dust.crumble().unwrap();
     world.add_body(dust);
     step(&mut world, 20);
-    *world.body_mut(0) = ball(8);
+    *world.body_mut(world.nth_body(0).unwrap()).unwrap() = ball(8);
     step(&mut world, 5);
     assert_finite(&world);
 }
@@ -25,7 +25,7 @@ fn sleeper() -> World<Dim2> {
     world.add_body(Body::new(grid, &[damped]).unwrap());
     for _ in 0..900 {
         world.step();
-        if world.bodies()[0].piece_views()[0].asleep {
+        if world.bodies().first().unwrap().piece_views()[0].asleep {
             return world;
         }
     }
@@ -35,18 +35,23 @@ fn sleeper() -> World<Dim2> {
 #[test]
 fn a_sleeper_changed_from_outside_wakes() {
     let mut thrown = sleeper();
-    let body = thrown.body_mut(0);
+    let body = thrown.body_mut(thrown.nth_body(0).unwrap()).unwrap();
     *body = body.clone().thrown([0.0, 5.0, 0.0]);
-    let woke = |event: &Event| matches!(event, Event::Woke { body: 0, piece: 0 });
+    let id = thrown.nth_body(0).unwrap();
+    let woke = |event: &Event| matches!(event, Event::Woke { body, piece: 0 } if *body == id);
     assert!(thrown.events().iter().any(woke));
     step(&mut thrown, 10);
-    assert!(thrown.bodies()[0].piece_views()[0].low[1] > 0.3);
+    assert!(thrown.bodies().first().unwrap().piece_views()[0].low[1] > 0.3);
 
     let mut crumbled = sleeper();
-    crumbled.body_mut(0).crumble().unwrap();
-    let before = crumbled.bodies()[0].piece_views();
+    crumbled
+        .body_mut(crumbled.nth_body(0).unwrap())
+        .unwrap()
+        .crumble()
+        .unwrap();
+    let before = crumbled.bodies().first().unwrap().piece_views();
     step(&mut crumbled, 10);
-    let after = crumbled.bodies()[0].piece_views();
+    let after = crumbled.bodies().first().unwrap().piece_views();
     let frozen = before
         .iter()
         .zip(&after)
@@ -60,20 +65,24 @@ fn a_sleeper_changed_from_outside_wakes() {
 #[test]
 fn what_leant_on_what_is_removed_falls() {
     let mut world = sleeper();
-    world.remove_obstacle(0);
-    assert!(world.obstacles().is_empty());
+    let (floor, _) = world.rigids().entries().next().unwrap();
+    world.remove_rigid(floor).unwrap();
+    assert_eq!(world.obstacles().count(), 0);
     step(&mut world, 30);
-    let view = world.bodies()[0].piece_views()[0];
+    let view = world.bodies().first().unwrap().piece_views()[0];
     assert!(!view.asleep && view.high[1] < 0.5, "{view:?}");
 }
 
 #[test]
 fn a_sleeper_that_is_put_back_elsewhere_falls() {
     let mut world = sleeper();
-    let body = world.remove_body(0).moved([0.0, 3.0, 0.0]);
+    let body = world
+        .remove_body(world.nth_body(0).unwrap())
+        .unwrap()
+        .moved([0.0, 3.0, 0.0]);
     world.add_body(body);
     step(&mut world, 30);
-    let view = world.bodies()[0].piece_views()[0];
+    let view = world.bodies().first().unwrap().piece_views()[0];
     assert!(!view.asleep && view.low[1] < 2.5, "{view:?}");
 }
 
@@ -95,27 +104,35 @@ fn a_body_is_as_stiff_as_the_world_that_it_is_in_bears() {
     };
     let (mut poor, mut rich) = (world_of(16), world_of(1024));
     poor.add_body(Body::new(VoxelGrid::ball(16, 1.0).unwrap(), &[stiff]).unwrap());
-    let stiffness_scale = poor.bodies()[0].stiffness_scale();
+    let stiffness_scale = poor.bodies().first().unwrap().stiffness_scale();
     assert!(stiffness_scale < 0.2);
-    rich.add_body(poor.remove_body(0));
-    assert_eq!(rich.bodies()[0].stiffness_scale(), 1.0);
-    poor.add_body(rich.remove_body(0));
-    assert_eq!(poor.bodies()[0].stiffness_scale(), stiffness_scale);
+    rich.add_body(poor.remove_body(poor.nth_body(0).unwrap()).unwrap());
+    assert_eq!(rich.bodies().first().unwrap().stiffness_scale(), 1.0);
+    poor.add_body(rich.remove_body(rich.nth_body(0).unwrap()).unwrap());
+    assert_eq!(
+        poor.bodies().first().unwrap().stiffness_scale(),
+        stiffness_scale
+    );
 }
 
 #[test]
-fn things_leave_and_the_rest_move_up() {
+fn things_leave_and_the_rest_stay_what_they_are() {
     let mut world = world::<Dim2>();
+    let (mut bodies, mut hands) = (Vec::new(), Vec::new());
     for place in 0..3u8 {
         let x = 2.0 * f32::from(place);
-        world.add_body(ball(8 + 4 * usize::from(place)).moved([x, 0.0, 0.0]));
-        let hand = Manipulator::new([x + 0.5, 1.1, 0.0], 0.1);
-        let hand = world.add_manipulator(hand).unwrap();
-        world.set_goal(hand, [x + 0.5, 0.8, 0.0]);
+        let body = ball(8 + 4 * usize::from(place)).moved([x, 0.0, 0.0]);
+        bodies.push(world.add_body(body));
+        let hand = Rigid::hand([x + 0.5, 1.1, 0.0], 0.1);
+        let hand = world.add_rigid(hand).unwrap();
+        world.set_goal(hand, [x + 0.5, 0.8, 0.0]).unwrap();
+        hands.push(hand);
     }
     step(&mut world, 10);
-    assert_eq!(world.remove_body(1).grid().size()[0], 12);
-    assert!(world.remove_manipulator(0).position()[0] < 1.0);
+    let removed = world.remove_body(bodies[1]).unwrap();
+    assert_eq!(removed.grid().size()[0], 12);
+    let removed = world.remove_rigid(hands[0]).unwrap();
+    assert!(removed.position()[0] < 1.0);
     step(&mut world, 30);
     assert_finite(&world);
     let sizes = world.bodies().iter().map(|body| body.grid().size()[0]);
@@ -125,9 +142,110 @@ fn things_leave_and_the_rest_move_up() {
         _ => None,
     };
     let touched: Vec<_> = world.events().iter().filter_map(with).collect();
-    let hand = fuwafuwa::With::Manipulator;
-    assert!(touched.contains(&(1, hand(1))), "{touched:?}");
-    assert!(!touched.contains(&(0, hand(0))), "{touched:?}");
+    let hand = |n: usize| With::Hand(hands[n]);
+    assert!(touched.contains(&(bodies[2], hand(2))), "{touched:?}");
+    assert!(!touched.contains(&(bodies[0], hand(0))), "{touched:?}");
+}
+
+/// The handle of who left is that of nobody, also when somebody else stands there.
+#[test]
+fn a_stale_handle_is_refused() {
+    let mut world = world::<Dim2>();
+    let ball = world.add_body(ball(8));
+    let hand = world.add_rigid(Rigid::hand([3.0, 1.0, 0.0], 0.1)).unwrap();
+    let floor = world.rigids().ids().next().unwrap();
+    assert!(
+        world.set_goal(floor, [0.0; 3]).is_err(),
+        "it follows no goal"
+    );
+    let body = world.remove_body(ball).unwrap();
+    world.remove_rigid(hand).unwrap();
+    let heir = world.add_body(body);
+    world.add_rigid(Rigid::hand([3.0, 1.0, 0.0], 0.1)).unwrap();
+    let gone = world.bodies().get(ball).unwrap_err().to_string();
+    assert!(gone.contains("body") && gone.contains("any more"), "{gone}");
+    assert!(world.body_mut(ball).is_err() && world.remove_body(ball).is_err());
+    assert!(
+        world
+            .cut(ball, &Blade::segment([0.0; 2], [1.0; 2]))
+            .is_err()
+    );
+    assert!(world.set_goal(hand, [0.0; 3]).is_err() && world.remove_rigid(hand).is_err());
+    assert!(world.bodies().get(heir).is_ok());
+    step(&mut world, 5);
+}
+
+/// Three bodies sleep on a floor, the second one on the first: without the first, the third sleeps on.
+#[test]
+fn who_did_not_lean_on_what_is_removed_sleeps_on() {
+    let mut world = world::<Dim2>();
+    let damped = Material {
+        damping: 0.5,
+        ..Material::default()
+    };
+    let cube = |at: [f32; 2]| {
+        let grid = VoxelGrid::cube(6, 0.6).unwrap();
+        let body = Body::new(grid, &[damped]).unwrap();
+        body.moved([at[0], at[1], 0.0])
+    };
+    let ids = [[0.0, 0.0], [0.0, 0.62], [2.0, 0.0]].map(|at| world.add_body(cube(at)));
+    let sleeps = |world: &World<Dim2>, n: usize| world.bodies()[ids[n]].piece_views()[0].asleep;
+    for _ in 0..1200 {
+        world.step();
+        if (0..3).all(|n| sleeps(&world, n)) {
+            break;
+        }
+    }
+    assert!((0..3).all(|n| sleeps(&world, n)), "they come to rest");
+    world.remove_body(ids[0]).unwrap();
+    assert!(!sleeps(&world, 1) && sleeps(&world, 2));
+    step(&mut world, 60);
+    assert!(
+        world.bodies()[ids[1]].piece_views()[0].low[1] < 0.1,
+        "it fell"
+    );
+    assert!(sleeps(&world, 2));
+}
+
+/// A plate that is pushed down by its goal, on a ball and then on the floor.
+#[test]
+fn a_hand_of_another_shape_pushes_and_is_stopped() {
+    let centre = [0.0; 3];
+    let half = [0.5, 0.1, 0.5];
+    for form in [
+        Shape::Box { centre, half },
+        Shape::Capsule {
+            from: [-0.4, 0.0, 0.0],
+            to: [0.4, 0.0, 0.0],
+            radius: 0.1,
+        },
+    ] {
+        let mut world = world::<Dim2>();
+        world.add_body(ball(12));
+        let plate = Rigid::driven(form, [0.5, 1.2, 0.0], Drive::default());
+        let plate = world.add_rigid(plate).unwrap();
+        for tick in 0..60u8 {
+            let height = 1.2 - 0.015 * f32::from(tick);
+            world.set_goal(plate, [0.5, height, 0.0]).unwrap();
+            world.step();
+        }
+        let felt = world.rigids()[plate].reactions().last().unwrap();
+        assert!(felt.contact[1] > 5.0, "{felt:?}");
+        let high = world.bodies().first().unwrap().piece_views()[0].high[1];
+        assert!(high < 0.9, "{form:?}: the ball is {high} m high");
+        // Beside the ball it comes to lie on the floor.
+        for _ in 0..60 {
+            world.set_goal(plate, [3.0, 0.4, 0.0]).unwrap();
+            world.step();
+        }
+        for _ in 0..60 {
+            world.set_goal(plate, [3.0, -0.4, 0.0]).unwrap();
+            world.step();
+        }
+        let low = world.rigids()[plate].position()[1] - 0.1;
+        assert!(low.abs() < 0.01, "{form:?}: {low} m above the floor");
+        assert_finite(&world);
+    }
 }
 
 #[test]
@@ -137,11 +255,11 @@ fn a_held_node_that_is_let_go_falls() {
     let nodes: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
     nodes.iter().for_each(|&id| body.hold(id));
     world.add_body(body);
-    let height = |world: &World<Dim2>| world.bodies()[0].piece_views()[0].centre[1];
+    let height = |world: &World<Dim2>| world.bodies().first().unwrap().piece_views()[0].centre[1];
     let start = height(&world);
     step(&mut world, 120);
     assert_eq!(height(&world), start);
-    let body = world.body_mut(0);
+    let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
     nodes.iter().for_each(|&id| body.let_go(id));
     step(&mut world, 30);
     assert!(height(&world) < start - 1.0);
@@ -152,12 +270,13 @@ fn another_body_in_the_place_of_one_is_taken_for_what_it_is() {
     let mut world = world::<Dim2>();
     world.add_body(bar([2, 7]));
     world.step();
-    *world.body_mut(0) = bar([2, 8]).thrown([0.0, -4.0, 0.0]);
+    *world.body_mut(world.nth_body(0).unwrap()).unwrap() = bar([2, 8]).thrown([0.0, -4.0, 0.0]);
     let mut touches = 0;
+    let id = world.nth_body(0).unwrap();
     for _ in 0..30 {
         world.step();
         let is_own = |event: &&Event| {
-            let own = With::Piece { body: 0, piece: 0 };
+            let own = With::Piece { body: id, piece: 0 };
             matches!(event, Event::Touched { with, .. } if *with == own)
         };
         touches += world.events().iter().filter(is_own).count();

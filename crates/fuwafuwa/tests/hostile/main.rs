@@ -5,8 +5,8 @@ mod changed;
 mod quarantine;
 
 use fuwafuwa::{
-    Blade, Body, Dim, Dim2, Dim3, Drive, Event, Grading, Law, Manipulator, Material, Settings,
-    Shape, VoxelGrid, With, World,
+    Blade, Body, Dim, Dim2, Dim3, Drive, Event, Grading, Law, Material, Rigid, Settings, Shape,
+    VoxelGrid, With, World,
 };
 
 const FLOOR: Shape = Shape::HalfSpace {
@@ -16,7 +16,7 @@ const FLOOR: Shape = Shape::HalfSpace {
 
 fn world<D: Dim>() -> World<D> {
     let mut world = World::new(Settings::default()).unwrap();
-    world.add_obstacle(FLOOR, 0.5).unwrap();
+    world.add_rigid(Rigid::fixed(FLOOR, 0.5)).unwrap();
     world
 }
 
@@ -40,7 +40,7 @@ fn assert_finite<D: Dim>(world: &World<D>) {
             assert!(D::N == 3 || (at[2] == 0.0 && velocity[2] == 0.0), "{at:?}");
         }
     }
-    for hand in world.manipulators() {
+    for (_, hand) in world.hands() {
         let (at, velocity) = (hand.position(), hand.velocity());
         let mut all = at.iter().chain(&velocity);
         assert!(all.all(|k| k.is_finite()), "{at:?} {velocity:?}");
@@ -67,7 +67,10 @@ fn about_to_meet() -> World<Dim2> {
 
 fn assert_they_meet(mut world: World<Dim2>) {
     step(&mut world, 40);
-    let [left, right] = [0, 1].map(|body| world.bodies()[body].piece_views()[0].centre[0]);
+    let [left, right] = [0, 1].map(|n| {
+        let body = world.nth_body(n).unwrap();
+        world.bodies()[body].piece_views()[0].centre[0]
+    });
     assert!(
         left < right,
         "they went through each other: {left}, {right}"
@@ -86,14 +89,26 @@ fn check_coarse<D: Dim>(blade: Blade) {
     let mut world = world::<D>();
     world.add_body(coarse.unwrap());
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
-    let hand = Manipulator::new([0.5, 1.2, depth], 0.1).driven(Drive::Kinematic);
-    world.add_manipulator(hand).unwrap();
+    let hand = Rigid::hand([0.5, 1.2, depth], 0.1).with_drive(Drive::Kinematic);
+    world.add_rigid(hand).unwrap();
     for tick in 0..60u16 {
-        world.set_goal(0, [0.5, 1.2 - 0.02 * f32::from(tick), depth]);
+        world
+            .set_goal(
+                world.nth_hand(0).unwrap(),
+                [0.5, 1.2 - 0.02 * f32::from(tick), depth],
+            )
+            .unwrap();
         assert_eq!(world.step().released, 0);
     }
-    assert_eq!(world.cut(0, &blade), 0);
-    assert!(world.body_mut(0).crumble().unwrap().is_empty());
+    assert_eq!(world.cut(world.nth_body(0).unwrap(), &blade).unwrap(), 0);
+    assert!(
+        world
+            .body_mut(world.nth_body(0).unwrap())
+            .unwrap()
+            .crumble()
+            .unwrap()
+            .is_empty()
+    );
     step(&mut world, 5);
     assert_finite(&world);
 }
@@ -111,7 +126,7 @@ fn a_coarse_body_neither_tears_nor_is_cut() {
 #[test]
 fn hands_without_bounds_are_refused() {
     let mut world = world::<Dim2>();
-    let usual = || Manipulator::new([0.0, 3.0, 0.0], 0.1);
+    let usual = || Rigid::hand([0.0, 3.0, 0.0], 0.1);
     let Drive::Coupled {
         mass,
         stiffness,
@@ -122,7 +137,7 @@ fn hands_without_bounds_are_refused() {
         panic!("the usual hand is coupled");
     };
     let drive = |mass, stiffness, damping, limit| {
-        usual().driven(Drive::Coupled {
+        usual().with_drive(Drive::Coupled {
             mass,
             stiffness,
             damping,
@@ -133,8 +148,8 @@ fn hands_without_bounds_are_refused() {
     let mut slippery = usual();
     slippery.friction = infinite;
     let bad = [
-        (Manipulator::new([0.0, 1e30, 0.0], 0.1), "position"),
-        (Manipulator::new([0.0; 3], infinite), "radius"),
+        (Rigid::hand([0.0, 1e30, 0.0], 0.1), "position"),
+        (Rigid::hand([0.0; 3], infinite), "radius"),
         (slippery, "friction"),
         (drive(infinite, stiffness, damping, limit), "mass"),
         (drive(1e-30, stiffness, damping, limit), "mass"),
@@ -143,19 +158,20 @@ fn hands_without_bounds_are_refused() {
         (drive(mass, stiffness, damping, f32::NAN), "limit"),
     ];
     for (hand, field) in bad {
-        let message = world.add_manipulator(hand).unwrap_err().to_string();
+        let message = world.add_rigid(hand).unwrap_err().to_string();
         assert!(message.contains(field), "{message}");
     }
-    assert!(world.add_obstacle(FLOOR, infinite).is_err());
+    assert!(world.add_rigid(Rigid::fixed(FLOOR, infinite)).is_err());
     world
-        .add_manipulator(drive(mass, stiffness, damping, infinite))
+        .add_rigid(drive(mass, stiffness, damping, infinite))
         .unwrap();
     world
-        .add_manipulator(usual().driven(Drive::Kinematic))
+        .add_rigid(usual().with_drive(Drive::Kinematic))
         .unwrap();
     for hand in 0..2 {
-        assert!(!world.set_goal(hand, [1e38, 0.0, 0.0]));
-        assert!(world.set_goal(hand, [1e6, -1e6, 0.0]));
+        let hand = world.nth_hand(hand).unwrap();
+        assert!(world.set_goal(hand, [1e38, 0.0, 0.0]).is_err());
+        assert!(world.set_goal(hand, [1e6, -1e6, 0.0]).is_ok());
     }
     world.step();
     assert_finite(&world);
@@ -178,17 +194,21 @@ fn what_stands_off_the_plane_pushes_nothing_out_of_it() {
     ];
     for shape in shapes {
         let mut world = World::<Dim2>::new(Settings::default()).unwrap();
-        world.add_obstacle(shape, 0.5).unwrap();
+        world.add_rigid(Rigid::fixed(shape, 0.5)).unwrap();
         world.add_body(ball(12).moved([0.0, 0.02, 0.0]));
-        let hand = Manipulator::new([0.5, 0.9, 0.05], 0.1);
-        world.add_manipulator(hand).unwrap();
+        let hand = Rigid::hand([0.5, 0.9, 0.05], 0.1);
+        world.add_rigid(hand).unwrap();
         step(&mut world, 30);
         assert_finite(&world);
-        let low = world.bodies()[0].piece_views()[0].low[1];
+        let low = world.bodies().first().unwrap().piece_views()[0].low[1];
         assert!(low > -0.03, "{shape:?}: {low}");
     }
     let edge_on = Shape::half_space([0.0, 0.0, 1.0], [0.0; 3]);
-    assert!(world::<Dim2>().add_obstacle(edge_on, 0.5).is_err());
+    assert!(
+        world::<Dim2>()
+            .add_rigid(Rigid::fixed(edge_on, 0.5))
+            .is_err()
+    );
     let body = ball::<Dim2>(12);
     let region = Shape::Box {
         centre: [0.5, 0.5, 3.0],
@@ -211,12 +231,13 @@ fn a_material_that_no_voxel_has_changes_nothing() {
     let hash_with = |materials: &[Material]| {
         let mut world = world::<Dim2>();
         world.add_body(Body::new(VoxelGrid::ball(16, 1.0).unwrap(), materials).unwrap());
-        assert_eq!(world.bodies()[0].stiffness_scale(), 1.0);
-        let hand = Manipulator::new([0.5, 1.1, 0.0], 0.1).driven(Drive::Kinematic);
-        let hand = world.add_manipulator(hand).unwrap();
+        assert_eq!(world.bodies().first().unwrap().stiffness_scale(), 1.0);
+        let hand = Rigid::hand([0.5, 1.1, 0.0], 0.1).with_drive(Drive::Kinematic);
+        let hand = world.add_rigid(hand).unwrap();
         let mut released = 0;
         for tick in 0..40u8 {
-            world.set_goal(hand, [0.5, 1.1 - 0.03 * f32::from(tick), 0.0]);
+            let goal = [0.5, 1.1 - 0.03 * f32::from(tick), 0.0];
+            world.set_goal(hand, goal).unwrap();
             released += world.step().released;
         }
         assert!(released > 10, "it does not tear");
@@ -231,7 +252,12 @@ fn a_material_that_no_voxel_has_changes_nothing() {
 fn a_cut_is_told_where_it_was() {
     let mut world = world::<Dim2>();
     world.add_body(ball(16).moved([3.0, 0.0, 0.0]));
-    let count = world.cut(0, &Blade::segment([3.5, -0.1], [3.5, 1.1]));
+    let count = world
+        .cut(
+            world.nth_body(0).unwrap(),
+            &Blade::segment([3.5, -0.1], [3.5, 1.1]),
+        )
+        .unwrap();
     let mut places = 0;
     for event in world.events() {
         if let Event::Released { at, energy, .. } = event {

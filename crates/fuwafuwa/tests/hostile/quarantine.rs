@@ -32,19 +32,24 @@ fn a_body_that_is_no_place_is_quarantined() {
 fn a_piece_that_tears_in_its_last_tick_is_not_stretched() {
     let mut world = world::<Dim2>();
     world.add_body(ball(24).moved([5.0, 0.0, 0.0]));
-    let hand = Manipulator::new([5.5, 1.1, 0.0], 0.08).driven(Drive::Kinematic);
-    world.add_manipulator(hand).unwrap();
+    let hand = Rigid::hand([5.5, 1.1, 0.0], 0.08).with_drive(Drive::Kinematic);
+    world.add_rigid(hand).unwrap();
     let mut both = 0;
     for tick in 0..40u16 {
-        world.set_goal(0, [5.5, 1.1 - 0.03 * f32::from(tick), 0.0]);
+        world
+            .set_goal(
+                world.nth_hand(0).unwrap(),
+                [5.5, 1.1 - 0.03 * f32::from(tick), 0.0],
+            )
+            .unwrap();
         world.step();
         let mut doomed = world.clone();
-        let body = doomed.body_mut(0);
+        let body = doomed.body_mut(doomed.nth_body(0).unwrap()).unwrap();
         *body = body.clone().thrown([f32::NAN; 3]);
         let report = doomed.step();
         both += u32::from(report.released > 0 && report.quarantined > 0);
         assert_finite(&doomed);
-        let body = &doomed.bodies()[0];
+        let body = doomed.bodies().first().unwrap();
         for (_, element) in body.mesh().elements() {
             let places = || element.nodes.iter().map(|&node| body.node_state(node).0);
             let width = element.cell.width() as f32 / 24.0;
@@ -64,19 +69,16 @@ fn a_body_out_of_hand_spoils_nothing_else() {
     let mut world = world::<Dim2>();
     for (place, x) in [0.0, 0.97].into_iter().enumerate() {
         world.add_body(ball(16).moved([x, 0.0, 0.0]));
-        let hand = Manipulator::new([x + 0.5, 0.95, 0.0], 0.1);
+        let hand = Rigid::hand([x + 0.5, 0.95, 0.0], 0.1);
         let drive = [Drive::Kinematic, Drive::default()][place];
-        world.add_manipulator(hand.driven(drive)).unwrap();
+        world.add_rigid(hand.with_drive(drive)).unwrap();
     }
     step(&mut world, 10);
-    let body = world.body_mut(0);
+    let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
     *body = body.clone().thrown([f32::NAN; 3]);
     assert_eq!(world.step().quarantined, 1);
     assert_finite(&world);
-    let forces = world
-        .manipulators()
-        .iter()
-        .flat_map(|hand| hand.reactions());
+    let forces = world.hands().flat_map(|(_, hand)| hand.reactions());
     for reaction in forces {
         let mut all = reaction.contact.iter().chain(&reaction.coupling);
         assert!(all.all(|k| k.is_finite()), "{reaction:?}");
@@ -88,8 +90,13 @@ fn what_came_off_a_quarantined_piece_is_quarantined() {
     let mut world = world::<Dim2>();
     world.add_body(ball(12).thrown([f32::NAN, 0.0, 0.0]));
     world.step();
-    world.cut(0, &Blade::segment([0.5, -1.0], [0.5, 2.0]));
-    let views = world.bodies()[0].piece_views();
+    world
+        .cut(
+            world.nth_body(0).unwrap(),
+            &Blade::segment([0.5, -1.0], [0.5, 2.0]),
+        )
+        .unwrap();
+    let views = world.bodies().first().unwrap().piece_views();
     assert_eq!(views.len(), 2);
     assert!(views.iter().all(|view| view.asleep && view.quarantined));
 }
@@ -100,7 +107,7 @@ fn a_quarantined_body_still_holds_others_up() {
     world.add_body(bar([24, 4]).moved([f32::INFINITY, 0.0, 0.0]));
     world.add_body(bar([6, 6]).moved([0.27, 0.25, 0.0]));
     step(&mut world, 30);
-    let view = &world.bodies()[1].piece_views()[0];
+    let view = &world.bodies()[world.nth_body(1).unwrap()].piece_views()[0];
     assert!(view.low[1] > 0.05, "it fell through: {view:?}");
 }
 

@@ -5,7 +5,7 @@ use super::parallel;
 use crate::report::{Outcome, Progress};
 use anyhow::{Result, ensure};
 use fuwafuwa::shape::Vector;
-use fuwafuwa::{Body, Dim2, Drive, Manipulator, Material, Settings, VoxelGrid, World};
+use fuwafuwa::{Body, Dim2, Drive, Material, Rigid, Settings, VoxelGrid, World};
 
 /// Voxels across, and how fast each hand comes [m/s].
 const CASES: [(usize, f32); 4] = [(24, 0.25), (24, 2.0), (48, 0.25), (48, 2.0)];
@@ -45,28 +45,29 @@ fn squeeze(n: usize, speed: f32) -> Result<f64> {
     };
     let grid = VoxelGrid::<Dim2>::ring(n, 1.0)?;
     let voxel = grid.voxel_size();
-    world.add_body(Body::new(grid, &[material])?);
+    let ring = world.add_body(Body::new(grid, &[material])?);
     let sides = [-1.0, 1.0];
     let middle_of = |side: f32, apart: f32| [0.5, 0.5 + side * (HAND + 0.5 * apart), 0.0];
+    let mut hands = Vec::new();
     for side in sides {
-        let hand = Manipulator::new(middle_of(side, 1.0), HAND);
-        world.add_manipulator(hand.driven(Drive::Kinematic))?;
+        let hand = Rigid::hand(middle_of(side, 1.0), HAND);
+        hands.push(world.add_rigid(hand.with_drive(Drive::Kinematic))?);
     }
-    let holes = sides.map(|side| hole_side(&world.bodies()[0], side));
+    let holes = sides.map(|side| hole_side(&world.bodies()[ring], side));
     let (mut apart, mut waited, mut deepest) = (1.0, 0.0, f32::NEG_INFINITY);
     while waited < WAIT {
         apart -= 2.0 * speed / 60.0;
         if apart < LEFT {
             (apart, waited) = (LEFT, waited + 1.0 / 60.0);
         }
-        for (hand, side) in sides.into_iter().enumerate() {
-            world.set_goal(hand, middle_of(side, apart));
+        for (&hand, side) in hands.iter().zip(sides) {
+            world.set_goal(hand, middle_of(side, apart))?;
         }
         let report = world.step();
         ensure!(report.quarantined == 0, "the ring went out of hand");
         let [low, high] = holes
             .each_ref()
-            .map(|nodes| places(&world.bodies()[0], nodes));
+            .map(|nodes| places(&world.bodies()[ring], nodes));
         deepest = deepest.max(overlap(&low, &high));
     }
     Ok(f64::from(deepest / voxel))

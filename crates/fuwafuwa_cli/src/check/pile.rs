@@ -54,16 +54,19 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
 
 fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {
     let mut world = scene.build::<D>()?;
-    let count = |world: &World<D>| world.bodies()[0].piece_views().len();
+    let count = |world: &World<D>| world.bodies().first().unwrap().piece_views().len();
     let before = count(&world);
-    let mass = world.bodies()[0].total_mass();
+    let mass = world.bodies().first().unwrap().total_mass();
     let mut asleep = f64::INFINITY;
     let mut depth = 0.0f64;
     for tick in 0..(PATIENCE * 60.0) as usize {
         let report = world.step();
         anyhow::ensure!(report.quarantined == 0, "a piece went out of hand");
         depth = depth.max(deepest(&world));
-        if world.bodies()[0]
+        if world
+            .bodies()
+            .first()
+            .unwrap()
             .pieces()
             .list
             .iter()
@@ -73,17 +76,13 @@ fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {
             break;
         }
     }
-    let views = world.bodies()[0].piece_views();
-    let size = f64::from(world.bodies()[0].grid().voxel_size());
+    let views = world.bodies().first().unwrap().piece_views();
+    let size = f64::from(world.bodies().first().unwrap().grid().voxel_size());
     let outside = views.iter().filter(|view| {
-        let distance =
-            |obstacle: &fuwafuwa::world::Obstacle| obstacle.shape.distance(view.centre).0;
-        world
-            .obstacles()
-            .iter()
-            .any(|obstacle| distance(obstacle) < 0.0)
+        let mut obstacles = world.obstacles();
+        obstacles.any(|obstacle| obstacle.shape().distance(view.centre).0 < 0.0)
     });
-    let kept = world.bodies()[0].total_mass() / mass;
+    let kept = world.bodies().first().unwrap().total_mass() / mass;
     anyhow::ensure!(
         (kept - 1.0).abs() < 1e-6,
         "mass changed to {kept} of what it was"
@@ -98,12 +97,12 @@ fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {
 
 /// How deep the deepest node is in a wall [m].
 fn deepest<D: Dim>(world: &World<D>) -> f64 {
-    let body = &world.bodies()[0];
+    let body = world.bodies().first().unwrap();
     let mut deepest = 0.0f32;
     for (id, _) in body.mesh().nodes() {
         let at = body.node_state(id).0;
         for obstacle in world.obstacles() {
-            deepest = deepest.max(-obstacle.shape.distance(at).0);
+            deepest = deepest.max(-obstacle.shape().distance(at).0);
         }
     }
     f64::from(deepest)

@@ -55,26 +55,29 @@ struct Halves {
 /// Cuts a body that spins in two. The halves part by themselves, each spinning as the whole did.
 fn halves<D: Dim>(n: usize) -> Result<Halves> {
     let mut world = spinning::<D>(n, material())?;
-    let whole = world.bodies()[0].momentum().angular;
+    let whole = world.bodies().first().unwrap().momentum().angular;
     let (across, along) = ([0.0, 3.0, 0.0], [0.0, 0.0, 3.0]);
     let from = [0.0, -1.5, -1.5];
-    let cut = world.cut(
-        0,
-        &Blade {
-            from,
-            across,
-            along,
-        },
-    );
+    let cut = world
+        .cut(
+            world.nth_body(0).unwrap(),
+            &Blade {
+                from,
+                across,
+                along,
+            },
+        )
+        .unwrap();
     let step = |world: &mut World<D>, duration: f32| {
         for _ in 0..(duration / TICK).round() as usize {
             world.step();
         }
     };
     step(&mut world, APART);
-    let pieces = world.bodies()[0].pieces().list.len();
+    let pieces = world.bodies().first().unwrap().pieces().list.len();
     ensure!(pieces == 2, "{cut} nodes cut left {pieces} pieces");
-    let motions = |world: &World<D>| [0, 1].map(|piece| motion(&world.bodies()[0], piece));
+    let motions =
+        |world: &World<D>| [0, 1].map(|piece| motion(world.bodies().first().unwrap(), piece));
     let before = motions(&world);
     step(&mut world, DURATION);
     let after = motions(&world);
@@ -85,7 +88,7 @@ fn halves<D: Dim>(n: usize) -> Result<Halves> {
     Ok(Halves {
         spin: worst([0, 1].map(|piece| along_first(before[piece].1, after[piece].1))),
         momentum: worst([0, 1].map(|piece| along_first(before[piece].0, after[piece].0))),
-        both: along_first(whole, world.bodies()[0].momentum().angular),
+        both: along_first(whole, world.bodies().first().unwrap().momentum().angular),
     })
 }
 
@@ -123,11 +126,14 @@ fn kept<D: Dim>(n: usize, damping: f32) -> Result<f64> {
         ..material()
     };
     let mut world = spinning::<D>(n, material)?;
-    let before = world.bodies()[0].momentum().angular;
+    let before = world.bodies().first().unwrap().momentum().angular;
     for _ in 0..(DURATION / TICK).round() as usize {
         world.step();
     }
-    Ok(along_first(before, world.bodies()[0].momentum().angular))
+    Ok(along_first(
+        before,
+        world.bodies().first().unwrap().momentum().angular,
+    ))
 }
 
 /// A free body that spins.

@@ -6,7 +6,7 @@ use crate::report::{Outcome, Progress};
 use anyhow::{Result, ensure};
 use fuwafuwa::law::Elasticity;
 use fuwafuwa::shape::Vector;
-use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, Settings, Shape, VoxelGrid, World};
+use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, Rigid, Settings, Shape, VoxelGrid, World};
 
 /// Bodies in a stack, voxels across each, and its width [m].
 const BODIES: usize = 10;
@@ -46,7 +46,10 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
 
 fn stand<D: Dim>(bodies: usize, duration: f32) -> Result<Stack> {
     let mut world = World::<D>::new(Settings::default())?;
-    world.add_obstacle(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.5)?;
+    world.add_rigid(Rigid::fixed(
+        Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]),
+        0.5,
+    ))?;
     let material = Material {
         elasticity: Elasticity {
             young: YOUNG,

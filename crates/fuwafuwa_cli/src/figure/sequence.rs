@@ -6,7 +6,7 @@ use anyhow::Result;
 use fuwafuwa::law::Elasticity;
 use fuwafuwa::world::TICK;
 use fuwafuwa::{
-    Blade, Body, Dim2, Dim3, Drive, Manipulator, Material, Settings, Shape, VoxelGrid, World,
+    Blade, Body, Dim2, Dim3, Drive, Material, Rigid, Settings, Shape, VoxelGrid, World,
 };
 use fuwafuwa_painter::solid::{Camera, Solid};
 use fuwafuwa_painter::stage::{self, DrawPlane, DrawSpace};
@@ -30,18 +30,21 @@ pub fn disc() -> Result<(Painter, Vec<Pixmap>)> {
         ..Material::default()
     };
     let mut world = World::<Dim2>::new(Settings::default())?;
-    world.add_obstacle(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.6)?;
+    world.add_rigid(Rigid::fixed(
+        Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]),
+        0.6,
+    ))?;
     for (x, lean) in [(-0.13, 1.0), (1.13, -1.0)] {
         let wall = Shape::Box {
             centre: [x - 0.05 * lean, 0.2, 0.0],
             half: [0.08, 0.2, 1.0],
         };
-        world.add_obstacle(wall, 0.4)?;
+        world.add_rigid(Rigid::fixed(wall, 0.4))?;
     }
     world.add_body(Body::new(VoxelGrid::ball(40, 1.0)?, &[material])?);
-    let mut hand = Manipulator::new([0.46, 1.2, 0.0], 0.055);
+    let mut hand = Rigid::hand([0.46, 1.2, 0.0], 0.055);
     hand.drive = Drive::Kinematic;
-    let hand = world.add_manipulator(hand)?;
+    let hand = world.add_rigid(hand)?;
 
     let progress = Progress::new();
     progress.expect(TICKS as u64);
@@ -52,7 +55,7 @@ pub fn disc() -> Result<(Painter, Vec<Pixmap>)> {
             skins.push(plane_frame(&world, tick, stage::plane_skin)?);
         }
         let way = (tick as f32 / (TICKS as f32 * 0.8)).min(1.0);
-        world.set_goal(hand, [0.46 + 0.05 * way, 1.2 - 1.1 * way, 0.0]);
+        world.set_goal(hand, [0.46 + 0.05 * way, 1.2 - 1.1 * way, 0.0])?;
         world.step();
         progress.step();
     }
@@ -79,7 +82,10 @@ pub fn ball() -> Result<(Painter, Vec<Pixmap>)> {
         ..Material::default()
     };
     let mut world = World::<Dim3>::new(Settings::default())?;
-    world.add_obstacle(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 1.0)?;
+    world.add_rigid(Rigid::fixed(
+        Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]),
+        1.0,
+    ))?;
     let low = -1.0 / ACROSS as f32;
     let body = Body::new(VoxelGrid::ball(ACROSS, 1.0)?, &[material])?;
     world.add_body(body.moved([0.0, low, 0.0]));
@@ -95,7 +101,7 @@ pub fn ball() -> Result<(Painter, Vec<Pixmap>)> {
                 across: [0.0, -depth, 0.0],
                 along: [0.0, 0.0, 2.0],
             };
-            world.cut(0, &blade);
+            world.cut(world.nth_body(0).unwrap(), &blade).unwrap();
             skins.push(space_frame(&world, tick, stage::space_skin)?);
             sections.push(space_frame(&world, tick, draw_section)?);
         }

@@ -193,7 +193,7 @@ fn quads_of(level: u8, children: u8) -> Quads {
 mod tests {
     use super::*;
     use fuwafuwa::vector::{cross, dot, length};
-    use fuwafuwa::{Manipulator, Material, Settings, Shape, VoxelGrid, World};
+    use fuwafuwa::{Material, Rigid, Settings, Shape, VoxelGrid, World};
 
     #[test]
     fn quads_close_around_what_is_filled() {
@@ -219,15 +219,15 @@ mod tests {
         let mut world = World::<Dim3>::new(Settings::default()).unwrap();
         let grid = VoxelGrid::<Dim3>::ball(12, 1.0).unwrap();
         world.add_body(Body::new(grid, &[Material::default()]).unwrap());
-        let hand = Manipulator::new([0.5, 1.3, 0.5], 0.3);
-        let hand = world.add_manipulator(hand).unwrap();
+        let hand = Rigid::hand([0.5, 1.3, 0.5], 0.3);
+        let hand = world.add_rigid(hand).unwrap();
         let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
-        world.add_obstacle(floor, 0.2).unwrap();
+        world.add_rigid(Rigid::fixed(floor, 0.2)).unwrap();
         for _ in 0..40 {
-            world.set_goal(hand, [0.5, 0.8, 0.4]);
+            world.set_goal(hand, [0.5, 0.8, 0.4]).unwrap();
             world.step();
         }
-        let body = &world.bodies()[0];
+        let body = world.bodies().first().unwrap();
         let mut most = 0.0f32;
         for (id, element) in body.mesh().elements().filter(|(_, of)| of.cell.level == 0) {
             let exact = body.element_view(id).unwrap();
@@ -252,7 +252,7 @@ mod tests {
             let mut boxes = Boxes::default();
             boxes.add(
                 0,
-                &world.bodies()[0],
+                world.bodies().first().unwrap(),
                 &theme,
                 ElementColour::Level,
                 &[],
@@ -274,7 +274,7 @@ mod tests {
         assert!((0.84..0.97).contains(&volume(&world, 1.0).0));
         assert_eq!(volume(&world, 0.0).0, 0.0);
         // It lies on its side, away from where it was.
-        let body = world.body_mut(0);
+        let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
         let ids: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in ids {
             let [x, y, z] = body.node_state(id).0;

@@ -10,7 +10,7 @@ use crate::frame::{Frame, Look};
 use crate::rigid::MOST_WALLS;
 use crate::theme::Theme;
 use fuwafuwa::vector::{minus, plus, scaled, three};
-use fuwafuwa::{Body, Dim3, Shape, Vector, World};
+use fuwafuwa::{Body, Dim3, Rigid, Shape, Vector, World};
 use std::ops::Range;
 
 /// How far the floor goes, in distances of the camera.
@@ -53,16 +53,19 @@ impl Geometry {
         self.boxes.clear();
         self.stickers.clear();
         let theme = frame.theme;
-        let bars = world.obstacles().iter();
-        let bars = bars.filter_map(|bar| RoundedInstance::of(bar.shape, theme.bar, 0.0));
+        let bars = world.obstacles();
+        let bars = bars.filter_map(|bar| RoundedInstance::of(*bar.shape(), theme.bar, 0.0));
         self.bars = append(&mut self.rounded, bars);
-        let hands = || world.manipulators().iter().enumerate();
+        let hands = || world.hands().enumerate();
         self.hands = append(&mut self.rounded, balls(world, theme));
-        let ghosts = frame.ghost.map_or(&[][..], World::bodies);
-        self.ghosts.resize_with(ghosts.len(), Skin::default);
-        let skins = self.ghosts.iter_mut().zip(ghosts);
-        let renewed = skins.map(|(skin, body)| skin.follow(body, &theme.materials));
-        self.renewed_ghosts = renewed.collect();
+        self.renewed_ghosts.clear();
+        let ghosts = frame.ghost.map_or(0, |ghost| ghost.bodies().len());
+        self.ghosts.resize_with(ghosts, Skin::default);
+        if let Some(ghost) = frame.ghost {
+            let skins = self.ghosts.iter_mut().zip(ghost.bodies());
+            let renewed = skins.map(|(skin, body)| skin.follow(body, &theme.materials));
+            self.renewed_ghosts.extend(renewed);
+        }
         let of_ghost = frame
             .ghost
             .into_iter()
@@ -92,7 +95,7 @@ impl Geometry {
         if frame.look == Look::Skin {
             let eye = frame.camera.eye();
             for sticker in frame.stickers {
-                if let Some(body) = world.bodies().get(sticker.body) {
+                if let Some(body) = world.bodies().iter().nth(sticker.body) {
                     let skin = &self.skins[sticker.body];
                     self.stickers.add(sticker, skin, body, eye);
                 }
@@ -104,7 +107,7 @@ impl Geometry {
             ..ball(particle.at, particle.radius, place as f32)
         });
         self.dust = append(&mut self.rounded, dust);
-        let lines = hands().filter_map(|(player, hand)| {
+        let lines = hands().filter_map(|(player, (_, hand))| {
             let below = self.ground_below(hand.position())?;
             let (from, to, radius) = (hand.position(), below, LINE);
             let line = Shape::Capsule { from, to, radius };
@@ -126,7 +129,7 @@ impl Geometry {
 
     fn gather_room(&mut self, world: &World<Dim3>, camera: &Camera) {
         self.walls.clear();
-        let shapes = world.obstacles().iter().map(|obstacle| &obstacle.shape);
+        let shapes = world.obstacles().map(Rigid::shape);
         self.walls.extend(shapes.filter_map(plane).take(MOST_WALLS));
         self.room.clear();
         let reach = REACH * camera.distance;
@@ -144,9 +147,9 @@ impl Geometry {
 
 /// The hands of a world.
 fn balls(world: &World<Dim3>, theme: &Theme) -> impl Iterator<Item = RoundedInstance> {
-    let hands = world.manipulators().iter().enumerate();
-    hands.filter_map(|(player, hand)| {
-        RoundedInstance::of(hand.shape(), theme.hand(player), player as f32)
+    let hands = world.hands().enumerate();
+    hands.filter_map(|(player, (_, hand))| {
+        RoundedInstance::of(*hand.shape(), theme.hand(player), player as f32)
     })
 }
 
@@ -196,18 +199,18 @@ fn crumb(body: &Body<Dim3>, id: u32, frame: &Frame<'_, Camera>) -> Option<Rounde
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::{Manipulator, Material, Settings, VoxelGrid};
+    use fuwafuwa::{Material, Settings, VoxelGrid};
 
     #[test]
     fn everything_has_its_place() {
         let mut world = World::<Dim3>::new(Settings::default()).unwrap();
         let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0, -0.5, 0.0]);
-        world.add_obstacle(floor, 0.2).unwrap();
+        world.add_rigid(Rigid::fixed(floor, 0.2)).unwrap();
         let (from, to, radius) = ([0.0; 3], [1.0, 0.0, 0.0], 0.1);
         let bar = Shape::Capsule { from, to, radius };
-        world.add_obstacle(bar, 0.2).unwrap();
-        let hand = Manipulator::new([0.0, 3.0, 1.0], 0.2);
-        world.add_manipulator(hand).unwrap();
+        world.add_rigid(Rigid::fixed(bar, 0.2)).unwrap();
+        let hand = Rigid::hand([0.0, 3.0, 1.0], 0.2);
+        world.add_rigid(hand).unwrap();
         let grid = VoxelGrid::from_fn([5, 2, 2], 0.5, |[x, ..]| u8::from(x != 2)).unwrap();
         world.add_body(Body::new(grid, &[Material::default()]).unwrap());
         let grid = VoxelGrid::from_fn([1, 1, 1], 0.5, |_| 1).unwrap();

@@ -218,21 +218,23 @@ mod tests {
 
     fn skin(world: &World<Dim3>) -> Skin {
         let mut skin = Skin::default();
-        skin.follow(&world.bodies()[0], &Theme::candy().materials);
+        skin.follow(world.bodies().first().unwrap(), &Theme::candy().materials);
         skin
     }
 
     fn cut(world: &mut World<Dim3>, x: f32) {
         let (across, along) = ([0.0, 1.4, 0.1], [0.0, -0.1, 1.4]);
         let from = [x, -0.2, -0.2];
-        world.cut(
-            0,
-            &Blade {
-                from,
-                across,
-                along,
-            },
-        );
+        world
+            .cut(
+                world.nth_body(0).unwrap(),
+                &Blade {
+                    from,
+                    across,
+                    along,
+                },
+            )
+            .unwrap();
     }
 
     impl Skin {
@@ -251,7 +253,7 @@ mod tests {
     #[test]
     fn the_skin_of_a_ball_is_a_sphere() {
         let world = ball(32);
-        let count = world.bodies()[0].grid().solid_count() as f32;
+        let count = world.bodies().first().unwrap().grid().solid_count() as f32;
         let round = (0.75 * count / std::f32::consts::PI).cbrt() / 32.0;
         for vertex in skin(&world).vertices() {
             let away = minus(vertex.at, [0.5; 3]);
@@ -267,7 +269,7 @@ mod tests {
     fn a_stretched_ball_is_an_ellipsoid_and_knows_its_strain() {
         let mut world = ball(32);
         let whole = skin(&world).volume();
-        let body = world.body_mut(0);
+        let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
         let ids: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in ids {
             let [x, y, z] = body.node_state(id).0;
@@ -317,20 +319,20 @@ mod tests {
         };
         for x in [0.2, 0.8, 0.3, 0.55, 0.4, 0.48] {
             cut(&mut world, x);
-            assert!(kept.follow(&world.bodies()[0], &Theme::candy().materials));
+            assert!(kept.follow(world.bodies().first().unwrap(), &Theme::candy().materials));
             let new = skin(&world);
             assert_eq!(sorted(&kept), sorted(&new));
             assert!((kept.volume() / new.volume() - 1.0).abs() < 1e-4);
             world.step();
-            kept.follow(&world.bodies()[0], &Theme::candy().materials);
+            kept.follow(world.bodies().first().unwrap(), &Theme::candy().materials);
         }
         let safe = Theme::colour_safe().materials;
-        assert!(kept.follow(&world.bodies()[0], &safe));
-        assert!(!kept.follow(&world.bodies()[0], &safe));
+        assert!(kept.follow(world.bodies().first().unwrap(), &safe));
+        assert!(!kept.follow(world.bodies().first().unwrap(), &safe));
         // Another body with a grid of its own, and an untorn one with the same.
         for n in [16, 20] {
             let other = ball(n);
-            kept.follow(&other.bodies()[0], &Theme::candy().materials);
+            kept.follow(other.bodies().first().unwrap(), &Theme::candy().materials);
             assert_eq!(sorted(&kept), sorted(&skin(&other)));
         }
     }

@@ -217,7 +217,7 @@ mod tests {
         };
         let mut skin = Skin::default();
         let mut stuck = |world: &World<Dim3>, sticker: &Sticker| {
-            let body = &world.bodies()[0];
+            let body = world.bodies().first().unwrap();
             skin.follow(body, &Theme::candy().materials);
             let mut stickers = Stickers::default();
             stickers.add(sticker, &skin, body, [0.5, 0.5, 9.0]);
@@ -238,8 +238,8 @@ mod tests {
             across,
             along,
         };
-        world.cut(0, &blade);
-        let body = &world.bodies()[0];
+        world.cut(world.nth_body(0).unwrap(), &blade).unwrap();
+        let body = world.bodies().first().unwrap();
         let nodes = body.mesh().nodes();
         let inside = nodes.min_by(|a, b| {
             let away = |id: u32| length(minus(body.node_state(id).0, [0.5; 3]));

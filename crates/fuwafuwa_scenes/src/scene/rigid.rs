@@ -1,7 +1,7 @@
 //! What is rigid in a scene: obstacles and hands, and shapes as they are written down.
 
 use super::error::{Wrong, require, require_vector};
-use fuwafuwa::{Dim, Drive, Manipulator, Shape, World};
+use fuwafuwa::{Dim, Drive, Rigid, RigidId, Shape, World};
 use serde::{Deserialize, Serialize};
 
 /// A rigid shape as it is written down: exactly one of the fields but `friction`.
@@ -68,8 +68,16 @@ pub struct BallText {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HandText {
-    /// [m]
-    pub radius: f32,
+    /// Of a ball (2D: a disc) [m]. Instead of it, a box or a capsule: where it would be if its goal were the
+    /// origin.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub radius: Option<f32>,
+    /// A box.
+    #[serde(rename = "box", default, skip_serializing_if = "Option::is_none")]
+    pub boxed: Option<BoxText>,
+    /// A bar with round ends.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub capsule: Option<CapsuleText>,
     /// Whether it goes where it is sent, whatever is in the way.
     #[serde(default)]
     pub kinematic: bool,
@@ -88,7 +96,7 @@ impl ObstacleText {
         let good = self.friction >= 0.0;
         let found = format!("expected 0 or more, found {}", self.friction);
         require(good, "friction", found)?;
-        let added = world.add_obstacle(shape.only::<D>()?, self.friction);
+        let added = world.add_rigid(Rigid::fixed(shape.only::<D>()?, self.friction));
         added
             .map(|_| ())
             .map_err(|reason| Wrong::new("friction", reason))
@@ -162,21 +170,48 @@ impl HandText {
             require_vector(D::N, &field, [x, y, z])?;
             before = seconds;
         }
-        let good = self.radius > 0.0 && self.radius.is_finite();
-        let expected = format!(
-            "expected a positive number of metres, found {}",
-            self.radius
-        );
-        require(good, "radius", expected)?;
+        let form = self.form::<D>()?;
         let drive = match self.kinematic {
             true => Drive::Kinematic,
             false => Drive::default(),
         };
-        let hand = Manipulator::new(self.goal(0.0), self.radius).driven(drive);
-        let added = world.add_manipulator(hand);
+        let hand = Rigid::driven(form, self.goal(0.0), drive);
+        let added = world.add_rigid(hand);
         added
             .map(|_| ())
             .map_err(|reason| Wrong::new("radius", reason))
+    }
+
+    /// Its shape, where it would be if its goal were the origin.
+    fn form<D: Dim>(&self) -> Result<Shape, Wrong> {
+        let shapes = Shapes {
+            half_space: None,
+            boxed: self.boxed.as_ref(),
+            capsule: self.capsule.as_ref(),
+            ball: None,
+        };
+        match (self.radius, &self.boxed, &self.capsule) {
+            (Some(radius), None, None) => {
+                let good = radius > 0.0 && radius.is_finite();
+                let expected = format!("expected a positive number of metres, found {radius}");
+                require(good, "radius", expected)?;
+                let centre = [0.0; 3];
+                Ok(Shape::Ball { centre, radius })
+            }
+            (None, Some(_), None) | (None, None, Some(_)) => shapes.only::<D>(),
+            _ => {
+                let expected = "expected exactly one of radius, box and capsule";
+                Err(Wrong::new("radius", expected))
+            }
+        }
+    }
+
+    /// Radius of the largest ball that fits into it [m].
+    pub fn inradius(&self) -> f32 {
+        let boxed = { self.boxed.iter() }.flat_map(|boxed| boxed.half[..2].iter().copied());
+        let capsule = self.capsule.iter().map(|capsule| capsule.radius);
+        let all = self.radius.into_iter().chain(boxed).chain(capsule);
+        all.fold(f32::INFINITY, f32::min)
     }
 
     /// Where the goal is at a time [s].
@@ -193,6 +228,14 @@ impl HandText {
                 [0, 1, 2].map(|axis: usize| from[axis] + share * (to[axis] - from[axis]))
             }
         }
+    }
+}
+
+/// Sends the hands of a world to goals, the first to the first. A hand whose goal is no place stays where it is.
+pub(crate) fn send<D: Dim>(world: &mut World<D>, goals: &[[f32; 3]]) {
+    let hands: Vec<RigidId> = world.hands().map(|(hand, _)| hand).collect();
+    for (hand, &goal) in hands.into_iter().zip(goals) {
+        let _is_place = world.set_goal(hand, goal);
     }
 }
 

@@ -3,8 +3,7 @@
 use super::map::Map;
 use crate::Round;
 use fuwafuwa::vector::{dot, length, minus, plus, scaled};
-use fuwafuwa::world::Obstacle;
-use fuwafuwa::{Dim, PieceView, Shape, Vector};
+use fuwafuwa::{Dim, PieceView, Rigid, Shape, Vector};
 use std::cell::LazyCell;
 
 /// Pieces with less than this share of the mass are not worth the way.
@@ -68,14 +67,15 @@ impl Sight {
     /// far off the middle of the mouth a wide piece may be to be pushed straight in [m].
     pub(super) fn of<D: Dim>(round: &Round<D>, skips: usize, off: f32) -> Option<Self> {
         let (world, arena) = (round.world(), round.level().arena());
-        let (region, obstacles) = (round.basket()?, world.obstacles());
+        let region = round.basket()?;
+        let obstacles: Vec<&Shape> = world.obstacles().map(Rigid::shape).collect();
+        let obstacles = obstacles.as_slice();
         let basket = Basket::of::<D>(region, obstacles)?;
-        let hand = world.manipulators().first()?;
-        let mut map = Map::new::<D>(arena, |at| {
-            match clearance(at, obstacles) < 0.9 * hand.radius {
-                true => RIGID,
-                false => 1.0,
-            }
+        let hand = round.hands().next()?;
+        let radius = hand.shape().inradius();
+        let mut map = Map::new::<D>(arena, |at| match clearance(at, obstacles) < 0.9 * radius {
+            true => RIGID,
+            false => 1.0,
         });
 
         let mass = round.progress().mass;
@@ -87,17 +87,17 @@ impl Sight {
         let ways = LazyCell::new(|| map.ways_to(basket.front()));
         let ahead = |from: Vector| ways.next(from);
         let mut pieces: Vec<Piece> = (views.iter().filter(is_out).take(MOST))
-            .map(|view| Piece::of::<D>(view, &basket, &ahead, off, hand.radius))
+            .map(|view| Piece::of::<D>(view, &basket, &ahead, off, radius))
             .collect();
         if pieces.is_empty() {
-            pieces.push(Piece::of::<D>(largest, &basket, &ahead, off, hand.radius));
+            pieces.push(Piece::of::<D>(largest, &basket, &ahead, off, radius));
         }
         // Stays in order of mass otherwise.
-        pieces.sort_by_key(|piece| clearance(piece.behind, obstacles) < 0.5 * hand.radius);
+        pieces.sort_by_key(|piece| clearance(piece.behind, obstacles) < 0.5 * radius);
         let piece = pieces[skips % pieces.len()];
 
         let mut within = 0.0;
-        for body in world.bodies() {
+        for body in world.bodies().iter() {
             for (id, _) in body.mesh().nodes() {
                 let (at, _, share) = body.node_state(id);
                 map.add(at, SOFT * share / mass);
@@ -116,7 +116,7 @@ impl Sight {
             surplus: within - round.level().game().share,
             hand: hand.position(),
             goal: hand.goal(),
-            away: clamped(out, arena, hand.radius),
+            away: clamped(out, arena, radius),
             map,
         })
     }
@@ -166,7 +166,7 @@ impl Piece {
 }
 
 impl Basket {
-    fn of<D: Dim>(region: &Shape, obstacles: &[Obstacle]) -> Option<Self> {
+    fn of<D: Dim>(region: &Shape, obstacles: &[&Shape]) -> Option<Self> {
         let Shape::Box { centre, half } = *region else {
             return None;
         };
@@ -199,7 +199,7 @@ impl Basket {
 }
 
 /// The way into a basket: against the direction in which one sees farthest out of it.
-fn inwards<D: Dim>(centre: Vector, half: Vector, obstacles: &[Obstacle]) -> Vector {
+fn inwards<D: Dim>(centre: Vector, half: Vector, obstacles: &[&Shape]) -> Vector {
     const WAYS: [Vector; 6] = [
         [1.0, 0.0, 0.0],
         [0.0, -1.0, 0.0],
@@ -226,10 +226,8 @@ fn across<D: Dim>(axis: Vector) -> Vector {
 }
 
 /// How far the nearest obstacle is [m]; negative in it.
-fn clearance(at: Vector, obstacles: &[Obstacle]) -> f32 {
-    let distances = obstacles
-        .iter()
-        .map(|obstacle| obstacle.shape.distance(at).0);
+fn clearance(at: Vector, obstacles: &[&Shape]) -> f32 {
+    let distances = obstacles.iter().map(|shape| shape.distance(at).0);
     distances.fold(f32::INFINITY, f32::min)
 }
 

@@ -16,7 +16,7 @@ fn ball() -> World<Dim3> {
 
 /// Moves all nodes from where they were at rest.
 fn deform(world: &mut World<Dim3>, to: impl Fn(u32, Vector) -> Vector) {
-    let body = world.body_mut(0);
+    let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
     let voxel = body.grid().voxel_size();
     let nodes = body.mesh().nodes();
     let nodes: Vec<_> = nodes.map(|(id, node)| (id, node.at)).collect();
@@ -38,16 +38,16 @@ fn covered(perch: &Perch, body: &Body<Dim3>) -> f32 {
 #[test]
 fn it_looks_at_who_looks_from_a_place_that_holds_it() {
     let world = ball();
-    let perch = Perch::new(&world.bodies()[0], Some(EYE));
+    let perch = Perch::new(world.bodies().first().unwrap(), Some(EYE));
     assert!(dot(perch.axes[2], wish([0.5; 3], EYE)) > 0.97, "{perch:?}");
     assert!(perch.axes[0][0] > 0.97 && perch.size > 0.2, "{perch:?}");
-    assert!(covered(&perch, &world.bodies()[0]) > 0.9);
+    assert!(covered(&perch, world.bodies().first().unwrap()) > 0.9);
 }
 
 #[test]
 fn it_rolls_with_the_skin_however_fast_that_turns() {
     let mut world = ball();
-    let mut perch = Perch::new(&world.bodies()[0], Some(EYE));
+    let mut perch = Perch::new(world.bodies().first().unwrap(), Some(EYE));
     let (first, out) = (perch.at, perch.axes[2]);
     for tick in 1..20 {
         // Ten radians a second, and away.
@@ -59,7 +59,12 @@ fn it_rolls_with_the_skin_however_fast_that_turns() {
             plus(at, [0.5 + 0.1 * tick as f32, 0.5, 0.5])
         };
         deform(&mut world, |_, at| carried(at));
-        perch.follow(&world.bodies()[0], Some(EYE), tick % 5 == 0, TICK);
+        perch.follow(
+            world.bodies().first().unwrap(),
+            Some(EYE),
+            tick % 5 == 0,
+            TICK,
+        );
         assert!(dot(perch.axes[2], turn(out)) > 0.999, "at {tick}");
         assert!(length(minus(perch.at, carried(first))) < 0.01, "at {tick}");
     }
@@ -68,12 +73,17 @@ fn it_rolls_with_the_skin_however_fast_that_turns() {
 #[test]
 fn it_comes_back_once_its_body_has_turned_its_back() {
     let mut world = ball();
-    let mut perch = Perch::new(&world.bodies()[0], Some(EYE));
+    let mut perch = Perch::new(world.bodies().first().unwrap(), Some(EYE));
     deform(&mut world, |_, [x, y, z]| [1.0 - x, y, 1.0 - z]);
     let mut least = f32::MAX;
     for tick in 0..60 {
         let before = perch.clone();
-        perch.follow(&world.bodies()[0], Some(EYE), tick % 5 == 0, TICK);
+        perch.follow(
+            world.bodies().first().unwrap(),
+            Some(EYE),
+            tick % 5 == 0,
+            TICK,
+        );
         least = least.min(perch.size);
         // It never goes anywhere while it can be seen.
         let leap = tick > 0 && length(minus(perch.axes[2], before.axes[2])) > 0.1;
@@ -87,32 +97,47 @@ fn it_comes_back_once_its_body_has_turned_its_back() {
 #[test]
 fn it_leaves_a_place_that_was_torn_off_for_skin_that_is_left() {
     let mut world = ball();
-    let mut perch = Perch::new(&world.bodies()[0], Some(EYE));
+    let mut perch = Perch::new(world.bodies().first().unwrap(), Some(EYE));
     // What was towards who looks is cut off and gone.
     let (from, across, along) = ([-0.5, 1.25, 0.0], [2.0, 0.0, 0.0], [0.0, -1.3, 1.3]);
-    world.cut(
-        0,
-        &Blade {
-            from,
-            across,
-            along,
-        },
-    );
-    let masses = masses(&world.bodies()[0]);
+    world
+        .cut(
+            world.nth_body(0).unwrap(),
+            &Blade {
+                from,
+                across,
+                along,
+            },
+        )
+        .unwrap();
+    let masses = masses(world.bodies().first().unwrap());
     let is_gone = |piece: u32| masses[piece as usize] < masses.iter().sum::<f32>() * 0.5;
     deform(&mut world, |piece, at| match is_gone(piece) {
         true => plus(at, [9.0, 0.0, 0.0]),
         false => at,
     });
     for tick in 0..60 {
-        perch.follow(&world.bodies()[0], Some(EYE), tick % 5 == 0, TICK);
+        perch.follow(
+            world.bodies().first().unwrap(),
+            Some(EYE),
+            tick % 5 == 0,
+            TICK,
+        );
     }
     assert!(!is_gone(perch.piece) && perch.size > 0.08, "{perch:?}");
-    assert!(covered(&perch, &world.bodies()[0]) > 0.7, "{perch:?}");
+    assert!(
+        covered(&perch, world.bodies().first().unwrap()) > 0.7,
+        "{perch:?}"
+    );
     // There it stays.
     let place = perch.place.expect("it has one").voxel;
     for tick in 0..120 {
-        perch.follow(&world.bodies()[0], Some(EYE), tick % 5 == 0, TICK);
+        perch.follow(
+            world.bodies().first().unwrap(),
+            Some(EYE),
+            tick % 5 == 0,
+            TICK,
+        );
         assert_eq!(perch.place.expect("it has one").voxel, place);
     }
 }

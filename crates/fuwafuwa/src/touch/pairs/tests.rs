@@ -1,4 +1,5 @@
 use super::*;
+use crate::body::Body;
 use crate::dim::{Dim2, Dim3};
 use crate::grid::VoxelGrid;
 use crate::material::Material;
@@ -14,7 +15,7 @@ fn random(seed: &mut u32) -> f32 {
 }
 
 /// A tick begins, as for a world.
-fn start_tick<D: Dim>(spheres: &mut Spheres, pairs: &mut SpherePairs, bodies: &[Body<D>]) {
+fn start_tick<D: Dim>(spheres: &mut Spheres, pairs: &mut SpherePairs, bodies: &Bodies<D>) {
     let places = spheres.start_tick(bodies, &mut pairs.changed);
     pairs.start_tick(places.is_some());
     if let Some(places) = places {
@@ -23,10 +24,10 @@ fn start_tick<D: Dim>(spheres: &mut Spheres, pairs: &mut SpherePairs, bodies: &[
 }
 
 /// The list against all pairs that there are.
-fn compare<D: Dim>(pairs: &SpherePairs, spheres: &Spheres, bodies: &[Body<D>], when: &str) {
+fn compare<D: Dim>(pairs: &SpherePairs, spheres: &Spheres, bodies: &Bodies<D>, when: &str) {
     assert!(pairs.list.is_sorted_by(|a, b| a.spheres < b.spheres));
     let all = &spheres.list;
-    let centre = |sphere: &ContactSphere| sphere.mean::<D>(&bodies[sphere.body as usize].position);
+    let centre = |sphere: &ContactSphere| sphere.mean::<D>(&bodies.at(sphere.body).position);
     for (second, b) in all.iter().zip(0..) {
         for (first, a) in all.iter().zip(0..b) {
             let apart = minus(centre(first), centre(second));
@@ -44,10 +45,18 @@ fn compare<D: Dim>(pairs: &SpherePairs, spheres: &Spheres, bodies: &[Body<D>], w
     }
 }
 
+/// A ball, by itself.
+fn ball<D: Dim>(n: usize) -> Bodies<D> {
+    let grid = VoxelGrid::<D>::ball(n, 1.0).expect("a ball is not empty");
+    let mut bodies = Bodies::default();
+    bodies.insert(Body::new(grid, &[Material::default()]).expect("the material is good"));
+    bodies
+}
+
 /// Crumbs fly about, some much faster than others, turn round on their way, and wake.
 fn check<D: Dim>(n: usize) {
-    let grid = VoxelGrid::<D>::ball(n, 1.0).expect("a ball is not empty");
-    let mut body = Body::new(grid, &[Material::default()]).expect("the material is good");
+    let mut bodies = ball::<D>(n);
+    let body = bodies.at_mut(0);
     body.crumble().expect("the mesh stays whole");
     let (size, count) = (body.grid.voxel_size(), body.pieces.list.len());
     let mut seed = 7;
@@ -57,6 +66,7 @@ fn check<D: Dim>(n: usize) {
         // A third, or nearly all.
         let most = if tick % 2 == 0 { 0.2 } else { -0.45 };
         let sleepers: Vec<bool> = (0..count).map(|_| random(&mut seed) > most).collect();
+        let body = bodies.at_mut(0);
         body.set_asleep(&vec![true; count], false);
         body.set_asleep(&sleepers, tick % 3 == 1);
         // Up to 30 voxels a tick, most of them hardly one.
@@ -83,32 +93,34 @@ fn check<D: Dim>(n: usize) {
                 body.velocity[node] = scaled(speeds[piece], moves);
             }
         };
-        velocity(&mut body, &|_| 1.0);
-        start_tick(&mut spheres, &mut pairs, std::slice::from_ref(&body));
+        velocity(body, &|_| 1.0);
+        start_tick(&mut spheres, &mut pairs, &bodies);
         for substep in 0..SUBSTEPS {
             if substep == 3 {
-                velocity(&mut body, &|piece| if piece % 3 == 0 { -1.0 } else { 1.0 });
+                velocity(bodies.at_mut(0), &|piece| {
+                    if piece % 3 == 0 { -1.0 } else { 1.0 }
+                });
             }
             if substep == 5 && tick % 3 == 1 {
                 let marked: Vec<bool> = (0..count).map(|piece| piece % 2 == 0).collect();
-                body.set_asleep(&marked, false);
+                bodies.at_mut(0).set_asleep(&marked, false);
                 let woken: Vec<(u32, u32)> = (0..count as u32)
                     .step_by(2)
                     .map(|piece| (0, piece))
                     .collect();
                 spheres.wake(&woken, &mut pairs.changed);
             }
-            let bodies = std::slice::from_ref(&body);
             whole += u32::from(pairs.bins.is_none());
-            again += u32::from(pairs.follow(&mut spheres, bodies));
+            again += u32::from(pairs.follow(&mut spheres, &bodies));
             compare(
                 &pairs,
                 &spheres,
-                bodies,
+                &bodies,
                 &format!("tick {tick}, substep {substep}"),
             );
             spheres.note_close(pairs.list.iter().flat_map(|pair| pair.spheres));
             let mut furthest = 0.0f32;
+            let body = bodies.at_mut(0);
             for node in 0..body.position.len() {
                 let step = scaled(body.velocity[node], SUBSTEP);
                 furthest = furthest.max(length(step));
@@ -143,20 +155,18 @@ fn lips(spheres: &Spheres) -> Vec<[(u32, u32); 2]> {
 /// A body is torn at random; the spheres and lips kept up against those listed anew, and who is bound to whom
 /// against the nodes they have.
 fn check_tears<D: Dim>(n: usize) {
-    let grid = VoxelGrid::<D>::ball(n, 1.0).expect("a ball is not empty");
-    let mut body = Body::new(grid, &[Material::default()]).expect("the material is good");
+    let mut bodies = ball::<D>(n);
     let mut seed = 5;
     let mut below = |count: usize| ((random(&mut seed) + 0.5) * count as f32) as usize % count;
     let (mut spheres, mut pairs) = (Spheres::default(), SpherePairs::default());
     for tick in 0..20 {
-        start_tick(&mut spheres, &mut pairs, std::slice::from_ref(&body));
+        start_tick(&mut spheres, &mut pairs, &bodies);
         for round in 0..4 {
-            let bodies = std::slice::from_ref(&body);
-            pairs.follow(&mut spheres, bodies);
+            pairs.follow(&mut spheres, &bodies);
             compare(
                 &pairs,
                 &spheres,
-                bodies,
+                &bodies,
                 &format!("tick {tick}, round {round}"),
             );
             spheres.note_close(pairs.list.iter().flat_map(|pair| pair.spheres));
@@ -166,19 +176,20 @@ fn check_tears<D: Dim>(n: usize) {
                 (0..D::N).for_each(|axis| at[axis] = below(n + 1) as i32);
                 (at, 1 + below((1 << D::CORNERS) - 2) as u8)
             });
+            let body = bodies.at_mut(0);
             let torn = body.tear(&sides.collect::<Vec<_>>());
             let torn = torn.expect("a release leaves the mesh whole");
-            spheres.tear(0, &body, &torn, &mut pairs.changed);
+            spheres.tear(0, body, &torn, &mut pairs.changed);
             let mut kept = spheres.list.clone();
             kept.sort_by_key(ContactSphere::key);
             let mut anew = Spheres::default();
-            anew.start_tick(std::slice::from_ref(&body), &mut Vec::new());
+            anew.start_tick(&bodies, &mut Vec::new());
             assert_eq!(kept, anew.list);
             assert_eq!(lips(&spheres), lips(&anew));
-            let mut rebuilt = body.clone();
-            rebuilt.rebuild();
+            let mut rebuilt = bodies.clone();
+            rebuilt.at_mut(0).rebuild();
             let mut anew = Spheres::default();
-            anew.start_tick(std::slice::from_ref(&rebuilt), &mut Vec::new());
+            anew.start_tick(&rebuilt, &mut Vec::new());
             assert_eq!(kept, anew.list, "what tears kept up, and a fresh look");
         }
         for b in 0..spheres.list.len() {
@@ -196,7 +207,7 @@ fn check_tears<D: Dim>(n: usize) {
             }
         }
     }
-    assert!(body.pieces.list.len() > 10);
+    assert!(bodies.at(0).pieces.list.len() > 10);
 }
 
 #[test]

@@ -1,21 +1,29 @@
-//! The player's rigid hand: a ball that follows a goal and is stopped by what it touches.
+//! What is rigid: walls, bars and floors that stand, and the hands that players move.
 //!
-//! Between the goal, which the input moves, and the hand stands a spring with a damper, the
+//! Between the goal of a hand, which the input moves, and the hand stands a spring with a damper, the
 //! *virtual coupling* [Colgate 1995]. Its force is smooth, because the hand has inertia, and it is
-//! what a force-feedback device should play; the raw contact force jumps.
+//! what a force-feedback device should play; the raw contact force jumps. Nothing rigid turns.
 
-use crate::shape::{Shape, Vector};
+use crate::dim::Dim;
+use crate::handle::{Arena, RigidId};
+use crate::shape::{BadShape, Shape, Vector};
 use crate::vector::{length, minus, plus, scaled};
 use std::fmt;
+
+/// The rigid things of a world.
+pub type Rigids = Arena<RigidId, Rigid>;
 
 /// Hands and goals further from the origin than this on an axis [m] are refused, like those that
 /// are no place at all: single precision has no millimetres out there, and no such speeds.
 pub const FARTHEST: f32 = 1e6;
 
-/// How a manipulator follows its goal.
+/// What moves a rigid thing.
 #[derive(Copy, Clone, Debug, PartialEq)]
+#[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Drive {
+    /// Nothing: it stays where it is, and what rests on it may sleep.
+    Fixed,
     /// It is at its goal at the end of each tick, whatever is in the way.
     Kinematic,
     /// It is pulled by a spring and a damper and stopped by what it touches.
@@ -43,32 +51,33 @@ impl Default for Drive {
     }
 }
 
-/// A rigid ball (2D: a disc) that a player moves.
+/// Something rigid: an obstacle, which stands still, or a hand, which follows its goal.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Manipulator {
-    /// Radius [m].
-    pub radius: f32,
+pub struct Rigid {
     /// Coulomb friction with what it touches; about 0.2.
     pub friction: f32,
-    /// How it follows its goal.
+    /// What moves it.
     pub drive: Drive,
-    /// Middle [m].
+    /// As it would be at the origin, and where it is.
+    form: Shape,
+    shape: Shape,
+    /// How far from the origin it is [m].
     pub(crate) position: Vector,
     /// [m/s]
     pub(crate) velocity: Vector,
     /// Where it was at the start of the tick [m].
-    pub(crate) position_before: Vector,
+    position_before: Vector,
     /// Where it is to go [m].
-    pub(crate) goal: Vector,
+    goal: Vector,
     /// Where the goal was at the end of the last tick [m], and how fast it moves [m/s].
-    pub(crate) goal_before: Vector,
-    pub(crate) goal_velocity: Vector,
+    goal_before: Vector,
+    goal_velocity: Vector,
     /// For each substep of the last tick.
     pub(crate) reactions: Vec<Reaction>,
 }
 
-/// What a manipulator feels in one substep.
+/// What a hand feels in one substep.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Reaction {
@@ -78,31 +87,52 @@ pub struct Reaction {
     pub coupling: Vector,
 }
 
-/// A manipulator that cannot be: which field, and what it must be.
+/// Something rigid that cannot be: which field, and what it must be.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct BadManipulator {
+pub struct BadRigid {
     /// The field.
     pub field: &'static str,
     /// What was expected.
     pub expected: &'static str,
 }
 
-impl fmt::Display for BadManipulator {
+impl fmt::Display for BadRigid {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { field, expected } = self;
-        write!(f, "the manipulator's {field} must be {expected}")
+        write!(f, "the {field} of what is rigid must be {expected}")
     }
 }
 
-impl std::error::Error for BadManipulator {}
+impl std::error::Error for BadRigid {}
 
-impl Manipulator {
-    /// A hand of the given radius [m], at rest at `position` [m], with the usual coupling.
-    pub fn new(position: Vector, radius: f32) -> Self {
+impl From<BadShape> for BadRigid {
+    fn from(BadShape { field, expected }: BadShape) -> Self {
+        Self { field, expected }
+    }
+}
+
+impl Rigid {
+    /// A shape that stands still where it is; of friction about 0.2.
+    pub fn fixed(shape: Shape, friction: f32) -> Self {
         Self {
-            radius,
+            friction,
+            ..Self::driven(shape, [0.0; 3], Drive::Fixed)
+        }
+    }
+
+    /// A hand: a ball (2D: a disc) of the given radius [m], at rest at `position` [m], with the usual coupling.
+    pub fn hand(position: Vector, radius: f32) -> Self {
+        let centre = [0.0; 3];
+        Self::driven(Shape::Ball { centre, radius }, position, Drive::default())
+    }
+
+    /// A hand of any shape, `form` being what it is at the origin, at rest at `position` [m].
+    pub fn driven(form: Shape, position: Vector, drive: Drive) -> Self {
+        Self {
             friction: 0.2,
-            drive: Drive::default(),
+            drive,
+            form,
+            shape: form.moved(position),
             position,
             velocity: [0.0; 3],
             position_before: position,
@@ -113,33 +143,50 @@ impl Manipulator {
         }
     }
 
-    /// The same hand with another drive.
-    pub fn driven(self, drive: Drive) -> Self {
+    /// The same with another drive.
+    pub fn with_drive(self, drive: Drive) -> Self {
         Self { drive, ..self }
+    }
+
+    /// As a world of `D` sees it: in the plane third coordinates do not count.
+    pub(crate) fn seen_in<D: Dim>(mut self) -> Self {
+        self.form = self.form.seen_in::<D>();
+        let places = [&mut self.position, &mut self.goal, &mut self.goal_before];
+        let others = [&mut self.position_before, &mut self.velocity];
+        for vector in places.into_iter().chain(others) {
+            vector[D::N..].fill(0.0);
+        }
+        self.shape = self.form.moved(self.position);
+        self
     }
 
     /// Checks every field.
     ///
     /// # Errors
-    /// [`BadManipulator`] names the first field that is out of range.
-    pub fn check(&self) -> Result<(), BadManipulator> {
+    /// [`BadRigid`] names the first field that is out of range.
+    pub fn check(&self) -> Result<(), BadRigid> {
         let within = |field, k: f32, low: f32, high: f32, expected| {
             let good = k >= low && k <= high;
-            good.then_some(()).ok_or(BadManipulator { field, expected })
+            good.then_some(()).ok_or(BadRigid { field, expected })
         };
         let (tiny, huge) = (f32::MIN_POSITIVE, f32::MAX);
-        let is_place = is_place(self.position);
-        let (field, expected) = ("position", "within 1e6 m of the origin");
-        is_place
+        let places = [
+            ("position", self.position),
+            ("goal", self.goal),
+            ("goal", self.goal_before),
+            ("position", self.position_before),
+        ];
+        for (field, place) in places {
+            let expected = "within 1e6 m of the origin";
+            is_place(place)
+                .then_some(())
+                .ok_or(BadRigid { field, expected })?;
+        }
+        self.form.check()?;
+        let (field, expected) = ("shape", "what it is at the origin, moved to its position");
+        (self.shape == self.form.moved(self.position))
             .then_some(())
-            .ok_or(BadManipulator { field, expected })?;
-        within(
-            "radius",
-            self.radius,
-            tiny,
-            FARTHEST,
-            "positive, at most 1e6 m",
-        )?;
+            .ok_or(BadRigid { field, expected })?;
         within(
             "friction",
             self.friction,
@@ -147,8 +194,11 @@ impl Manipulator {
             huge,
             "0 or more, and finite",
         )?;
+        if let (Shape::Ball { radius, .. }, true) = (self.form, self.is_driven()) {
+            within("radius", radius, tiny, FARTHEST, "positive, at most 1e6 m")?;
+        }
         match self.drive {
-            Drive::Kinematic => Ok(()),
+            Drive::Fixed | Drive::Kinematic => Ok(()),
             Drive::Coupled {
                 mass,
                 stiffness,
@@ -163,7 +213,7 @@ impl Manipulator {
         }
     }
 
-    /// Middle [m].
+    /// Where it is [m]: of a hand its middle, of what is fixed the origin.
     pub fn position(&self) -> Vector {
         self.position
     }
@@ -183,18 +233,33 @@ impl Manipulator {
         &self.reactions
     }
 
-    /// The ball that it is.
-    pub fn shape(&self) -> Shape {
-        Shape::Ball {
-            centre: self.position,
-            radius: self.radius,
+    /// Its shape where it is now.
+    pub fn shape(&self) -> &Shape {
+        &self.shape
+    }
+
+    /// Whether it follows a goal: a hand, no obstacle.
+    pub fn is_driven(&self) -> bool {
+        self.drive != Drive::Fixed
+    }
+
+    /// Sends it to a goal [m]; the third coordinate does not count in the plane.
+    pub(crate) fn send<D: Dim>(&mut self, goal: Vector) -> Result<(), BadRigid> {
+        let checks = [
+            (self.is_driven(), "drive", "one that follows a goal"),
+            (is_place(goal), "goal", "within 1e6 m of the origin"),
+        ];
+        for (is_good, field, expected) in checks {
+            is_good.then_some(()).ok_or(BadRigid { field, expected })?;
         }
+        self.goal[..D::N].copy_from_slice(&goal[..D::N]);
+        Ok(())
     }
 
     /// One over its mass as contact sees it [1/kg]; 0 when nothing can push it.
     pub(crate) fn inverse_mass(&self) -> f32 {
         match self.drive {
-            Drive::Kinematic => 0.0,
+            Drive::Fixed | Drive::Kinematic => 0.0,
             Drive::Coupled { mass, .. } => 1.0 / mass,
         }
     }
@@ -212,7 +277,7 @@ impl Manipulator {
         self.goal_before = self.goal;
         let is_finite = self.velocity.iter().all(|k| k.is_finite());
         if !is_finite || !is_place(self.position) {
-            self.position = self.position_before;
+            self.stand_at(self.position_before);
             self.velocity = [0.0; 3];
             self.reactions.fill(Reaction::default());
         }
@@ -223,6 +288,7 @@ impl Manipulator {
         self.goal_before = plus(self.goal_before, scaled(self.goal_velocity, duration));
         let mut reaction = Reaction::default();
         match self.drive {
+            Drive::Fixed => return,
             Drive::Kinematic => {
                 self.velocity = scaled(minus(self.goal_before, self.position), 1.0 / duration);
             }
@@ -253,11 +319,30 @@ impl Manipulator {
 
     /// Moves the hand by its velocity.
     pub(crate) fn drift(&mut self, duration: f32) {
-        self.position = plus(self.position, scaled(self.velocity, duration));
+        if self.is_driven() {
+            self.stand_at(plus(self.position, scaled(self.velocity, duration)));
+        }
+    }
+
+    /// Feels an impulse [N s] of something that it touches, within a substep of `duration` [s].
+    #[inline(always)]
+    pub(crate) fn push(&mut self, impulse: Vector, duration: f32) {
+        let inverse_mass = self.inverse_mass();
+        for axis in 0..3 {
+            self.velocity[axis] += impulse[axis] * inverse_mass;
+            if let Some(reaction) = self.reactions.last_mut() {
+                reaction.contact[axis] += impulse[axis] / duration;
+            }
+        }
+    }
+
+    fn stand_at(&mut self, position: Vector) {
+        self.position = position;
+        self.shape = self.form.moved(position);
     }
 }
 
-/// Whether a hand or its goal may be there.
-pub(crate) fn is_place(at: Vector) -> bool {
+/// Whether something rigid or its goal may be there.
+fn is_place(at: Vector) -> bool {
     at.iter().all(|k| k.abs() <= FARTHEST)
 }

@@ -1,0 +1,125 @@
+//! How far two shapes are from each other.
+
+use super::{Shape, Vector, distance_from_box};
+use crate::vector::{dot, minus, plus, scaled};
+
+/// The nearest point of a bar's axis is narrowed down so many times, each time to two thirds.
+const NARROWINGS: usize = 40;
+
+impl Shape {
+    /// How far it is from another shape [m], negative where they overlap, and the direction in which it gets away
+    /// from it.
+    pub fn gap(&self, other: &Self) -> (f32, Vector) {
+        match (*self, *other) {
+            (Self::Ball { centre, radius }, _) => {
+                let (distance, normal) = other.distance(centre);
+                (distance - radius, normal)
+            }
+            (_, Self::Ball { .. }) => turned(other.gap(self)),
+            (Self::Capsule { from, to, radius }, _) => {
+                let (distance, normal) = nearest_of_segment(from, to, other);
+                (distance - radius, normal)
+            }
+            (_, Self::Capsule { .. }) => turned(other.gap(self)),
+            (
+                Self::Box { centre, half },
+                Self::Box {
+                    centre: middle,
+                    half: size,
+                },
+            ) => distance_from_box(minus(centre, middle), plus(half, size)),
+            (Self::Box { centre, half }, Self::HalfSpace { normal, offset }) => {
+                let reach = [0, 1, 2].map(|axis: usize| half[axis] * normal[axis].abs());
+                let reach = reach.into_iter().sum::<f32>();
+                (dot(normal, centre) - offset - reach, normal)
+            }
+            (Self::HalfSpace { .. }, Self::Box { .. }) => turned(other.gap(self)),
+            // Each fills half of everything: no push would part them.
+            (Self::HalfSpace { normal, .. }, Self::HalfSpace { .. }) => (f32::INFINITY, normal),
+        }
+    }
+}
+
+/// The same gap as seen from the other side.
+fn turned((gap, normal): (f32, Vector)) -> (f32, Vector) {
+    (gap, scaled(normal, -1.0))
+}
+
+/// The least distance of the points of a segment from a shape, and the normal there: along a segment the distance
+/// from something convex has one valley.
+fn nearest_of_segment(from: Vector, to: Vector, shape: &Shape) -> (f32, Vector) {
+    let at = |share: f32| shape.distance(plus(from, scaled(minus(to, from), share)));
+    let (mut low, mut high) = (0.0f32, 1.0f32);
+    for _ in 0..NARROWINGS {
+        let third = (high - low) / 3.0;
+        let [left, right] = [low + third, high - third];
+        if at(left).0 > at(right).0 {
+            low = left;
+        } else {
+            high = right;
+        }
+    }
+    let ends = [at(0.0), at(1.0)];
+    let within = at(0.5 * (low + high));
+    ends.into_iter()
+        .fold(within, |best, end| if end.0 < best.0 { end } else { best })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Gap and direction, and the same from the other side.
+    fn check(a: Shape, b: Shape, gap: f32, normal: Vector) {
+        for (first, second, sign) in [(a, b, 1.0), (b, a, -1.0)] {
+            let (found, way) = first.gap(&second);
+            assert!((found - gap).abs() < 1e-5, "{first:?} {second:?}: {found}");
+            let off = minus(way, scaled(normal, sign));
+            assert!(dot(off, off) < 1e-4, "{first:?} {second:?}: {way:?}");
+        }
+    }
+
+    #[test]
+    fn every_shape_knows_how_far_it_is_from_every_other() {
+        let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+        let ball = |centre| Shape::Ball {
+            centre,
+            radius: 0.5,
+        };
+        let cube = |centre| Shape::Box {
+            centre,
+            half: [1.0, 0.5, 1.0],
+        };
+        let bar = |from, to| Shape::Capsule {
+            from,
+            to,
+            radius: 0.25,
+        };
+        let (up, right) = ([0.0, 1.0, 0.0], [1.0, 0.0, 0.0]);
+        check(ball([0.0, 2.0, 0.0]), floor, 1.5, up);
+        check(ball([3.0, 0.0, 0.0]), cube([0.0; 3]), 1.5, right);
+        check(cube([0.0, 0.25, 0.0]), floor, -0.25, up);
+        check(cube([3.0, 0.0, 0.0]), cube([0.0; 3]), 1.0, right);
+        check(cube([1.9, 0.0, 0.0]), cube([0.0; 3]), -0.1, right);
+        let leaning = bar([0.0, 1.0, 0.0], [3.0, 2.0, 0.0]);
+        check(leaning, floor, 0.75, up);
+        check(leaning, ball([-2.0, 1.0, 0.0]), 1.25, right);
+        check(
+            bar([-4.0, 1.5, 0.0], [4.0, 1.5, 0.1]),
+            cube([0.0; 3]),
+            0.75,
+            up,
+        );
+        // Bars that cross each other have their nearest points within.
+        let [along, across] =
+            [[2.0, 0.0, 0.0], [0.0, 0.0, 2.0]].map(|way: Vector| (scaled(way, -1.0), way));
+        let above = |k: Vector| plus(k, up);
+        check(
+            bar(above(along.0), above(along.1)),
+            bar(across.0, across.1),
+            0.5,
+            up,
+        );
+        assert_eq!(floor.gap(&floor).0, f32::INFINITY);
+    }
+}
