@@ -13,12 +13,12 @@ const FLAT: f32 = 0.01;
 impl<D: Dim> Body<D> {
     /// The centre of an element [m] and its deformation gradient F, by rows.
     pub(crate) fn deformation(&self, element: &Element) -> (Vector, [Vector; 3]) {
-        let stencil = self.mesh.stencil(element);
-        let half = 0.5 * self.grid.voxel_size() * element.cell.width() as f32;
+        let stencil = self.truth.mesh.stencil(element);
+        let half = 0.5 * self.truth.grid.voxel_size() * element.cell.width() as f32;
         let scale = 1.0 / (stencil.volume as f32 * half);
         let (mut centre, mut gradient) = ([0.0; 3], [[0.0; 3]; 3]);
         for (place, &node) in element.nodes.iter().enumerate() {
-            let at = three(self.position[node as usize]);
+            let at = three(self.state.position[node as usize]);
             let share = (stencil.volumes[place] / stencil.volume) as f32;
             centre = plus(centre, scaled(at, share));
             let b = stencil.gradients[place].map(|k| k as f32);
@@ -37,8 +37,8 @@ impl<D: Dim> Body<D> {
     /// Where an element takes a place of the undeformed body, given in voxels: its affine motion [m].
     pub(crate) fn carry(&self, element: &Element) -> impl Fn(Vector) -> Vector + use<D> {
         let (centre, gradient) = self.deformation(element);
-        let stencil = self.mesh.stencil(element);
-        let size = self.grid.voxel_size();
+        let stencil = self.truth.mesh.stencil(element);
+        let size = self.truth.grid.voxel_size();
         let half = 0.5 * size * element.cell.width() as f32;
         // The slot in the low corner of the cell, as seen from the volume centroid at rest.
         let steps = slot_at(stencil.slots[0] as usize).map(|k| k as f32 * half);
@@ -67,8 +67,8 @@ impl<D: Dim> Body<D> {
         // Cramer's rule: where the place was at rest, as seen from the centroid.
         let by = scaled(minus(at, centre), 1.0 / volume);
         let columns = [cross(y, z), cross(z, x), cross(x, y)];
-        let child_width = 0.5 * self.grid.voxel_size() * element.cell.width() as f32;
-        let stencil = self.mesh.stencil(element);
+        let child_width = 0.5 * self.truth.grid.voxel_size() * element.cell.width() as f32;
+        let stencil = self.truth.mesh.stencil(element);
         let corner = slot_at(stencil.slots[0] as usize);
         let mut child = 0;
         for axis in 0..D::N {

@@ -68,7 +68,7 @@ impl<D: Dim> Body<D> {
     /// A [`Defect`] when the mesh breaks: a fault of this library.
     #[inline(never)]
     pub fn cut(&mut self, blade: &Blade) -> Result<CutReport, Defect> {
-        if self.pyramid.grading() == Grading::Coarse {
+        if self.truth.pyramid.grading() == Grading::Coarse {
             return Ok(CutReport::default());
         }
         let opened = self.faces_across(blade);
@@ -95,32 +95,33 @@ impl<D: Dim> Body<D> {
     #[inline(never)]
     pub fn crumble(&mut self) -> Result<Vec<u32>, Defect> {
         let octants = |at: Point| (0..D::CORNERS).map(move |octant| (at, 1 << octant));
-        let everything: Vec<(Point, u8)> = self.sharing.points().flat_map(octants).collect();
+        let everything: Vec<(Point, u8)> = self.truth.sharing.points().flat_map(octants).collect();
         self.release(&everything)
     }
 
     /// The faces that a blade crosses, each as the voxel before it and its axis.
     fn faces_across(&self, blade: &Blade) -> BTreeSet<(Point, usize)> {
-        let mut middles = vec![None; self.grid.voxels().count()];
-        for (_, element) in self.mesh.elements() {
+        let mut middles = vec![None; self.truth.grid.voxels().count()];
+        for (_, element) in self.truth.mesh.elements() {
             let carry = self.carry(element);
-            for voxel in self.mesh.voxels(element) {
+            for voxel in self.truth.mesh.voxels(element) {
                 let middle = carry(voxel.map(|k| k as f32 + 0.5));
-                middles[self.grid.index(voxel)] = Some(middle);
+                middles[self.truth.grid.index(voxel)] = Some(middle);
             }
         }
         let mut crossed = BTreeSet::new();
-        for voxel in self.grid.voxels() {
-            let Some(here) = middles[self.grid.index(voxel)] else {
+        for voxel in self.truth.grid.voxels() {
+            let Some(here) = middles[self.truth.grid.index(voxel)] else {
                 continue;
             };
             for axis in 0..D::N {
                 let mut next = voxel;
                 next[axis] += 1;
-                if !self.grid.is_solid(next) {
+                if !self.truth.grid.is_solid(next) {
                     continue;
                 }
-                let there = middles[self.grid.index(next)].expect("every solid voxel is owned");
+                let there =
+                    middles[self.truth.grid.index(next)].expect("every solid voxel is owned");
                 if blade.parts(here, there) {
                     crossed.insert((voxel, axis));
                 }
@@ -132,14 +133,16 @@ impl<D: Dim> Body<D> {
     /// Where a lattice point is now [m], as one of the elements around it carries it.
     fn place_of(&self, at: Point) -> Option<Vector> {
         let voxels = (0..D::CORNERS).map(|octant| voxel_around::<D>(at, octant));
-        let owner = { voxels }.find_map(|voxel| self.mesh.owner(voxel))?;
-        Some(self.carry(self.mesh.element(owner)?)(at.map(|k| k as f32)))
+        let owner = { voxels }.find_map(|voxel| self.truth.mesh.owner(voxel))?;
+        Some(self.carry(self.truth.mesh.element(owner)?)(
+            at.map(|k| k as f32),
+        ))
     }
 
     /// What is to be released at a point so that the given faces are open: one mask for each side
     /// that comes off, nothing where they are open already.
     fn sides(&self, at: Point, opened: &BTreeSet<(Point, usize)>) -> Vec<u8> {
-        let around = self.sharing.around(at);
+        let around = self.truth.sharing.around(at);
         let mut groups = around.middle();
         let solid = groups.solid();
         let mut sides: Vec<u8> = (0..D::CORNERS)

@@ -2,27 +2,31 @@
 
 mod asleep;
 mod blend;
+mod cache;
 pub(crate) mod cooldowns;
 mod derived;
 mod motion;
 #[cfg(feature = "serde")]
 mod sound;
+mod state;
+mod truth;
 
-use crate::breakable::BreakableNodes;
 use crate::dim::{Dim, Point};
 use crate::grid::VoxelGrid;
 use crate::handle::{Arena, BodyId};
 use crate::law::Law;
 use crate::material::{BodyError, Material};
 use crate::mesh::{Element, Mesh};
-use crate::momentum::{Momentum, RoughMotion};
+use crate::momentum::Momentum;
 use crate::piece::Pieces;
 use crate::pyramid::{Grading, Pyramid};
 use crate::sharing::Sharing;
 use crate::solve::{Blocks, Row};
 use crate::vector::{as_row, dot, three};
 use blend::{Blend, elasticities};
-use cooldowns::Cooldowns;
+use cache::Cache;
+use state::State;
+use truth::Truth;
 
 /// The bodies of a world.
 pub type Bodies<D> = Arena<BodyId, Body<D>>;
@@ -32,45 +36,11 @@ pub type Bodies<D> = Arena<BodyId, Body<D>>;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Body<D: Dim> {
-    pub(crate) grid: VoxelGrid<D>,
-    pub(crate) sharing: Sharing<D>,
-    pub(crate) pyramid: Pyramid<D>,
-    pub(crate) mesh: Mesh<D>,
-    pub(crate) blocks: Blocks<D>,
-    pub(crate) pieces: Pieces,
-    materials: Vec<Material>,
-    blend: Blend,
-    /// By what its stiffness was lowered so that the substep bears it; 1 = not at all.
-    stiffness_scale: f64,
-    /// Position [m], velocity [m/s] and mass [kg] of each node, by id.
-    pub(crate) position: Vec<Row>,
-    pub(crate) velocity: Vec<Row>,
-    /// Whether nodes were placed from outside since forces were last computed.
-    placed: bool,
-    mass: Vec<f32>,
-    /// One over the mass [1/kg]; 0 while a node is held or sleeps.
-    pub(crate) inverse_mass: Vec<f32>,
-    held: Vec<bool>,
-    /// The nodes that move, ascending; stale after a remodelling.
+    // Snapshots have truth and state.
+    pub(crate) truth: Truth<D>,
+    pub(crate) state: State<D>,
     #[cfg_attr(feature = "serde", serde(skip))]
-    pub(crate) awake: Vec<u32>,
-    #[cfg_attr(feature = "serde", serde(skip))]
-    pub(crate) awake_is_stale: bool,
-    /// Nodes where a crack can start or go on, and how far each is overstrained.
-    #[cfg_attr(feature = "serde", serde(skip))]
-    pub(crate) breakable: BreakableNodes,
-    pub(crate) damage: Vec<f32>,
-    pub(crate) cooldowns: Cooldowns,
-    /// Which faces of an element of level 0 are bare: bit 2 · axis + side; by element id.
-    #[cfg_attr(feature = "serde", serde(skip))]
-    pub(crate) bare: Vec<u8>,
-    /// Of those with bare faces, the voxels around that share a node: see [`Sharing::bound`].
-    #[cfg_attr(feature = "serde", serde(skip))]
-    pub(crate) bound: Vec<u32>,
-    /// Positions a moment ahead, where damped forces are evaluated.
-    pub(crate) ahead: Vec<Row>,
-    /// The rigid motion of each piece, as of the last round of damping.
-    pub(crate) rigid: Vec<RoughMotion>,
+    pub(crate) cache: Cache,
 }
 
 impl<D: Dim> Body<D> {
@@ -105,63 +75,62 @@ impl<D: Dim> Body<D> {
         let sharing = Sharing::new(&grid);
         let pyramid = Pyramid::new(&grid, &sharing, grading);
         let mesh = Mesh::grade(&grid, &sharing, &pyramid)?;
+        let blocks = Blocks::new(law, &elasticities(materials, 1.0), grid.voxel_size());
         let mut body = Self {
-            blocks: Blocks::new(law, &elasticities(materials, 1.0), grid.voxel_size()),
-            pieces: Pieces::new(&mesh),
-            blend: Blend::of(&grid, materials),
-            materials: materials.to_vec(),
-            stiffness_scale: 1.0,
-            position: Vec::new(),
-            velocity: Vec::new(),
-            placed: false,
-            mass: Vec::new(),
-            inverse_mass: Vec::new(),
-            held: Vec::new(),
-            awake: Vec::new(),
-            awake_is_stale: true,
-            breakable: BreakableNodes::default(),
-            damage: Vec::new(),
-            cooldowns: Cooldowns::default(),
-            bare: Vec::new(),
-            bound: Vec::new(),
-            ahead: Vec::new(),
-            rigid: Vec::new(),
-            grid,
-            sharing,
-            pyramid,
-            mesh,
+            truth: Truth {
+                pieces: Pieces::new(&mesh),
+                materials: materials.to_vec(),
+                stiffness_scale: 1.0,
+                grid,
+                sharing,
+                pyramid,
+                mesh,
+            },
+            state: State::new(blocks),
+            cache: Cache::default(),
         };
         body.make_room();
-        for (id, node) in body.mesh.nodes() {
-            let at = node.at.map(|k| k as f32 * body.grid.voxel_size());
-            body.position[id as usize] = as_row(at);
+        for (id, node) in body.truth.mesh.nodes() {
+            let at = node.at.map(|k| k as f32 * body.truth.grid.voxel_size());
+            body.state.position[id as usize] = as_row(at);
         }
-        body.ahead.clone_from(&body.position);
-        let elements: Vec<u32> = body.mesh.elements().map(|(id, _)| id).collect();
-        body.blocks.update(&body.mesh, &body.grid, &[], &elements);
-        let all: Vec<u32> = body.mesh.nodes().map(|(id, _)| id).collect();
+        body.state.ahead.clone_from(&body.state.position);
+        let elements: Vec<u32> = body.truth.mesh.elements().map(|(id, _)| id).collect();
+        body.state
+            .blocks
+            .update(&body.truth.mesh, &body.truth.grid, &[], &elements);
+        let all: Vec<u32> = body.truth.mesh.nodes().map(|(id, _)| id).collect();
         body.weigh(&all);
         body.rebuild();
         Ok(body)
     }
 
-    /// Works out what follows from the rest: bare faces, breakable nodes, and who is awake.
+    /// Works out the cache from truth and state, and how stiff the elements are.
     pub(crate) fn rebuild(&mut self) {
+        let Truth {
+            grid,
+            materials,
+            stiffness_scale,
+            ..
+        } = &self.truth;
+        self.cache.blend = Blend::of(grid, materials);
+        let elasticities = elasticities(materials, *stiffness_scale);
+        self.state.blocks.set_elasticities(&elasticities);
         self.make_room();
-        let voxels: Vec<Point> = self.grid.voxels().collect();
+        let voxels: Vec<Point> = self.truth.grid.voxels().collect();
         self.expose(&voxels);
-        if self.pyramid.grading() != Grading::Coarse {
-            let nodes: Vec<u32> = self.mesh.nodes().map(|(id, _)| id).collect();
+        if self.truth.pyramid.grading() != Grading::Coarse {
+            let nodes: Vec<u32> = self.truth.mesh.nodes().map(|(id, _)| id).collect();
             self.find_breakable(&nodes);
         }
-        self.awake_is_stale = true;
+        self.cache.awake_is_stale = true;
         self.refresh_awake();
     }
 
     /// The same body, moved `by` [m]. What is then no place is quarantined in its first tick.
     #[inline(never)]
     pub fn moved(mut self, by: [f32; 3]) -> Self {
-        for row in self.position.iter_mut().chain(&mut self.ahead) {
+        for row in self.state.position.iter_mut().chain(&mut self.state.ahead) {
             for axis in 0..D::N {
                 row[axis] += by[axis];
             }
@@ -172,7 +141,7 @@ impl<D: Dim> Body<D> {
     /// The same body, every node moving at `velocity` [m/s].
     #[inline(never)]
     pub fn thrown(mut self, velocity: [f32; 3]) -> Self {
-        for row in &mut self.velocity {
+        for row in &mut self.state.velocity {
             row[..D::N].copy_from_slice(&velocity[..D::N]);
         }
         self
@@ -183,8 +152,8 @@ impl<D: Dim> Body<D> {
     /// # Panics
     /// When the id was never used.
     pub fn hold(&mut self, id: u32) {
-        self.held[id as usize] = true;
-        self.inverse_mass[id as usize] = 0.0;
+        self.state.held[id as usize] = true;
+        self.state.inverse_mass[id as usize] = 0.0;
     }
 
     /// Ends what [`Body::hold`] began.
@@ -192,35 +161,35 @@ impl<D: Dim> Body<D> {
     /// # Panics
     /// When the id was never used.
     pub fn let_go(&mut self, id: u32) {
-        self.held[id as usize] = false;
-        if !self.pieces.sleeps(id) {
-            self.inverse_mass[id as usize] = 1.0 / self.mass[id as usize];
+        self.state.held[id as usize] = false;
+        if !self.truth.pieces.sleeps(id) {
+            self.state.inverse_mass[id as usize] = 1.0 / self.state.mass[id as usize];
         }
     }
 
     /// The voxels it was made from.
     pub fn grid(&self) -> &VoxelGrid<D> {
-        &self.grid
+        &self.truth.grid
     }
 
     /// What is connected.
     pub fn sharing(&self) -> &Sharing<D> {
-        &self.sharing
+        &self.truth.sharing
     }
 
     /// Its elements and nodes.
     pub fn mesh(&self) -> &Mesh<D> {
-        &self.mesh
+        &self.truth.mesh
     }
 
     /// Its pieces.
     pub fn pieces(&self) -> &Pieces {
-        &self.pieces
+        &self.truth.pieces
     }
 
     /// Its materials, number 1 first.
     pub fn materials(&self) -> &[Material] {
-        &self.materials
+        &self.truth.materials
     }
 
     /// The material of an element of its own.
@@ -228,8 +197,8 @@ impl<D: Dim> Body<D> {
     /// # Panics
     /// When the element is of another body.
     pub fn material(&self, element: &Element) -> &Material {
-        let voxel = self.mesh.first_voxel(element);
-        &self.materials[self.grid.material(voxel) as usize - 1]
+        let voxel = self.truth.mesh.first_voxel(element);
+        &self.truth.materials[self.truth.grid.material(voxel) as usize - 1]
     }
 
     /// Position [m], velocity [m/s] and mass [kg] of a node.
@@ -239,9 +208,9 @@ impl<D: Dim> Body<D> {
     pub fn node_state(&self, id: u32) -> ([f32; 3], [f32; 3], f32) {
         let id = id as usize;
         (
-            three(self.position[id]),
-            three(self.velocity[id]),
-            self.mass[id],
+            three(self.state.position[id]),
+            three(self.state.velocity[id]),
+            self.state.mass[id],
         )
     }
 
@@ -253,10 +222,10 @@ impl<D: Dim> Body<D> {
     pub fn set_node_state(&mut self, id: u32, position: [f32; 3], velocity: [f32; 3]) -> bool {
         let finite = position.iter().chain(&velocity).all(|k| k.is_finite());
         if finite {
-            self.position[id as usize][..D::N].copy_from_slice(&position[..D::N]);
-            self.velocity[id as usize][..D::N].copy_from_slice(&velocity[..D::N]);
-            self.ahead[id as usize] = self.position[id as usize];
-            self.placed = true;
+            self.state.position[id as usize][..D::N].copy_from_slice(&position[..D::N]);
+            self.state.velocity[id as usize][..D::N].copy_from_slice(&velocity[..D::N]);
+            self.state.ahead[id as usize] = self.state.position[id as usize];
+            self.state.placed = true;
         }
         finite
     }
@@ -266,22 +235,22 @@ impl<D: Dim> Body<D> {
     /// # Panics
     /// When the id was never used.
     pub fn force_on(&self, id: u32) -> [f32; 3] {
-        three(self.blocks.force_on(id))
+        three(self.state.blocks.force_on(id))
     }
 
     /// Linear and angular momentum of everything, about the origin.
     #[inline(never)]
     pub fn momentum(&self) -> Momentum {
-        let ids: Vec<u32> = self.mesh.nodes().map(|(id, _)| id).collect();
+        let ids: Vec<u32> = self.truth.mesh.nodes().map(|(id, _)| id).collect();
         Momentum::of(self.states(&ids), [0.0; 3])
     }
 
     /// Energy of motion [J].
     #[inline(never)]
     pub fn kinetic_energy(&self) -> f64 {
-        let states = self.mesh.nodes().map(|(id, _)| {
-            let velocity = self.velocity[id as usize].map(f64::from);
-            0.5 * f64::from(self.mass[id as usize]) * dot(velocity, velocity)
+        let states = self.truth.mesh.nodes().map(|(id, _)| {
+            let velocity = self.state.velocity[id as usize].map(f64::from);
+            0.5 * f64::from(self.state.mass[id as usize]) * dot(velocity, velocity)
         });
         states.sum()
     }
@@ -289,14 +258,15 @@ impl<D: Dim> Body<D> {
     /// How many elements that are awake were inside out when forces were last computed; under
     /// [`Law::Endo2004`], which does not look, none.
     pub fn inverted_count(&self) -> u32 {
-        self.blocks.inverted_count()
+        self.state.blocks.inverted_count()
     }
 
     /// Mass [kg].
     #[inline(never)]
     pub fn total_mass(&self) -> f64 {
-        let ids = self.mesh.nodes();
-        ids.map(|(id, _)| f64::from(self.mass[id as usize])).sum()
+        let ids = self.truth.mesh.nodes();
+        ids.map(|(id, _)| f64::from(self.state.mass[id as usize]))
+            .sum()
     }
 
     /// How it is damped in substeps of `duration` [s]: the lead of its elastic forces [s], and the
@@ -305,9 +275,9 @@ impl<D: Dim> Body<D> {
     /// A lead of τ damps its slowest swing by τω/2; the fast swing Ω of a single voxel bears
     /// Ω²h (h + 2τ) < 4, that is τ < (4/Ω² − h²) / 2h, of which a part is kept back.
     pub(crate) fn damping(&self, duration: f32) -> (f32, f32) {
-        let ratio = self.blend.damping;
-        let slow = self.blend.slow * self.stiffness_scale.sqrt();
-        let fast = self.blend.fastest_swing * self.stiffness_scale.sqrt();
+        let ratio = self.cache.blend.damping;
+        let slow = self.cache.blend.slow * self.truth.stiffness_scale.sqrt();
+        let fast = self.cache.blend.fastest_swing * self.truth.stiffness_scale.sqrt();
         let step = f64::from(duration);
         let most = 0.7 * (4.0 / (fast * fast) - step * step) / (2.0 * step);
         let lead = (2.0 * ratio / slow).min(most).max(0.0);
@@ -317,48 +287,54 @@ impl<D: Dim> Body<D> {
 
     /// Friction of its surface.
     pub(crate) fn friction(&self) -> f32 {
-        self.blend.friction
+        self.cache.blend.friction
     }
 
     /// Whether the strength of a material in it is finite: else nothing tears.
     pub(crate) fn can_tear(&self) -> bool {
-        self.blend.least_strength < f32::INFINITY
+        self.cache.blend.least_strength < f32::INFINITY
     }
 
     /// The longest substep that its stiffest material bears [s]: 0.6 s / c.
     pub fn longest_substep(&self) -> f64 {
-        let fastest = self.blend.fastest_wave * self.stiffness_scale.sqrt();
-        0.6 * f64::from(self.grid.voxel_size()) / fastest
+        let fastest = self.cache.blend.fastest_wave * self.truth.stiffness_scale.sqrt();
+        0.6 * f64::from(self.truth.grid.voxel_size()) / fastest
     }
 
     /// The factor by which its Young's modulus was lowered so that its substep bears it.
     pub fn stiffness_scale(&self) -> f64 {
-        self.stiffness_scale
+        self.truth.stiffness_scale
     }
 
     /// Lowers the stiffness so far that a substep of `duration` [s] is stable, and no further.
     pub(crate) fn scale_stiffness_for(&mut self, duration: f64) {
-        let size = f64::from(self.grid.voxel_size());
-        let ratio = 0.6 * size / self.blend.fastest_wave / duration;
+        let size = f64::from(self.truth.grid.voxel_size());
+        let ratio = 0.6 * size / self.cache.blend.fastest_wave / duration;
         let stiffness_scale = (ratio * ratio).min(1.0);
-        if stiffness_scale == self.stiffness_scale {
+        if stiffness_scale == self.truth.stiffness_scale {
             return;
         }
-        self.stiffness_scale = stiffness_scale;
-        let elasticities = elasticities(&self.materials, stiffness_scale);
-        self.blocks.set_elasticities(&elasticities);
+        self.truth.stiffness_scale = stiffness_scale;
+        let elasticities = elasticities(&self.truth.materials, stiffness_scale);
+        self.state.blocks.set_elasticities(&elasticities);
     }
 
     /// Speed of the fastest pressure wave in it [m/s], softened or not.
     pub(crate) fn fastest_wave(&self) -> f64 {
-        self.blend.fastest_wave
+        self.cache.blend.fastest_wave
     }
 
     pub(crate) fn states<'a>(
         &'a self,
         nodes: &'a [u32],
     ) -> impl Iterator<Item = (Row, Row, f32)> + 'a {
-        let state = |id: usize| (self.position[id], self.velocity[id], self.mass[id]);
+        let state = |id: usize| {
+            (
+                self.state.position[id],
+                self.state.velocity[id],
+                self.state.mass[id],
+            )
+        };
         nodes.iter().map(move |&id| state(id as usize))
     }
 }

@@ -24,7 +24,6 @@ const SCATTER: f32 = 0.4;
 
 /// A breakable node.
 #[derive(Copy, Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BreakableNode {
     /// The octants that share the node.
     pub group: u8,
@@ -40,7 +39,6 @@ pub struct BreakableNode {
 
 /// A way to part the voxels at a point: faces across `axis` are opened.
 #[derive(Copy, Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Cut {
     /// The axis across the opened faces.
     pub axis: u8,
@@ -57,7 +55,6 @@ type Closed = [u8; 3];
 
 /// The breakable nodes of a body.
 #[derive(Clone, Debug, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BreakableNodes {
     /// By node id.
     of_node: Vec<Option<BreakableNode>>,
@@ -258,9 +255,15 @@ mod tests {
             body.release(&[(at, side)]).expect("the mesh stays whole");
         }
         let mut fresh = BreakableNodes::default();
-        let nodes: Vec<u32> = body.mesh.nodes().map(|(id, _)| id).collect();
+        let nodes: Vec<u32> = body.truth.mesh.nodes().map(|(id, _)| id).collect();
         let materials = body.materials();
-        fresh.look(&nodes, &body.grid, &body.sharing, &body.mesh, materials);
+        fresh.look(
+            &nodes,
+            &body.truth.grid,
+            &body.truth.sharing,
+            &body.truth.mesh,
+            materials,
+        );
         let listed = |breakable: &BreakableNodes| -> Vec<_> {
             let all = breakable.among(0..usize::MAX);
             all.map(|(id, node)| {
@@ -269,7 +272,7 @@ mod tests {
             })
             .collect()
         };
-        assert_eq!(listed(&body.breakable), listed(&fresh));
+        assert_eq!(listed(&body.cache.breakable), listed(&fresh));
         assert!(fresh.among(0..usize::MAX).any(|(_, node)| node.crumbs != 0));
     }
 

@@ -88,11 +88,11 @@ impl Contacts {
                 let rigid = rigids.at(pair.rigid);
                 let node = pair.node as usize;
                 // What sleeps is touched by hands alone.
-                if body.inverse_mass[node] == 0.0 && !rigid.is_driven() {
+                if body.state.inverse_mass[node] == 0.0 && !rigid.is_driven() {
                     pair.impulse.release();
                     continue;
                 }
-                let (at, velocity) = (body.position[node], body.velocity[node]);
+                let (at, velocity) = (body.state.position[node], body.state.velocity[node]);
                 // Most are so far from a wall that they could not come to it at any direction.
                 let reachable = (pair.clear - travel).max(0.0) / (AHEAD * duration);
                 if !rigid.is_driven() && inner::<D>(velocity, velocity) < reachable * reachable {
@@ -101,7 +101,7 @@ impl Contacts {
                 let (gap, normal) = rigid.shape().distance(three(at));
                 let normal = as_row(normal);
                 let relative = minus(velocity, as_row(rigid.velocity()));
-                let size = body.grid.voxel_size();
+                let size = body.truth.grid.voxel_size();
                 if !is_close(gap, inner::<D>(relative, normal), size, duration) {
                     pair.impulse.release();
                     // With a little for rounding.
@@ -109,11 +109,11 @@ impl Contacts {
                     continue;
                 }
                 pair.clear = 0.0;
-                if rigid.is_driven() && gap < 0.1 * size && body.pieces.sleeps(pair.node) {
-                    hits.push((pair.body, body.pieces.of_node(pair.node)));
+                if rigid.is_driven() && gap < 0.1 * size && body.truth.pieces.sleeps(pair.node) {
+                    hits.push((pair.body, body.truth.pieces.of_node(pair.node)));
                 }
-                let inverse_mass = body.inverse_mass[node] + rigid.inverse_mass();
-                if body.inverse_mass[node] == 0.0 {
+                let inverse_mass = body.state.inverse_mass[node] + rigid.inverse_mass();
+                if body.state.inverse_mass[node] == 0.0 {
                     continue;
                 }
                 let friction = rigid.friction;
@@ -332,7 +332,7 @@ fn behind_surface<D: Dim>(
         (false, true) => (a, -1.0),
         _ => return None,
     };
-    let out = wall.outward::<D>(&bodies.at(wall.body).position);
+    let out = wall.outward::<D>(&bodies.at(wall.body).state.position);
     let length = inner::<D>(out, out).sqrt();
     let normal = scaled(out, sign / length.max(1e-9));
     let ahead = inner::<D>(apart, normal);

@@ -77,21 +77,21 @@ impl PieceMotion {
 
 /// The motions of all pieces, by number; those asleep have no mass here.
 pub fn motions<D: Dim>(body: &Body<D>) -> Vec<PieceMotion> {
-    let mut motions = vec![PieceMotion::default(); body.pieces.list.len()];
+    let mut motions = vec![PieceMotion::default(); body.truth.pieces.list.len()];
     // A node of the piece itself: far from the world's origin the sums would lose digits.
     let mut origins = vec![[0.0; 3]; motions.len()];
-    let of_node = |id| body.pieces.of_node(id) as usize;
+    let of_node = |id| body.truth.pieces.of_node(id) as usize;
     // Nodes that follow one another are mostly of one piece: its sums stay at hand for as long.
-    for nodes in body.awake.chunk_by(|&a, &b| of_node(a) == of_node(b)) {
+    for nodes in body.cache.awake.chunk_by(|&a, &b| of_node(a) == of_node(b)) {
         let piece = of_node(nodes[0]);
         let (mut motion, origin) = (motions[piece], &mut origins[piece]);
         if motion.nodes == 0 {
-            *origin = wide(body.position[nodes[0] as usize]);
+            *origin = wide(body.state.position[nodes[0] as usize]);
         }
         for (&id, (position, velocity, mass)) in nodes.iter().zip(body.states(nodes)) {
             let x = minus(wide(position), *origin);
             motion.add::<D>(x, wide(velocity), f64::from(mass));
-            motion.is_driven |= body.inverse_mass[id as usize] == 0.0 && velocity != [0.0; 4];
+            motion.is_driven |= body.state.inverse_mass[id as usize] == 0.0 && velocity != [0.0; 4];
         }
         motions[piece] = motion;
     }
@@ -129,8 +129,10 @@ impl Slowing {
 /// Slows the pieces of a body down, each by its own `slowing`, and notes their rigid motions.
 pub fn slow_down<D: Dim>(body: &mut Body<D>, motions: &[PieceMotion], slowing: &[Slowing]) {
     let rigid: Vec<RigidMotion> = motions.iter().map(PieceMotion::rigid).collect();
-    body.rigid.clear();
-    body.rigid.extend(rigid.iter().map(RigidMotion::roughly));
+    body.cache.rigid.clear();
+    body.cache
+        .rigid
+        .extend(rigid.iter().map(RigidMotion::roughly));
     if slowing.iter().all(|slowing| *slowing == Slowing::default()) {
         return;
     }
@@ -145,8 +147,12 @@ pub fn slow_down<D: Dim>(body: &mut Body<D>, motions: &[PieceMotion], slowing: &
             (kept * (1.0 - swing), pace.roughly())
         })
         .collect();
-    let (inverse_mass, position, pieces) = (&body.inverse_mass, &body.position, &body.pieces);
-    let rows = threads::rows(&body.awake, [&mut body.velocity]);
+    let (inverse_mass, position, pieces) = (
+        &body.state.inverse_mass,
+        &body.state.position,
+        &body.truth.pieces,
+    );
+    let rows = threads::rows(&body.cache.awake, [&mut body.state.velocity]);
     threads::map(rows, |rows| {
         let [velocities] = rows.lists;
         for &id in rows.nodes {

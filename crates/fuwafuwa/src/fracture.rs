@@ -48,18 +48,20 @@ const COOLDOWN_VOXELS: f64 = 4.0;
 /// Looks at all breakable nodes after a time of `duration` [s]: adds up their damage, and picks those
 /// that give way now, the worst first, no two of them near each other but along a crack's front.
 pub fn failures<D: Dim>(body: &mut Body<D>, duration: f32) -> Vec<Failure> {
-    body.cooldowns.pass(duration);
+    body.state.cooldowns.pass(duration);
     if !body.can_tear() {
         return Vec::new();
     }
-    let size = body.grid.voxel_size();
-    let mut damage = std::mem::take(&mut body.damage);
+    let size = body.truth.grid.voxel_size();
+    let mut damage = std::mem::take(&mut body.state.damage);
     let found = threads::map(threads::shares(&mut damage), |(first, damage)| {
         let mut found: Vec<Failure> = Vec::new();
-        for (id, node) in body.breakable.among(first..first + damage.len()) {
+        for (id, node) in body.cache.breakable.among(first..first + damage.len()) {
             let damage = &mut damage[id as usize - first];
             // What is not damaged yet is looked at in every other round.
-            if body.pieces.sleeps(id) || *damage == 0.0 && (id ^ body.cooldowns.rounds) & 1 == 1 {
+            if body.truth.pieces.sleeps(id)
+                || *damage == 0.0 && (id ^ body.state.cooldowns.rounds) & 1 == 1
+            {
                 continue;
             }
             let Some(failure) = worst_cut(body, id, node) else {
@@ -69,19 +71,19 @@ pub fn failures<D: Dim>(body: &mut Body<D>, duration: f32) -> Vec<Failure> {
             };
             let over = (failure.excess - 1.0).min(3.0);
             *damage += duration / DAMAGE_TIME * 2.0 * over;
-            if *damage >= 1.0 && !body.cooldowns.covers(failure.at) {
+            if *damage >= 1.0 && !body.state.cooldowns.covers(failure.at) {
                 found.push(failure);
             }
         }
         found
     });
-    body.damage = damage;
+    body.state.damage = damage;
     let mut found = found.concat();
     found.sort_by(|a, b| b.excess.total_cmp(&a.excess).then(a.node.cmp(&b.node)));
     let cooldown = (COOLDOWN_VOXELS * f64::from(size) / body.fastest_wave()) as f32;
     let chosen = undisturbed(found);
     let cooling = chosen.iter().map(|failure| failure.at);
-    body.cooldowns.start(cooling, cooldown);
+    body.state.cooldowns.start(cooling, cooldown);
     chosen
 }
 
@@ -104,10 +106,10 @@ fn undisturbed(found: Vec<Failure>) -> Vec<Failure> {
 
 /// The cut through a breakable node that is overstrained most, if one is.
 fn worst_cut<D: Dim>(body: &Body<D>, id: u32, node: &BreakableNode) -> Option<Failure> {
-    let size = body.grid.voxel_size();
+    let size = body.truth.grid.voxel_size();
     let mut forces = [[0.0; 4]; 8];
     let mut squared = 0.0;
-    for (octant, force) in octants(node.group).zip(body.blocks.parts_on(id)) {
+    for (octant, force) in octants(node.group).zip(body.state.blocks.parts_on(id)) {
         forces[octant] = force;
         squared += dot(force, force);
     }
@@ -121,7 +123,7 @@ fn worst_cut<D: Dim>(body: &Body<D>, id: u32, node: &BreakableNode) -> Option<Fa
     // What its voxels have turned by together: found when it is asked for.
     let mut turn: Option<[[f32; 3]; 3]> = None;
     let mut worst: Option<(f32, f32, Cut)> = None;
-    for cut in body.breakable.cuts(node) {
+    for cut in body.cache.breakable.cuts(node) {
         let far = octants(cut.side).fold([0.0; 4], |sum, octant| plus(sum, forces[octant]));
         let near = minus(total, far);
         let pull = scaled(minus(far, near), 0.5);
@@ -152,7 +154,7 @@ fn worst_cut<D: Dim>(body: &Body<D>, id: u32, node: &BreakableNode) -> Option<Fa
     let volume = (0..D::N).fold(1.0, |volume, _| volume * size);
     Some(Failure {
         node: id,
-        at: body.mesh.node(id).at,
+        at: body.truth.mesh.node(id).at,
         side: cut.side,
         axis: cut.axis.into(),
         excess,
@@ -168,8 +170,8 @@ fn octants(mask: u8) -> impl Iterator<Item = usize> {
 /// The rotations of all elements around a node, added up.
 fn total_turn<D: Dim>(body: &Body<D>, id: u32) -> [[f32; 3]; 3] {
     let mut turn = [[0.0; 3]; 3];
-    for owner in body.mesh.carrier_ids(id) {
-        let rotation = body.blocks.rotation(owner);
+    for owner in body.truth.mesh.carrier_ids(id) {
+        let rotation = body.state.blocks.rotation(owner);
         for row in 0..3 {
             turn[row] = plus(turn[row], rotation[row]);
         }

@@ -45,7 +45,6 @@ pub struct RigidMotion {
 
 /// A [`RigidMotion`] in single precision, as an affine map.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct RoughMotion {
     velocity: Row,
     centre: Row,

@@ -33,8 +33,11 @@ pub struct Pieces {
     /// By node id.
     of_node: Vec<u32>,
     /// Scratch of [`Pieces::part`]: which search has seen each element and node.
+    #[cfg_attr(feature = "serde", serde(skip))]
     seen: Vec<u32>,
+    #[cfg_attr(feature = "serde", serde(skip))]
     node_seen: Vec<u32>,
+    #[cfg_attr(feature = "serde", serde(skip))]
     marked: u32,
 }
 
@@ -125,11 +128,8 @@ impl Pieces {
     /// Whether there is a number for each element and node, as far as lists that were read from a file go.
     #[cfg(feature = "serde")]
     pub(crate) fn has_room<D: Dim>(&self, mesh: &Mesh<D>) -> bool {
-        let (elements, nodes) = (mesh.element_capacity(), mesh.node_capacity());
-        let seen = self.seen.iter().chain(&self.node_seen);
-        [self.of_element.len(), self.seen.len()] == [elements; 2]
-            && [self.of_node.len(), self.node_seen.len()] == [nodes; 2]
-            && seen.max().is_none_or(|&mark| mark <= self.marked)
+        self.of_element.len() == mesh.element_capacity()
+            && self.of_node.len() == mesh.node_capacity()
     }
 
     /// A new node belongs where the node it took its state from belongs.

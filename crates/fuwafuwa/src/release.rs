@@ -35,25 +35,36 @@ impl<D: Dim> Body<D> {
 
     /// As [`Body::release`]; tells all that it changed.
     pub(crate) fn tear(&mut self, at: &[(Point, u8)]) -> Result<Torn, Defect> {
-        if self.pyramid.grading() == Grading::Coarse {
+        if self.truth.pyramid.grading() == Grading::Coarse {
             return Ok(Torn::default());
         }
         let mut changed: Vec<Point> = Vec::new();
         for &(point, side) in at {
             // A point is often released side by side: it is looked around once.
-            if self.sharing.release(point, side) && changed.last() != Some(&point) {
+            if self.truth.sharing.release(point, side) && changed.last() != Some(&point) {
                 changed.push(point);
             }
         }
         if changed.is_empty() {
             return Ok(Torn::default());
         }
-        changed.extend(self.sharing.normalise(self.sharing.all_around(&changed)));
-        let near = self.sharing.all_around(&changed).into_iter();
-        let born = self.pyramid.refine(&self.grid, &self.sharing, near);
-        let remodelled =
-            self.mesh
-                .remodel(&self.grid, &self.sharing, &self.pyramid, &changed, &born)?;
+        changed.extend(
+            self.truth
+                .sharing
+                .normalise(self.truth.sharing.all_around(&changed)),
+        );
+        let near = self.truth.sharing.all_around(&changed).into_iter();
+        let born = self
+            .truth
+            .pyramid
+            .refine(&self.truth.grid, &self.truth.sharing, near);
+        let remodelled = self.truth.mesh.remodel(
+            &self.truth.grid,
+            &self.truth.sharing,
+            &self.truth.pyramid,
+            &changed,
+            &born,
+        )?;
         let touched = self.nodes_of(&remodelled.seated);
         self.pass_on(&remodelled, &touched);
         self.expose(&beside::<D>(&changed));
@@ -61,11 +72,11 @@ impl<D: Dim> Body<D> {
         let beside = places.concat();
         let lists = [&touched, &self.nodes_of(&beside), &remodelled.abandoned];
         let nodes = lists.into_iter().flatten().copied();
-        self.find_breakable(&ascending(nodes, self.mesh.node_capacity()));
-        self.awake_is_stale = true;
+        self.find_breakable(&ascending(nodes, self.truth.mesh.node_capacity()));
+        self.cache.awake_is_stale = true;
         let new = remodelled.inherited.iter().map(|new| new.node);
         Ok(Torn {
-            parted: self.pieces.part(&self.mesh, &places),
+            parted: self.truth.pieces.part(&self.truth.mesh, &places),
             nodes: new.chain(remodelled.abandoned).collect(),
             elements: [beside, remodelled.removed, remodelled.seated].concat(),
         })
@@ -74,9 +85,9 @@ impl<D: Dim> Body<D> {
     /// The elements around the given points, ascending: a list for each of the places where they
     /// met before, if only through others of their list.
     fn places_around(&self, points: &[Point]) -> Vec<Vec<u32>> {
-        let around = |&at: &Point| self.mesh.owners_around(at, D::ALL_CORNERS);
+        let around = |&at: &Point| self.truth.mesh.owners_around(at, D::ALL_CORNERS);
         let elements = points.iter().flat_map(around);
-        let elements = ascending(elements, self.mesh.element_capacity());
+        let elements = ascending(elements, self.truth.mesh.element_capacity());
         let mut joined = DisjointSets::new(elements.len());
         for at in points {
             let mut places = around(at).filter_map(|id| elements.binary_search(&id).ok());
@@ -98,36 +109,45 @@ impl<D: Dim> Body<D> {
         } = remodelled;
         let new = ascending(
             inherited.iter().map(|new| new.node),
-            self.mesh.node_capacity(),
+            self.truth.mesh.node_capacity(),
         );
         let is_old = |id: &u32| new.binary_search(id).is_err();
         let old = touched.iter().copied().filter(is_old);
         let old = self.free_by_piece(old.chain(abandoned.iter().copied()));
         let momentum = |nodes: &[u32]| {
             let centre = centre_of(self.states(nodes).map(|(x, _, mass)| (x, mass)));
-            let piece = self.pieces.of_node(nodes[0]);
+            let piece = self.truth.pieces.of_node(nodes[0]);
             (piece, centre, Momentum::of(self.states(nodes), centre))
         };
         let before: Vec<_> = self.pieces_in(&old).into_iter().map(momentum).collect();
 
         self.inherit(inherited);
-        let new = seated.iter().copied().filter(|&id| !self.blocks.has(id));
+        let new = seated
+            .iter()
+            .copied()
+            .filter(|&id| !self.state.blocks.has(id));
         let new: Vec<u32> = new.collect();
         for &id in seated {
-            let element = self.mesh.element(id).expect("seated elements are alive");
-            self.pieces.adopt(id, &element.nodes);
-            self.bare[id as usize] = 0;
+            let element = self
+                .truth
+                .mesh
+                .element(id)
+                .expect("seated elements are alive");
+            self.truth.pieces.adopt(id, &element.nodes);
+            self.cache.bare[id as usize] = 0;
         }
-        self.blocks.update(&self.mesh, &self.grid, removed, seated);
+        self.state
+            .blocks
+            .update(&self.truth.mesh, &self.truth.grid, removed, seated);
         self.settle(&new);
-        let seated = seated.iter().filter_map(|&id| self.mesh.element(id));
+        let seated = seated.iter().filter_map(|&id| self.truth.mesh.element(id));
         let fresh = seated.filter(|element| element.cell.level == 0);
         let fresh: Vec<Point> = fresh.map(|element| element.cell.at).collect();
         self.expose(&fresh);
         self.weigh(touched);
         let now = self.free_by_piece(touched.iter().copied());
         for nodes in self.pieces_in(&now) {
-            let piece = self.pieces.of_node(nodes[0]);
+            let piece = self.truth.pieces.of_node(nodes[0]);
             let known = before.binary_search_by_key(&piece, |&(piece, ..)| piece);
             if let Ok(place) = known {
                 let (_, centre, momentum) = before[place];
@@ -140,15 +160,15 @@ impl<D: Dim> Body<D> {
     /// pieces and else in their own.
     fn free_by_piece(&self, nodes: impl Iterator<Item = u32>) -> Vec<u32> {
         // Held nodes keep their velocity; the rest of each piece keeps its momentum.
-        let free = |id: &u32| self.inverse_mass[*id as usize] > 0.0;
+        let free = |id: &u32| self.state.inverse_mass[*id as usize] > 0.0;
         let mut nodes: Vec<u32> = nodes.filter(free).collect();
-        nodes.sort_by_key(|&id| self.pieces.of_node(id));
+        nodes.sort_by_key(|&id| self.truth.pieces.of_node(id));
         nodes
     }
 
     /// The nodes of each piece, of nodes by piece.
     fn pieces_in<'a>(&self, nodes: &'a [u32]) -> Vec<&'a [u32]> {
-        let of_node = |id| self.pieces.of_node(id);
+        let of_node = |id| self.truth.pieces.of_node(id);
         nodes.chunk_by(|&a, &b| of_node(a) == of_node(b)).collect()
     }
 
@@ -164,27 +184,29 @@ impl<D: Dim> Body<D> {
             sum.map(|component| component as f32)
         };
         let state = |new: &Inheritance| {
-            let (position, velocity) = (&self.position, &self.velocity);
+            let (position, velocity) = (&self.state.position, &self.state.velocity);
             (mean(position, &new.from), mean(velocity, &new.from))
         };
         let states: Vec<(Row, Row)> = inherited.iter().map(state).collect();
         self.make_room();
         for (new, (position, velocity)) in inherited.iter().zip(states) {
             let node = new.node as usize;
-            self.position[node] = position;
-            self.ahead[node] = position;
-            self.velocity[node] = velocity;
-            self.damage[node] = 0.0;
-            self.pieces.inherit(new.node, new.from[0].0);
+            self.state.position[node] = position;
+            self.state.ahead[node] = position;
+            self.state.velocity[node] = velocity;
+            self.state.damage[node] = 0.0;
+            self.truth.pieces.inherit(new.node, new.from[0].0);
             self.inherit_hold(new.node, &new.from);
         }
     }
 
     /// The nodes of some elements, ascending.
     fn nodes_of(&self, elements: &[u32]) -> Vec<u32> {
-        let elements = elements.iter().filter_map(|&id| self.mesh.element(id));
+        let elements = elements
+            .iter()
+            .filter_map(|&id| self.truth.mesh.element(id));
         let nodes = elements.flat_map(|element| element.nodes.iter().copied());
-        ascending(nodes, self.mesh.node_capacity())
+        ascending(nodes, self.truth.mesh.node_capacity())
     }
 
     /// Adds the rigid motion that gives the nodes the momentum `before` about `centre` again.
@@ -195,9 +217,9 @@ impl<D: Dim> Body<D> {
         let places = self.states(nodes).map(|(x, _, mass)| (x, mass));
         let motion = RigidMotion::with_momentum(places, centre, missing);
         for &id in nodes {
-            let change = motion.at(self.position[id as usize]);
+            let change = motion.at(self.state.position[id as usize]);
             for axis in 0..D::N {
-                self.velocity[id as usize][axis] += change[axis] as f32;
+                self.state.velocity[id as usize][axis] += change[axis] as f32;
             }
         }
     }
@@ -241,13 +263,16 @@ mod tests {
                 releases.push((at, 1 << random(D::CORNERS)));
             }
             body.release(&releases).expect("the mesh stays whole");
-            let fresh = Pieces::new(&body.mesh);
-            let both = |(id, _)| (body.pieces.of_element(id), fresh.of_element(id));
-            let pairs: BTreeSet<(u32, u32)> = body.mesh.elements().map(both).collect();
+            let fresh = Pieces::new(&body.truth.mesh);
+            let both = |(id, _)| (body.truth.pieces.of_element(id), fresh.of_element(id));
+            let pairs: BTreeSet<(u32, u32)> = body.truth.mesh.elements().map(both).collect();
             assert_eq!(pairs.len(), fresh.list.len());
-            assert_eq!(pairs.len(), body.pieces.list.len());
+            assert_eq!(pairs.len(), body.truth.pieces.list.len());
         }
-        assert!(body.pieces.list.len() > 20, "hardly anything came off");
+        assert!(
+            body.truth.pieces.list.len() > 20,
+            "hardly anything came off"
+        );
     }
 
     #[test]

@@ -23,13 +23,13 @@ pub fn fall_asleep<D: Dim>(
     duration: f32,
 ) -> Vec<Hit> {
     for (body, motions) in bodies.iter_mut().zip(motions) {
-        for (piece, motion) in body.pieces.list.iter_mut().zip(motions) {
+        for (piece, motion) in body.truth.pieces.list.iter_mut().zip(motions) {
             let slow = motion.speed_squared < SLOW * SLOW && !motion.is_driven;
             piece.still = if slow { piece.still + duration } else { 0.0 };
         }
     }
     for &(body, piece) in handled {
-        bodies.at_mut(body).pieces.list[piece as usize].still = 0.0;
+        bodies.at_mut(body).truth.pieces.list[piece as usize].still = 0.0;
     }
     change(bodies, true, |_, _, piece| {
         !piece.asleep && piece.still >= STILL_TIME
@@ -54,7 +54,7 @@ fn change<D: Dim>(
 ) -> Vec<Hit> {
     let mut changed = Vec::new();
     for (place, body) in bodies.placed_mut() {
-        let pieces = body.pieces.list.iter().enumerate();
+        let pieces = body.truth.pieces.list.iter().enumerate();
         let marked: Vec<bool> = pieces
             .map(|(number, piece)| applies(place, number as u32, piece))
             .collect();

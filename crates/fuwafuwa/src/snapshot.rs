@@ -10,7 +10,7 @@ use crate::world::World;
 use std::fmt;
 
 /// Number of the format. It changes when an older world would be misread or go on differently.
-pub const VERSION: u32 = 11;
+pub const VERSION: u32 = 12;
 
 const MAGIC: [u8; 4] = *b"fuwa";
 const HEADER: usize = 17;
@@ -85,8 +85,9 @@ pub fn save<D: Dim>(world: &World<D>) -> Vec<u8> {
 ///
 /// # Errors
 /// [`BadSnapshot`] when it is none, has another format or other dimensions, was damaged, or when the
-/// voxels, connections, elements, nodes or pieces of a body in it contradict each other. What elements are
-/// deformed by (their rotations and last forces) is taken as it stands: do not step snapshots of strangers.
+/// voxels, connections, elements, nodes or pieces of a body in it contradict each other, or a node is nowhere.
+/// What elements are deformed by (their rotations and last forces) is taken as it stands: do not step
+/// snapshots of strangers.
 #[inline(never)]
 pub fn load<D: Dim>(bytes: &[u8]) -> Result<World<D>, BadSnapshot> {
     if bytes.len() < HEADER || bytes[..4] != MAGIC {

@@ -41,6 +41,8 @@ const PAD: usize = 4;
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Blocks<D: Dim> {
     law: Law,
+    /// No snapshot has them: [`Blocks::set_elasticities`] sets them anew.
+    #[cfg_attr(feature = "serde", serde(skip))]
     moduli: Vec<Moduli>,
     voxel_size: f32,
     blocks: Vec<Block>,

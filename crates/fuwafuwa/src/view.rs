@@ -97,13 +97,20 @@ impl<D: Dim> Body<D> {
             asleep: piece.asleep,
             quarantined: piece.quarantined,
         };
-        let mut views: Vec<PieceView> = self.pieces.list.iter().enumerate().map(none).collect();
-        for (id, _) in self.mesh.elements() {
-            views[self.pieces.of_element(id) as usize].element_count += 1;
+        let mut views: Vec<PieceView> = self
+            .truth
+            .pieces
+            .list
+            .iter()
+            .enumerate()
+            .map(none)
+            .collect();
+        for (id, _) in self.truth.mesh.elements() {
+            views[self.truth.pieces.of_element(id) as usize].element_count += 1;
         }
-        for (id, _) in self.mesh.nodes() {
+        for (id, _) in self.truth.mesh.nodes() {
             let (at, velocity, mass) = self.node_state(id);
-            let view = &mut views[self.pieces.of_node(id) as usize];
+            let view = &mut views[self.truth.pieces.of_node(id) as usize];
             view.mass += mass;
             view.centre = plus(view.centre, scaled(at, mass));
             view.velocity = plus(view.velocity, scaled(velocity, mass));
@@ -128,7 +135,7 @@ impl<D: Dim> Body<D> {
 
     /// The mass of all nodes at places [m] that satisfy a condition [kg].
     pub fn mass_where(&self, is_inside: impl Fn(Vector) -> bool) -> f32 {
-        let states = self.mesh.nodes().map(|(id, _)| self.node_state(id));
+        let states = self.truth.mesh.nodes().map(|(id, _)| self.node_state(id));
         states
             .filter(|&(at, _, _)| is_inside(at))
             .fold(0.0, |sum, (_, _, mass)| sum + mass)
@@ -136,7 +143,7 @@ impl<D: Dim> Body<D> {
 
     /// All bare faces, by element.
     pub fn facets(&self) -> impl Iterator<Item = Facet> + '_ {
-        self.mesh.elements().flat_map(move |(id, element)| {
+        self.truth.mesh.elements().flat_map(move |(id, element)| {
             let bare = self.bare_faces(id);
             (0..2 * D::N)
                 .filter(move |face| bare >> face & 1 == 1)
@@ -150,9 +157,9 @@ impl<D: Dim> Body<D> {
     /// # Panics
     /// When the id was never used.
     pub fn bare_faces(&self, element: u32) -> u8 {
-        match self.bare[element as usize] {
+        match self.cache.bare[element as usize] {
             0 => 0,
-            bare => match self.mesh.element(element) {
+            bare => match self.truth.mesh.element(element) {
                 Some(alive) if alive.cell.level == 0 => bare,
                 _ => 0,
             },
@@ -162,7 +169,7 @@ impl<D: Dim> Body<D> {
     /// Where all nodes are [m], by id, each with a 0 behind its coordinates; anything for ids that
     /// are free.
     pub fn positions(&self) -> &[[f32; 4]] {
-        &self.position
+        &self.state.position
     }
 
     /// The closed lines around all pieces of a body in the plane; nothing in space.
@@ -173,7 +180,7 @@ impl<D: Dim> Body<D> {
             return Vec::new();
         }
         // Every node of the surface starts one segment and ends one.
-        let mut leaving: Vec<Option<Facet>> = vec![None; self.mesh.node_capacity()];
+        let mut leaving: Vec<Option<Facet>> = vec![None; self.truth.mesh.node_capacity()];
         for facet in self.facets() {
             leaving[facet.nodes[0] as usize] = Some(facet);
         }
@@ -203,7 +210,8 @@ impl<D: Dim> Body<D> {
 
     /// All elements, to be looked at.
     pub fn element_views(&self) -> impl Iterator<Item = ElementView> + '_ {
-        self.mesh
+        self.truth
+            .mesh
             .elements()
             .map(|(id, element)| self.view_of(id, element))
     }
@@ -211,7 +219,7 @@ impl<D: Dim> Body<D> {
     /// An element, to be looked at, if it is alive.
     #[inline(never)]
     pub fn element_view(&self, id: u32) -> Option<ElementView> {
-        Some(self.view_of(id, self.mesh.element(id)?))
+        Some(self.view_of(id, self.truth.mesh.element(id)?))
     }
 
     #[inline(never)]
@@ -219,8 +227,11 @@ impl<D: Dim> Body<D> {
         ElementView {
             id,
             level: element.cell.level,
-            piece: self.pieces.of_element(id),
-            material: self.grid.material(self.mesh.first_voxel(element)),
+            piece: self.truth.pieces.of_element(id),
+            material: self
+                .truth
+                .grid
+                .material(self.truth.mesh.first_voxel(element)),
             children: element.children,
             strain: self.strain_of(id, element),
             slots: self.slot_positions(element),
@@ -230,12 +241,12 @@ impl<D: Dim> Body<D> {
     /// How far an element is strained, if it is alive: ‖F − R‖, where 0.1 is a stretch by a tenth.
     #[inline(never)]
     pub fn strain(&self, id: u32) -> Option<f32> {
-        Some(self.strain_of(id, self.mesh.element(id)?))
+        Some(self.strain_of(id, self.truth.mesh.element(id)?))
     }
 
     fn strain_of(&self, id: u32, element: &Element) -> f32 {
         let deformation = self.deformation(element).1;
-        let rotation = self.blocks.rotation(id);
+        let rotation = self.state.blocks.rotation(id);
         let mut sum = 0.0;
         for i in 0..D::N {
             for j in 0..D::N {
@@ -250,9 +261,9 @@ impl<D: Dim> Body<D> {
     fn slot_positions(&self, element: &Element) -> [Vector; 27] {
         let centre = self.deformation(element).0;
         let mut places: [Option<Vector>; 27] = [None; 27];
-        let slots = &self.mesh.stencil(element).slots;
+        let slots = &self.truth.mesh.stencil(element).slots;
         for (&slot, &node) in slots.iter().zip(&element.nodes) {
-            places[slot as usize] = Some(three(self.position[node as usize]));
+            places[slot as usize] = Some(three(self.state.position[node as usize]));
         }
         // From edge middles up to the centre: the mean of what a slot lies between.
         for order in 1..=D::N {
@@ -289,7 +300,7 @@ impl<D: Dim> Body<D> {
         let mut corners = [[0.0; 3]; 4];
         for place in 0..D::CORNERS / 2 {
             nodes[place] = element.nodes[ring[place]];
-            corners[place] = three(self.position[nodes[place] as usize]);
+            corners[place] = three(self.state.position[nodes[place] as usize]);
         }
         // Across a segment, or across both diagonals of a quad, which need not be flat.
         let normal = match D::N {
@@ -306,8 +317,8 @@ impl<D: Dim> Body<D> {
             corners,
             normal: unit(normal),
             element: id,
-            piece: self.pieces.of_element(id),
-            is_fresh: self.grid.is_solid(beyond),
+            piece: self.truth.pieces.of_element(id),
+            is_fresh: self.truth.grid.is_solid(beyond),
         }
     }
 }

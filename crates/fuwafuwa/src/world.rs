@@ -221,7 +221,7 @@ impl<D: Dim> World<D> {
             }
             let released = |failure: &Failure| Event::Released {
                 body: id,
-                at: three(body.position[failure.node as usize]),
+                at: three(body.state.position[failure.node as usize]),
                 energy: failure.energy,
             };
             self.events.extend(failures.iter().map(released));
@@ -353,7 +353,7 @@ impl<D: Dim> World<D> {
     /// Which pieces of each body touch anything.
     fn touching(&self) -> Vec<Vec<bool>> {
         let none = |body: Option<&Body<D>>| {
-            let pieces = body.map_or(0, |body| body.pieces.list.len());
+            let pieces = body.map_or(0, |body| body.truth.pieces.list.len());
             vec![false; pieces]
         };
         let mut touching: Vec<Vec<bool>> = self.bodies.places().map(none).collect();
@@ -387,8 +387,8 @@ impl<D: Dim> World<D> {
             };
             let id = self.bodies.id(pair.body);
             let body = &self.bodies[id];
-            let piece = body.pieces.of_node(pair.node);
-            let at = body.position[pair.node as usize];
+            let piece = body.truth.pieces.of_node(pair.node);
+            let at = body.state.position[pair.node as usize];
             add(id, piece, with, pair.impulse.total, at);
         }
         let spheres = &self.nearby.spheres;

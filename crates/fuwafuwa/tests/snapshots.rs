@@ -52,6 +52,38 @@ fn a_saved_world_goes_on_to_the_same_bits() {
     check_resumes::<Dim3>(12);
 }
 
+/// Torn, held, placed, gone out of hand, woken again or asleep: each is a state that a body can be in.
+fn check_any_state<D: Dim>(n: usize) {
+    let mut world = torn_world::<D>(n);
+    let nowhere = VoxelGrid::ball(4, 0.2).unwrap();
+    let nowhere = Body::new(nowhere, &[Material::default()]).unwrap();
+    let other = world.add_body(nowhere.thrown([f32::NAN; 3]).moved([5.0, 3.0, 0.0]));
+    let ball = world.nth_body(0).unwrap();
+    for tick in 0..60 {
+        push(&mut world, tick..tick + 1);
+        match tick {
+            20 => {
+                let body = world.body_mut(ball).unwrap();
+                let held: Vec<_> = body.mesh().nodes().map(|(id, _)| id).take(9).collect();
+                for id in held {
+                    body.hold(id);
+                    assert!(body.set_node_state(id, [0.1, 0.2, 0.3], [1.0; 3]));
+                }
+            }
+            40 => drop(world.body_mut(other).unwrap().crumble().unwrap()),
+            _ => {}
+        }
+        let loaded = load::<D>(&save(&world)).map(|world| world.hash());
+        assert_eq!(loaded, Ok(world.hash()), "tick {tick}");
+    }
+}
+
+#[test]
+fn a_world_can_be_loaded_whatever_befell_it() {
+    check_any_state::<Dim2>(16);
+    check_any_state::<Dim3>(8);
+}
+
 #[test]
 fn what_is_not_as_it_was_saved_is_refused() {
     let bytes = save(&torn_world::<Dim2>(8));
@@ -82,11 +114,59 @@ fn what_was_changed_by_someone_who_knows_the_checksum_does_no_harm() {
     for place in 0..state.len() {
         let mut state = state.to_vec();
         state[place] ^= 1 << (place % 7);
-        let mut changed = header[..9].to_vec();
-        changed.extend(Hash::of(&state).to_le_bytes());
-        changed.extend(state);
-        let loaded = load::<Dim2>(&changed);
+        let loaded = load::<Dim2>(&with_state(header, state));
         broken += u32::from(matches!(loaded, Err(BadSnapshot::Broken { .. })));
     }
     assert!(broken > 500, "{broken} of {}", state.len());
+}
+
+/// A header of a snapshot with what is behind it, and a checksum that fits.
+fn with_state(header: &[u8], state: Vec<u8>) -> Vec<u8> {
+    let mut changed = header[..9].to_vec();
+    changed.extend(Hash::of(&state).to_le_bytes());
+    changed.extend(state);
+    changed
+}
+
+/// A body in the plane with a node beside it went through the checks, and contact search panicked.
+#[test]
+fn a_node_that_is_off_the_plane_or_nowhere_is_refused() {
+    let mut world = torn_world::<Dim2>(6);
+    push(&mut world, 0..3);
+    let body = world.bodies().iter().next().unwrap();
+    let (id, _) = body.mesh().nodes().nth(5).unwrap();
+    let (at, velocity, mass) = body.node_state(id);
+    let bytes = save(&world);
+    let (header, state) = bytes.split_at(17);
+    let written = |vector: [f32; 3]| -> Vec<u8> {
+        let row = vector.into_iter().chain([0.0]);
+        row.flat_map(f32::to_le_bytes).collect()
+    };
+    let mut refused = 0;
+    let mut check = |row: Vec<u8>, change: &dyn Fn(&mut [u8])| {
+        let places = 0..state.len() - row.len();
+        for place in places.filter(|&place| state[place..].starts_with(&row)) {
+            let mut state = state.to_vec();
+            change(&mut state[place..][..row.len()]);
+            let loaded = load::<Dim2>(&with_state(header, state)).map(|_| ());
+            let broken = matches!(loaded, Err(BadSnapshot::Broken { body: 0, .. }));
+            assert!(broken, "{loaded:?}");
+            refused += 1;
+        }
+    };
+    for axis in 0..4 {
+        for wrong in [f32::NAN, f32::INFINITY, 0.5] {
+            // In the plane it may be anywhere.
+            if axis < 2 && wrong.is_finite() {
+                continue;
+            }
+            let change =
+                |row: &mut [u8]| row[4 * axis..][..4].copy_from_slice(&wrong.to_le_bytes());
+            check(written(at), &change);
+            check(written(velocity), &change);
+        }
+    }
+    let lighter = |row: &mut [u8]| row.copy_from_slice(&(0.5 * mass).to_le_bytes());
+    check(mass.to_le_bytes().to_vec(), &lighter);
+    assert!(refused > 20, "{refused}");
 }

@@ -9,66 +9,66 @@ use crate::vector::{dot, plus};
 impl<D: Dim> Body<D> {
     /// Wakes or puts to sleep all pieces whose number is marked.
     pub(crate) fn set_asleep(&mut self, marked: &[bool], asleep: bool) {
-        for (id, element) in self.mesh.elements() {
-            if !marked[self.pieces.of_element(id) as usize] {
+        for (id, element) in self.truth.mesh.elements() {
+            if !marked[self.truth.pieces.of_element(id) as usize] {
                 continue;
             }
-            self.blocks.set_asleep(id, asleep);
+            self.state.blocks.set_asleep(id, asleep);
             for &node in &element.nodes {
                 let node = node as usize;
                 if asleep {
-                    self.velocity[node] = [0.0; 4];
-                    self.ahead[node] = self.position[node];
+                    self.state.velocity[node] = [0.0; 4];
+                    self.state.ahead[node] = self.state.position[node];
                 }
-                let free = !asleep && !self.held[node];
-                self.inverse_mass[node] = if free { 1.0 / self.mass[node] } else { 0.0 };
+                let free = !asleep && !self.state.held[node];
+                self.state.inverse_mass[node] = if free {
+                    1.0 / self.state.mass[node]
+                } else {
+                    0.0
+                };
             }
         }
-        for (piece, _) in self
-            .pieces
-            .list
-            .iter_mut()
-            .zip(marked)
-            .filter(|(_, marked)| **marked)
-        {
+        let pieces = self.truth.pieces.list.iter_mut().zip(marked);
+        for (piece, _) in pieces.filter(|(_, marked)| **marked) {
             piece.asleep = asleep;
             piece.still = 0.0;
         }
-        self.awake_is_stale = true;
+        self.cache.awake_is_stale = true;
     }
 
     /// The lattice point and the position [m] of every node, by id; no position where there is none.
     pub(crate) fn places(&self) -> Vec<(Point, Row)> {
-        let place = |(id, &row): (usize, &Row)| match self.mesh.is_alive(id as u32) {
-            true => (self.mesh.node(id as u32).at, row),
+        let place = |(id, &row): (usize, &Row)| match self.truth.mesh.is_alive(id as u32) {
+            true => (self.truth.mesh.node(id as u32).at, row),
             false => ([0; 3], [f32::NAN; 4]),
         };
-        self.position.iter().enumerate().map(place).collect()
+        self.state.position.iter().enumerate().map(place).collect()
     }
 
     /// Puts pieces with a node that is not finite, or faster than `top_speed` [m/s], back to where
     /// they were and to sleep for good; returns their numbers.
     pub(crate) fn quarantine(&mut self, before: &[(Point, Row)], top_speed: f32) -> Vec<u32> {
-        let mut marked = vec![false; self.pieces.list.len()];
-        for &id in &self.awake {
-            let velocity = self.velocity[id as usize];
+        let mut marked = vec![false; self.truth.pieces.list.len()];
+        for &id in &self.cache.awake {
+            let velocity = self.state.velocity[id as usize];
             let speed = dot(velocity, velocity);
-            let sane = speed <= top_speed * top_speed && is_finite(self.position[id as usize]);
-            marked[self.pieces.of_node(id) as usize] |= !sane;
+            let sane =
+                speed <= top_speed * top_speed && is_finite(self.state.position[id as usize]);
+            marked[self.truth.pieces.of_node(id) as usize] |= !sane;
         }
         if !marked.contains(&true) {
             return Vec::new();
         }
-        let nodes: Vec<(u32, Node)> = self.mesh.nodes().collect();
+        let nodes: Vec<(u32, Node)> = self.truth.mesh.nodes().collect();
         let nodes = nodes.into_iter();
-        for (id, node) in nodes.filter(|&(id, _)| marked[self.pieces.of_node(id) as usize]) {
-            self.position[id as usize] = self.place_before(id, node.at, before);
+        for (id, node) in nodes.filter(|&(id, _)| marked[self.truth.pieces.of_node(id) as usize]) {
+            self.state.position[id as usize] = self.place_before(id, node.at, before);
         }
         self.set_asleep(&marked, true);
         let numbers = (0..marked.len() as u32).filter(|&piece| marked[piece as usize]);
         let numbers: Vec<u32> = numbers.collect();
         for &piece in &numbers {
-            self.pieces.list[piece as usize].quarantined = true;
+            self.truth.pieces.list[piece as usize].quarantined = true;
         }
         numbers
     }
@@ -81,14 +81,14 @@ impl<D: Dim> Body<D> {
             let known = before.get(id as usize);
             known.filter(|(point, row)| *point == at && is_finite(*row))
         };
-        let carriers = self.mesh.carriers_of(id);
+        let carriers = self.truth.mesh.carriers_of(id);
         let beside = carriers.flat_map(|(element, _)| element.nodes.iter());
-        let beside = beside.filter_map(|&other| was(other, self.mesh.node(other).at));
+        let beside = beside.filter_map(|&other| was(other, self.truth.mesh.node(other).at));
         let apart = |point: Point| [0, 1, 2].map(|axis: usize| at[axis] - point[axis]);
         let squared = |(point, _): &&(Point, Row)| apart(*point).map(|k| k * k).iter().sum::<i32>();
         let nearest = || beside.min_by_key(squared);
         let (point, row) = was(id, at).or_else(nearest).copied().unwrap_or_default();
-        let [x, y, z] = apart(point).map(|k| k as f32 * self.grid.voxel_size());
+        let [x, y, z] = apart(point).map(|k| k as f32 * self.truth.grid.voxel_size());
         plus(row, [x, y, z, 0.0])
     }
 }

@@ -6,8 +6,7 @@ use crate::law::Elasticity;
 use crate::material::Material;
 
 /// What the materials of its voxels come to in a body as a whole.
-#[derive(Copy, Clone, Debug)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Copy, Clone, Debug, Default)]
 pub struct Blend {
     /// Damping ratio of the slowest swing, the mean over the voxels.
     pub damping: f64,

@@ -20,20 +20,20 @@ impl<D: Dim> Body<D> {
     /// Adds elastic forces and gravity over `duration` [s] to the velocities.
     pub(crate) fn push(&mut self, duration: f32, gravity: [f32; 3]) {
         self.refresh_awake();
-        if std::mem::take(&mut self.placed) {
-            let all: Vec<u32> = self.mesh.elements().map(|(id, _)| id).collect();
+        if std::mem::take(&mut self.state.placed) {
+            let all: Vec<u32> = self.truth.mesh.elements().map(|(id, _)| id).collect();
             self.settle(&all);
         }
-        self.blocks.evaluate(&self.ahead);
+        self.state.blocks.evaluate(&self.state.ahead);
         let mut gravity = as_row(gravity);
         gravity[D::N..].fill(0.0);
         let kick = Kick {
-            nodes: &self.awake,
-            inverse_mass: &self.inverse_mass,
+            nodes: &self.cache.awake,
+            inverse_mass: &self.state.inverse_mass,
             duration,
             gravity,
         };
-        self.blocks.kick(&kick, &mut self.velocity);
+        self.state.blocks.kick(&kick, &mut self.state.velocity);
     }
 
     /// Turns elements that are far from how their nodes lie, because they are new or their nodes were
@@ -44,11 +44,18 @@ impl<D: Dim> Body<D> {
             return;
         }
         for &id in elements {
-            let element = self.mesh.element(id).expect("only live elements settle");
+            let element = self
+                .truth
+                .mesh
+                .element(id)
+                .expect("only live elements settle");
             let wide = |rows: [[f32; 3]; 3]| rows.map(|row| row.map(f64::from));
-            let (rotation, deformation) = (self.blocks.rotation(id), self.deformation(element).1);
+            let (rotation, deformation) =
+                (self.state.blocks.rotation(id), self.deformation(element).1);
             if let Some(turned) = turn_far_from(&wide(rotation), &wide(deformation)) {
-                self.blocks.set_rotation(id, turned.map(|part| part as f32));
+                self.state
+                    .blocks
+                    .set_rotation(id, turned.map(|part| part as f32));
             }
         }
     }
@@ -58,13 +65,18 @@ impl<D: Dim> Body<D> {
     /// No node moves by more than a voxel: faster ones would turn elements inside out, and the
     /// forces would grow from substep to substep. Returns how far the fastest has come [m].
     pub(crate) fn drift(&mut self, duration: f32, lead: f32) -> f32 {
-        let top_speed = self.grid.voxel_size() / duration;
+        let top_speed = self.truth.grid.voxel_size() / duration;
         // Pieces born since the last round of damping have no motion yet.
-        self.rigid
-            .resize(self.pieces.list.len(), RoughMotion::default());
-        let (rigid, pieces) = (&self.rigid, &self.pieces);
-        let lists = [&mut self.position, &mut self.velocity, &mut self.ahead];
-        let rows = threads::rows(&self.awake, lists.map(Vec::as_mut_slice));
+        self.cache
+            .rigid
+            .resize(self.truth.pieces.list.len(), RoughMotion::default());
+        let (rigid, pieces) = (&self.cache.rigid, &self.truth.pieces);
+        let lists = [
+            &mut self.state.position,
+            &mut self.state.velocity,
+            &mut self.state.ahead,
+        ];
+        let rows = threads::rows(&self.cache.awake, lists.map(Vec::as_mut_slice));
         let fastest = threads::map(rows, |rows| {
             let [positions, velocities, ahead] = rows.lists;
             let mut fastest = 0.0f32;
@@ -93,14 +105,14 @@ impl<D: Dim> Body<D> {
 
     /// Brings the list of moving nodes up to date.
     pub(crate) fn refresh_awake(&mut self) {
-        if !self.awake_is_stale {
+        if !self.cache.awake_is_stale {
             return;
         }
-        self.awake_is_stale = false;
-        let mut awake = std::mem::take(&mut self.awake);
+        self.cache.awake_is_stale = false;
+        let mut awake = std::mem::take(&mut self.cache.awake);
         awake.clear();
-        let nodes = self.mesh.nodes().map(|(id, _)| id);
-        awake.extend(nodes.filter(|&id| !self.pieces.sleeps(id)));
-        self.awake = awake;
+        let nodes = self.truth.mesh.nodes().map(|(id, _)| id);
+        awake.extend(nodes.filter(|&id| !self.truth.pieces.sleeps(id)));
+        self.cache.awake = awake;
     }
 }

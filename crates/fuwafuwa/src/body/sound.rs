@@ -2,26 +2,63 @@
 //! it was written, not who wrote it.
 
 use super::Body;
+use super::state::State;
+use super::truth::Truth;
 use crate::dim::Dim;
 use crate::mesh::{Defect, Mesh};
 use crate::piece::Pieces;
 use crate::pyramid::Pyramid;
+use crate::solve::Row;
 
 impl<D: Dim> Body<D> {
     /// Checks that cells, elements, nodes and pieces are those that follow from the voxels and from what
-    /// is connected, and that there is a state for each node.
+    /// is connected, and that there is a state for each node that it can be in.
     ///
     /// # Errors
     /// The first [`Defect`] found.
     pub(crate) fn check(&self) -> Result<(), Defect> {
-        let ensure = |good: bool, what: &str| match good {
-            true => Ok(()),
-            false => Err(Defect::of(format!("{what} do not fit"))),
-        };
+        self.truth.check()?;
+        ensure(
+            self.state.has_room(self.truth.mesh.node_capacity()),
+            "states",
+        )?;
+        for (id, node) in self.truth.mesh.nodes() {
+            let defect = |what: &str| Err(Defect::of(format!("the node at {:?} {what}", node.at)));
+            if !self.is_somewhere(id) {
+                return defect("is no place, or moves to none");
+            }
+            if !self.weighs_right(id) {
+                return defect("has the mass of another one");
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether where a node is, where it goes and how it has suffered are numbers, and none of them leads out
+    /// of the plane of a body in the plane.
+    fn is_somewhere(&self, id: u32) -> bool {
+        let (state, id) = (&self.state, id as usize);
+        let rows = [&state.position, &state.velocity, &state.ahead].map(|rows| rows[id]);
+        let is_flat = |row: &Row| row[D::N..].iter().all(|&k| k == 0.0);
+        let is_finite = |row: &Row| row.iter().all(|k| k.is_finite());
+        rows.iter().all(|row| is_flat(row) && is_finite(row)) && !state.damage[id].is_nan()
+    }
+
+    /// Whether its elements give a node the mass that it has, to the last bit.
+    fn weighs_right(&self, id: u32) -> bool {
+        self.state.mass[id as usize] == self.mass_of(id)
+            && self.state.inverse_mass[id as usize] == self.inverse_mass_of(id)
+    }
+}
+
+impl<D: Dim> Truth<D> {
+    fn check(&self) -> Result<(), Defect> {
         ensure(self.grid.is_sound(), "voxels")?;
         let numbers = self.grid.voxels().map(|voxel| self.grid.material(voxel));
         let number = usize::from(numbers.max().unwrap_or(0));
-        let are_good = { self.materials.iter() }.all(|material| material.check(0).is_ok());
+        let are_good = { self.materials.iter() }.all(|material| material.check(0).is_ok())
+            && self.stiffness_scale > 0.0
+            && self.stiffness_scale <= 1.0;
         ensure(number <= self.materials.len() && are_good, "materials")?;
         ensure(self.sharing.is_sound(&self.grid), "groups")?;
         let grading = self.pyramid.grading();
@@ -30,13 +67,24 @@ impl<D: Dim> Body<D> {
         let fresh = Mesh::grade(&self.grid, &self.sharing, &cells)?;
         self.mesh.check_against(&fresh, &self.sharing)?;
         self.mesh.validate(&self.grid, &self.sharing)?;
-        ensure(self.pieces.is_sound(&self.mesh), "pieces")?;
-        let nodes = self.mesh.node_capacity();
+        ensure(self.pieces.is_sound(&self.mesh), "pieces")
+    }
+}
+
+impl<D: Dim> State<D> {
+    /// Whether there is a state for each node.
+    fn has_room(&self, nodes: usize) -> bool {
         let rows = [&self.position, &self.velocity, &self.ahead].map(Vec::len);
         let numbers = [&self.mass, &self.inverse_mass, &self.damage].map(Vec::len);
         let mut lengths = rows.into_iter().chain(numbers).chain([self.held.len()]);
-        let are_long = lengths.all(|length| length == nodes);
-        ensure(are_long, "states")
+        lengths.all(|length| length == nodes)
+    }
+}
+
+fn ensure(good: bool, what: &str) -> Result<(), Defect> {
+    match good {
+        true => Ok(()),
+        false => Err(Defect::of(format!("{what} do not fit"))),
     }
 }
 

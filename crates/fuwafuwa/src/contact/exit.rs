@@ -31,7 +31,7 @@ impl Exit {
         let [a, b] = [captive.sphere, captive.exit].map(|place| place as usize);
         let both = [&spheres.list[a], &spheres.list[b]];
         let length = |way: Row| inner::<D>(way, way).sqrt().max(1e-9);
-        let out = both[1].outward::<D>(&bodies.at(both[1].body).position);
+        let out = both[1].outward::<D>(&bodies.at(both[1].body).state.position);
         let ahead = (both[0].radius + both[1].radius) / length(out);
         let goal = plus(spheres.centres[b], scaled(out, ahead));
         let way = minus(goal, spheres.centres[a]);

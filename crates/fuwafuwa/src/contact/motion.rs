@@ -30,7 +30,7 @@ impl Motion {
         let mut count = 0;
         for body in bodies.places() {
             self.first.push(count as u32);
-            let nodes = body.map_or(0, |body| body.velocity.len());
+            let nodes = body.map_or(0, |body| body.state.velocity.len());
             count += nodes.next_multiple_of(STRETCH);
         }
         self.rows.resize(count, [0.0; 4]);
@@ -61,8 +61,8 @@ impl Motion {
     pub fn load<D: Dim>(&mut self, bodies: &Bodies<D>) {
         for (place, body) in bodies.placed() {
             let first = self.first[place as usize];
-            let nodes = body.velocity.chunks(STRETCH);
-            let nodes = nodes.zip(body.inverse_mass.chunks(STRETCH));
+            let nodes = body.state.velocity.chunks(STRETCH);
+            let nodes = nodes.zip(body.state.inverse_mass.chunks(STRETCH));
             let own = self.rows[first as usize..].chunks_mut(STRETCH).zip(nodes);
             let touched = &self.is_touched[first as usize / STRETCH..];
             for ((rows, (velocities, inverse_mass)), _) in own.zip(touched).filter(|(_, is)| **is) {
@@ -80,7 +80,7 @@ impl Motion {
         for (place, body) in bodies.placed_mut() {
             let first = self.first[place as usize];
             let rows = self.rows[first as usize..].chunks(STRETCH);
-            let own = rows.zip(body.velocity.chunks_mut(STRETCH));
+            let own = rows.zip(body.state.velocity.chunks_mut(STRETCH));
             let touched = &self.is_touched[first as usize / STRETCH..];
             for ((rows, velocities), _) in own.zip(touched).filter(|(_, is)| **is) {
                 for (row, velocity) in rows.iter().zip(velocities) {

@@ -37,7 +37,6 @@ pub struct BlockView<'a> {
 
 /// The stiffnesses of a material in single precision.
 #[derive(Copy, Clone, Debug)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Moduli {
     twice_shear: f32,
     lame: f32,

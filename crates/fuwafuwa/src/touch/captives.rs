@@ -170,7 +170,7 @@ impl Exits {
         let exits: Vec<u32> = exits.map(|(_, place)| place).collect();
         let centres = exits.iter().map(|&place| spheres.centres[place as usize]);
         let centres: Vec<Row> = centres.collect();
-        let reach = EXIT_REACH * bodies.at(body).grid.voxel_size();
+        let reach = EXIT_REACH * bodies.at(body).truth.grid.voxel_size();
         Self {
             bins: Bins::new::<D>(&centres, reach),
             places: exits,
@@ -213,15 +213,15 @@ struct Inner {
 fn inner_elements<D: Dim>(bodies: &Bodies<D>, pieces: &[Vec<Extent>]) -> Vec<Inner> {
     let mut found = Vec::new();
     for (place, body) in bodies.placed() {
-        for (id, element) in body.mesh.elements() {
+        for (id, element) in body.truth.mesh.elements() {
             let level = element.cell.level;
-            let piece = body.pieces.of_element(id);
+            let piece = body.truth.pieces.of_element(id);
             let extent = &pieces[place as usize][piece as usize];
-            if !extent.has_inner || level == 0 && body.bare[id as usize] != 0 {
+            if !extent.has_inner || level == 0 && body.cache.bare[id as usize] != 0 {
                 continue;
             }
             let nodes = element.nodes.iter();
-            let places = nodes.map(|&node| body.position[node as usize]);
+            let places = nodes.map(|&node| body.state.position[node as usize]);
             let sum = places.clone().fold([0.0; 4], plus);
             let centre = scaled(sum, 1.0 / element.nodes.len() as f32);
             let furthest = places.map(|at| minus(at, centre)).map(|way| dot(way, way));
@@ -268,11 +268,11 @@ fn extents<D: Dim>(body: Option<&Body<D>>) -> Vec<Extent> {
         low: [f32::MAX; 4],
         high: [f32::MIN; 4],
     };
-    let mut extents = vec![none; body.pieces.list.len()];
-    for (id, element) in body.mesh.elements() {
-        let extent = &mut extents[body.pieces.of_element(id) as usize];
+    let mut extents = vec![none; body.truth.pieces.list.len()];
+    for (id, element) in body.truth.mesh.elements() {
+        let extent = &mut extents[body.truth.pieces.of_element(id) as usize];
         extent.count += 1;
-        extent.has_inner |= element.cell.level > 0 || body.bare[id as usize] == 0;
+        extent.has_inner |= element.cell.level > 0 || body.cache.bare[id as usize] == 0;
     }
     extents
 }
@@ -280,7 +280,7 @@ fn extents<D: Dim>(body: Option<&Body<D>>) -> Vec<Extent> {
 impl<D: Dim> Body<D> {
     /// Whether a place [m] lies in an element, taken for evenly deformed.
     fn holds(&self, id: u32, at: Vector) -> bool {
-        let Some(element) = self.mesh.element(id) else {
+        let Some(element) = self.truth.mesh.element(id) else {
             return false;
         };
         let child = self.child_at(element, at);

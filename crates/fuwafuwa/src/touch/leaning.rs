@@ -15,14 +15,14 @@ use crate::vector::three;
 pub fn leaning_on_rigid<D: Dim>(rigid: &Rigid, bodies: &Bodies<D>) -> Vec<(u32, u32)> {
     let mut leaning = Vec::new();
     for (place, body) in bodies.placed() {
-        let reach = MARGIN * body.grid.voxel_size();
+        let reach = MARGIN * body.truth.grid.voxel_size();
         let is_near = |node: u32| {
-            let at = three(body.position[node as usize]);
-            body.pieces.sleeps(node) && rigid.shape().distance(at).0 <= reach
+            let at = three(body.state.position[node as usize]);
+            body.truth.pieces.sleeps(node) && rigid.shape().distance(at).0 <= reach
         };
-        let nodes = body.mesh.nodes().map(|(node, _)| node);
+        let nodes = body.truth.mesh.nodes().map(|(node, _)| node);
         let nodes = nodes.filter(|&node| is_near(node));
-        leaning.extend(nodes.map(|node| (place, body.pieces.of_node(node))));
+        leaning.extend(nodes.map(|node| (place, body.truth.pieces.of_node(node))));
     }
     leaning.sort_unstable();
     leaning.dedup();
@@ -35,14 +35,16 @@ pub fn leaning_on_body<D: Dim>(body: &Body<D>, bodies: &Bodies<D>) -> Vec<(u32, 
     let Some(radius) = own.first().map(|sphere| sphere.radius) else {
         return Vec::new();
     };
-    let centres = own.iter().map(|sphere| sphere.mean::<D>(&body.position));
+    let centres = own
+        .iter()
+        .map(|sphere| sphere.mean::<D>(&body.state.position));
     let centres: Vec<Row> = centres.collect();
     let bins = Bins::new::<D>(&centres, 2.0 * radius);
     let (mut leaning, mut near) = (Vec::new(), Vec::new());
     for (place, other) in bodies.placed() {
         for sphere in spheres_of(place, other).filter(|sphere| sphere.asleep) {
             let (at, reach) = (
-                sphere.mean::<D>(&other.position),
+                sphere.mean::<D>(&other.state.position),
                 (1.0 + MARGIN) * (radius + sphere.radius),
             );
             on_widest_lanes!(simd => bins.near::<D, _>(simd, at, reach, |_| 0, &mut near));
@@ -57,6 +59,6 @@ pub fn leaning_on_body<D: Dim>(body: &Body<D>, bodies: &Bodies<D>) -> Vec<(u32, 
 }
 
 fn spheres_of<D: Dim>(place: u32, body: &Body<D>) -> impl Iterator<Item = ContactSphere> {
-    let ids = body.mesh.elements().map(|(id, _)| id);
+    let ids = body.truth.mesh.elements().map(|(id, _)| id);
     ids.filter_map(move |id| ContactSphere::of(place, body, id))
 }

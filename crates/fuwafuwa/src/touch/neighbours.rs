@@ -33,7 +33,7 @@ impl Neighbours {
         let mut count = 0;
         for body in bodies.places() {
             neighbours.first.push(count);
-            count += body.map_or(0, |body| body.pieces.list.len()) as u32;
+            count += body.map_or(0, |body| body.truth.pieces.list.len()) as u32;
         }
         // Eight can be read from the last on.
         neighbours.pieces.resize(places.len() + LANES, u32::MAX);

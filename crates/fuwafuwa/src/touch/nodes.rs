@@ -96,10 +96,10 @@ impl NodePairs {
             }
             let woke = |node| {
                 pieces
-                    .binary_search(&(place, body.pieces.of_node(node)))
+                    .binary_search(&(place, body.truth.pieces.of_node(node)))
                     .is_ok()
             };
-            let woken = body.awake.iter().filter(|&&node| woke(node));
+            let woken = body.cache.awake.iter().filter(|&&node| woke(node));
             self.changed.extend(woken.map(|&node| (place, node)));
         }
     }
@@ -147,9 +147,10 @@ impl NodePairs {
         for ((index, rigid), leeway) in rigids.placed().zip(&self.leeways) {
             let is_near = |&&(place, node): &&(u32, u32)| {
                 let body = bodies.at(place);
-                let reach = self.reach(place, node, body.grid.voxel_size());
-                let at = three(body.position[node as usize]);
-                body.mesh.is_alive(node) && rigid.shape().distance(at).0 <= reach + leeway.most
+                let reach = self.reach(place, node, body.truth.grid.voxel_size());
+                let at = three(body.state.position[node as usize]);
+                body.truth.mesh.is_alive(node)
+                    && rigid.shape().distance(at).0 <= reach + leeway.most
             };
             let near = changed.iter().filter(is_near);
             found.extend(near.map(|&(body, node)| (index, body, node)));
@@ -166,7 +167,7 @@ impl NodePairs {
     fn find_all<D: Dim>(&mut self, bodies: &Bodies<D>, rigids: &Rigids, left: f32) {
         self.changed.clear();
         self.travel = 0.0;
-        let sizes = bodies.iter().map(|body| body.grid.voxel_size());
+        let sizes = bodies.iter().map(|body| body.truth.grid.voxel_size());
         self.least_slack = SLACK * sizes.clone().fold(f32::MAX, f32::min);
         self.spare = self.least_slack;
         let size = sizes.fold(0.0, f32::max);
@@ -184,10 +185,10 @@ impl NodePairs {
         self.anchors.resize(bodies.place_count(), Vec::new());
         let mut squares = Vec::new();
         for (place, body) in bodies.placed() {
-            for &node in &body.awake {
+            for &node in &body.cache.awake {
                 self.anchor(place, node, bodies, left);
             }
-            let reach = |node| self.reach(place, node, body.grid.voxel_size());
+            let reach = |node| self.reach(place, node, body.truth.grid.voxel_size());
             squares.push((place, body, Squares::of(body, reach)));
         }
         let mut found = Vec::new();
@@ -196,13 +197,19 @@ impl NodePairs {
             for (place, body, squares) in &squares {
                 near.clear();
                 squares.within(leeway.most, rigid.shape(), &mut near);
-                if rigid.is_driven() && body.awake.len() < body.mesh.node_count() {
-                    let reach = leeway.most + MARGIN * body.grid.voxel_size();
+                if rigid.is_driven() && body.cache.awake.len() < body.truth.mesh.node_count() {
+                    let reach = leeway.most + MARGIN * body.truth.grid.voxel_size();
                     let is_near = |&node: &u32| {
-                        let at = three(body.position[node as usize]);
-                        body.pieces.sleeps(node) && rigid.shape().distance(at).0 <= reach
+                        let at = three(body.state.position[node as usize]);
+                        body.truth.pieces.sleeps(node) && rigid.shape().distance(at).0 <= reach
                     };
-                    near.extend(body.mesh.nodes().map(|(node, _)| node).filter(is_near));
+                    near.extend(
+                        body.truth
+                            .mesh
+                            .nodes()
+                            .map(|(node, _)| node)
+                            .filter(is_near),
+                    );
                 }
                 // What is near comes square by square.
                 near.sort_unstable();
@@ -220,11 +227,11 @@ impl NodePairs {
             let Some(anchors) = self.anchors.get(place as usize) else {
                 continue;
             };
-            for &node in &body.awake {
+            for &node in &body.cache.awake {
                 let Some(&[x, y, z, most]) = anchors.get(node as usize) else {
                     continue;
                 };
-                let come = minus(body.position[node as usize], [x, y, z, 0.0]);
+                let come = minus(body.state.position[node as usize], [x, y, z, 0.0]);
                 let come = dot(come, come);
                 if come > most * most {
                     self.changed.push((place, node));
@@ -241,10 +248,10 @@ impl NodePairs {
     fn anchor<D: Dim>(&mut self, place: u32, node: u32, bodies: &Bodies<D>, left: f32) {
         let (body, node) = (bodies.at(place), node as usize);
         let anchors = &mut self.anchors[place as usize];
-        anchors.resize(body.position.len(), [0.0; 4]);
-        let [x, y, z, _] = body.position[node];
-        let speed = length(body.velocity[node]);
-        anchors[node] = [x, y, z, SLACK * body.grid.voxel_size() + speed * left];
+        anchors.resize(body.state.position.len(), [0.0; 4]);
+        let [x, y, z, _] = body.state.position[node];
+        let speed = length(body.state.velocity[node]);
+        anchors[node] = [x, y, z, SLACK * body.truth.grid.voxel_size() + speed * left];
     }
 
     /// How close to a wall a node is listed [m]; `size` [m] is that of its voxels.
@@ -287,14 +294,14 @@ impl NodePair {
 
     /// Whether they touched in this tick, which is to be told when they are far apart too.
     fn has_touched<D: Dim>(&self, bodies: &Bodies<D>) -> bool {
-        self.impulse.total > 0.0 && bodies.at(self.body).mesh.is_alive(self.node)
+        self.impulse.total > 0.0 && bodies.at(self.body).truth.mesh.is_alive(self.node)
     }
 
     /// The number of the piece; nothing when another body stands here since.
     pub fn piece<D: Dim>(&self, bodies: &Bodies<D>) -> Option<u32> {
         let body = bodies.find(self.body)?;
-        let is_known = (self.node as usize) < body.mesh.node_capacity();
-        is_known.then(|| body.pieces.of_node(self.node))
+        let is_known = (self.node as usize) < body.truth.mesh.node_capacity();
+        is_known.then(|| body.truth.pieces.of_node(self.node))
     }
 }
 
@@ -317,11 +324,13 @@ struct Square {
 
 impl Squares {
     fn of<D: Dim>(body: &Body<D>, reach: impl Fn(u32) -> f32) -> Self {
-        let nodes = body.awake.iter().map(|&node| (node, reach(node)));
+        let nodes = body.cache.awake.iter().map(|&node| (node, reach(node)));
         let nodes: Vec<(u32, f32)> = nodes.collect();
-        let points = nodes.iter().map(|&(node, _)| body.position[node as usize]);
+        let points = nodes
+            .iter()
+            .map(|&(node, _)| body.state.position[node as usize]);
         let points: Vec<Row> = points.collect();
-        let bins = Bins::new::<D>(&points, SQUARE * body.grid.voxel_size());
+        let bins = Bins::new::<D>(&points, SQUARE * body.truth.grid.voxel_size());
         let squares = { bins.filled() }.map(|range| Square::around(&bins, range, &nodes));
         Self {
             list: squares.collect(),
@@ -380,7 +389,7 @@ mod tests {
     fn check<D: Dim>(n: usize) {
         let grid = VoxelGrid::<D>::ball(n, 1.0).expect("a ball is not empty");
         let body = Body::new(grid, &[Material::default()]).expect("the material is good");
-        let size = body.grid.voxel_size();
+        let size = body.truth.grid.voxel_size();
         let mut bodies = Bodies::default();
         bodies.insert(body);
         let wall = |normal, offset| Rigid::fixed(Shape::HalfSpace { normal, offset }, 0.0);
@@ -401,9 +410,13 @@ mod tests {
             let listed: BTreeSet<Key> = pairs.list.iter().map(NodePair::key).collect();
             assert_eq!(listed.len(), pairs.list.len());
             assert!(pairs.list.is_sorted_by_key(NodePair::key));
-            assert!(listed.iter().all(|&(.., node)| body.mesh.is_alive(node)));
-            for (node, _) in body.mesh.nodes() {
-                let at = three(body.position[node as usize]);
+            assert!(
+                listed
+                    .iter()
+                    .all(|&(.., node)| body.truth.mesh.is_alive(node))
+            );
+            for (node, _) in body.truth.mesh.nodes() {
+                let at = three(body.state.position[node as usize]);
                 for (index, wall) in walls.placed() {
                     let is_close = wall.shape().distance(at).0 <= MARGIN * size;
                     assert!(!is_close || listed.contains(&(index, 0, node)));
@@ -414,13 +427,13 @@ mod tests {
                 (0..D::N).for_each(|axis| at[axis] = random(n + 1) as i32);
                 (at, 1 + random((1 << D::CORNERS) - 2) as u8)
             });
-            let before = body.mesh.node_count();
+            let before = body.truth.mesh.node_count();
             let torn = body.tear(&sides.collect::<Vec<_>>());
             let torn = torn.expect("a release leaves the mesh whole");
-            let alive = |&&node: &&u32| body.mesh.is_alive(node);
+            let alive = |&&node: &&u32| body.truth.mesh.is_alive(node);
             new += torn.nodes.iter().filter(alive).count();
             gone += torn.nodes.len() - torn.nodes.iter().filter(alive).count();
-            assert!(body.mesh.node_count() == before || !torn.nodes.is_empty());
+            assert!(body.truth.mesh.node_count() == before || !torn.nodes.is_empty());
             body.refresh_awake();
             pairs.tear(0, &torn.nodes);
         }

@@ -44,23 +44,23 @@ pub fn mean<D: Dim>(rows: &[Row], nodes: &[u32; 8]) -> Row {
 impl ContactSphere {
     /// That of an element of the body at a place among all, if it is at the surface.
     pub fn of<D: Dim>(place: u32, body: &Body<D>, id: u32) -> Option<Self> {
-        let bare = *body.bare.get(id as usize)?;
+        let bare = *body.cache.bare.get(id as usize)?;
         if bare == 0 {
             return None;
         }
-        let element = body.mesh.element(id)?;
+        let element = body.truth.mesh.element(id)?;
         let mut nodes = [0; 8];
         nodes[..D::CORNERS].copy_from_slice(&element.nodes);
-        let piece = body.pieces.of_element(id);
+        let piece = body.truth.pieces.of_element(id);
         Some(Self {
             body: place,
             element: id,
             piece,
-            radius: 0.5 * body.grid.voxel_size(),
-            asleep: body.pieces.list[piece as usize].asleep,
+            radius: 0.5 * body.truth.grid.voxel_size(),
+            asleep: body.truth.pieces.list[piece as usize].asleep,
             bare,
             voxel: element.cell.at.map(|k| k as i16),
-            bound: body.bound[id as usize],
+            bound: body.cache.bound[id as usize],
             nodes,
         })
     }
@@ -121,7 +121,7 @@ impl ContactSphere {
     /// One over the mass that a push on it meets [1/kg].
     #[inline]
     pub fn inverse_mass<D: Dim>(&self, bodies: &Bodies<D>) -> f32 {
-        let all = &bodies.at(self.body).inverse_mass;
+        let all = &bodies.at(self.body).state.inverse_mass;
         let nodes = self.nodes[..D::CORNERS].iter();
         let sum: f32 = nodes.map(|&node| all[node as usize]).sum();
         sum / (D::CORNERS * D::CORNERS) as f32

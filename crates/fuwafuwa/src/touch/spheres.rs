@@ -78,13 +78,13 @@ impl Spheres {
         for ((sphere, centre), place) in all {
             let body = bodies.at(sphere.body);
             let was_asleep = sphere.asleep;
-            sphere.asleep = body.pieces.list[sphere.piece as usize].asleep;
+            sphere.asleep = body.truth.pieces.list[sphere.piece as usize].asleep;
             // Nobody looks after sleepers: this is where they stay.
             if sphere.asleep != was_asleep {
                 changed.push(place);
             }
             if sphere.asleep && !was_asleep {
-                *centre = sphere.mean::<D>(&body.position);
+                *centre = sphere.mean::<D>(&body.state.position);
             }
         }
         // So that a world that was saved goes on as one that was not.
@@ -104,13 +104,13 @@ impl Spheres {
         let known = std::mem::take(&mut self.keys);
         self.list.clear();
         let none = |body: Option<&Body<D>>| {
-            let size = body.map_or([0; 3], |body| body.grid.size());
+            let size = body.map_or([0; 3], |body| body.truth.grid.size());
             let voxels = size.map(|extent| extent as usize);
             vec![NONE; voxels.iter().product()]
         };
         self.by_voxel = bodies.places().map(none).collect();
         let all = bodies.placed().flat_map(|(place, body)| {
-            let ids = body.mesh.elements().map(|(id, _)| id);
+            let ids = body.truth.mesh.elements().map(|(id, _)| id);
             ids.map(move |id| (place, id))
         });
         for (place, id) in known.iter().copied().chain(all) {
@@ -119,7 +119,7 @@ impl Spheres {
             let Some((sphere, body)) = sphere.zip(body) else {
                 continue;
             };
-            let own = &mut self.by_voxel[place as usize][body.grid.index(sphere.voxel())];
+            let own = &mut self.by_voxel[place as usize][body.truth.grid.index(sphere.voxel())];
             if *own == NONE {
                 *own = self.list.len() as u32;
                 self.list.push(sphere);
@@ -128,7 +128,7 @@ impl Spheres {
         self.keys.extend(self.list.iter().map(ContactSphere::key));
         let centre = |sphere: &ContactSphere| {
             let body = bodies.at(sphere.body);
-            sphere.mean::<D>(&body.position)
+            sphere.mean::<D>(&body.state.position)
         };
         self.centres.clear();
         self.centres.extend(self.list.iter().map(centre));
@@ -140,7 +140,12 @@ impl Spheres {
         }
         let place = |&(body, id): &(u32, u32)| {
             let (at, by_voxel) = (bodies.find(body)?, &self.by_voxel[body as usize]);
-            Some(by_voxel[at.grid.index(ContactSphere::of(body, at, id)?.voxel())])
+            Some(
+                by_voxel[at
+                    .truth
+                    .grid
+                    .index(ContactSphere::of(body, at, id)?.voxel())],
+            )
         };
         let places = known.iter().map(|key| place(key).unwrap_or(NONE));
         places.collect()
@@ -161,7 +166,7 @@ impl Spheres {
                 continue;
             };
             // What has once come to the surface stays there.
-            let own = &mut self.by_voxel[place as usize][body.grid.index(sphere.voxel())];
+            let own = &mut self.by_voxel[place as usize][body.truth.grid.index(sphere.voxel())];
             if *own == NONE {
                 *own = self.list.len() as u32;
                 if !sphere.asleep {
@@ -169,7 +174,7 @@ impl Spheres {
                 }
                 self.keys.push(sphere.key());
                 self.list.push(sphere);
-                self.centres.push(sphere.mean::<D>(&body.position));
+                self.centres.push(sphere.mean::<D>(&body.state.position));
             } else {
                 self.list[*own as usize] = sphere;
             }
@@ -187,7 +192,7 @@ impl Spheres {
         self.lips.retain(is_known);
         if !torn.parted.is_empty() {
             for sphere in self.list.iter_mut().filter(|sphere| sphere.body == place) {
-                sphere.piece = body.pieces.of_element(sphere.element);
+                sphere.piece = body.truth.pieces.of_element(sphere.element);
             }
             let list = &self.list;
             let piece = |own: u32| (list[own as usize].body, list[own as usize].piece);
@@ -203,14 +208,15 @@ impl Spheres {
     /// Adds the lips that a sphere is one of, with those others that a condition holds for.
     fn find_lips<D: Dim>(&mut self, place: u32, body: &Body<D>, applies: impl Fn(u32) -> bool) {
         let own = &self.list[place as usize];
-        let (site, voxel, size) = (own.site(), own.voxel(), body.grid.size());
+        let (site, voxel, size) = (own.site(), own.voxel(), body.truth.grid.size());
         let by_voxel = &self.by_voxel[own.body as usize];
         let near = i32::from(NEAR);
         let low = [0, 1, 2].map(|axis: usize| (voxel[axis] - near).max(0));
         let high = [0, 1, 2].map(|axis: usize| (voxel[axis] + near).min(size[axis] - 1));
         for z in low[2]..=high[2] {
             for y in low[1]..=high[1] {
-                let row = body.grid.index([low[0], y, z])..=body.grid.index([high[0], y, z]);
+                let row =
+                    body.truth.grid.index([low[0], y, z])..=body.truth.grid.index([high[0], y, z]);
                 let others = by_voxel[row].iter().copied();
                 for other in others.filter(|&other| other != NONE && applies(other)) {
                     let sphere = &self.list[other as usize];
@@ -279,7 +285,7 @@ impl Spheres {
     /// How fast one moves [m/s].
     pub fn velocity<D: Dim>(&self, place: u32, bodies: &Bodies<D>) -> Row {
         let sphere = &self.list[place as usize];
-        sphere.mean::<D>(&bodies.at(sphere.body).velocity)
+        sphere.mean::<D>(&bodies.at(sphere.body).state.velocity)
     }
 
     /// Whether their body itself holds two at their distance.
@@ -291,7 +297,7 @@ impl Spheres {
     fn follow<D: Dim>(&mut self, place: u32, bodies: &Bodies<D>) {
         let place = place as usize;
         let sphere = &self.list[place];
-        let centre = sphere.mean::<D>(&bodies.at(sphere.body).position);
+        let centre = sphere.mean::<D>(&bodies.at(sphere.body).state.position);
         if self.is_close[place] {
             let moved = minus(centre, self.centres[place]);
             self.moved[place] = dot(moved, moved);

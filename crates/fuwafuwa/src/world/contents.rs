@@ -155,9 +155,12 @@ impl<D: Dim> World<D> {
         let mut hash = Hash::NONE;
         hash.add(self.ticks);
         for body in self.bodies.iter() {
-            for (id, _) in body.mesh.nodes() {
-                let (at, speed) = (body.position[id as usize], body.velocity[id as usize]);
-                hash.add(u64::from(body.pieces.of_node(id)));
+            for (id, _) in body.truth.mesh.nodes() {
+                let (at, speed) = (
+                    body.state.position[id as usize],
+                    body.state.velocity[id as usize],
+                );
+                hash.add(u64::from(body.truth.pieces.of_node(id)));
                 for value in at.iter().chain(&speed) {
                     hash.add(u64::from(value.to_bits()));
                 }
@@ -198,7 +201,7 @@ impl<D: Dim> World<D> {
 
     /// Wakes all pieces of a body.
     fn wake_body(&mut self, body: BodyId) {
-        let pieces = 0..self.bodies[body].pieces.list.len() as u32;
+        let pieces = 0..self.bodies[body].truth.pieces.list.len() as u32;
         let pieces: Vec<Hit> = pieces.map(|piece| (body.place(), piece)).collect();
         self.wake(&pieces);
     }

@@ -27,7 +27,7 @@ fn start_tick<D: Dim>(spheres: &mut Spheres, pairs: &mut SpherePairs, bodies: &B
 fn compare<D: Dim>(pairs: &SpherePairs, spheres: &Spheres, bodies: &Bodies<D>, when: &str) {
     assert!(pairs.list.is_sorted_by(|a, b| a.spheres < b.spheres));
     let all = &spheres.list;
-    let centre = |sphere: &ContactSphere| sphere.mean::<D>(&bodies.at(sphere.body).position);
+    let centre = |sphere: &ContactSphere| sphere.mean::<D>(&bodies.at(sphere.body).state.position);
     for (second, b) in all.iter().zip(0..) {
         for (first, a) in all.iter().zip(0..b) {
             let apart = minus(centre(first), centre(second));
@@ -58,7 +58,7 @@ fn check<D: Dim>(n: usize) {
     let mut bodies = ball::<D>(n);
     let body = bodies.at_mut(0);
     body.crumble().expect("the mesh stays whole");
-    let (size, count) = (body.grid.voxel_size(), body.pieces.list.len());
+    let (size, count) = (body.truth.grid.voxel_size(), body.truth.pieces.list.len());
     let mut seed = 7;
     let (mut spheres, mut pairs) = (Spheres::default(), SpherePairs::default());
     let (mut again, mut whole) = (0, 0);
@@ -83,14 +83,14 @@ fn check<D: Dim>(n: usize) {
             })
             .collect();
         let velocity = |body: &mut Body<D>, sign: &dyn Fn(usize) -> f32| {
-            for node in 0..body.position.len() {
-                let piece = body.pieces.of_node(node as u32) as usize;
-                let moves = if body.pieces.list[piece].asleep {
+            for node in 0..body.state.position.len() {
+                let piece = body.truth.pieces.of_node(node as u32) as usize;
+                let moves = if body.truth.pieces.list[piece].asleep {
                     0.0
                 } else {
                     sign(piece)
                 };
-                body.velocity[node] = scaled(speeds[piece], moves);
+                body.state.velocity[node] = scaled(speeds[piece], moves);
             }
         };
         velocity(body, &|_| 1.0);
@@ -121,10 +121,10 @@ fn check<D: Dim>(n: usize) {
             spheres.note_close(pairs.list.iter().flat_map(|pair| pair.spheres));
             let mut furthest = 0.0f32;
             let body = bodies.at_mut(0);
-            for node in 0..body.position.len() {
-                let step = scaled(body.velocity[node], SUBSTEP);
+            for node in 0..body.state.position.len() {
+                let step = scaled(body.state.velocity[node], SUBSTEP);
                 furthest = furthest.max(length(step));
-                body.position[node] = plus(body.position[node], step);
+                body.state.position[node] = plus(body.state.position[node], step);
             }
             pairs.pass(SUBSTEP, furthest);
         }
@@ -207,7 +207,7 @@ fn check_tears<D: Dim>(n: usize) {
             }
         }
     }
-    assert!(bodies.at(0).pieces.list.len() > 10);
+    assert!(bodies.at(0).truth.pieces.list.len() > 10);
 }
 
 #[test]

@@ -1,0 +1,26 @@
+//! What is worked out from the truth and the state of a body, and kept so that it need not be again.
+
+use super::blend::Blend;
+use crate::breakable::BreakableNodes;
+use crate::momentum::RoughMotion;
+
+/// What is worked out from the truth and the state of a body, and kept so that it need not be again. No
+/// snapshot has it: `Body::rebuild` makes it anew.
+#[derive(Clone, Debug, Default)]
+pub struct Cache {
+    /// What its materials come to as a whole.
+    pub blend: Blend,
+    /// The nodes that move, ascending; stale after a remodelling.
+    pub awake: Vec<u32>,
+    pub awake_is_stale: bool,
+    /// Nodes where a crack can start or go on, and what they bear.
+    pub breakable: BreakableNodes,
+    /// Which faces of an element of level 0 are bare: bit 2 · axis + side; by element id.
+    pub bare: Vec<u8>,
+    /// Of those with bare faces, the voxels around that share a node: see [`Sharing::bound`], by element id.
+    ///
+    /// [`Sharing::bound`]: crate::sharing::Sharing::bound
+    pub bound: Vec<u32>,
+    /// The rigid motion of each piece, as of the last round of damping: every tick begins with one.
+    pub rigid: Vec<RoughMotion>,
+}

@@ -1,0 +1,59 @@
+//! What changes in a body from substep to substep, and what the next one goes on from.
+
+use super::cooldowns::Cooldowns;
+use crate::dim::Dim;
+use crate::solve::{Blocks, Row};
+
+/// What changes in a body from substep to substep, and what the next one goes on from.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound = ""))]
+pub struct State<D: Dim> {
+    /// Position [m], velocity [m/s] and mass [kg] of each node, by id.
+    pub position: Vec<Row>,
+    pub velocity: Vec<Row>,
+    pub mass: Vec<f32>,
+    /// One over the mass [1/kg]; 0 while a node is held or sleeps.
+    pub inverse_mass: Vec<f32>,
+    pub held: Vec<bool>,
+    /// How far each node has given way to what is more than it bears; at 1 it comes off.
+    pub damage: Vec<f32>,
+    /// Where it tore a short while ago.
+    pub cooldowns: Cooldowns,
+    /// Positions a moment ahead, where damped forces are evaluated.
+    pub ahead: Vec<Row>,
+    /// Whether nodes were placed from outside since forces were last computed.
+    pub placed: bool,
+    /// How each element has turned, and the forces of the last substep: where an element has come to turns
+    /// step by step, and the next crack goes where the last forces pulled.
+    pub blocks: Blocks<D>,
+}
+
+impl<D: Dim> State<D> {
+    /// Of a body without nodes.
+    pub fn new(blocks: Blocks<D>) -> Self {
+        Self {
+            position: Vec::new(),
+            velocity: Vec::new(),
+            mass: Vec::new(),
+            inverse_mass: Vec::new(),
+            held: Vec::new(),
+            damage: Vec::new(),
+            cooldowns: Cooldowns::default(),
+            ahead: Vec::new(),
+            placed: false,
+            blocks,
+        }
+    }
+
+    /// Makes room for as many nodes.
+    pub fn make_room(&mut self, nodes: usize) {
+        self.position.resize(nodes, [0.0; 4]);
+        self.velocity.resize(nodes, [0.0; 4]);
+        self.mass.resize(nodes, 0.0);
+        self.inverse_mass.resize(nodes, 0.0);
+        self.held.resize(nodes, false);
+        self.damage.resize(nodes, 0.0);
+        self.ahead.resize(nodes, [0.0; 4]);
+    }
+}
