@@ -59,7 +59,7 @@ fn torn<D: Dim>(n: usize, cracks: usize) -> Result<Body<D>, Box<dyn Error>> {
 
 fn measure<D: Dim>(name: &str, mut body: Body<D>) {
     // A body without strain would be kinder than any in a game.
-    let nodes: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
+    let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     for &id in &nodes {
         let ([x, y, z], ..) = body.node_state(id);
         let velocity = [3.0 * (y - 0.5), -3.0 * (x - 0.5), 0.5 * (z - 0.5)];

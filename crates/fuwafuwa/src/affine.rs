@@ -18,7 +18,7 @@ impl<D: Dim> Body<D> {
         let scale = 1.0 / (stencil.volume as f32 * half);
         let (mut centre, mut gradient) = ([0.0; 3], [[0.0; 3]; 3]);
         for (place, &node) in element.nodes.iter().enumerate() {
-            let at = three(self.state.position[node as usize]);
+            let at = three(self.state.position[node]);
             let share = (stencil.volumes[place] / stencil.volume) as f32;
             centre = plus(centre, scaled(at, share));
             let b = stencil.gradients[place].map(|k| k as f32);

@@ -5,6 +5,7 @@
 
 use crate::body::Body;
 use crate::dim::{Dim, Point, voxel_around};
+use crate::ids::PieceId;
 use crate::mesh::Defect;
 use crate::pyramid::Grading;
 use crate::shape::Vector;
@@ -58,7 +59,7 @@ pub struct CutReport {
     /// Where shared nodes were released [m].
     pub released: Vec<Vector>,
     /// Numbers of the pieces that came off.
-    pub parted: Vec<u32>,
+    pub parted: Vec<PieceId>,
 }
 
 impl<D: Dim> Body<D> {
@@ -93,7 +94,7 @@ impl<D: Dim> Body<D> {
     /// # Errors
     /// A [`Defect`] when the mesh breaks: a fault of this library.
     #[inline(never)]
-    pub fn crumble(&mut self) -> Result<Vec<u32>, Defect> {
+    pub fn crumble(&mut self) -> Result<Vec<PieceId>, Defect> {
         let octants = |at: Point| (0..D::CORNERS).map(move |octant| (at, 1 << octant));
         let everything: Vec<(Point, u8)> = self.truth.sharing.points().flat_map(octants).collect();
         self.release(&everything)

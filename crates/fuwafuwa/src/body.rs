@@ -14,6 +14,7 @@ mod truth;
 use crate::dim::{Dim, Point};
 use crate::grid::VoxelGrid;
 use crate::handle::{Arena, BodyId};
+use crate::ids::{ElementId, NodeId};
 use crate::law::Law;
 use crate::material::{BodyError, Material};
 use crate::mesh::{Element, Mesh};
@@ -92,14 +93,14 @@ impl<D: Dim> Body<D> {
         body.make_room();
         for (id, node) in body.truth.mesh.nodes() {
             let at = node.at.map(|k| k as f32 * body.truth.grid.voxel_size());
-            body.state.position[id as usize] = as_row(at);
+            body.state.position[id] = as_row(at);
         }
         body.state.ahead.clone_from(&body.state.position);
-        let elements: Vec<u32> = body.truth.mesh.elements().map(|(id, _)| id).collect();
+        let elements: Vec<ElementId> = body.truth.mesh.elements().map(|(id, _)| id).collect();
         body.state
             .blocks
             .update(&body.truth.mesh, &body.truth.grid, &[], &elements);
-        let all: Vec<u32> = body.truth.mesh.nodes().map(|(id, _)| id).collect();
+        let all: Vec<NodeId> = body.truth.mesh.nodes().map(|(id, _)| id).collect();
         body.weigh(&all);
         body.rebuild();
         Ok(body)
@@ -120,7 +121,7 @@ impl<D: Dim> Body<D> {
         let voxels: Vec<Point> = self.truth.grid.voxels().collect();
         self.expose(&voxels);
         if self.truth.pyramid.grading() != Grading::Coarse {
-            let nodes: Vec<u32> = self.truth.mesh.nodes().map(|(id, _)| id).collect();
+            let nodes: Vec<NodeId> = self.truth.mesh.nodes().map(|(id, _)| id).collect();
             self.find_breakable(&nodes);
         }
         self.cache.awake_is_stale = true;
@@ -130,7 +131,10 @@ impl<D: Dim> Body<D> {
     /// The same body, moved `by` [m]. What is then no place is quarantined in its first tick.
     #[inline(never)]
     pub fn moved(mut self, by: [f32; 3]) -> Self {
-        for row in self.state.position.iter_mut().chain(&mut self.state.ahead) {
+        let State {
+            position, ahead, ..
+        } = &mut self.state;
+        for row in position.iter_mut().chain(ahead.iter_mut()) {
             for axis in 0..D::N {
                 row[axis] += by[axis];
             }
@@ -141,7 +145,7 @@ impl<D: Dim> Body<D> {
     /// The same body, every node moving at `velocity` [m/s].
     #[inline(never)]
     pub fn thrown(mut self, velocity: [f32; 3]) -> Self {
-        for row in &mut self.state.velocity {
+        for row in self.state.velocity.iter_mut() {
             row[..D::N].copy_from_slice(&velocity[..D::N]);
         }
         self
@@ -151,19 +155,19 @@ impl<D: Dim> Body<D> {
     ///
     /// # Panics
     /// When the id was never used.
-    pub fn hold(&mut self, id: u32) {
-        self.state.held[id as usize] = true;
-        self.state.inverse_mass[id as usize] = 0.0;
+    pub fn hold(&mut self, id: NodeId) {
+        self.state.held[id] = true;
+        self.state.inverse_mass[id] = 0.0;
     }
 
     /// Ends what [`Body::hold`] began.
     ///
     /// # Panics
     /// When the id was never used.
-    pub fn let_go(&mut self, id: u32) {
-        self.state.held[id as usize] = false;
+    pub fn let_go(&mut self, id: NodeId) {
+        self.state.held[id] = false;
         if !self.truth.pieces.sleeps(id) {
-            self.state.inverse_mass[id as usize] = 1.0 / self.state.mass[id as usize];
+            self.state.inverse_mass[id] = 1.0 / self.state.mass[id];
         }
     }
 
@@ -205,8 +209,7 @@ impl<D: Dim> Body<D> {
     ///
     /// # Panics
     /// When the id was never used.
-    pub fn node_state(&self, id: u32) -> ([f32; 3], [f32; 3], f32) {
-        let id = id as usize;
+    pub fn node_state(&self, id: NodeId) -> ([f32; 3], [f32; 3], f32) {
         (
             three(self.state.position[id]),
             three(self.state.velocity[id]),
@@ -219,12 +222,12 @@ impl<D: Dim> Body<D> {
     ///
     /// # Panics
     /// When the id was never used.
-    pub fn set_node_state(&mut self, id: u32, position: [f32; 3], velocity: [f32; 3]) -> bool {
+    pub fn set_node_state(&mut self, id: NodeId, position: [f32; 3], velocity: [f32; 3]) -> bool {
         let finite = position.iter().chain(&velocity).all(|k| k.is_finite());
         if finite {
-            self.state.position[id as usize][..D::N].copy_from_slice(&position[..D::N]);
-            self.state.velocity[id as usize][..D::N].copy_from_slice(&velocity[..D::N]);
-            self.state.ahead[id as usize] = self.state.position[id as usize];
+            self.state.position[id][..D::N].copy_from_slice(&position[..D::N]);
+            self.state.velocity[id][..D::N].copy_from_slice(&velocity[..D::N]);
+            self.state.ahead[id] = self.state.position[id];
             self.state.placed = true;
         }
         finite
@@ -234,14 +237,14 @@ impl<D: Dim> Body<D> {
     ///
     /// # Panics
     /// When the id was never used.
-    pub fn force_on(&self, id: u32) -> [f32; 3] {
+    pub fn force_on(&self, id: NodeId) -> [f32; 3] {
         three(self.state.blocks.force_on(id))
     }
 
     /// Linear and angular momentum of everything, about the origin.
     #[inline(never)]
     pub fn momentum(&self) -> Momentum {
-        let ids: Vec<u32> = self.truth.mesh.nodes().map(|(id, _)| id).collect();
+        let ids: Vec<NodeId> = self.truth.mesh.nodes().map(|(id, _)| id).collect();
         Momentum::of(self.states(&ids), [0.0; 3])
     }
 
@@ -249,8 +252,8 @@ impl<D: Dim> Body<D> {
     #[inline(never)]
     pub fn kinetic_energy(&self) -> f64 {
         let states = self.truth.mesh.nodes().map(|(id, _)| {
-            let velocity = self.state.velocity[id as usize].map(f64::from);
-            0.5 * f64::from(self.state.mass[id as usize]) * dot(velocity, velocity)
+            let velocity = self.state.velocity[id].map(f64::from);
+            0.5 * f64::from(self.state.mass[id]) * dot(velocity, velocity)
         });
         states.sum()
     }
@@ -265,8 +268,7 @@ impl<D: Dim> Body<D> {
     #[inline(never)]
     pub fn total_mass(&self) -> f64 {
         let ids = self.truth.mesh.nodes();
-        ids.map(|(id, _)| f64::from(self.state.mass[id as usize]))
-            .sum()
+        ids.map(|(id, _)| f64::from(self.state.mass[id])).sum()
     }
 
     /// How it is damped in substeps of `duration` [s]: the lead of its elastic forces [s], and the
@@ -326,15 +328,15 @@ impl<D: Dim> Body<D> {
 
     pub(crate) fn states<'a>(
         &'a self,
-        nodes: &'a [u32],
+        nodes: &'a [NodeId],
     ) -> impl Iterator<Item = (Row, Row, f32)> + 'a {
-        let state = |id: usize| {
+        let state = move |&id: &NodeId| {
             (
                 self.state.position[id],
                 self.state.velocity[id],
                 self.state.mass[id],
             )
         };
-        nodes.iter().map(move |&id| state(id as usize))
+        nodes.iter().map(state)
     }
 }

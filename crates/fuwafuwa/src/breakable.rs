@@ -12,6 +12,7 @@
 
 use crate::dim::{Dim, FAR, Point, voxel_around};
 use crate::grid::VoxelGrid;
+use crate::ids::{Id, NodeId, Table};
 use crate::material::Material;
 use crate::mesh::{Mesh, Node};
 use crate::sharing::{Around, Sharing};
@@ -56,8 +57,7 @@ type Closed = [u8; 3];
 /// The breakable nodes of a body.
 #[derive(Clone, Debug, Default)]
 pub struct BreakableNodes {
-    /// By node id.
-    of_node: Vec<Option<BreakableNode>>,
+    of_node: Table<NodeId, Option<BreakableNode>>,
     /// The cuts of each pattern of closed faces, in the order in which the patterns came up.
     cuts: Vec<Vec<Cut>>,
     known: BTreeMap<Closed, u32>,
@@ -65,11 +65,11 @@ pub struct BreakableNodes {
 
 impl BreakableNodes {
     /// The breakable nodes among those of some ids, ascending.
-    pub fn among(&self, ids: Range<usize>) -> impl Iterator<Item = (u32, &BreakableNode)> {
+    pub fn among(&self, ids: Range<usize>) -> impl Iterator<Item = (NodeId, &BreakableNode)> {
         let end = ids.end.min(self.of_node.len());
         let first = ids.start.min(end);
-        let all = self.of_node[first..end].iter().zip(first as u32..);
-        all.filter_map(|(node, id)| Some((id, node.as_ref()?)))
+        let all = self.of_node.as_slice()[first..end].iter().zip(first..);
+        all.filter_map(|(node, id)| Some((NodeId::of(id), node.as_ref()?)))
     }
 
     /// All ways to part the voxels at a breakable node.
@@ -80,7 +80,7 @@ impl BreakableNodes {
     /// Looks again at `nodes`: all those whose elements or whose connection may have changed.
     pub fn look<D: Dim>(
         &mut self,
-        nodes: &[u32],
+        nodes: &[NodeId],
         grid: &VoxelGrid<D>,
         sharing: &Sharing<D>,
         mesh: &Mesh<D>,
@@ -90,12 +90,12 @@ impl BreakableNodes {
         for &id in nodes {
             let node = mesh.node(id);
             let several = node.group & node.group.wrapping_sub(1) != 0;
-            self.of_node[id as usize] = None;
+            self.of_node[id] = None;
             if several && mesh.is_alive(id) {
                 let around = sharing.around(node.at);
                 if around.is_open() {
                     let judged = self.judge(node, grid, &around, materials);
-                    self.of_node[id as usize] = Some(judged);
+                    self.of_node[id] = Some(judged);
                 }
             }
         }
@@ -255,7 +255,7 @@ mod tests {
             body.release(&[(at, side)]).expect("the mesh stays whole");
         }
         let mut fresh = BreakableNodes::default();
-        let nodes: Vec<u32> = body.truth.mesh.nodes().map(|(id, _)| id).collect();
+        let nodes: Vec<NodeId> = body.truth.mesh.nodes().map(|(id, _)| id).collect();
         let materials = body.materials();
         fresh.look(
             &nodes,

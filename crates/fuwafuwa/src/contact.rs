@@ -13,6 +13,7 @@ mod sides;
 
 use crate::body::{Bodies, Body};
 use crate::dim::Dim;
+use crate::ids::PieceId;
 use crate::rigid::Rigids;
 use crate::solve::Row;
 use crate::threads;
@@ -43,7 +44,7 @@ pub struct Contacts {
 }
 
 /// A sleeping piece that was hit: body and piece number.
-pub type Hit = (u32, u32);
+pub type Hit = (u32, PieceId);
 
 impl Contacts {
     /// Finds the contacts of this substep among what is nearby. Returns the sleepers that were hit.
@@ -86,7 +87,7 @@ impl Contacts {
             for (pair, place) in pairs.iter_mut().zip(first..) {
                 let body = bodies.at(pair.body);
                 let rigid = rigids.at(pair.rigid);
-                let node = pair.node as usize;
+                let node = pair.node;
                 // What sleeps is touched by hands alone.
                 if body.state.inverse_mass[node] == 0.0 && !rigid.is_driven() {
                     pair.impulse.release();

@@ -7,6 +7,7 @@
 
 use crate::body::Body;
 use crate::dim::Dim;
+use crate::ids::{PieceId, Table};
 use crate::momentum::RigidMotion;
 use crate::threads;
 use crate::vector::{cross, dot, minus, plus, scaled, three};
@@ -76,28 +77,29 @@ impl PieceMotion {
 }
 
 /// The motions of all pieces, by number; those asleep have no mass here.
-pub fn motions<D: Dim>(body: &Body<D>) -> Vec<PieceMotion> {
-    let mut motions = vec![PieceMotion::default(); body.truth.pieces.list.len()];
+pub fn motions<D: Dim>(body: &Body<D>) -> Table<PieceId, PieceMotion> {
+    let count = body.truth.pieces.list.len();
+    let mut motions: Table<PieceId, _> = vec![PieceMotion::default(); count].into();
     // A node of the piece itself: far from the world's origin the sums would lose digits.
-    let mut origins = vec![[0.0; 3]; motions.len()];
-    let of_node = |id| body.truth.pieces.of_node(id) as usize;
+    let mut origins: Table<PieceId, _> = vec![[0.0; 3]; count].into();
+    let of_node = |id| body.truth.pieces.of_node(id);
     // Nodes that follow one another are mostly of one piece: its sums stay at hand for as long.
     for nodes in body.cache.awake.chunk_by(|&a, &b| of_node(a) == of_node(b)) {
         let piece = of_node(nodes[0]);
         let (mut motion, origin) = (motions[piece], &mut origins[piece]);
         if motion.nodes == 0 {
-            *origin = wide(body.state.position[nodes[0] as usize]);
+            *origin = wide(body.state.position[nodes[0]]);
         }
         for (&id, (position, velocity, mass)) in nodes.iter().zip(body.states(nodes)) {
             let x = minus(wide(position), *origin);
             motion.add::<D>(x, wide(velocity), f64::from(mass));
-            motion.is_driven |= body.state.inverse_mass[id as usize] == 0.0 && velocity != [0.0; 4];
+            motion.is_driven |= body.state.inverse_mass[id] == 0.0 && velocity != [0.0; 4];
         }
         motions[piece] = motion;
     }
-    for (motion, origin) in motions.iter_mut().zip(origins) {
+    for (motion, origin) in motions.iter_mut().zip(origins.iter()) {
         if motion.nodes > 0 {
-            motion.finish(origin);
+            motion.finish(*origin);
         }
     }
     motions
@@ -156,11 +158,10 @@ pub fn slow_down<D: Dim>(body: &mut Body<D>, motions: &[PieceMotion], slowing: &
     threads::map(rows, |rows| {
         let [velocities] = rows.lists;
         for &id in rows.nodes {
-            let node = id as usize;
-            if inverse_mass[node] != 0.0 {
-                let (kept, pace) = &paces[pieces.of_node(id) as usize];
-                let velocity = &mut velocities[node - rows.first];
-                *velocity = plus(scaled(*velocity, *kept), pace.at::<D>(position[node]));
+            if inverse_mass[id] != 0.0 {
+                let (kept, pace) = &paces[pieces.of_node(id).index()];
+                let velocity = &mut velocities[id.index() - rows.first];
+                *velocity = plus(scaled(*velocity, *kept), pace.at::<D>(position[id]));
             }
         }
     });

@@ -1,6 +1,7 @@
 //! What happened in a tick.
 
 use crate::handle::{BodyId, RigidId};
+use crate::ids::PieceId;
 use crate::shape::Vector;
 
 /// Something that happened in the last tick, for sound, score and show.
@@ -21,14 +22,14 @@ pub enum Event {
         /// The body.
         body: BodyId,
         /// Number of the new piece.
-        piece: u32,
+        piece: PieceId,
     },
     /// Things pressed on each other.
     Touched {
         /// The body.
         body: BodyId,
         /// Number of the piece.
-        piece: u32,
+        piece: PieceId,
         /// What it pressed on.
         with: With,
         /// Where, at the strongest contact [m].
@@ -41,21 +42,21 @@ pub enum Event {
         /// The body.
         body: BodyId,
         /// Number of the piece.
-        piece: u32,
+        piece: PieceId,
     },
     /// A resting piece was disturbed.
     Woke {
         /// The body.
         body: BodyId,
         /// Number of the piece.
-        piece: u32,
+        piece: PieceId,
     },
     /// A piece went out of hand and was stopped for good, so that it spoils nothing else.
     Quarantined {
         /// The body.
         body: BodyId,
         /// Number of the piece.
-        piece: u32,
+        piece: PieceId,
     },
 }
 
@@ -72,7 +73,7 @@ pub enum With {
         /// The body.
         body: BodyId,
         /// Number of the piece.
-        piece: u32,
+        piece: PieceId,
     },
 }
 

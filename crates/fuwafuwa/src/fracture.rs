@@ -16,6 +16,7 @@ use crate::body::Body;
 use crate::body::cooldowns::is_near;
 use crate::breakable::{BreakableNode, Cut};
 use crate::dim::{Dim, Point};
+use crate::ids::NodeId;
 use crate::solve::Row;
 use crate::threads;
 use crate::vector::{dot, length, minus, plus, scaled};
@@ -24,7 +25,7 @@ use crate::vector::{dot, length, minus, plus, scaled};
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Failure {
     /// The node.
-    pub node: u32,
+    pub node: NodeId,
     /// Its lattice point.
     pub at: Point,
     /// The octants on one side of the crack.
@@ -57,10 +58,10 @@ pub fn failures<D: Dim>(body: &mut Body<D>, duration: f32) -> Vec<Failure> {
     let found = threads::map(threads::shares(&mut damage), |(first, damage)| {
         let mut found: Vec<Failure> = Vec::new();
         for (id, node) in body.cache.breakable.among(first..first + damage.len()) {
-            let damage = &mut damage[id as usize - first];
+            let damage = &mut damage[id.index() - first];
             // What is not damaged yet is looked at in every other round.
             if body.truth.pieces.sleeps(id)
-                || *damage == 0.0 && (id ^ body.state.cooldowns.rounds) & 1 == 1
+                || *damage == 0.0 && (id.0 ^ body.state.cooldowns.rounds) & 1 == 1
             {
                 continue;
             }
@@ -105,7 +106,7 @@ fn undisturbed(found: Vec<Failure>) -> Vec<Failure> {
 }
 
 /// The cut through a breakable node that is overstrained most, if one is.
-fn worst_cut<D: Dim>(body: &Body<D>, id: u32, node: &BreakableNode) -> Option<Failure> {
+fn worst_cut<D: Dim>(body: &Body<D>, id: NodeId, node: &BreakableNode) -> Option<Failure> {
     let size = body.truth.grid.voxel_size();
     let mut forces = [[0.0; 4]; 8];
     let mut squared = 0.0;
@@ -168,7 +169,7 @@ fn octants(mask: u8) -> impl Iterator<Item = usize> {
 }
 
 /// The rotations of all elements around a node, added up.
-fn total_turn<D: Dim>(body: &Body<D>, id: u32) -> [[f32; 3]; 3] {
+fn total_turn<D: Dim>(body: &Body<D>, id: NodeId) -> [[f32; 3]; 3] {
     let mut turn = [[0.0; 3]; 3];
     for owner in body.truth.mesh.carrier_ids(id) {
         let rotation = body.state.blocks.rotation(owner);
@@ -198,7 +199,7 @@ mod tests {
     #[test]
     fn the_front_of_a_crack_moves_as_a_whole() {
         let failure = |at: Point, axis| Failure {
-            node: 0,
+            node: NodeId(0),
             at,
             side: 1,
             axis,

@@ -19,6 +19,7 @@ pub use remodel::{Inheritance, Remodelled};
 use crate::chains::Chains;
 use crate::dim::{Dim, Point, points_in, voxel_around};
 use crate::grid::VoxelGrid;
+use crate::ids::{ElementId, NodeId, Table};
 use crate::pyramid::{Cell, Grading, Places, Pyramid, parts};
 use crate::sharing::Sharing;
 use crate::stencil::{MissingCorner, Stencil};
@@ -36,7 +37,7 @@ pub struct Element {
     /// Its class: see [`Mesh::stencil`].
     pub stencil: u32,
     /// Its nodes, in the order of the stencil's slots.
-    pub nodes: Vec<u32>,
+    pub nodes: Vec<NodeId>,
 }
 
 /// A mass point: a lattice point and the octants of the group that shares it.
@@ -54,24 +55,24 @@ pub struct Node {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Mesh<D: Dim> {
-    elements: Vec<Option<Element>>,
-    nodes: Vec<Node>,
+    elements: Table<ElementId, Option<Element>>,
+    nodes: Table<NodeId, Node>,
     stencils: Vec<Stencil<D>>,
     /// Whether every lattice point of the surface is a node, whatever the size of its elements.
     dense_surface: bool,
     places: Places,
     /// The elements of each cell, by its place.
-    by_cell: Chains,
+    by_cell: Chains<ElementId>,
     /// One more than the element that owns each voxel, by the place of its cell of level 0; 0 where
     /// nothing is.
     owners: Vec<u32>,
     /// The nodes at each lattice point, by its index.
-    by_point: Chains,
+    by_point: Chains<NodeId>,
     classes: BTreeMap<(u8, u32), u32>,
     /// How many elements carry each node; 0 = the id is free.
-    carriers: Vec<u8>,
-    free_elements: Vec<u32>,
-    free_nodes: Vec<u32>,
+    carriers: Table<NodeId, u8>,
+    free_elements: Vec<ElementId>,
+    free_nodes: Vec<NodeId>,
 }
 
 /// A broken invariant of a mesh: what, and where.
@@ -111,8 +112,8 @@ impl<D: Dim> Mesh<D> {
         pyramid: &Pyramid<D>,
     ) -> Result<Self, Defect> {
         let mut mesh = Self {
-            elements: Vec::new(),
-            nodes: Vec::new(),
+            elements: Table::default(),
+            nodes: Table::default(),
             stencils: Vec::new(),
             dense_surface: pyramid.grading() == Grading::Coarse,
             places: pyramid.places().clone(),
@@ -120,7 +121,7 @@ impl<D: Dim> Mesh<D> {
             owners: vec![0; pyramid.places().count_of(0)],
             by_point: Chains::new(sharing.point_count()),
             classes: BTreeMap::new(),
-            carriers: Vec::new(),
+            carriers: Table::default(),
             free_elements: Vec::new(),
             free_nodes: Vec::new(),
         };
@@ -131,16 +132,16 @@ impl<D: Dim> Mesh<D> {
                 }
             }
         }
-        for id in 0..mesh.elements.len() as u32 {
+        for id in mesh.elements.ids() {
             mesh.seat(id, sharing, None)?;
         }
         Ok(mesh)
     }
 
     /// The elements with their ids, ascending.
-    pub fn elements(&self) -> impl Iterator<Item = (u32, &Element)> {
-        let alive = self.elements.iter().enumerate();
-        alive.filter_map(|(id, element)| Some((id as u32, element.as_ref()?)))
+    pub fn elements(&self) -> impl Iterator<Item = (ElementId, &Element)> {
+        let alive = self.elements.entries();
+        alive.filter_map(|(id, element)| Some((id, element.as_ref()?)))
     }
 
     /// Number of elements.
@@ -149,9 +150,9 @@ impl<D: Dim> Mesh<D> {
     }
 
     /// The nodes with their ids, ascending.
-    pub fn nodes(&self) -> impl Iterator<Item = (u32, Node)> + '_ {
-        let alive = self.nodes.iter().zip(&self.carriers).enumerate();
-        alive.filter_map(|(id, (&node, &carriers))| (carriers > 0).then_some((id as u32, node)))
+    pub fn nodes(&self) -> impl Iterator<Item = (NodeId, Node)> + '_ {
+        let alive = self.nodes.entries().zip(self.carriers.iter());
+        alive.filter_map(|((id, &node), &carriers)| (carriers > 0).then_some((id, node)))
     }
 
     /// Number of nodes.
@@ -170,26 +171,26 @@ impl<D: Dim> Mesh<D> {
     }
 
     /// Whether some element carries the node with this id.
-    pub fn is_alive(&self, id: u32) -> bool {
-        self.carriers[id as usize] > 0
+    pub fn is_alive(&self, id: NodeId) -> bool {
+        self.carriers[id] > 0
     }
 
     /// The node with an id.
     ///
     /// # Panics
     /// When the id was never used.
-    pub fn node(&self, id: u32) -> Node {
-        self.nodes[id as usize]
+    pub fn node(&self, id: NodeId) -> Node {
+        self.nodes[id]
     }
 
     /// The element with an id, if it is alive.
-    pub fn element(&self, id: u32) -> Option<&Element> {
-        self.elements.get(id as usize)?.as_ref()
+    pub fn element(&self, id: ElementId) -> Option<&Element> {
+        self.elements.get(id.index())?.as_ref()
     }
 
     /// The elements that carry a node, each with the node's place among its own, in the order of
     /// the octants around the node: an order that no numbering can change.
-    pub fn carriers_of(&self, id: u32) -> impl Iterator<Item = (&Element, usize)> {
+    pub fn carriers_of(&self, id: NodeId) -> impl Iterator<Item = (&Element, usize)> {
         self.carrier_ids(id).map(move |owner| {
             let element = self.alive(owner);
             let place = element.nodes.iter().position(|&node| node == id);
@@ -201,9 +202,9 @@ impl<D: Dim> Mesh<D> {
     }
 
     /// The ids of the elements that carry a node, in the order of the octants around it.
-    pub fn carrier_ids(&self, id: u32) -> impl Iterator<Item = u32> + use<D> {
+    pub fn carrier_ids(&self, id: NodeId) -> impl Iterator<Item = ElementId> + use<D> {
         let node = self.node(id);
-        let (mut carriers, mut count) = ([0; 8], 0);
+        let (mut carriers, mut count) = ([ElementId(0); 8], 0);
         for owner in self.owners_around(node.at, node.group) {
             if !carriers[..count].contains(&owner) {
                 carriers[count] = owner;
@@ -239,12 +240,16 @@ impl<D: Dim> Mesh<D> {
     }
 
     /// The element that owns a solid voxel; `None` for an empty one.
-    pub fn owner(&self, voxel: Point) -> Option<u32> {
-        self.owners[self.places.number(Cell::of(voxel))?].checked_sub(1)
+    pub fn owner(&self, voxel: Point) -> Option<ElementId> {
+        owner(self.owners[self.places.number(Cell::of(voxel))?])
     }
 
     /// The elements that own the voxels in some octants around a lattice point, in their order.
-    pub fn owners_around(&self, at: Point, octants: u8) -> impl Iterator<Item = u32> + use<D> {
+    pub fn owners_around(
+        &self,
+        at: Point,
+        octants: u8,
+    ) -> impl Iterator<Item = ElementId> + use<D> {
         let mut owners = [0; 8];
         match self.places.voxels_around::<D>(at) {
             Some(places) => {
@@ -261,7 +266,7 @@ impl<D: Dim> Mesh<D> {
             }
         }
         let asked = (0..D::CORNERS).filter(move |octant| octants >> octant & 1 == 1);
-        asked.filter_map(move |octant| owners[octant].checked_sub(1))
+        asked.filter_map(move |octant| owner(owners[octant]))
     }
 
     /// The first of the voxels that an element fills.
@@ -298,8 +303,8 @@ impl<D: Dim> Mesh<D> {
         self.canonical() == other.canonical()
     }
 
-    fn alive(&self, id: u32) -> &Element {
-        self.elements[id as usize]
+    fn alive(&self, id: ElementId) -> &Element {
+        self.elements[id]
             .as_ref()
             .expect("a cell lists live elements only")
     }
@@ -325,21 +330,24 @@ impl<D: Dim> Mesh<D> {
             stencil: u32::MAX,
             nodes: Vec::new(),
         };
-        let id = self
-            .free_elements
-            .pop()
-            .unwrap_or(self.elements.len() as u32);
-        if id as usize == self.elements.len() {
+        let next = self.elements.next_id();
+        let id = self.free_elements.pop().unwrap_or(next);
+        if id == next {
             self.elements.push(Some(element));
         } else {
-            self.elements[id as usize] = Some(element);
+            self.elements[id] = Some(element);
         }
         let place = |cell| self.places.number(cell).expect("cells lie in the grid");
         self.by_cell.append(place(cell), id);
         for voxel in self.voxels(self.alive(id)) {
-            self.owners[place(Cell::of(voxel))] = id + 1;
+            self.owners[place(Cell::of(voxel))] = id.0 + 1;
         }
     }
+}
+
+/// Who owns a voxel, from what the table of owners says.
+fn owner(listed: u32) -> Option<ElementId> {
+    listed.checked_sub(1).map(ElementId)
 }
 
 /// The cells that contain a voxel, finest first, each with the child that holds the voxel.

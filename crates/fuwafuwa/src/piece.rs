@@ -7,8 +7,12 @@
 
 use crate::dim::Dim;
 use crate::disjoint::DisjointSets;
+use crate::ids::{ElementId, NodeId, PieceId, Table};
 use crate::mesh::Mesh;
 use std::collections::{BTreeMap, VecDeque};
+
+/// The piece of what has none yet.
+const NONE: PieceId = PieceId(u32::MAX);
 
 /// A connected part of a body.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -27,16 +31,14 @@ pub struct Piece {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pieces {
     /// By piece number. Numbers are never given back.
-    pub list: Vec<Piece>,
-    /// By element id.
-    of_element: Vec<u32>,
-    /// By node id.
-    of_node: Vec<u32>,
+    pub list: Table<PieceId, Piece>,
+    of_element: Table<ElementId, PieceId>,
+    of_node: Table<NodeId, PieceId>,
     /// Scratch of [`Pieces::part`]: which search has seen each element and node.
     #[cfg_attr(feature = "serde", serde(skip))]
-    seen: Vec<u32>,
+    seen: Table<ElementId, u32>,
     #[cfg_attr(feature = "serde", serde(skip))]
-    node_seen: Vec<u32>,
+    node_seen: Table<NodeId, u32>,
     #[cfg_attr(feature = "serde", serde(skip))]
     marked: u32,
 }
@@ -45,8 +47,8 @@ pub struct Pieces {
 struct Search {
     /// Its place among the sides of all that was released.
     place: usize,
-    found: Vec<u32>,
-    next: VecDeque<u32>,
+    found: Vec<ElementId>,
+    next: VecDeque<ElementId>,
 }
 
 /// What is known of the sides of all that was released at once.
@@ -59,7 +61,7 @@ struct Sides {
     running: VecDeque<Search>,
     resting: Vec<Search>,
     /// The pieces that came off.
-    born: Vec<u32>,
+    born: Vec<PieceId>,
 }
 
 impl Pieces {
@@ -67,19 +69,19 @@ impl Pieces {
     pub fn new<D: Dim>(mesh: &Mesh<D>) -> Self {
         let mut pieces = Self::default();
         pieces.make_room(mesh);
-        pieces.of_element.fill(u32::MAX);
+        pieces.of_element.fill(NONE);
         for (first, _) in mesh.elements() {
-            if pieces.of_element[first as usize] != u32::MAX {
+            if pieces.of_element[first] != NONE {
                 continue;
             }
-            let number = pieces.list.len() as u32;
+            let number = pieces.list.next_id();
             pieces.list.push(Piece::default());
             let mut next = vec![first];
-            pieces.of_element[first as usize] = number;
+            pieces.of_element[first] = number;
             while let Some(id) = next.pop() {
                 for near in neighbours(mesh, id) {
-                    if pieces.of_element[near as usize] == u32::MAX {
-                        pieces.of_element[near as usize] = number;
+                    if pieces.of_element[near] == NONE {
+                        pieces.of_element[near] = number;
                         next.push(near);
                     }
                 }
@@ -87,7 +89,7 @@ impl Pieces {
         }
         for (id, element) in mesh.elements() {
             for &node in &element.nodes {
-                pieces.of_node[node as usize] = pieces.of_element[id as usize];
+                pieces.of_node[node] = pieces.of_element[id];
             }
         }
         pieces
@@ -98,8 +100,8 @@ impl Pieces {
     /// # Panics
     /// When the id was never used.
     #[inline]
-    pub fn of_element(&self, id: u32) -> u32 {
-        self.of_element[id as usize]
+    pub fn of_element(&self, id: ElementId) -> PieceId {
+        self.of_element[id]
     }
 
     /// The piece of a node.
@@ -107,21 +109,21 @@ impl Pieces {
     /// # Panics
     /// When the id was never used.
     #[inline]
-    pub fn of_node(&self, id: u32) -> u32 {
-        self.of_node[id as usize]
+    pub fn of_node(&self, id: NodeId) -> PieceId {
+        self.of_node[id]
     }
 
     /// Whether the piece of a node is asleep.
     #[inline]
-    pub fn sleeps(&self, node: u32) -> bool {
-        self.list[self.of_node[node as usize] as usize].asleep
+    pub fn sleeps(&self, node: NodeId) -> bool {
+        self.list[self.of_node[node]].asleep
     }
 
     /// Makes room for elements and nodes that a remodelling added.
     pub fn make_room<D: Dim>(&mut self, mesh: &Mesh<D>) {
-        self.of_element.resize(mesh.element_capacity(), 0);
+        self.of_element.resize(mesh.element_capacity(), PieceId(0));
         self.seen.resize(mesh.element_capacity(), 0);
-        self.of_node.resize(mesh.node_capacity(), 0);
+        self.of_node.resize(mesh.node_capacity(), PieceId(0));
         self.node_seen.resize(mesh.node_capacity(), 0);
     }
 
@@ -133,19 +135,19 @@ impl Pieces {
     }
 
     /// A new node belongs where the node it took its state from belongs.
-    pub fn inherit(&mut self, node: u32, from: u32) {
-        self.of_node[node as usize] = self.of_node[from as usize];
+    pub fn inherit(&mut self, node: NodeId, from: NodeId) {
+        self.of_node[node] = self.of_node[from];
     }
 
     /// An element that was seated belongs where its nodes belong.
-    pub fn adopt(&mut self, element: u32, nodes: &[u32]) {
-        self.of_element[element as usize] = self.of_node[nodes[0] as usize];
+    pub fn adopt(&mut self, element: ElementId, nodes: &[NodeId]) {
+        self.of_element[element] = self.of_node[nodes[0]];
     }
 
     /// Finds out whether the elements around each of some places, where something was released, still
     /// hang together. Every part that does not reach the rest of its piece becomes a piece of its
     /// own; returns their numbers.
-    pub fn part<D: Dim>(&mut self, mesh: &Mesh<D>, places: &[Vec<u32>]) -> Vec<u32> {
+    pub fn part<D: Dim>(&mut self, mesh: &Mesh<D>, places: &[Vec<ElementId>]) -> Vec<PieceId> {
         if self.marked > u32::MAX / 2 {
             self.marked = 0;
             self.seen.fill(0);
@@ -158,23 +160,23 @@ impl Pieces {
             resting: Vec::new(),
             born: Vec::new(),
         };
-        let first_born = self.list.len() as u32;
+        let first_born = self.list.next_id();
         for around in places {
             self.part_at(mesh, around, &mut sides);
         }
         // What hung together only through a piece that came off shares no place, but each side of
         // it has one in common with that piece.
-        let is_off = |&id: &u32| self.of_element(id) >= first_born;
+        let is_off = |&id: &ElementId| self.of_element(id) >= first_born;
         let beside_off = places.iter().filter(|around| around.iter().any(is_off));
-        let around: Vec<u32> = beside_off.flatten().copied().collect();
+        let around: Vec<ElementId> = beside_off.flatten().copied().collect();
         self.part_at(mesh, &around, &mut sides);
         self.marked += sides.joined.count() as u32;
         sides.born
     }
 
     /// As [`Pieces::part`], at one place.
-    fn part_at<D: Dim>(&mut self, mesh: &Mesh<D>, around: &[u32], sides: &mut Sides) {
-        let mut by_piece: BTreeMap<u32, Vec<Vec<u32>>> = BTreeMap::new();
+    fn part_at<D: Dim>(&mut self, mesh: &Mesh<D>, around: &[ElementId], sides: &mut Sides) {
+        let mut by_piece: BTreeMap<PieceId, Vec<Vec<ElementId>>> = BTreeMap::new();
         for side in sides_of(mesh, around) {
             let of_piece = by_piece.entry(self.of_element(side[0]));
             of_piece.or_default().push(side);
@@ -186,13 +188,13 @@ impl Pieces {
     }
 
     /// Follows the sides of one piece until they have met or are used up.
-    fn follow<D: Dim>(&mut self, mesh: &Mesh<D>, starts: Vec<Vec<u32>>, sides: &mut Sides) {
+    fn follow<D: Dim>(&mut self, mesh: &Mesh<D>, starts: Vec<Vec<ElementId>>, sides: &mut Sides) {
         let first = sides.first;
         let mut known = Vec::new();
         for mut found in starts {
             let place = sides.joined.add();
             found.retain(|&id| {
-                let seen = &mut self.seen[id as usize];
+                let seen = &mut self.seen[id];
                 let is_new = *seen < first;
                 if is_new {
                     *seen = first + place as u32;
@@ -223,13 +225,13 @@ impl Pieces {
             let element = mesh.element(id).expect("searches find live elements");
             for &node in &element.nodes {
                 let mark = first + sides.running[turn].place as u32;
-                let seen = std::mem::replace(&mut self.node_seen[node as usize], mark);
+                let seen = std::mem::replace(&mut self.node_seen[node], mark);
                 if seen >= first {
                     turn = sides.meet(turn, seen);
                     continue;
                 }
                 for near in mesh.carrier_ids(node) {
-                    let seen = &mut self.seen[near as usize];
+                    let seen = &mut self.seen[near];
                     if *seen >= first {
                         turn = sides.meet(turn, *seen);
                         continue;
@@ -252,18 +254,19 @@ impl Pieces {
     }
 
     /// Makes a piece of the given elements: asleep or stopped, like the one they were of.
-    fn split_off<D: Dim>(&mut self, mesh: &Mesh<D>, elements: &[u32]) -> u32 {
-        let number = self.list.len() as u32;
-        let whole = &self.list[self.of_element[elements[0] as usize] as usize];
-        self.list.push(Piece {
+    fn split_off<D: Dim>(&mut self, mesh: &Mesh<D>, elements: &[ElementId]) -> PieceId {
+        let number = self.list.next_id();
+        let whole = &self.list[self.of_element[elements[0]]];
+        let part = Piece {
             still: 0.0,
             ..whole.clone()
-        });
+        };
+        self.list.push(part);
         for &id in elements {
-            self.of_element[id as usize] = number;
+            self.of_element[id] = number;
             let element = mesh.element(id).expect("searches find live elements");
             for &node in &element.nodes {
-                self.of_node[node as usize] = number;
+                self.of_node[node] = number;
             }
         }
         number
@@ -301,8 +304,8 @@ impl Sides {
 }
 
 /// Some elements, sorted by which of them hang together through nodes of their own.
-fn sides_of<D: Dim>(mesh: &Mesh<D>, around: &[u32]) -> Vec<Vec<u32>> {
-    let mut nodes: Vec<(u32, usize)> = Vec::new();
+fn sides_of<D: Dim>(mesh: &Mesh<D>, around: &[ElementId]) -> Vec<Vec<ElementId>> {
+    let mut nodes: Vec<(NodeId, usize)> = Vec::new();
     for (place, &id) in around.iter().enumerate() {
         let element = mesh.element(id);
         let element = element.expect("elements around a release are alive");
@@ -317,7 +320,7 @@ fn sides_of<D: Dim>(mesh: &Mesh<D>, around: &[u32]) -> Vec<Vec<u32>> {
 }
 
 /// The elements that share a node with one, itself included, some of them more than once.
-fn neighbours<D: Dim>(mesh: &Mesh<D>, id: u32) -> impl Iterator<Item = u32> + '_ {
+fn neighbours<D: Dim>(mesh: &Mesh<D>, id: ElementId) -> impl Iterator<Item = ElementId> + '_ {
     let element = mesh.element(id).expect("neighbours of a live element");
     element
         .nodes

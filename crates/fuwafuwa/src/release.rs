@@ -4,6 +4,7 @@ use crate::body::Body;
 use crate::chains::ascending;
 use crate::dim::{Dim, Point, voxel_around};
 use crate::disjoint::DisjointSets;
+use crate::ids::{ElementId, NodeId, PieceId, Table};
 use crate::mesh::{Defect, Inheritance, Remodelled};
 use crate::momentum::{Momentum, RigidMotion, centre_of};
 use crate::pyramid::Grading;
@@ -13,11 +14,11 @@ use crate::solve::Row;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Torn {
     /// Numbers of the pieces that came off.
-    pub parted: Vec<u32>,
+    pub parted: Vec<PieceId>,
     /// Elements that are gone or new, or have other nodes or other bare faces than before.
-    pub elements: Vec<u32>,
+    pub elements: Vec<ElementId>,
     /// Nodes that are gone or new.
-    pub nodes: Vec<u32>,
+    pub nodes: Vec<NodeId>,
 }
 
 impl<D: Dim> Body<D> {
@@ -29,7 +30,7 @@ impl<D: Dim> Body<D> {
     /// # Errors
     /// A [`Defect`] when the mesh breaks: a fault of this library.
     #[inline(never)]
-    pub fn release(&mut self, at: &[(Point, u8)]) -> Result<Vec<u32>, Defect> {
+    pub fn release(&mut self, at: &[(Point, u8)]) -> Result<Vec<PieceId>, Defect> {
         Ok(self.tear(at)?.parted)
     }
 
@@ -84,7 +85,7 @@ impl<D: Dim> Body<D> {
 
     /// The elements around the given points, ascending: a list for each of the places where they
     /// met before, if only through others of their list.
-    fn places_around(&self, points: &[Point]) -> Vec<Vec<u32>> {
+    fn places_around(&self, points: &[Point]) -> Vec<Vec<ElementId>> {
         let around = |&at: &Point| self.truth.mesh.owners_around(at, D::ALL_CORNERS);
         let elements = points.iter().flat_map(around);
         let elements = ascending(elements, self.truth.mesh.element_capacity());
@@ -100,7 +101,7 @@ impl<D: Dim> Body<D> {
 
     /// Gives new nodes and elements the state of those they come from; `touched` are the nodes of the
     /// elements that were seated.
-    fn pass_on(&mut self, remodelled: &Remodelled, touched: &[u32]) {
+    fn pass_on(&mut self, remodelled: &Remodelled, touched: &[NodeId]) {
         let Remodelled {
             removed,
             seated,
@@ -111,10 +112,10 @@ impl<D: Dim> Body<D> {
             inherited.iter().map(|new| new.node),
             self.truth.mesh.node_capacity(),
         );
-        let is_old = |id: &u32| new.binary_search(id).is_err();
+        let is_old = |id: &NodeId| new.binary_search(id).is_err();
         let old = touched.iter().copied().filter(is_old);
         let old = self.free_by_piece(old.chain(abandoned.iter().copied()));
-        let momentum = |nodes: &[u32]| {
+        let momentum = |nodes: &[NodeId]| {
             let centre = centre_of(self.states(nodes).map(|(x, _, mass)| (x, mass)));
             let piece = self.truth.pieces.of_node(nodes[0]);
             (piece, centre, Momentum::of(self.states(nodes), centre))
@@ -126,7 +127,7 @@ impl<D: Dim> Body<D> {
             .iter()
             .copied()
             .filter(|&id| !self.state.blocks.has(id));
-        let new: Vec<u32> = new.collect();
+        let new: Vec<ElementId> = new.collect();
         for &id in seated {
             let element = self
                 .truth
@@ -134,7 +135,7 @@ impl<D: Dim> Body<D> {
                 .element(id)
                 .expect("seated elements are alive");
             self.truth.pieces.adopt(id, &element.nodes);
-            self.cache.bare[id as usize] = 0;
+            self.cache.bare[id] = 0;
         }
         self.state
             .blocks
@@ -158,27 +159,27 @@ impl<D: Dim> Body<D> {
 
     /// Those of some nodes that are not held, those of each piece together, in ascending order of the
     /// pieces and else in their own.
-    fn free_by_piece(&self, nodes: impl Iterator<Item = u32>) -> Vec<u32> {
+    fn free_by_piece(&self, nodes: impl Iterator<Item = NodeId>) -> Vec<NodeId> {
         // Held nodes keep their velocity; the rest of each piece keeps its momentum.
-        let free = |id: &u32| self.state.inverse_mass[*id as usize] > 0.0;
-        let mut nodes: Vec<u32> = nodes.filter(free).collect();
+        let free = |id: &NodeId| self.state.inverse_mass[*id] > 0.0;
+        let mut nodes: Vec<NodeId> = nodes.filter(free).collect();
         nodes.sort_by_key(|&id| self.truth.pieces.of_node(id));
         nodes
     }
 
     /// The nodes of each piece, of nodes by piece.
-    fn pieces_in<'a>(&self, nodes: &'a [u32]) -> Vec<&'a [u32]> {
+    fn pieces_in<'a>(&self, nodes: &'a [NodeId]) -> Vec<&'a [NodeId]> {
         let of_node = |id| self.truth.pieces.of_node(id);
         nodes.chunk_by(|&a, &b| of_node(a) == of_node(b)).collect()
     }
 
     /// New nodes take over the weighted state of old ones, all read before any is written.
     fn inherit(&mut self, inherited: &[Inheritance]) {
-        let mean = |rows: &[Row], from: &[(u32, f64)]| {
+        let mean = |rows: &Table<NodeId, Row>, from: &[(NodeId, f64)]| {
             let mut sum = [0.0f64; 4];
             for &(old, weight) in from {
                 for axis in 0..D::N {
-                    sum[axis] += weight * f64::from(rows[old as usize][axis]);
+                    sum[axis] += weight * f64::from(rows[old][axis]);
                 }
             }
             sum.map(|component| component as f32)
@@ -190,7 +191,7 @@ impl<D: Dim> Body<D> {
         let states: Vec<(Row, Row)> = inherited.iter().map(state).collect();
         self.make_room();
         for (new, (position, velocity)) in inherited.iter().zip(states) {
-            let node = new.node as usize;
+            let node = new.node;
             self.state.position[node] = position;
             self.state.ahead[node] = position;
             self.state.velocity[node] = velocity;
@@ -201,7 +202,7 @@ impl<D: Dim> Body<D> {
     }
 
     /// The nodes of some elements, ascending.
-    fn nodes_of(&self, elements: &[u32]) -> Vec<u32> {
+    fn nodes_of(&self, elements: &[ElementId]) -> Vec<NodeId> {
         let elements = elements
             .iter()
             .filter_map(|&id| self.truth.mesh.element(id));
@@ -212,14 +213,14 @@ impl<D: Dim> Body<D> {
     /// Adds the rigid motion that gives the nodes the momentum `before` about `centre` again.
     /// Interpolation keeps linear momentum, but the spin inside an element is lost when new nodes
     /// stand between its corners, and their masses move to new places.
-    fn restore_momentum(&mut self, nodes: &[u32], before: Momentum, centre: [f64; 3]) {
+    fn restore_momentum(&mut self, nodes: &[NodeId], before: Momentum, centre: [f64; 3]) {
         let missing = before.less(Momentum::of(self.states(nodes), centre));
         let places = self.states(nodes).map(|(x, _, mass)| (x, mass));
         let motion = RigidMotion::with_momentum(places, centre, missing);
         for &id in nodes {
-            let change = motion.at(self.state.position[id as usize]);
+            let change = motion.at(self.state.position[id]);
             for axis in 0..D::N {
-                self.state.velocity[id as usize][axis] += change[axis] as f32;
+                self.state.velocity[id][axis] += change[axis] as f32;
             }
         }
     }
@@ -265,7 +266,8 @@ mod tests {
             body.release(&releases).expect("the mesh stays whole");
             let fresh = Pieces::new(&body.truth.mesh);
             let both = |(id, _)| (body.truth.pieces.of_element(id), fresh.of_element(id));
-            let pairs: BTreeSet<(u32, u32)> = body.truth.mesh.elements().map(both).collect();
+            let pairs: BTreeSet<(PieceId, PieceId)> =
+                body.truth.mesh.elements().map(both).collect();
             assert_eq!(pairs.len(), fresh.list.len());
             assert_eq!(pairs.len(), body.truth.pieces.list.len());
         }

@@ -8,6 +8,7 @@ use crate::body::Bodies;
 use crate::contact::Hit;
 use crate::damping::PieceMotion;
 use crate::dim::Dim;
+use crate::ids::{PieceId, Table};
 
 /// Pieces slower than this [m/s], on the average over their nodes, are on their way to sleep.
 const SLOW: f64 = 0.03;
@@ -18,18 +19,18 @@ const STILL_TIME: f32 = 0.5;
 /// enough. Pieces in `handled`, which a hand touches, stay awake. Returns who fell asleep.
 pub fn fall_asleep<D: Dim>(
     bodies: &mut Bodies<D>,
-    motions: &[Vec<PieceMotion>],
+    motions: &[Table<PieceId, PieceMotion>],
     handled: &[Hit],
     duration: f32,
 ) -> Vec<Hit> {
     for (body, motions) in bodies.iter_mut().zip(motions) {
-        for (piece, motion) in body.truth.pieces.list.iter_mut().zip(motions) {
+        for (piece, motion) in body.truth.pieces.list.iter_mut().zip(motions.iter()) {
             let slow = motion.speed_squared < SLOW * SLOW && !motion.is_driven;
             piece.still = if slow { piece.still + duration } else { 0.0 };
         }
     }
     for &(body, piece) in handled {
-        bodies.at_mut(body).truth.pieces.list[piece as usize].still = 0.0;
+        bodies.at_mut(body).truth.pieces.list[piece].still = 0.0;
     }
     change(bodies, true, |_, _, piece| {
         !piece.asleep && piece.still >= STILL_TIME
@@ -50,15 +51,14 @@ pub fn wake<D: Dim>(bodies: &mut Bodies<D>, hits: &[Hit]) -> Vec<Hit> {
 fn change<D: Dim>(
     bodies: &mut Bodies<D>,
     asleep: bool,
-    applies: impl Fn(u32, u32, &crate::piece::Piece) -> bool,
+    applies: impl Fn(u32, PieceId, &crate::piece::Piece) -> bool,
 ) -> Vec<Hit> {
     let mut changed = Vec::new();
     for (place, body) in bodies.placed_mut() {
-        let pieces = body.truth.pieces.list.iter().enumerate();
-        let marked: Vec<bool> = pieces
-            .map(|(number, piece)| applies(place, number as u32, piece))
-            .collect();
-        let numbers = (0..marked.len() as u32).filter(|&piece| marked[piece as usize]);
+        let pieces = body.truth.pieces.list.entries();
+        let marked = pieces.map(|(number, piece)| applies(place, number, piece));
+        let marked: Table<PieceId, bool> = marked.collect::<Vec<_>>().into();
+        let numbers = marked.ids().filter(|&piece| marked[piece]);
         changed.extend(numbers.map(|piece| (place, piece)));
         if marked.contains(&true) {
             body.set_asleep(&marked, asleep);

@@ -17,6 +17,7 @@ mod turn;
 pub use crate::lanes::Row;
 
 use crate::dim::Dim;
+use crate::ids::{ElementId, NodeId, Table};
 use crate::lanes::{Eight, LANES, on_widest_lanes, splat, sum};
 use crate::law::{Elasticity, Law};
 use crate::threads::{self, Rows};
@@ -56,10 +57,10 @@ pub struct Blocks<D: Dim> {
     /// The stencils of pooled lanes.
     pooled: Vec<Eight>,
     /// Block and lane of each element, by id; the block is [`VACANT`] while it has none.
-    assigned: Vec<(u32, u8)>,
+    assigned: Table<ElementId, (u32, u8)>,
     /// Where the forces on each node stand, by id: places in `forces`, one an element, in the order
     /// of the octants; 0, where no force is, for those that are fewer.
-    slots: Vec<[u32; 8]>,
+    slots: Table<NodeId, [u32; 8]>,
     /// The nodes of all blocks: node k of lane l at k · LANES + l after the block's first.
     nodes: Vec<u32>,
     /// The forces on them, each of as many numbers as there are dimensions: a pad would be a quarter
@@ -75,7 +76,7 @@ pub struct Blocks<D: Dim> {
 #[derive(Copy, Clone, Debug)]
 pub struct Kick<'a> {
     /// The nodes that move, ascending.
-    pub nodes: &'a [u32],
+    pub nodes: &'a [NodeId],
     /// One over the mass of each node [1/kg], by id; 0 where it is held.
     pub inverse_mass: &'a [f32],
     /// The substep [s].
@@ -97,8 +98,8 @@ impl<D: Dim> Blocks<D> {
             stencils: BTreeMap::new(),
             numbers: Vec::new(),
             pooled: Vec::new(),
-            assigned: Vec::new(),
-            slots: Vec::new(),
+            assigned: Table::default(),
+            slots: Table::default(),
             nodes: vec![VACANT; LANES],
             forces: vec![0.0; LANES * D::N + PAD],
             scratch: None,
@@ -169,15 +170,15 @@ impl<D: Dim> Blocks<D> {
 
     /// The force [N] on a node, as of the last evaluation.
     #[inline]
-    pub fn force_on(&self, node: u32) -> Row {
+    pub fn force_on(&self, node: NodeId) -> Row {
         on_widest_lanes!(simd => self.force_by(simd, node))
     }
 
     /// The forces [N] of the elements on a node, in the order of the octants around it, as of the
     /// last evaluation.
     #[inline]
-    pub fn parts_on(&self, node: u32) -> impl Iterator<Item = Row> + '_ {
-        let places = self.slots[node as usize].iter();
+    pub fn parts_on(&self, node: NodeId) -> impl Iterator<Item = Row> + '_ {
+        let places = self.slots[node].iter();
         let places = places.take_while(|&&place| place != 0);
         places.map(|&place| {
             let mut force = [0.0; 4];
@@ -187,14 +188,14 @@ impl<D: Dim> Blocks<D> {
     }
 
     #[inline(always)]
-    fn force_by<S: Simd>(&self, simd: S, node: u32) -> Row {
-        let mut sum = sum(simd, &self.forces, &self.slots[node as usize][..D::CORNERS]);
+    fn force_by<S: Simd>(&self, simd: S, node: NodeId) -> Row {
+        let mut sum = sum(simd, &self.forces, &self.slots[node][..D::CORNERS]);
         sum[D::N..].fill(0.0);
         sum
     }
 
     /// The rotation of an element as of the last evaluation, by rows.
-    pub fn rotation(&self, id: u32) -> [[f32; 3]; 3] {
+    pub fn rotation(&self, id: ElementId) -> [[f32; 3]; 3] {
         let turned = self.rotation_of(id);
         if D::N == 2 {
             let [cosine, sine, ..] = turned;
@@ -207,14 +208,14 @@ impl<D: Dim> Blocks<D> {
     }
 
     /// Whether an element is in a block.
-    pub fn has(&self, id: u32) -> bool {
-        let assigned = self.assigned.get(id as usize);
+    pub fn has(&self, id: ElementId) -> bool {
+        let assigned = self.assigned.get(id.index());
         assigned.is_some_and(|&(block, _)| block != VACANT)
     }
 
     /// Gives an element in space another rotation, as a quaternion, for the next evaluation to begin with.
-    pub fn set_rotation(&mut self, id: u32, turned: [f32; 4]) {
-        let (block, lane) = self.assigned[id as usize];
+    pub fn set_rotation(&mut self, id: ElementId, turned: [f32; 4]) {
+        let (block, lane) = self.assigned[id];
         let rotation = &mut self.blocks[block as usize].rotation;
         for (all, part) in rotation.iter_mut().zip(turned) {
             all[lane as usize] = part;
@@ -230,8 +231,8 @@ impl<D: Dim> Blocks<D> {
 
     /// Lets an element sleep, or wakes it: a block whose elements all sleep is not evaluated, and
     /// keeps the forces it had.
-    pub fn set_asleep(&mut self, id: u32, asleep: bool) {
-        let (block, lane) = self.assigned[id as usize];
+    pub fn set_asleep(&mut self, id: ElementId, asleep: bool) {
+        let (block, lane) = self.assigned[id];
         let sleepers = &mut self.blocks[block as usize].asleep;
         *sleepers = *sleepers & !(1 << lane) | u8::from(asleep) << lane;
     }
@@ -247,7 +248,7 @@ impl<D: Dim> Blocks<D> {
     fn kick_by<S: Simd>(&self, simd: S, kick: &Kick, rows: Rows<Row, 1>) {
         let [velocity] = rows.lists;
         for &id in rows.nodes {
-            let node = id as usize;
+            let node = id.index();
             let inverse_mass = kick.inverse_mass[node];
             if inverse_mass == 0.0 {
                 continue;
@@ -258,8 +259,8 @@ impl<D: Dim> Blocks<D> {
         }
     }
 
-    fn rotation_of(&self, id: u32) -> [f32; 4] {
-        match self.assigned.get(id as usize) {
+    fn rotation_of(&self, id: ElementId) -> [f32; 4] {
+        match self.assigned.get(id.index()) {
             Some(&(block, lane)) if block != VACANT => self.blocks[block as usize]
                 .rotation
                 .map(|part| part[lane as usize]),
@@ -293,7 +294,7 @@ mod tests {
         let mesh = Mesh::grade(&grid, &sharing, &pyramid).unwrap();
         let elasticity = Elasticity::new(5000.0, 0.3).unwrap();
         let mut wide = Blocks::new(law, &[elasticity], grid.voxel_size());
-        let all: Vec<u32> = mesh.elements().map(|(id, _)| id).collect();
+        let all: Vec<ElementId> = mesh.elements().map(|(id, _)| id).collect();
         wide.update(&mesh, &grid, &[], &all);
         let mut other = wide.clone();
         let mut position = vec![[0.0; 4]; mesh.node_capacity()];
@@ -305,7 +306,7 @@ mod tests {
                 z + 0.3 * x * y,
                 0.0,
             ];
-            position[id as usize][..D::N].copy_from_slice(&bent[..D::N]);
+            position[id.index()][..D::N].copy_from_slice(&bent[..D::N]);
         }
         for _ in 0..3 {
             wide.evaluate(&position);
@@ -319,7 +320,7 @@ mod tests {
             let bits = |blocks: &Blocks<D>| blocks.force_on(id).map(f32::to_bits);
             assert_eq!(bits(&wide), bits(&other));
         }
-        let nodes: Vec<u32> = mesh.nodes().map(|(id, _)| id).collect();
+        let nodes: Vec<NodeId> = mesh.nodes().map(|(id, _)| id).collect();
         let inverse_mass: Vec<f32> = (0..position.len()).map(|id| (id % 7) as f32).collect();
         let kick = Kick {
             nodes: &nodes,

@@ -2,6 +2,8 @@
 //! allow. Shares write nothing that another one reads or writes, and their results come in order: on
 //! any number of threads the same bits come out.
 
+use crate::ids::NodeId;
+
 /// Items in a share: with fewer, handing them over takes longer than they do. Unit tests have small
 /// bodies, and are to see several shares all the same.
 pub const SHARE: usize = if cfg!(test) { 32 } else { 2048 };
@@ -37,7 +39,7 @@ pub fn shares<T>(list: &mut [T]) -> impl Iterator<Item = (usize, &mut [T])> {
 /// Some nodes and their rows of several lists that go by node id.
 pub struct Rows<'a, T, const N: usize> {
     /// Ascending.
-    pub nodes: &'a [u32],
+    pub nodes: &'a [NodeId],
     /// The id that the first rows belong to.
     pub first: usize,
     /// Those of all ids from there to beyond the last of the nodes.
@@ -46,12 +48,12 @@ pub struct Rows<'a, T, const N: usize> {
 
 /// The rows of nodes, whose ids ascend, in shares.
 pub fn rows<'a, T, const N: usize>(
-    nodes: &'a [u32],
+    nodes: &'a [NodeId],
     mut lists: [&'a mut [T]; N],
 ) -> impl Iterator<Item = Rows<'a, T, N>> {
     let mut first = 0;
     nodes.chunks(SHARE).map(move |nodes| {
-        let end = nodes[nodes.len() - 1] as usize + 1;
+        let end = nodes[nodes.len() - 1].index() + 1;
         let lists = lists.each_mut().map(|list| {
             let (own, rest) = std::mem::take(list).split_at_mut(end - first);
             *list = rest;
@@ -73,7 +75,8 @@ mod tests {
 
     #[test]
     fn every_node_is_in_one_share_with_its_rows() {
-        let nodes: Vec<u32> = (0..5 * SHARE as u32).map(|k| 3 * k + k % 2).collect();
+        let nodes = (0..5 * SHARE as u32).map(|k| NodeId(3 * k + k % 2));
+        let nodes: Vec<NodeId> = nodes.collect();
         let count = 20 * SHARE;
         let (mut a, mut b) = (vec![[0.0; 4]; count], vec![[0.0; 4]; count]);
         let shares = rows(&nodes, [&mut a, &mut b]);
@@ -84,14 +87,14 @@ mod tests {
                 lists: [a, b],
             } = share;
             for &id in nodes {
-                a[id as usize - first][0] += 1.0;
-                b[id as usize - first][1] += id as f32;
+                a[id.index() - first][0] += 1.0;
+                b[id.index() - first][1] += id.index() as f32;
             }
             nodes.len()
         });
         assert_eq!(counts, [SHARE; 5]);
         for id in 0..count {
-            let is_one = nodes.binary_search(&(id as u32)).is_ok();
+            let is_one = nodes.binary_search(&NodeId(id as u32)).is_ok();
             let expected = if is_one { [1.0, id as f32] } else { [0.0; 2] };
             assert_eq!([a[id][0], b[id][1]], expected);
         }

@@ -19,6 +19,7 @@ mod spheres;
 
 use crate::body::{Bodies, Body};
 use crate::dim::Dim;
+use crate::ids::PieceId;
 use crate::release::Torn;
 use crate::rigid::Rigids;
 pub use captives::{Captive, Captives};
@@ -89,7 +90,7 @@ impl Nearby {
     }
 
     /// Pieces woke, given by body and number in ascending order.
-    pub fn wake<D: Dim>(&mut self, pieces: &[(u32, u32)], bodies: &Bodies<D>) {
+    pub fn wake<D: Dim>(&mut self, pieces: &[(u32, PieceId)], bodies: &Bodies<D>) {
         self.nodes.wake(pieces, bodies);
         self.spheres.wake(pieces, &mut self.pairs.changed);
     }
@@ -119,7 +120,7 @@ impl Nearby {
     }
 
     /// Pieces that press on something, by body and number, some more than once.
-    pub fn pressed<D: Dim>(&self, bodies: &Bodies<D>) -> impl Iterator<Item = (u32, u32)> {
+    pub fn pressed<D: Dim>(&self, bodies: &Bodies<D>) -> impl Iterator<Item = (u32, PieceId)> {
         let nodes = { self.nodes.list.iter() }.filter(|pair| pair.impulse.pressed > 0.0);
         let nodes = nodes.filter_map(|pair| Some((pair.body, pair.piece(bodies)?)));
         let pairs = { self.pairs.list.iter() }.filter(|pair| pair.impulse.pressed > 0.0);

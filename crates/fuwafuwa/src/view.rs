@@ -2,6 +2,7 @@
 
 use crate::body::Body;
 use crate::dim::{Dim, add, corner, face_corners};
+use crate::ids::{ElementId, NodeId, PieceId, Table};
 use crate::mesh::Element;
 use crate::shape::{Shape, Vector};
 use crate::stencil::{slot_at, slot_index};
@@ -11,7 +12,7 @@ use crate::vector::{cross, length, minus, plus, scaled, three};
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct PieceView {
     /// Its number.
-    pub number: u32,
+    pub number: PieceId,
     /// Mass [kg].
     pub mass: f32,
     /// Centre of mass [m].
@@ -35,15 +36,15 @@ pub struct PieceView {
 pub struct Facet {
     /// Its nodes, two in 2D, four in 3D; seen from outside they run counterclockwise in 3D, and
     /// in 2D the body lies to the left.
-    pub nodes: [u32; 4],
+    pub nodes: [NodeId; 4],
     /// Where they are [m].
     pub corners: [Vector; 4],
     /// Outwards, of length 1.
     pub normal: Vector,
     /// The element it belongs to.
-    pub element: u32,
+    pub element: ElementId,
     /// Its piece.
-    pub piece: u32,
+    pub piece: PieceId,
     /// Whether it was inside before the body tore.
     pub is_fresh: bool,
 }
@@ -52,9 +53,9 @@ pub struct Facet {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline {
     /// Its piece.
-    pub piece: u32,
+    pub piece: PieceId,
     /// Node ids, the body to the left.
-    pub nodes: Vec<u32>,
+    pub nodes: Vec<NodeId>,
     /// Where they are [m].
     pub points: Vec<Vector>,
     /// Outward normals at the points, of length 1.
@@ -67,11 +68,11 @@ pub struct Outline {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ElementView {
     /// Its id.
-    pub id: u32,
+    pub id: ElementId,
     /// 0 = finest.
     pub level: u8,
     /// Its piece.
-    pub piece: u32,
+    pub piece: PieceId,
     /// Number of its material.
     pub material: u8,
     /// The children of its cell that it fills, as a mask.
@@ -86,8 +87,8 @@ impl<D: Dim> Body<D> {
     /// Its pieces as wholes, by number.
     #[inline(never)]
     pub fn piece_views(&self) -> Vec<PieceView> {
-        let none = |(number, piece): (usize, &crate::piece::Piece)| PieceView {
-            number: number as u32,
+        let none = |(number, piece): (PieceId, &crate::piece::Piece)| PieceView {
+            number,
             mass: 0.0,
             centre: [0.0; 3],
             velocity: [0.0; 3],
@@ -97,20 +98,14 @@ impl<D: Dim> Body<D> {
             asleep: piece.asleep,
             quarantined: piece.quarantined,
         };
-        let mut views: Vec<PieceView> = self
-            .truth
-            .pieces
-            .list
-            .iter()
-            .enumerate()
-            .map(none)
-            .collect();
+        let pieces = &self.truth.pieces;
+        let mut views: Vec<PieceView> = pieces.list.entries().map(none).collect();
         for (id, _) in self.truth.mesh.elements() {
-            views[self.truth.pieces.of_element(id) as usize].element_count += 1;
+            views[pieces.of_element(id).index()].element_count += 1;
         }
         for (id, _) in self.truth.mesh.nodes() {
             let (at, velocity, mass) = self.node_state(id);
-            let view = &mut views[self.truth.pieces.of_node(id) as usize];
+            let view = &mut views[pieces.of_node(id).index()];
             view.mass += mass;
             view.centre = plus(view.centre, scaled(at, mass));
             view.velocity = plus(view.velocity, scaled(velocity, mass));
@@ -156,8 +151,8 @@ impl<D: Dim> Body<D> {
     ///
     /// # Panics
     /// When the id was never used.
-    pub fn bare_faces(&self, element: u32) -> u8 {
-        match self.cache.bare[element as usize] {
+    pub fn bare_faces(&self, element: ElementId) -> u8 {
+        match self.cache.bare[element] {
             0 => 0,
             bare => match self.truth.mesh.element(element) {
                 Some(alive) if alive.cell.level == 0 => bare,
@@ -168,7 +163,7 @@ impl<D: Dim> Body<D> {
 
     /// Where all nodes are [m], by id, each with a 0 behind its coordinates; anything for ids that
     /// are free.
-    pub fn positions(&self) -> &[[f32; 4]] {
+    pub fn positions(&self) -> &Table<NodeId, [f32; 4]> {
         &self.state.position
     }
 
@@ -180,16 +175,17 @@ impl<D: Dim> Body<D> {
             return Vec::new();
         }
         // Every node of the surface starts one segment and ends one.
-        let mut leaving: Vec<Option<Facet>> = vec![None; self.truth.mesh.node_capacity()];
+        let mut leaving: Table<NodeId, Option<Facet>> =
+            vec![None; self.truth.mesh.node_capacity()].into();
         for facet in self.facets() {
-            leaving[facet.nodes[0] as usize] = Some(facet);
+            leaving[facet.nodes[0]] = Some(facet);
         }
         let mut outlines = Vec::new();
-        for start in 0..leaving.len() {
+        for start in leaving.ids() {
             let mut ring: Vec<Facet> = Vec::new();
             let mut at = start;
             while let Some(facet) = leaving[at].take() {
-                at = facet.nodes[1] as usize;
+                at = facet.nodes[1];
                 ring.push(facet);
             }
             if let Some(last) = ring.last() {
@@ -218,12 +214,12 @@ impl<D: Dim> Body<D> {
 
     /// An element, to be looked at, if it is alive.
     #[inline(never)]
-    pub fn element_view(&self, id: u32) -> Option<ElementView> {
+    pub fn element_view(&self, id: ElementId) -> Option<ElementView> {
         Some(self.view_of(id, self.truth.mesh.element(id)?))
     }
 
     #[inline(never)]
-    fn view_of(&self, id: u32, element: &Element) -> ElementView {
+    fn view_of(&self, id: ElementId, element: &Element) -> ElementView {
         ElementView {
             id,
             level: element.cell.level,
@@ -240,11 +236,11 @@ impl<D: Dim> Body<D> {
 
     /// How far an element is strained, if it is alive: ‖F − R‖, where 0.1 is a stretch by a tenth.
     #[inline(never)]
-    pub fn strain(&self, id: u32) -> Option<f32> {
+    pub fn strain(&self, id: ElementId) -> Option<f32> {
         Some(self.strain_of(id, self.truth.mesh.element(id)?))
     }
 
-    fn strain_of(&self, id: u32, element: &Element) -> f32 {
+    fn strain_of(&self, id: ElementId, element: &Element) -> f32 {
         let deformation = self.deformation(element).1;
         let rotation = self.state.blocks.rotation(id);
         let mut sum = 0.0;
@@ -263,7 +259,7 @@ impl<D: Dim> Body<D> {
         let mut places: [Option<Vector>; 27] = [None; 27];
         let slots = &self.truth.mesh.stencil(element).slots;
         for (&slot, &node) in slots.iter().zip(&element.nodes) {
-            places[slot as usize] = Some(three(self.state.position[node as usize]));
+            places[slot as usize] = Some(three(self.state.position[node]));
         }
         // From edge middles up to the centre: the mean of what a slot lies between.
         for order in 1..=D::N {
@@ -294,13 +290,13 @@ impl<D: Dim> Body<D> {
     }
 
     #[inline(never)]
-    fn facet(&self, id: u32, element: &Element, face: usize) -> Facet {
+    fn facet(&self, id: ElementId, element: &Element, face: usize) -> Facet {
         let ring = face_corners::<D>(face);
-        let mut nodes = [u32::MAX; 4];
+        let mut nodes = [NodeId(u32::MAX); 4];
         let mut corners = [[0.0; 3]; 4];
         for place in 0..D::CORNERS / 2 {
             nodes[place] = element.nodes[ring[place]];
-            corners[place] = three(self.state.position[nodes[place] as usize]);
+            corners[place] = three(self.state.position[nodes[place]]);
         }
         // Across a segment, or across both diagonals of a quad, which need not be flat.
         let normal = match D::N {

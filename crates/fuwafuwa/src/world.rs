@@ -9,6 +9,7 @@ use crate::dim::{Dim, Point};
 use crate::event::{Event, StepReport, With};
 use crate::fracture::{Failure, failures};
 use crate::handle::{BodyId, Gone};
+use crate::ids::{PieceId, Table};
 use crate::rigid::{BadRigid, Rigids};
 use crate::shape::Vector;
 use crate::sleep::{fall_asleep, wake};
@@ -221,7 +222,7 @@ impl<D: Dim> World<D> {
             }
             let released = |failure: &Failure| Event::Released {
                 body: id,
-                at: three(body.state.position[failure.node as usize]),
+                at: three(body.state.position[failure.node]),
                 energy: failure.energy,
             };
             self.events.extend(failures.iter().map(released));
@@ -307,7 +308,7 @@ impl<D: Dim> World<D> {
 
     /// Lets pieces that have been slow fall asleep.
     fn sleep(&mut self) {
-        let motions: Vec<Vec<PieceMotion>> = self
+        let motions: Vec<Table<PieceId, PieceMotion>> = self
             .bodies
             .iter_mut()
             .map(|body| {
@@ -359,7 +360,7 @@ impl<D: Dim> World<D> {
         let mut touching: Vec<Vec<bool>> = self.bodies.places().map(none).collect();
         for (body, piece) in self.nearby.pressed(&self.bodies) {
             // The lists are of the last substep: the body may be another one since.
-            if let Some(touches) = touching[body as usize].get_mut(piece as usize) {
+            if let Some(touches) = touching[body as usize].get_mut(piece.index()) {
                 *touches = true;
             }
         }
@@ -368,7 +369,7 @@ impl<D: Dim> World<D> {
 
     /// Adds up what pressed on what over the tick.
     fn note_touches(&mut self) {
-        let mut sums: BTreeMap<(BodyId, u32, With), (f32, f32, Vector)> = BTreeMap::new();
+        let mut sums: BTreeMap<(BodyId, PieceId, With), (f32, f32, Vector)> = BTreeMap::new();
         let mut add = |body, piece, with, impulse: f32, at: Row| {
             let sum = sums
                 .entry((body, piece, with))
@@ -388,7 +389,7 @@ impl<D: Dim> World<D> {
             let id = self.bodies.id(pair.body);
             let body = &self.bodies[id];
             let piece = body.truth.pieces.of_node(pair.node);
-            let at = body.state.position[pair.node as usize];
+            let at = body.state.position[pair.node];
             add(id, piece, with, pair.impulse.total, at);
         }
         let spheres = &self.nearby.spheres;

@@ -2,7 +2,8 @@
 
 use fuwafuwa::vector::{cross, dot, length, minus, plus, scaled};
 use fuwafuwa::{
-    Body, Dim, Dim2, Dim3, Elasticity, Material, Rigid, Settings, Shape, Vector, VoxelGrid, World,
+    Body, Dim, Dim2, Dim3, Elasticity, Material, PieceId, Rigid, Settings, Shape, Vector,
+    VoxelGrid, World,
 };
 
 /// A crumb is well inside a piece when its middle is in an element and this far from all faces, in
@@ -50,7 +51,7 @@ fn is_in_cell<D: Dim>(corners: &[Vector], at: Vector) -> bool {
 }
 
 /// The crumbs that are well inside a larger piece, by body and piece; and how many crumbs there are.
-fn crumbs_inside<D: Dim>(world: &World<D>) -> (Vec<(usize, u32)>, usize) {
+fn crumbs_inside<D: Dim>(world: &World<D>) -> (Vec<(usize, PieceId)>, usize) {
     let views: Vec<_> = world.bodies().iter().map(Body::piece_views).collect();
     let crumbs = || {
         let all = views.iter().enumerate();
@@ -60,7 +61,7 @@ fn crumbs_inside<D: Dim>(world: &World<D>) -> (Vec<(usize, u32)>, usize) {
     let mut inside = Vec::new();
     for (place, body) in world.bodies().iter().enumerate() {
         let size = body.grid().voxel_size();
-        let faces: Vec<(u32, Vector)> = body
+        let faces: Vec<(PieceId, Vector)> = body
             .facets()
             .map(|facet| {
                 let corners = &facet.corners[..2 * (D::N - 1)];
@@ -69,7 +70,7 @@ fn crumbs_inside<D: Dim>(world: &World<D>) -> (Vec<(usize, u32)>, usize) {
             })
             .collect();
         for view in body.element_views() {
-            let count = views[place][view.piece as usize].element_count;
+            let count = views[place][view.piece.index()].element_count;
             let cells = match view.level {
                 0 => 1,
                 _ => view.children,
@@ -259,7 +260,7 @@ fn left_of_a_swing<D: Dim>(poisson: f64, substeps: u32) -> f32 {
     let views = body.piece_views();
     let crumb = views.iter().find(|view| view.element_count == 1).unwrap();
     let ids = body.mesh().nodes().map(|(id, _)| id);
-    let nodes: Vec<u32> = ids
+    let nodes: Vec<_> = ids
         .filter(|&id| body.pieces().of_node(id) == crumb.number)
         .collect();
     for &node in &nodes {
@@ -303,7 +304,7 @@ fn depth_of_a_sleeper<D: Dim>(size: usize, speed: f32) -> f32 {
     for _ in 0..90 {
         world.step();
     }
-    assert!(world.bodies().first().unwrap().pieces().list[0].asleep);
+    assert!(world.bodies().first().unwrap().pieces().list[PieceId(0)].asleep);
     let block = VoxelGrid::<D>::cube(size, size as f32 * VOXEL).unwrap();
     let mut heavy = Material::default();
     heavy.density *= 10.0;
@@ -318,7 +319,7 @@ fn depth_of_a_sleeper<D: Dim>(size: usize, speed: f32) -> f32 {
         lowest = nodes.fold(lowest, |low, (id, _)| low.min(crumb.node_state(id).0[1]));
     }
     assert!(
-        !world.bodies().first().unwrap().pieces().list[0].asleep,
+        !world.bodies().first().unwrap().pieces().list[PieceId(0)].asleep,
         "it was missed"
     );
     -lowest / VOXEL

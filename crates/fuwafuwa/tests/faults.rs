@@ -63,7 +63,7 @@ fn a_second_cut_along_a_blade_releases_nothing() {
 
 /// Puts every node of a body elsewhere.
 fn place<D: Dim>(body: &mut Body<D>, to: impl Fn([f32; 3]) -> [f32; 3]) {
-    let ids: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
+    let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     for id in ids {
         let at = to(body.node_state(id).0);
         assert!(body.set_node_state(id, at, [0.0; 3]));

@@ -181,13 +181,13 @@ fn assert_uniform_strain_leaves_inner_nodes_at_rest<D: Dim>(
         );
         for (&node, force) in element.nodes.iter().zip(all) {
             for axis in 0..3 {
-                sums[node as usize][axis] += force[axis];
+                sums[node.index()][axis] += force[axis];
             }
         }
     }
     let stress = 0.2 * elasticity.young;
     for (id, node) in mesh.nodes() {
-        let sum = sums[id as usize];
+        let sum = sums[id.index()];
         let inner = node.group == D::ALL_CORNERS && !sharing.is_open(node.at);
         let residual = sum.iter().fold(0.0f64, |most, k| most.max(k.abs())) / stress;
         assert!(

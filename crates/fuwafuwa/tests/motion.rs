@@ -3,7 +3,7 @@
 
 use fuwafuwa::law::{Law, forces};
 use fuwafuwa::pyramid::Grading;
-use fuwafuwa::{Body, BodyError, Dim, Dim2, Dim3, Material, VoxelGrid};
+use fuwafuwa::{Body, BodyError, Dim, Dim2, Dim3, Material, NodeId, VoxelGrid};
 
 fn ball<D: Dim>(n: usize, law: Law) -> Body<D> {
     let grid = VoxelGrid::ball(n, 1.0).unwrap();
@@ -79,7 +79,7 @@ fn check_forces_against_the_law<D: Dim>(law: Law) {
         );
         for (&node, force) in element.nodes.iter().zip(all) {
             for axis in 0..3 {
-                expected[node as usize][axis] += force[axis];
+                expected[node.index()][axis] += force[axis];
             }
         }
     }
@@ -89,7 +89,7 @@ fn check_forces_against_the_law<D: Dim>(law: Law) {
         .fold(0.0, f64::max);
     for (id, node) in body.mesh().nodes() {
         let found = body.force_on(id).map(f64::from);
-        let want = expected[id as usize];
+        let want = expected[id.index()];
         let error = length([0, 1, 2].map(|axis: usize| found[axis] - want[axis]));
         assert!(
             error < 2e-4 * largest,
@@ -186,5 +186,5 @@ fn bad_bodies_are_refused() {
         "material 1: density = 0 must be positive and finite"
     );
     let mut body = Body::new(grid(), &[Material::default()]).unwrap();
-    assert!(!body.set_node_state(0, [f32::NAN, 0.0, 0.0], [0.0; 3]));
+    assert!(!body.set_node_state(NodeId(0), [f32::NAN, 0.0, 0.0], [0.0; 3]));
 }

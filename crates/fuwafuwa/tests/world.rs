@@ -2,7 +2,9 @@
 
 use fuwafuwa::blade::Blade;
 use fuwafuwa::view::PieceView;
-use fuwafuwa::{Body, Dim, Dim2, Dim3, Event, Material, Settings, Shape, VoxelGrid, World};
+use fuwafuwa::{
+    Body, Dim, Dim2, Dim3, ElementId, Event, Material, NodeId, Settings, Shape, VoxelGrid, World,
+};
 use fuwafuwa::{Drive, Rigid};
 
 const WEIGHTLESS: Settings = Settings {
@@ -90,15 +92,14 @@ fn a_blade_cuts_in_two() {
 fn what_a_cut_changed_is_told_by_bare_faces_and_nodes() {
     let mut world = World::<Dim3>::new(WEIGHTLESS).unwrap();
     world.add_body(ball(16, unbreakable()));
-    let forms = |world: &World<Dim3>| -> Vec<(u8, Vec<u32>)> {
+    let forms = |world: &World<Dim3>| -> Vec<(u8, Vec<NodeId>)> {
         let body = world.bodies().first().unwrap();
         let form = |id| {
             let nodes = body.mesh().element(id).map(|element| element.nodes.clone());
             (body.bare_faces(id), nodes.unwrap_or_default())
         };
-        (0..body.mesh().element_capacity() as u32)
-            .map(form)
-            .collect()
+        let ids = (0..body.mesh().element_capacity() as u32).map(ElementId);
+        ids.map(form).collect()
     };
     let before = forms(&world);
     let (from, across, along) = ([0.5, -0.2, -0.2], [0.0, 0.4, 0.0], [0.0, 0.0, 1.4]);
@@ -117,11 +118,11 @@ fn what_a_cut_changed_is_told_by_bare_faces_and_nodes() {
     assert_eq!(told as usize, body.facets().count());
     for facet in body.facets() {
         for (node, corner) in facet.nodes.iter().zip(facet.corners) {
-            assert_eq!(body.positions()[*node as usize][..3], corner);
+            assert_eq!(body.positions()[*node][..3], corner);
         }
         let (old, new) = (
-            before.get(facet.element as usize),
-            &after[facet.element as usize],
+            before.get(facet.element.index()),
+            &after[facet.element.index()],
         );
         let is_far = facet.corners[0][1] > 0.6;
         assert!(!is_far || old == Some(new), "{facet:?}");
@@ -289,7 +290,7 @@ fn what_is_not_finite_is_refused() {
 fn an_inverted_start_stays_finite() {
     let mut world = World::<Dim2>::new(WEIGHTLESS).unwrap();
     let mut body = ball::<Dim2>(24, unbreakable());
-    let nodes: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
+    let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     for id in nodes {
         let (at, _, _) = body.node_state(id);
         body.set_node_state(id, [1.0 - at[0], at[1], 0.0], [0.0; 3]);

@@ -313,7 +313,7 @@ fn against_uniform_in<D: Dim>(n: usize, progress: &Progress) -> Result<Vec<Measu
 fn swinging<D: Dim>(n: usize, grading: Grading) -> Result<Body<D>> {
     let grid = VoxelGrid::ball(n, 1.0)?;
     let mut body = Body::with(grid, &[Material::default()], Law::PatchExact, grading)?;
-    let nodes: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
+    let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     for id in nodes {
         let ([x, y, z], ..) = body.node_state(id);
         body.set_node_state(id, [1.05 * x, y, z], [0.0; 3]);

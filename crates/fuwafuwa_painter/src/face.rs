@@ -281,7 +281,7 @@ mod tests {
     #[test]
     fn a_face_stretches_and_turns_with_its_body() {
         let mut body = disc();
-        let nodes: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
+        let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in nodes {
             // Turned to the left by a quarter, and twice as tall as before.
             let ([x, y, _], velocity, _) = body.node_state(id);

@@ -10,7 +10,7 @@ use crate::smoothing::{self, Curve};
 use crate::stage;
 use crate::{Frame, Painter, Role, Spot};
 use fuwafuwa::shape::{Shape, Vector};
-use fuwafuwa::{Body, Dim2, Rigid, World};
+use fuwafuwa::{Body, Dim2, PieceId, Rigid, World};
 use std::collections::BTreeMap;
 
 /// How far the roundness of a body reaches in from its rim [m].
@@ -98,7 +98,7 @@ pub fn hand(painter: &mut Painter, frame: Frame, hand: &Rigid, number: usize) {
 
 /// Paints a body of the plane, smooth, its inside showing where it tore.
 pub fn body(painter: &mut Painter, frame: Frame, body: &Body<Dim2>) {
-    let mut pieces: BTreeMap<u32, Piece> = BTreeMap::new();
+    let mut pieces: BTreeMap<PieceId, Piece> = BTreeMap::new();
     for view in body.element_views() {
         let piece = pieces.entry(view.piece).or_default();
         piece.element_count += 1;

@@ -7,7 +7,7 @@ use fuwafuwa::shape::{Shape, Vector};
 use fuwafuwa::stencil::slot_index;
 use fuwafuwa::vector::{cross, minus, plus, scaled};
 use fuwafuwa::view::{ElementView, Facet, Outline};
-use fuwafuwa::{Body, Dim, Dim2, Dim3, World};
+use fuwafuwa::{Body, Dim, Dim2, Dim3, ElementId, NodeId, PieceId, World};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// How a body of the plane is painted.
@@ -69,11 +69,11 @@ fn plane_pieces(
     torn: Role,
     draw: impl Fn(&mut Painter, &ElementView, bool),
 ) {
-    let mut elements: BTreeMap<u32, Vec<ElementView>> = BTreeMap::new();
+    let mut elements: BTreeMap<PieceId, Vec<ElementView>> = BTreeMap::new();
     for view in body.element_views() {
         elements.entry(view.piece).or_default().push(view);
     }
-    let mut pieces: Vec<(u32, Vec<ElementView>)> = elements.into_iter().collect();
+    let mut pieces: Vec<(PieceId, Vec<ElementView>)> = elements.into_iter().collect();
     pieces.sort_by_key(|(_, views)| std::cmp::Reverse(views.len()));
     let outlines = body.outlines();
     for (piece, views) in &pieces {
@@ -193,7 +193,7 @@ pub fn space_elements(
 /// Paints the skin of a body in space, its steps smoothed out, its edges kept where it is torn.
 pub fn space_skin(solid: &mut Solid, body: &Body<Dim3>) {
     let crumbs = crumbs(body);
-    let inner: BTreeMap<u32, u8> = match body.materials() {
+    let inner: BTreeMap<ElementId, u8> = match body.materials() {
         [_] => BTreeMap::new(),
         _ => body
             .element_views()
@@ -203,7 +203,7 @@ pub fn space_skin(solid: &mut Solid, body: &Body<Dim3>) {
     let facets: Vec<Facet> = body.facets().collect();
     let places = smoothed(&facets);
     let corners = |facet: &Facet| facet.nodes.map(|node| places[&node]);
-    let mut sums: BTreeMap<(u32, bool), Vector> = BTreeMap::new();
+    let mut sums: BTreeMap<(NodeId, bool), Vector> = BTreeMap::new();
     for facet in &facets {
         let [a, b, c, d] = corners(facet);
         let normal = cross(minus(c, a), minus(d, b));
@@ -227,14 +227,14 @@ pub fn space_skin(solid: &mut Solid, body: &Body<Dim3>) {
 }
 
 /// The nodes of a skin, each moved several times half-way to the mean of its neighbours.
-fn smoothed(facets: &[Facet]) -> BTreeMap<u32, Vector> {
+fn smoothed(facets: &[Facet]) -> BTreeMap<NodeId, Vector> {
     const ROUNDS: usize = 4;
     let corners = facets
         .iter()
         .flat_map(|facet| facet.nodes.into_iter().zip(facet.corners));
-    let mut places: BTreeMap<u32, Vector> = corners.collect();
+    let mut places: BTreeMap<NodeId, Vector> = corners.collect();
     for _ in 0..ROUNDS {
-        let mut sums: BTreeMap<u32, (Vector, f32)> = BTreeMap::new();
+        let mut sums: BTreeMap<NodeId, (Vector, f32)> = BTreeMap::new();
         for facet in facets {
             for k in 0..4 {
                 let sum = sums.entry(facet.nodes[k]).or_insert(([0.0; 3], 0.0));
@@ -298,7 +298,7 @@ fn blocks<D: Dim>(level: u8, children: u8) -> Vec<([i32; 3], i32)> {
 }
 
 /// The pieces of a single voxel.
-fn crumbs<D: Dim>(body: &Body<D>) -> BTreeSet<u32> {
+fn crumbs<D: Dim>(body: &Body<D>) -> BTreeSet<PieceId> {
     let views = body.piece_views().into_iter();
     views
         .filter(|view| view.element_count == 1)

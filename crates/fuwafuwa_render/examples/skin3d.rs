@@ -2,7 +2,7 @@
 //! `cargo run --release -p fuwafuwa_render --example skin3d -- [body.n=64 …]`.
 
 use fuwafuwa::vector::scaled;
-use fuwafuwa::{Dim3, World};
+use fuwafuwa::{Dim3, PieceId, World};
 use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_render::space::{Camera, Cut, Geometry, Skin};
 use fuwafuwa_render::{Ages, Frame, Look, Mark, Sticker, Theme, anchor};
@@ -116,7 +116,7 @@ fn face(world: &World<Dim3>) -> Sticker {
     let largest = views.iter().max_by(|a, b| a.mass.total_cmp(&b.mass));
     Sticker {
         body: 0,
-        piece: largest.map_or(0, |piece| piece.number),
+        piece: largest.map_or(PieceId(0), |piece| piece.number),
         from: anchor.position,
         axes: anchor.axes.map(|axis| scaled(axis, 0.55 * anchor.scale)),
         marks: (0..22).map(mark).collect(),

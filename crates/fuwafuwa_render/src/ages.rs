@@ -1,7 +1,7 @@
 //! How long ago each element was remodelled.
 
 use fuwafuwa::mesh::Element;
-use fuwafuwa::{Dim, World};
+use fuwafuwa::{Dim, ElementId, World};
 
 /// What an element is, as far as remodelling changes it.
 type Form = ([i32; 3], u8, u8);
@@ -34,13 +34,14 @@ impl Ages {
             let capacity = body.mesh().element_capacity();
             forms.resize(capacity, None);
             ages.resize(capacity, young);
-            for id in 0..capacity {
-                let form = body.mesh().element(id as u32).map(form);
-                ages[id] = match form == forms[id] {
-                    true => ages[id] + duration,
+            let all = forms.iter_mut().zip(ages).zip(0..);
+            for ((known, age), id) in all {
+                let form = body.mesh().element(ElementId(id)).map(form);
+                *age = match form == *known {
+                    true => *age + duration,
                     false => young,
                 };
-                forms[id] = form;
+                *known = form;
             }
         }
     }

@@ -1,7 +1,7 @@
 //! A frame that follows a body, for a face to be painted in.
 
 use fuwafuwa::vector::{cross, dot, minus, plus, scaled};
-use fuwafuwa::{Body, Dim, Vector};
+use fuwafuwa::{Body, Dim, PieceId, Vector};
 
 /// Steps towards the turn of a piece. Each doubles its correct digits once it is near.
 const STEPS: usize = 12;
@@ -28,14 +28,14 @@ pub fn anchor<D: Dim>(body: &Body<D>) -> Anchor {
     let (mesh, pieces) = (body.mesh(), body.pieces());
     let mut masses = vec![0.0f32; pieces.list.len()];
     for (id, _) in mesh.nodes() {
-        masses[pieces.of_node(id) as usize] += body.node_state(id).2;
+        masses[pieces.of_node(id).index()] += body.node_state(id).2;
     }
     let largest =
         (0..masses.len()).fold(0, |best, k| if masses[k] > masses[best] { k } else { best });
     let states = || {
         let own = mesh
             .nodes()
-            .filter(|&(id, _)| pieces.of_node(id) as usize == largest);
+            .filter(|&(id, _)| pieces.of_node(id).index() == largest);
         own.map(|(id, node)| {
             let (at, _, mass) = body.node_state(id);
             (at, node.at.map(|k| k as f32), mass)
@@ -59,7 +59,7 @@ pub fn anchor<D: Dim>(body: &Body<D>) -> Anchor {
 /// voxels of the body at rest; none where that is too little or too flat to have a turn.
 pub fn anchor_at<D: Dim>(
     body: &Body<D>,
-    piece: u32,
+    piece: PieceId,
     place: Vector,
     reach: f32,
 ) -> Option<(Vector, [Vector; 3])> {
@@ -132,7 +132,7 @@ fn turn_of<D: Dim>(mut columns: [Vector; 3]) -> Option<[Vector; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::{Blade, Dim2, Dim3, Material, Settings, VoxelGrid, World};
+    use fuwafuwa::{Blade, Dim2, Dim3, Material, NodeId, Settings, VoxelGrid, World};
 
     #[test]
     fn it_turns_with_the_largest_piece_and_ignores_its_squash() {
@@ -152,7 +152,7 @@ mod tests {
             )
             .unwrap();
         let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
-        let ids: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
+        let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
         let (sin, cos) = 2.5f32.sin_cos();
         for id in ids {
             let [x, y, _] = body.node_state(id).0;
@@ -184,7 +184,7 @@ mod tests {
         let grid = VoxelGrid::ball(12, 1.0).unwrap();
         world.add_body(Body::new(grid, &[Material::default()]).unwrap());
         let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
-        let ids: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
+        let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in ids {
             // Half as high, then turned so that x leads to y, y to z and z to x.
             let [x, y, z] = body.node_state(id).0;
@@ -200,7 +200,7 @@ mod tests {
         }
     }
 
-    fn middle(body: &Body<Dim2>) -> u32 {
+    fn middle(body: &Body<Dim2>) -> NodeId {
         let nodes = body.mesh().nodes();
         let distance = |at: [i32; 3]| (at[0] - 16).abs() + (at[1] - 12).abs();
         nodes

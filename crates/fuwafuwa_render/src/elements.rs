@@ -151,7 +151,7 @@ pub fn colour_of(view: &ElementView, theme: &Theme, colour: ElementColour, ages:
         ElementColour::Level => theme.level(view.level),
         ElementColour::Strain => theme.strain(view.strain),
     };
-    let age = ages.get(view.id as usize).copied().unwrap_or(FLASH);
+    let age = ages.get(view.id.index()).copied().unwrap_or(FLASH);
     let flash = 0.65 * (1.0 - age / FLASH).clamp(0.0, 1.0);
     mix(plain, [1.0; 3], flash)
 }

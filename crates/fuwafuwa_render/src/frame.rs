@@ -2,7 +2,7 @@
 
 use crate::plane::{Flat, dot, flat, minus, plus, scaled};
 use crate::theme::Theme;
-use fuwafuwa::{Dim3, Shape, Vector, World};
+use fuwafuwa::{Dim3, PieceId, Shape, Vector, World};
 
 /// Everything that a picture needs beside the world; for one in space, a camera in space.
 #[derive(Clone, Debug)]
@@ -119,7 +119,7 @@ pub struct Sticker {
     /// The body, by its place in the world.
     pub body: usize,
     /// Its piece.
-    pub piece: u32,
+    pub piece: PieceId,
     /// A place inside [m]. The sticker lies on the skin that is seen from there.
     pub from: Vector,
     /// To the right, up, and out of the skin; as long as a mark's coordinate 1 is to be [m].

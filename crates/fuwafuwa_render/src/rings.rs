@@ -8,14 +8,15 @@
 
 use crate::plane::{Flat, cross, dot, flat, minus, mixed, plus, scaled, unit};
 use crate::rest::{Rest, SMALL};
-use fuwafuwa::{Body, Dim2};
+use fuwafuwa::ids::Table;
+use fuwafuwa::{Body, Dim2, NodeId};
 
 /// The closed curves around the pieces of a body, with the buffers that make them.
 #[derive(Clone, Debug, Default)]
 pub struct Rings {
     sides: Vec<Side>,
-    /// By node: the place of the side that starts there, or none.
-    leaving: Vec<u32>,
+    /// The place of the side that starts at a node, or none.
+    leaving: Table<NodeId, u32>,
     ring: Vec<Control>,
     planed: Vec<Flat>,
     /// All curves, one after another.
@@ -53,7 +54,7 @@ pub struct RingPoint {
 /// A bare side of a voxel.
 #[derive(Copy, Clone, Debug)]
 struct Side {
-    to: u32,
+    to: NodeId,
     /// The place of the side that goes on, until it was drawn.
     next: u32,
     start: Flat,
@@ -110,7 +111,7 @@ impl Rings {
                 true => Default::default(),
                 false => rest.offsets(grid, element.cell.at, [to[0] - from[0], to[1] - from[1]]),
             };
-            self.leaving[facet.nodes[0] as usize] = self.sides.len() as u32;
+            self.leaving[facet.nodes[0]] = self.sides.len() as u32;
             self.sides.push(Side {
                 to: facet.nodes[1],
                 next: NONE,
@@ -122,7 +123,7 @@ impl Rings {
             });
         }
         for side in &mut self.sides {
-            side.next = self.leaving[side.to as usize];
+            side.next = self.leaving[side.to];
         }
     }
 
@@ -299,7 +300,7 @@ mod tests {
         let mut world = disc(64);
         let round = round(&world);
         let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
-        let ids: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
+        let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in ids {
             let [x, y, _] = body.node_state(id).0;
             body.set_node_state(id, [2.0 * x, 0.5 * y, 0.0], [0.0; 3]);

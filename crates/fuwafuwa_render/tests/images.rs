@@ -4,7 +4,8 @@
 mod shared;
 
 use fuwafuwa::{
-    Blade, Body, Dim, Dim2, Grading, Law, Material, Rigid, Settings, Shape, VoxelGrid, World,
+    Blade, Body, Dim, Dim2, Grading, Law, Material, PieceId, Rigid, Settings, Shape, VoxelGrid,
+    World,
 };
 use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_render::{Basket, Camera, Colour, Frame, Look, Particle, Renderer, Theme};
@@ -122,11 +123,11 @@ fn a_torn_face_shows_a_lighter_inside() {
         )
         .unwrap();
     let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
-    let ids: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
-    let pieces: Vec<u32> = ids.iter().map(|&id| body.pieces().of_node(id)).collect();
+    let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
+    let pieces: Vec<_> = ids.iter().map(|&id| body.pieces().of_node(id)).collect();
     for (id, piece) in ids.into_iter().zip(pieces) {
         let [x, y, _] = body.node_state(id).0;
-        let apart = if piece == 0 { 0.05 } else { -0.05 };
+        let apart = if piece == PieceId(0) { 0.05 } else { -0.05 };
         body.set_node_state(id, [x + apart, y, 0.0], [0.0; 3]);
     }
     let Some(picture) = take(&world, TextureFormat::Rgba8Unorm, |_| ()) else {

@@ -3,7 +3,7 @@
 
 mod shared;
 
-use fuwafuwa::{Blade, Body, Dim3, Material, Rigid, Settings, Shape, VoxelGrid, World};
+use fuwafuwa::{Blade, Body, Dim3, Material, PieceId, Rigid, Settings, Shape, VoxelGrid, World};
 use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_render::space::{Camera, Cut, Renderer};
 use fuwafuwa_render::{Basket, Colour, Frame, Look, Mark, Particle, Sticker, Theme};
@@ -140,7 +140,7 @@ fn a_torn_face_shows_a_paler_inside_and_no_gap_where_it_begins() {
         .unwrap();
     let closed = take(&world, TextureFormat::Rgba8Unorm, |_| ());
     let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
-    let ids: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
+    let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     let left = (ids.iter()).find(|&&id| body.mesh().node(id).at[0] < 8);
     let left = body.pieces().of_node(*left.unwrap());
     for id in ids {
@@ -227,7 +227,7 @@ fn a_sticker_is_seen_from_its_side_and_not_through_a_bar() {
     };
     let sticker = Sticker {
         body: 0,
-        piece: 0,
+        piece: PieceId(0),
         from: [0.5; 3],
         axes: [[0.5, 0.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 0.5]],
         marks: vec![mark],

@@ -107,7 +107,7 @@ fn a_crack_does_not_enter_what_is_unbreakable() {
     }
     assert!(released > 50, "{released}");
     let views = world.bodies().first().unwrap().element_views();
-    let mut of_core: Vec<u32> = views
+    let mut of_core: Vec<_> = views
         .filter(|view| view.material == 2)
         .map(|view| view.piece)
         .collect();

@@ -3,7 +3,7 @@
 use crate::{Level, Route, Wish};
 use fuwafuwa::vector::minus;
 use fuwafuwa::world::TICK;
-use fuwafuwa::{Body, Dim, PieceView, Shape, World};
+use fuwafuwa::{Body, Dim, ElementId, PieceView, Shape, World};
 use serde::{Deserialize, Serialize};
 
 /// What moves faster than this does not rest in the basket [m/s].
@@ -172,7 +172,7 @@ fn masses_inside<D: Dim>(world: &World<D>, region: &Shape) -> (f32, f32) {
     let inside = |body: &Body<D>| {
         let (mut resting, mut all) = (0.0, 0.0);
         for (id, _) in body.mesh().nodes() {
-            if !is_inside(region, body.positions()[id as usize]) {
+            if !is_inside(region, body.positions()[id]) {
                 continue;
             }
             let (_, velocity, mass) = body.node_state(id);
@@ -192,8 +192,8 @@ fn masses_inside<D: Dim>(world: &World<D>, region: &Shape) -> (f32, f32) {
 fn strain_inside<D: Dim>(world: &World<D>, views: &[Vec<PieceView>], region: &Shape) -> f32 {
     let (mut sum, mut volume) = (0.0, 0.0);
     for (body, pieces) in world.bodies().iter().zip(views) {
-        let counts = |id: u32| {
-            let view = &pieces[body.pieces().of_element(id) as usize];
+        let counts = |id: ElementId| {
+            let view = &pieces[body.pieces().of_element(id).index()];
             region.distance(view.centre).0 < 0.0 && view.element_count > 50
         };
         for (id, element) in body.mesh().elements().filter(|(id, _)| counts(*id)) {

@@ -2,7 +2,7 @@
 
 use super::{Game, Screen};
 use crate::look::View;
-use fuwafuwa::{BodyId, Dim, Event, Vector, With};
+use fuwafuwa::{BodyId, Dim, Event, PieceId, Vector, With};
 use std::collections::BTreeMap;
 use tamaire_play::rules::CRUMB;
 use tamaire_play::{AnyRound, Round};
@@ -51,11 +51,11 @@ fn cues_of<D: Dim>(round: &Round<D>, view: Option<View>) -> Vec<Cue> {
     let bodies = round.world().bodies();
     // The masses of the pieces of each body, looked up once they are asked for [kg].
     let mut masses: BTreeMap<BodyId, Vec<f32>> = BTreeMap::new();
-    let mut mass_of = |body: BodyId, piece: u32| {
+    let mut mass_of = |body: BodyId, piece: PieceId| {
         let views = || bodies[body].piece_views().into_iter();
         let masses = masses.entry(body);
         let masses = masses.or_insert_with(|| views().map(|view| view.mass).collect());
-        masses[piece as usize]
+        masses[piece.index()]
     };
     let mut cues = Vec::new();
     let (mut torn, mut at) = (0.0, 0.0);

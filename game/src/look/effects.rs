@@ -4,7 +4,7 @@ use super::Camera;
 use super::confetti::Confetti;
 use super::feelings::{Fate, Feeling};
 use fuwafuwa::vector::{length, minus, plus, scaled};
-use fuwafuwa::{Body, Dim, Event, Rigid, Vector, With};
+use fuwafuwa::{Body, Dim, Event, NodeId, Rigid, Vector, With};
 use tamaire_play::{AnyRound, Round};
 
 /// Most particles at once.
@@ -247,7 +247,7 @@ impl Effects {
 /// The material of a body at a place [m]: that of the nearest node.
 fn material_at<D: Dim>(body: &Body<D>, at: Vector) -> u8 {
     let mesh = body.mesh();
-    let square = |id: u32| {
+    let square = |id: NodeId| {
         let place = body.node_state(id).0;
         (0..D::N)
             .map(|axis| (place[axis] - at[axis]).powi(2))

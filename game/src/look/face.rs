@@ -2,8 +2,8 @@
 
 use super::View;
 use egui::{Color32, Painter, Pos2, Shape, Stroke, vec2};
-use fuwafuwa::Vector;
 use fuwafuwa::vector::{dot, length, minus, plus, scaled};
+use fuwafuwa::{PieceId, Vector};
 use fuwafuwa_render::{Mark, Sticker};
 use std::f32::consts::{PI, TAU};
 
@@ -32,7 +32,7 @@ pub struct Face {
     /// The body, by its place in the world, and the piece of it.
     pub body: usize,
     /// Its piece.
-    pub piece: u32,
+    pub piece: PieceId,
     /// Its middle; in space inside the body [m].
     pub at: Vector,
     /// To its right as it is seen, up, and out of it; as long as it is large [m].

@@ -1,10 +1,10 @@
 //! How a body feels, and where on it that is seen.
 
 use super::Mood;
-use super::perch::{Perch, UPRIGHT, masses, square};
+use super::perch::{Perch, UPRIGHT, largest, masses, square};
 use fuwafuwa::vector::{length, minus, plus, scaled};
 use fuwafuwa::world::TICK;
-use fuwafuwa::{Body, Dim, Vector};
+use fuwafuwa::{Body, Dim, NodeId, PieceId, Vector};
 use fuwafuwa_render::anchor;
 
 /// How long a body is shocked after a tear [s]; one that goes on tearing winces then.
@@ -43,7 +43,7 @@ pub struct Feeling {
     /// Half of the face's width [m], nearly; 0 when the body is dust.
     pub size: f32,
     /// The piece that it is on.
-    pub piece: u32,
+    pub piece: PieceId,
     /// In space where on the skin it sticks.
     perch: Option<Perch>,
     seat: Option<Seat>,
@@ -58,7 +58,7 @@ pub struct Feeling {
 /// A node deep inside the largest piece.
 #[derive(Copy, Clone, Debug, PartialEq)]
 struct Seat {
-    node: u32,
+    node: NodeId,
     /// Where the node is in the body at rest, by which it is known when its number serves another.
     rest: [i32; 3],
     /// How far it is from the skin at rest [voxels].
@@ -89,7 +89,7 @@ impl Feeling {
             at: [0.0; 3],
             axes: UPRIGHT,
             size: 0.0,
-            piece: 0,
+            piece: PieceId(0),
             middle: [0.0; 3],
             perch: (D::N == 3).then(|| Perch::new(body, eye)),
             seat: None,
@@ -203,22 +203,19 @@ impl Feeling {
 
 fn is_there<D: Dim>(body: &Body<D>, seat: Seat) -> bool {
     let mesh = body.mesh();
-    (seat.node as usize) < mesh.node_capacity()
+    seat.node.index() < mesh.node_capacity()
         && mesh.is_alive(seat.node)
         && mesh.node(seat.node).at == seat.rest
 }
 
 /// The piece with the most mass.
-fn largest_piece<D: Dim>(body: &Body<D>) -> u32 {
-    let masses = masses(body);
-    let largest =
-        (0..masses.len()).fold(0, |best, k| if masses[k] > masses[best] { k } else { best });
-    largest as u32
+fn largest_piece<D: Dim>(body: &Body<D>) -> PieceId {
+    largest(&masses(body))
 }
 
 /// The node of the largest piece that is deepest inside and near the middle; the one that is taken
 /// now unless another is clearly better.
-fn best_seat<D: Dim>(body: &Body<D>, now: Option<u32>) -> Option<Seat> {
+fn best_seat<D: Dim>(body: &Body<D>, now: Option<NodeId>) -> Option<Seat> {
     let (mesh, pieces) = (body.mesh(), body.pieces());
     let piece = largest_piece(body);
     let own = || mesh.nodes().filter(|&(id, _)| pieces.of_node(id) == piece);
@@ -344,7 +341,7 @@ mod tests {
         assert!(feeling.axes[2][2] > 0.99, "{feeling:?}");
         // The body turns its back.
         let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
-        let ids: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
+        let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in ids {
             let [x, y, z] = body.node_state(id).0;
             body.set_node_state(id, [1.0 - x, y, 1.0 - z], [0.0; 3]);

@@ -3,8 +3,9 @@
 //! It keeps its place there and rolls with it. Once too much of that place is torn, or who looks sees it from behind, it
 //! shrinks and comes up again where there is a better one.
 
+use fuwafuwa::ids::Table;
 use fuwafuwa::vector::{cross, dot, length, minus, plus, scaled};
-use fuwafuwa::{Body, Dim, Point, Vector};
+use fuwafuwa::{Body, Dim, PieceId, Point, Vector};
 use fuwafuwa_render::anchor_at;
 use std::f32::consts::PI;
 
@@ -53,7 +54,7 @@ pub struct Perch {
     /// How large it is [m]; 0 where there is no skin left for it.
     pub size: f32,
     /// The piece that it is on.
-    pub piece: u32,
+    pub piece: PieceId,
     /// The middle of the piece, nearly [m].
     pub middle: Vector,
     place: Option<Place>,
@@ -93,7 +94,7 @@ struct Spot {
 /// What of a piece a face could stick to, and for whom.
 struct Skin {
     spots: Vec<Spot>,
-    piece: u32,
+    piece: PieceId,
     middle: Vector,
     /// How large a face would be on it [m].
     full: f32,
@@ -177,14 +178,11 @@ impl Perch {
     /// Looks whether it is well where it is.
     fn review<D: Dim>(&mut self, body: &Body<D>, eye: Option<Vector>) {
         let masses = masses(body);
-        let largest = (0..masses.len()).fold(0, |best, k| match masses[k] > masses[best] {
-            true => k,
-            false => best,
-        });
+        let largest = largest(&masses);
         let own = self.place.and_then(|place| body.mesh().owner(place.voxel));
         let own = own.map(|element| body.pieces().of_element(element));
         let spin = self.spin;
-        let on = |piece: u32| Skin {
+        let on = |piece: PieceId| Skin {
             spin,
             ..Skin::of(body, piece, &masses, eye)
         };
@@ -192,7 +190,7 @@ impl Perch {
         let mut score = 0.0;
         if let (Some(own), Some(place)) = (own, self.place) {
             let skin = on(own);
-            is_small = HEAVIER * masses[own as usize] < masses[largest];
+            is_small = HEAVIER * masses[own] < masses[largest];
             let inside = INSIDE * place.fit * self.full;
             let at = plus(self.at, scaled(self.axes[2], inside));
             let size = place.fit * skin.full;
@@ -207,9 +205,10 @@ impl Perch {
             return;
         }
         self.wait = AGAIN;
-        let heavy = (0..masses.len()).filter(|&k| HEAVIER * masses[k] >= masses[largest]);
+        let is_heavy = |&piece: &PieceId| HEAVIER * masses[piece] >= masses[largest];
+        let heavy = masses.ids().filter(is_heavy);
         let places = heavy.take(PIECES).filter_map(|piece| {
-            let skin = on(piece as u32);
+            let skin = on(piece);
             let (spot, score, fit, out) = skin.best()?;
             let place = skin.place(body, spot, out, fit)?;
             Some((score, place, skin.full, skin.middle))
@@ -228,7 +227,12 @@ impl Perch {
 }
 
 impl Skin {
-    fn of<D: Dim>(body: &Body<D>, piece: u32, masses: &[f32], eye: Option<Vector>) -> Self {
+    fn of<D: Dim>(
+        body: &Body<D>,
+        piece: PieceId,
+        masses: &Table<PieceId, f32>,
+        eye: Option<Vector>,
+    ) -> Self {
         let facets = body
             .facets()
             .filter(|facet| facet.piece == piece && !facet.is_fresh);
@@ -244,7 +248,7 @@ impl Skin {
                 normal: facet.normal,
             })
         });
-        let own = masses[piece as usize];
+        let own = masses[piece];
         let share = own / masses.iter().sum::<f32>();
         let (voxel, voxels) = (
             body.grid().voxel_size(),
@@ -375,11 +379,20 @@ pub(super) fn square([_, up, out]: [Vector; 3]) -> [Vector; 3] {
     [right, cross(out, right), out]
 }
 
+/// The piece with the most mass; of several the first.
+pub(super) fn largest(masses: &Table<PieceId, f32>) -> PieceId {
+    let heavier = |best, piece| match masses[piece] > masses[best] {
+        true => piece,
+        false => best,
+    };
+    masses.ids().fold(PieceId(0), heavier)
+}
+
 /// The mass of each piece [kg].
-pub(super) fn masses<D: Dim>(body: &Body<D>) -> Vec<f32> {
-    let mut masses = vec![0.0f32; body.pieces().list.len()];
+pub(super) fn masses<D: Dim>(body: &Body<D>) -> Table<PieceId, f32> {
+    let mut masses = Table::from(vec![0.0f32; body.pieces().list.len()]);
     for (id, _) in body.mesh().nodes() {
-        masses[body.pieces().of_node(id) as usize] += body.node_state(id).2;
+        masses[body.pieces().of_node(id)] += body.node_state(id).2;
     }
     masses
 }

@@ -2,20 +2,20 @@
 
 use super::Body;
 use crate::dim::{Dim, Point};
+use crate::ids::{NodeId, PieceId, Table};
 use crate::mesh::Node;
 use crate::solve::Row;
 use crate::vector::{dot, plus};
 
 impl<D: Dim> Body<D> {
     /// Wakes or puts to sleep all pieces whose number is marked.
-    pub(crate) fn set_asleep(&mut self, marked: &[bool], asleep: bool) {
+    pub(crate) fn set_asleep(&mut self, marked: &Table<PieceId, bool>, asleep: bool) {
         for (id, element) in self.truth.mesh.elements() {
-            if !marked[self.truth.pieces.of_element(id) as usize] {
+            if !marked[self.truth.pieces.of_element(id)] {
                 continue;
             }
             self.state.blocks.set_asleep(id, asleep);
             for &node in &element.nodes {
-                let node = node as usize;
                 if asleep {
                     self.state.velocity[node] = [0.0; 4];
                     self.state.ahead[node] = self.state.position[node];
@@ -28,7 +28,7 @@ impl<D: Dim> Body<D> {
                 };
             }
         }
-        let pieces = self.truth.pieces.list.iter_mut().zip(marked);
+        let pieces = self.truth.pieces.list.iter_mut().zip(marked.iter());
         for (piece, _) in pieces.filter(|(_, marked)| **marked) {
             piece.asleep = asleep;
             piece.still = 0.0;
@@ -38,37 +38,35 @@ impl<D: Dim> Body<D> {
 
     /// The lattice point and the position [m] of every node, by id; no position where there is none.
     pub(crate) fn places(&self) -> Vec<(Point, Row)> {
-        let place = |(id, &row): (usize, &Row)| match self.truth.mesh.is_alive(id as u32) {
-            true => (self.truth.mesh.node(id as u32).at, row),
+        let place = |(id, &row): (NodeId, &Row)| match self.truth.mesh.is_alive(id) {
+            true => (self.truth.mesh.node(id).at, row),
             false => ([0; 3], [f32::NAN; 4]),
         };
-        self.state.position.iter().enumerate().map(place).collect()
+        self.state.position.entries().map(place).collect()
     }
 
     /// Puts pieces with a node that is not finite, or faster than `top_speed` [m/s], back to where
     /// they were and to sleep for good; returns their numbers.
-    pub(crate) fn quarantine(&mut self, before: &[(Point, Row)], top_speed: f32) -> Vec<u32> {
-        let mut marked = vec![false; self.truth.pieces.list.len()];
+    pub(crate) fn quarantine(&mut self, before: &[(Point, Row)], top_speed: f32) -> Vec<PieceId> {
+        let mut marked: Table<PieceId, _> = vec![false; self.truth.pieces.list.len()].into();
         for &id in &self.cache.awake {
-            let velocity = self.state.velocity[id as usize];
+            let velocity = self.state.velocity[id];
             let speed = dot(velocity, velocity);
-            let sane =
-                speed <= top_speed * top_speed && is_finite(self.state.position[id as usize]);
-            marked[self.truth.pieces.of_node(id) as usize] |= !sane;
+            let sane = speed <= top_speed * top_speed && is_finite(self.state.position[id]);
+            marked[self.truth.pieces.of_node(id)] |= !sane;
         }
         if !marked.contains(&true) {
             return Vec::new();
         }
-        let nodes: Vec<(u32, Node)> = self.truth.mesh.nodes().collect();
+        let nodes: Vec<(NodeId, Node)> = self.truth.mesh.nodes().collect();
         let nodes = nodes.into_iter();
-        for (id, node) in nodes.filter(|&(id, _)| marked[self.truth.pieces.of_node(id) as usize]) {
-            self.state.position[id as usize] = self.place_before(id, node.at, before);
+        for (id, node) in nodes.filter(|&(id, _)| marked[self.truth.pieces.of_node(id)]) {
+            self.state.position[id] = self.place_before(id, node.at, before);
         }
         self.set_asleep(&marked, true);
-        let numbers = (0..marked.len() as u32).filter(|&piece| marked[piece as usize]);
-        let numbers: Vec<u32> = numbers.collect();
+        let numbers: Vec<PieceId> = marked.ids().filter(|&piece| marked[piece]).collect();
         for &piece in &numbers {
-            self.truth.pieces.list[piece as usize].quarantined = true;
+            self.truth.pieces.list[piece].quarantined = true;
         }
         numbers
     }
@@ -76,9 +74,9 @@ impl<D: Dim> Body<D> {
     /// Where a node was. One that is new, or whose id was another's, is put beside the nearest of its
     /// elements that was anywhere, and to its place at rest when none was: across a crack, what is
     /// near in the lattice may be far away.
-    fn place_before(&self, id: u32, at: Point, before: &[(Point, Row)]) -> Row {
-        let was = |id: u32, at: Point| {
-            let known = before.get(id as usize);
+    fn place_before(&self, id: NodeId, at: Point, before: &[(Point, Row)]) -> Row {
+        let was = |id: NodeId, at: Point| {
+            let known = before.get(id.index());
             known.filter(|(point, row)| *point == at && is_finite(*row))
         };
         let carriers = self.truth.mesh.carriers_of(id);

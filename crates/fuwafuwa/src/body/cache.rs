@@ -2,6 +2,7 @@
 
 use super::blend::Blend;
 use crate::breakable::BreakableNodes;
+use crate::ids::{ElementId, NodeId, PieceId, Table};
 use crate::momentum::RoughMotion;
 
 /// What is worked out from the truth and the state of a body, and kept so that it need not be again. No
@@ -11,16 +12,16 @@ pub struct Cache {
     /// What its materials come to as a whole.
     pub blend: Blend,
     /// The nodes that move, ascending; stale after a remodelling.
-    pub awake: Vec<u32>,
+    pub awake: Vec<NodeId>,
     pub awake_is_stale: bool,
     /// Nodes where a crack can start or go on, and what they bear.
     pub breakable: BreakableNodes,
-    /// Which faces of an element of level 0 are bare: bit 2 · axis + side; by element id.
-    pub bare: Vec<u8>,
-    /// Of those with bare faces, the voxels around that share a node: see [`Sharing::bound`], by element id.
+    /// Which faces of an element of level 0 are bare: bit 2 · axis + side.
+    pub bare: Table<ElementId, u8>,
+    /// Of those with bare faces, the voxels around that share a node: see [`Sharing::bound`].
     ///
     /// [`Sharing::bound`]: crate::sharing::Sharing::bound
-    pub bound: Vec<u32>,
+    pub bound: Table<ElementId, u32>,
     /// The rigid motion of each piece, as of the last round of damping: every tick begins with one.
-    pub rigid: Vec<RoughMotion>,
+    pub rigid: Table<PieceId, RoughMotion>,
 }

@@ -3,6 +3,7 @@
 use super::Body;
 use super::truth::Truth;
 use crate::dim::{Dim, Point};
+use crate::ids::NodeId;
 
 impl<D: Dim> Body<D> {
     pub(crate) fn make_room(&mut self) {
@@ -18,20 +19,20 @@ impl<D: Dim> Body<D> {
     }
 
     /// A new node is held when every node it comes from was.
-    pub(crate) fn inherit_hold(&mut self, node: u32, from: &[(u32, f64)]) {
-        self.state.held[node as usize] = from.iter().all(|&(old, _)| self.state.held[old as usize]);
+    pub(crate) fn inherit_hold(&mut self, node: NodeId, from: &[(NodeId, f64)]) {
+        self.state.held[node] = from.iter().all(|&(old, _)| self.state.held[old]);
     }
 
     /// Notes the masses of nodes, added up anew.
-    pub(crate) fn weigh(&mut self, nodes: &[u32]) {
+    pub(crate) fn weigh(&mut self, nodes: &[NodeId]) {
         for &id in nodes {
-            self.state.mass[id as usize] = self.mass_of(id);
-            self.state.inverse_mass[id as usize] = self.inverse_mass_of(id);
+            self.state.mass[id] = self.mass_of(id);
+            self.state.inverse_mass[id] = self.inverse_mass_of(id);
         }
     }
 
     /// The mass of a node, added up from the elements that carry it [kg].
-    pub(super) fn mass_of(&self, id: u32) -> f32 {
+    pub(super) fn mass_of(&self, id: NodeId) -> f32 {
         let half = f64::from(self.truth.grid.voxel_size()) * 0.5;
         let mut mass = 0.0;
         for (element, place) in self.truth.mesh.carriers_of(id) {
@@ -44,10 +45,10 @@ impl<D: Dim> Body<D> {
     }
 
     /// One over the mass of a node [1/kg]; 0 while it is held or sleeps.
-    pub(super) fn inverse_mass_of(&self, id: u32) -> f32 {
-        let free = !self.state.held[id as usize] && !self.truth.pieces.sleeps(id);
+    pub(super) fn inverse_mass_of(&self, id: NodeId) -> f32 {
+        let free = !self.state.held[id] && !self.truth.pieces.sleeps(id);
         match free {
-            true => 1.0 / self.state.mass[id as usize],
+            true => 1.0 / self.state.mass[id],
             false => 0.0,
         }
     }
@@ -74,15 +75,15 @@ impl<D: Dim> Body<D> {
                 bare |= u8::from(!around.is_closed(octant, axis)) << (2 * axis);
                 bare |= u8::from(!around.is_far_face_closed(octant, axis)) << (2 * axis + 1);
             }
-            self.cache.bare[owner as usize] = bare;
+            self.cache.bare[owner] = bare;
             if bare != 0 {
-                self.cache.bound[owner as usize] = self.truth.sharing.bound(voxel);
+                self.cache.bound[owner] = self.truth.sharing.bound(voxel);
             }
         }
     }
 
     /// Looks again which of `nodes` are breakable nodes.
-    pub(crate) fn find_breakable(&mut self, nodes: &[u32]) {
+    pub(crate) fn find_breakable(&mut self, nodes: &[NodeId]) {
         let Truth {
             grid,
             sharing,

@@ -2,6 +2,7 @@
 
 use super::Body;
 use crate::dim::Dim;
+use crate::ids::ElementId;
 use crate::law::turn_far_from;
 use crate::momentum::RoughMotion;
 use crate::solve::Kick;
@@ -21,7 +22,7 @@ impl<D: Dim> Body<D> {
     pub(crate) fn push(&mut self, duration: f32, gravity: [f32; 3]) {
         self.refresh_awake();
         if std::mem::take(&mut self.state.placed) {
-            let all: Vec<u32> = self.truth.mesh.elements().map(|(id, _)| id).collect();
+            let all: Vec<ElementId> = self.truth.mesh.elements().map(|(id, _)| id).collect();
             self.settle(&all);
         }
         self.state.blocks.evaluate(&self.state.ahead);
@@ -39,7 +40,7 @@ impl<D: Dim> Body<D> {
     /// Turns elements that are far from how their nodes lie, because they are new or their nodes were
     /// placed: `solve` follows what turns step by step, and stands still half a turn off. In the plane it
     /// finds the rotation at once.
-    pub(crate) fn settle(&mut self, elements: &[u32]) {
+    pub(crate) fn settle(&mut self, elements: &[ElementId]) {
         if D::N == 2 {
             return;
         }
@@ -76,12 +77,12 @@ impl<D: Dim> Body<D> {
             &mut self.state.velocity,
             &mut self.state.ahead,
         ];
-        let rows = threads::rows(&self.cache.awake, lists.map(Vec::as_mut_slice));
+        let rows = threads::rows(&self.cache.awake, lists.map(|rows| rows.as_mut_slice()));
         let fastest = threads::map(rows, |rows| {
             let [positions, velocities, ahead] = rows.lists;
             let mut fastest = 0.0f32;
             for &id in rows.nodes {
-                let node = id as usize - rows.first;
+                let node = id.index() - rows.first;
                 let mut velocity = velocities[node];
                 let squared = dot(velocity, velocity);
                 // Not `max`, which would have every node wait for the one before.
@@ -94,7 +95,7 @@ impl<D: Dim> Body<D> {
                 }
                 let position = plus(positions[node], scaled(velocity, duration));
                 positions[node] = position;
-                let whole = rigid[pieces.of_node(id) as usize].at::<D>(position);
+                let whole = rigid[pieces.of_node(id)].at::<D>(position);
                 ahead[node] = plus(position, scaled(minus(velocity, whole), lead));
             }
             fastest

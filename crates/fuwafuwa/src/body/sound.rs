@@ -5,6 +5,7 @@ use super::Body;
 use super::state::State;
 use super::truth::Truth;
 use crate::dim::Dim;
+use crate::ids::{NodeId, PieceId, Table};
 use crate::mesh::{Defect, Mesh};
 use crate::piece::Pieces;
 use crate::pyramid::Pyramid;
@@ -36,8 +37,8 @@ impl<D: Dim> Body<D> {
 
     /// Whether where a node is, where it goes and how it has suffered are numbers, and none of them leads out
     /// of the plane of a body in the plane.
-    fn is_somewhere(&self, id: u32) -> bool {
-        let (state, id) = (&self.state, id as usize);
+    fn is_somewhere(&self, id: NodeId) -> bool {
+        let state = &self.state;
         let rows = [&state.position, &state.velocity, &state.ahead].map(|rows| rows[id]);
         let is_flat = |row: &Row| row[D::N..].iter().all(|&k| k == 0.0);
         let is_finite = |row: &Row| row.iter().all(|k| k.is_finite());
@@ -45,9 +46,9 @@ impl<D: Dim> Body<D> {
     }
 
     /// Whether its elements give a node the mass that it has, to the last bit.
-    fn weighs_right(&self, id: u32) -> bool {
-        self.state.mass[id as usize] == self.mass_of(id)
-            && self.state.inverse_mass[id as usize] == self.inverse_mass_of(id)
+    fn weighs_right(&self, id: NodeId) -> bool {
+        self.state.mass[id] == self.mass_of(id)
+            && self.state.inverse_mass[id] == self.inverse_mass_of(id)
     }
 }
 
@@ -74,8 +75,8 @@ impl<D: Dim> Truth<D> {
 impl<D: Dim> State<D> {
     /// Whether there is a state for each node.
     fn has_room(&self, nodes: usize) -> bool {
-        let rows = [&self.position, &self.velocity, &self.ahead].map(Vec::len);
-        let numbers = [&self.mass, &self.inverse_mass, &self.damage].map(Vec::len);
+        let rows = [&self.position, &self.velocity, &self.ahead].map(|rows| rows.len());
+        let numbers = [&self.mass, &self.inverse_mass, &self.damage].map(|numbers| numbers.len());
         let mut lengths = rows.into_iter().chain(numbers).chain([self.held.len()]);
         lengths.all(|length| length == nodes)
     }
@@ -92,14 +93,14 @@ impl Pieces {
     /// Whether they are the pieces of a mesh, whatever their numbers.
     fn is_sound<D: Dim>(&self, mesh: &Mesh<D>) -> bool {
         let fresh = Self::new(mesh);
-        let mut numbers = vec![None; fresh.list.len()];
+        let mut numbers: Table<PieceId, _> = vec![None; fresh.list.len()].into();
         let mut taken = vec![false; self.list.len()];
         self.has_room(mesh)
             && mesh.elements().all(|(id, element)| {
                 let own = self.of_element(id);
-                let number = &mut numbers[fresh.of_element(id) as usize];
+                let number = &mut numbers[fresh.of_element(id)];
                 let mut is_new = || {
-                    let taken = taken.get_mut(own as usize);
+                    let taken = taken.get_mut(own.index());
                     taken.is_some_and(|taken| !std::mem::replace(taken, true))
                 };
                 (*number == Some(own) || number.is_none() && is_new()) && {

@@ -2,6 +2,7 @@
 
 use super::cooldowns::Cooldowns;
 use crate::dim::Dim;
+use crate::ids::{NodeId, Table};
 use crate::solve::{Blocks, Row};
 
 /// What changes in a body from substep to substep, and what the next one goes on from.
@@ -9,19 +10,19 @@ use crate::solve::{Blocks, Row};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct State<D: Dim> {
-    /// Position [m], velocity [m/s] and mass [kg] of each node, by id.
-    pub position: Vec<Row>,
-    pub velocity: Vec<Row>,
-    pub mass: Vec<f32>,
+    /// Position [m], velocity [m/s] and mass [kg] of each node.
+    pub position: Table<NodeId, Row>,
+    pub velocity: Table<NodeId, Row>,
+    pub mass: Table<NodeId, f32>,
     /// One over the mass [1/kg]; 0 while a node is held or sleeps.
-    pub inverse_mass: Vec<f32>,
-    pub held: Vec<bool>,
+    pub inverse_mass: Table<NodeId, f32>,
+    pub held: Table<NodeId, bool>,
     /// How far each node has given way to what is more than it bears; at 1 it comes off.
-    pub damage: Vec<f32>,
+    pub damage: Table<NodeId, f32>,
     /// Where it tore a short while ago.
     pub cooldowns: Cooldowns,
     /// Positions a moment ahead, where damped forces are evaluated.
-    pub ahead: Vec<Row>,
+    pub ahead: Table<NodeId, Row>,
     /// Whether nodes were placed from outside since forces were last computed.
     pub placed: bool,
     /// How each element has turned, and the forces of the last substep: where an element has come to turns
@@ -33,14 +34,14 @@ impl<D: Dim> State<D> {
     /// Of a body without nodes.
     pub fn new(blocks: Blocks<D>) -> Self {
         Self {
-            position: Vec::new(),
-            velocity: Vec::new(),
-            mass: Vec::new(),
-            inverse_mass: Vec::new(),
-            held: Vec::new(),
-            damage: Vec::new(),
+            position: Table::default(),
+            velocity: Table::default(),
+            mass: Table::default(),
+            inverse_mass: Table::default(),
+            held: Table::default(),
+            damage: Table::default(),
             cooldowns: Cooldowns::default(),
-            ahead: Vec::new(),
+            ahead: Table::default(),
             placed: false,
             blocks,
         }

@@ -3,6 +3,7 @@
 use super::sides::{Grip, NodeContact};
 use crate::body::Bodies;
 use crate::dim::Dim;
+use crate::ids::NodeId;
 use crate::rigid::Rigids;
 use crate::solve::Row;
 use crate::touch::{ContactSphere, mean};
@@ -40,8 +41,8 @@ impl Motion {
 
     /// The place of a node of a body, which something touches, among those of all.
     #[inline(always)]
-    pub fn place(&mut self, body: u32, node: u32) -> u32 {
-        let place = self.first[body as usize] + node;
+    pub fn place(&mut self, body: u32, node: NodeId) -> u32 {
+        let place = self.first[body as usize] + node.0;
         self.is_touched[place as usize / STRETCH] = true;
         place
     }
@@ -50,7 +51,7 @@ impl Motion {
     #[inline(always)]
     pub fn grip<D: Dim>(&mut self, sphere: &ContactSphere) -> Grip {
         let first = self.first[sphere.body as usize];
-        let grip = sphere.nodes.map(|node| first + node);
+        let grip = sphere.nodes.map(|node| first + node.0);
         for &place in &grip[..D::CORNERS] {
             self.is_touched[place as usize / STRETCH] = true;
         }

@@ -4,6 +4,7 @@ use super::{Defect, Element, Mesh, path};
 use crate::chains::ascending;
 use crate::dim::{Dim, Point, add, corner, scale};
 use crate::grid::VoxelGrid;
+use crate::ids::{ElementId, NodeId, Table};
 use crate::pyramid::{Cell, Pyramid, parts};
 use crate::sharing::Sharing;
 use crate::stencil::{Stencil, slot_index};
@@ -12,13 +13,13 @@ use crate::stencil::{Stencil, slot_index};
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Remodelled {
     /// Elements that are gone.
-    pub removed: Vec<u32>,
+    pub removed: Vec<ElementId>,
     /// Elements that are new or carry other nodes than before, ascending.
-    pub seated: Vec<u32>,
+    pub seated: Vec<ElementId>,
     /// Nodes that are new, and where their state comes from.
     pub inherited: Vec<Inheritance>,
     /// Nodes that no element carries any more.
-    pub abandoned: Vec<u32>,
+    pub abandoned: Vec<NodeId>,
 }
 
 /// A new node and the old nodes whose state it takes, with weights that add up to 1.
@@ -29,9 +30,9 @@ pub struct Remodelled {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Inheritance {
     /// The new node.
-    pub node: u32,
+    pub node: NodeId,
     /// Old nodes and their weights.
-    pub from: Vec<(u32, f64)>,
+    pub from: Vec<(NodeId, f64)>,
 }
 
 impl<D: Dim> Mesh<D> {
@@ -92,7 +93,7 @@ impl<D: Dim> Mesh<D> {
         changed: &[Point],
         born: &[Cell],
         refitted: &[Cell],
-    ) -> Vec<u32> {
+    ) -> Vec<ElementId> {
         let corners = |&cell: &Cell| {
             let corner_of = move |vertex| scale(add(cell.at, corner(vertex)), cell.width());
             (0..D::CORNERS).map(corner_of)
@@ -110,12 +111,12 @@ impl<D: Dim> Mesh<D> {
     }
 
     /// Rebuilds the elements of a cell so that they fill `filled` [Endo 2004, §3.2, phase 2 d].
-    fn refit(&mut self, cell: Cell, filled: u8, past: &mut Past, removed: &mut Vec<u32>) {
+    fn refit(&mut self, cell: Cell, filled: u8, past: &mut Past, removed: &mut Vec<ElementId>) {
         let Some(place) = self.places.number(cell) else {
             return;
         };
         let mut left = filled;
-        let present: Vec<u32> = self.by_cell.at(place).collect();
+        let present: Vec<ElementId> = self.by_cell.at(place).collect();
         for id in present {
             let children = self.alive(id).children;
             if parts::<D>(filled).any(|part| part == children) {
@@ -123,10 +124,10 @@ impl<D: Dim> Mesh<D> {
                 continue;
             }
             self.by_cell.remove(place, id);
-            let element = self.elements[id as usize].take();
+            let element = self.elements[id].take();
             let element = element.expect("a cell lists live elements only");
             for &node in &element.nodes {
-                self.carriers[node as usize] -= 1;
+                self.carriers[node] -= 1;
             }
             past.removed.push(element);
             removed.push(id);
@@ -143,7 +144,7 @@ pub struct Past {
     /// Elements that are gone, in the order of their cells.
     removed: Vec<Element>,
     /// Elements that have other nodes now, by ascending id; those without any were not there before.
-    pub replaced: Vec<(u32, Element)>,
+    pub replaced: Vec<(ElementId, Element)>,
     /// New nodes, and where their state comes from.
     pub inherited: Vec<Inheritance>,
 }
@@ -157,7 +158,7 @@ impl Past {
         mesh: &Mesh<D>,
         voxel: Point,
         at: Point,
-    ) -> Result<Vec<(u32, f64)>, Defect> {
+    ) -> Result<Vec<(NodeId, f64)>, Defect> {
         let (owner, child) = self
             .owner(mesh, voxel)
             .ok_or_else(|| Defect(format!("the voxel {voxel:?} had no owner")))?;
@@ -209,7 +210,7 @@ impl Past {
     }
 
     /// An element as it was, if it was there.
-    fn was<'a, D: Dim>(&'a self, mesh: &'a Mesh<D>, id: u32) -> Option<&'a Element> {
+    fn was<'a, D: Dim>(&'a self, mesh: &'a Mesh<D>, id: ElementId) -> Option<&'a Element> {
         let place = self.replaced.binary_search_by_key(&id, |&(id, _)| id);
         let element = match place {
             Ok(place) => &self.replaced[place].1,
@@ -219,24 +220,21 @@ impl Past {
     }
 
     /// The old nodes that nobody carries any more, ascending.
-    fn abandoned(&self, carriers: &[u8]) -> Vec<u32> {
+    fn abandoned(&self, carriers: &Table<NodeId, u8>) -> Vec<NodeId> {
         let replaced = self.replaced.iter().map(|(_, element)| element);
         let old = self.removed.iter().chain(replaced);
         let old = old.flat_map(|element| element.nodes.iter().copied());
-        ascending(
-            old.filter(|&node| carriers[node as usize] == 0),
-            carriers.len(),
-        )
+        ascending(old.filter(|&node| carriers[node] == 0), carriers.len())
     }
 }
 
 /// Adds `weight` of a slot to the nodes that stand for it: its own, or those it hands on to.
 fn collect_shares<D: Dim>(
     stencil: &Stencil<D>,
-    nodes: &[u32],
+    nodes: &[NodeId],
     slot: Point,
     weight: f64,
-    shares: &mut Vec<(u32, f64)>,
+    shares: &mut Vec<(NodeId, f64)>,
 ) {
     let index = slot_index(slot) as u8;
     if let Ok(place) = stencil.slots.binary_search(&index) {

@@ -3,6 +3,7 @@
 use super::remodel::{Inheritance, Past};
 use super::{Defect, Element, Mesh, Node};
 use crate::dim::{Dim, Point, add, corner, scale, voxel_around};
+use crate::ids::{ElementId, NodeId};
 use crate::pyramid::Cell;
 use crate::sharing::Sharing;
 use crate::stencil::{Stencil, cell_corners, slot_at};
@@ -12,13 +13,13 @@ impl<D: Dim> Mesh<D> {
     /// them already. A new node inherits from the past, where there is one.
     pub(super) fn seat(
         &mut self,
-        id: u32,
+        id: ElementId,
         sharing: &Sharing<D>,
         mut past: Option<&mut Past>,
     ) -> Result<bool, Defect> {
         let (cell, children) = (self.alive(id).cell, self.alive(id).children);
         let corners = cell_corners::<D>();
-        let (mut slots, mut seated, mut count) = (0u32, [0u32; 27], 0);
+        let (mut slots, mut seated, mut count) = (0u32, [NodeId(0); 27], 0);
         for slot in 0..D::SLOTS {
             let is_corner = corners >> slot & 1 == 1;
             if !is_corner && cell.level == 0 {
@@ -56,13 +57,13 @@ impl<D: Dim> Mesh<D> {
             stencil,
             nodes: seated.to_vec(),
         };
-        let old = self.elements[id as usize].replace(element);
+        let old = self.elements[id].replace(element);
         let old = old.expect("seated elements are alive");
         for &node in seated {
-            self.carriers[node as usize] += 1;
+            self.carriers[node] += 1;
         }
         for &node in &old.nodes {
-            self.carriers[node as usize] -= 1;
+            self.carriers[node] -= 1;
         }
         if let Some(past) = past {
             past.replaced.push((id, old));
@@ -72,7 +73,7 @@ impl<D: Dim> Mesh<D> {
 
     /// Whether a (point, group) is a corner of the own cell of an element beside one of which it is
     /// no corner.
-    fn is_node_beside(&self, id: u32, node: Node) -> bool {
+    fn is_node_beside(&self, id: ElementId, node: Node) -> bool {
         // Up to this level, and no further, a cell can have a corner here.
         let [x, y, z] = node.at;
         let highest = (x | y | z).trailing_zeros();
@@ -81,18 +82,19 @@ impl<D: Dim> Mesh<D> {
     }
 
     /// The id of a node at the lattice point with this index, and whether it was made just now.
-    fn node_id(&mut self, node: Node, point: usize) -> (u32, bool) {
+    fn node_id(&mut self, node: Node, point: usize) -> (NodeId, bool) {
         let mut present = self.by_point.at(point);
         if let Some(id) = present.find(|&id| self.node(id).group == node.group) {
             return (id, false);
         }
         drop(present);
-        let id = self.free_nodes.pop().unwrap_or(self.nodes.len() as u32);
-        if id as usize == self.nodes.len() {
+        let next = self.nodes.next_id();
+        let id = self.free_nodes.pop().unwrap_or(next);
+        if id == next {
             self.nodes.push(node);
             self.carriers.push(0);
         } else {
-            self.nodes[id as usize] = node;
+            self.nodes[id] = node;
         }
         self.by_point.append(point, id);
         (id, true)

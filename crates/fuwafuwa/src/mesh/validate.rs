@@ -6,6 +6,9 @@ use super::{Element, Node};
 use crate::dim::{Dim, Point, neighbourhood};
 use crate::grid::VoxelGrid;
 #[cfg(feature = "serde")]
+use crate::ids::{ElementId, Id};
+use crate::ids::{NodeId, Table};
+#[cfg(feature = "serde")]
 use crate::pyramid::Cell;
 use crate::sharing::Sharing;
 #[cfg(feature = "serde")]
@@ -84,11 +87,11 @@ impl<D: Dim> Mesh<D> {
         };
         let classes = self.classes.len() == self.stencils.len();
         ensure(classes && self.classes.iter().all(is_class), "classes")?;
-        let is_whole = |(_, element): (u32, &Element)| {
+        let is_whole = |(_, element): (ElementId, &Element)| {
             let stencil = self.stencils.get(element.stencil as usize);
             let nodes = element.nodes.iter();
             stencil.is_some_and(|stencil| stencil.slots.len() == element.nodes.len()) && { nodes }
-                .all(|&node| (node as usize) < self.nodes.len())
+                .all(|&node| node.index() < self.nodes.len())
         };
         ensure(self.elements().all(is_whole), "elements")?;
         let shapes = self.by_shape();
@@ -99,17 +102,12 @@ impl<D: Dim> Mesh<D> {
             "elements and voxels",
         )?;
 
-        let dead = |free: &[u32], is_dead: &dyn Fn(u32) -> bool, count: usize| {
-            let mut free = free.to_vec();
-            free.sort_unstable();
-            free.into_iter()
-                .eq((0..count as u32).filter(|&id| is_dead(id)))
-        };
-        let gone = |id: u32| self.elements[id as usize].is_none();
-        let free = dead(&self.free_elements, &gone, self.elements.len());
-        let bare = |id: u32| self.carriers[id as usize] == 0;
+        let gone = |&id: &ElementId| self.elements[id].is_none();
+        let elements = self.elements.ids().filter(gone);
+        let bare = |&id: &NodeId| self.carriers[id] == 0;
+        let nodes = self.nodes.ids().filter(bare);
         ensure(
-            free && dead(&self.free_nodes, &bare, self.nodes.len()),
+            are_just(&self.free_elements, elements) && are_just(&self.free_nodes, nodes),
             "free ids",
         )?;
 
@@ -183,14 +181,14 @@ impl<D: Dim> Mesh<D> {
     }
 
     fn check_carriers(&self) -> Result<(), Defect> {
-        let mut counts = vec![0u8; self.nodes.len()];
+        let mut counts: Table<NodeId, u8> = vec![0; self.nodes.len()].into();
         for (_, element) in self.elements() {
-            element
-                .nodes
-                .iter()
-                .for_each(|&node| counts[node as usize] += 1);
+            element.nodes.iter().for_each(|&node| counts[node] += 1);
         }
-        match (0..counts.len()).find(|&node| counts[node] != self.carriers[node]) {
+        match counts
+            .ids()
+            .find(|&node| counts[node] != self.carriers[node])
+        {
             Some(node) => Err(Defect(format!(
                 "{:?} has {} carriers and counts {}",
                 self.nodes[node], counts[node], self.carriers[node]
@@ -200,19 +198,19 @@ impl<D: Dim> Mesh<D> {
     }
 
     fn check_gradients(&self, sharing: &Sharing<D>) -> Result<(), Defect> {
-        let mut sums = vec![[0.0; 3]; self.nodes.len()];
+        let mut sums: Table<NodeId, _> = vec![[0.0; 3]; self.nodes.len()].into();
         for (_, element) in self.elements() {
             let half = element.cell.width() as f64 * 0.5;
             let scale = (1..D::N).fold(1.0, |scale, _| scale * half);
             for (&node, gradient) in element.nodes.iter().zip(&self.stencil(element).gradients) {
                 for axis in 0..3 {
-                    sums[node as usize][axis] += gradient[axis] * scale;
+                    sums[node][axis] += gradient[axis] * scale;
                 }
             }
         }
         for (id, node) in self.nodes() {
             let inner = node.group == D::ALL_CORNERS && !sharing.is_open(node.at);
-            let sum = sums[id as usize];
+            let sum = sums[id];
             if inner && sum.iter().any(|&component: &f64| component.abs() > 1e-9) {
                 let at = node.at;
                 return Err(Defect(format!(
@@ -222,6 +220,14 @@ impl<D: Dim> Mesh<D> {
         }
         Ok(())
     }
+}
+
+/// Whether ids, in whatever order, are just those expected, which ascend.
+#[cfg(feature = "serde")]
+fn are_just<I: Id + Ord>(ids: &[I], expected: impl Iterator<Item = I>) -> bool {
+    let mut ids = ids.to_vec();
+    ids.sort_unstable();
+    ids.into_iter().eq(expected)
 }
 
 /// The slots as a mask.

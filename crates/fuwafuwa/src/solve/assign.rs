@@ -6,6 +6,7 @@ use super::{Blocks, PAD};
 use crate::chains::ascending;
 use crate::dim::Dim;
 use crate::grid::VoxelGrid;
+use crate::ids::{ElementId, NodeId};
 use crate::lanes::LANES;
 use crate::law::Law;
 use crate::mesh::{Element, Mesh};
@@ -15,7 +16,13 @@ use std::collections::BTreeMap;
 impl<D: Dim> Blocks<D> {
     /// Follows a remodelling: takes out `removed` elements and puts in, or in other blocks, those
     /// that were `seated`. Costs by what changed.
-    pub fn update(&mut self, mesh: &Mesh<D>, grid: &VoxelGrid<D>, removed: &[u32], seated: &[u32]) {
+    pub fn update(
+        &mut self,
+        mesh: &Mesh<D>,
+        grid: &VoxelGrid<D>,
+        removed: &[ElementId],
+        seated: &[ElementId],
+    ) {
         let rotations: Vec<[f32; 4]> = seated.iter().map(|&id| self.rotation_of(id)).collect();
         for &id in removed.iter().chain(seated) {
             self.take_out(id);
@@ -43,30 +50,30 @@ impl<D: Dim> Blocks<D> {
             for (place, id) in slots.iter_mut().zip(mesh.carrier_ids(node)) {
                 *place = self.slot(id, node);
             }
-            self.slots[node as usize] = slots;
+            self.slots[node] = slots;
         }
     }
 
     /// The place of an element's force on a node.
-    fn slot(&self, id: u32, node: u32) -> u32 {
-        let (block, lane) = self.assigned[id as usize];
+    fn slot(&self, id: ElementId, node: NodeId) -> u32 {
+        let (block, lane) = self.assigned[id];
         let block = &self.blocks[block as usize];
         let first = block.first as usize + lane as usize;
         let mut lane_nodes = self.nodes[first..].iter().step_by(LANES);
         let place = lane_nodes
-            .position(|&other| other == node)
+            .position(|&other| other == node.0)
             .expect("the element carries the node");
         ((first + place * LANES) * D::N) as u32
     }
 
-    fn take_out(&mut self, id: u32) {
-        let Some(&(index, lane)) = self.assigned.get(id as usize) else {
+    fn take_out(&mut self, id: ElementId) {
+        let Some(&(index, lane)) = self.assigned.get(id.index()) else {
             return;
         };
         if index == VACANT {
             return;
         }
-        self.assigned[id as usize] = (VACANT, 0);
+        self.assigned[id] = (VACANT, 0);
         let block = &mut self.blocks[index as usize];
         block.elements[lane as usize] = VACANT;
         block.asleep |= 1 << lane;
@@ -174,7 +181,7 @@ impl<D: Dim> Blocks<D> {
                 block.rotation[part][lane] = newcomer.rotation[part];
             }
             for (place, &node) in newcomer.element.nodes.iter().enumerate() {
-                self.nodes[first + place * LANES + lane] = node;
+                self.nodes[first + place * LANES + lane] = node.0;
             }
             if block.home.is_pool() {
                 let pooled = &mut self.pooled[block.stencil as usize..];
@@ -183,7 +190,7 @@ impl<D: Dim> Blocks<D> {
                 }
             }
         }
-        block.elements[lane] = newcomer.id;
+        block.elements[lane] = newcomer.id.0;
         block.asleep &= !(1 << lane);
         let open = self.open.entry(block.home).or_default();
         if is_last {
@@ -191,16 +198,16 @@ impl<D: Dim> Blocks<D> {
         } else {
             open.insert(index);
         }
-        let id = newcomer.id as usize;
-        self.assigned
-            .resize(self.assigned.len().max(id + 1), (VACANT, 0));
+        let id = newcomer.id;
+        let capacity = self.assigned.len().max(id.index() + 1);
+        self.assigned.resize(capacity, (VACANT, 0));
         self.assigned[id] = (index, lane as u8);
     }
 }
 
 /// An element on its way into a block.
 struct Newcomer<'a> {
-    id: u32,
+    id: ElementId,
     element: &'a Element,
     rotation: [f32; 4],
 }

@@ -11,6 +11,7 @@ use super::sphere::ContactSphere;
 use super::spheres::Spheres;
 use crate::body::{Bodies, Body};
 use crate::dim::Dim;
+use crate::ids::{ElementId, PieceId};
 use crate::lanes::on_widest_lanes;
 use crate::shape::Vector;
 use crate::solve::Row;
@@ -35,7 +36,7 @@ pub struct Captives {
     /// Ascending.
     pub list: Vec<Captive>,
     /// By sphere the body and number of the piece that it is inside.
-    captors: Vec<Option<(u32, u32)>>,
+    captors: Vec<Option<(u32, PieceId)>>,
 }
 
 impl Captives {
@@ -51,7 +52,7 @@ impl Captives {
         let largest = { pieces.iter().flatten() }.map(|piece| piece.count).max();
         let own = |pieces: &[Vec<Extent>], place: u32| {
             let sphere = &spheres.list[place as usize];
-            pieces[sphere.body as usize][sphere.piece as usize].count
+            pieces[sphere.body as usize][sphere.piece.index()].count
         };
         let small = spheres.awake.iter().copied();
         let small: Vec<u32> = small
@@ -80,7 +81,7 @@ impl Captives {
         }
         // Inner elements hold whoever is deeper inside; few pieces have anybody in their box.
         for (sphere, &centre) in spheres.list.iter().zip(&spheres.centres) {
-            let piece = &mut pieces[sphere.body as usize][sphere.piece as usize];
+            let piece = &mut pieces[sphere.body as usize][sphere.piece.index()];
             piece.low = [0, 1, 2, 3].map(|axis: usize| piece.low[axis].min(centre[axis]));
             piece.high = [0, 1, 2, 3].map(|axis: usize| piece.high[axis].max(centre[axis]));
         }
@@ -117,7 +118,7 @@ impl Captives {
                 }
             }
         }
-        let mut exits: BTreeMap<(u32, u32), Exits> = BTreeMap::new();
+        let mut exits: BTreeMap<(u32, PieceId), Exits> = BTreeMap::new();
         for sphere in small {
             let Some(captor) = self.captors[sphere as usize] else {
                 continue;
@@ -162,7 +163,7 @@ struct Exits {
 }
 
 impl Exits {
-    fn of<D: Dim>((body, piece): (u32, u32), spheres: &Spheres, bodies: &Bodies<D>) -> Self {
+    fn of<D: Dim>((body, piece): (u32, PieceId), spheres: &Spheres, bodies: &Bodies<D>) -> Self {
         let all = spheres.list.iter().zip(0..);
         let exits = all.filter(|(sphere, _)| {
             (sphere.body, sphere.piece) == (body, piece) && sphere.leads_out()
@@ -201,9 +202,9 @@ impl Exits {
 /// An element that has no bare face, and a ball around it.
 struct Inner {
     level: u8,
-    element: u32,
+    element: ElementId,
     /// Body and number of its piece, and how many elements that has.
-    captor: (u32, u32),
+    captor: (u32, PieceId),
     count: u32,
     centre: Row,
     radius: f32,
@@ -216,12 +217,12 @@ fn inner_elements<D: Dim>(bodies: &Bodies<D>, pieces: &[Vec<Extent>]) -> Vec<Inn
         for (id, element) in body.truth.mesh.elements() {
             let level = element.cell.level;
             let piece = body.truth.pieces.of_element(id);
-            let extent = &pieces[place as usize][piece as usize];
-            if !extent.has_inner || level == 0 && body.cache.bare[id as usize] != 0 {
+            let extent = &pieces[place as usize][piece.index()];
+            if !extent.has_inner || level == 0 && body.cache.bare[id] != 0 {
                 continue;
             }
             let nodes = element.nodes.iter();
-            let places = nodes.map(|&node| body.state.position[node as usize]);
+            let places = nodes.map(|&node| body.state.position[node]);
             let sum = places.clone().fold([0.0; 4], plus);
             let centre = scaled(sum, 1.0 / element.nodes.len() as f32);
             let furthest = places.map(|at| minus(at, centre)).map(|way| dot(way, way));
@@ -270,16 +271,16 @@ fn extents<D: Dim>(body: Option<&Body<D>>) -> Vec<Extent> {
     };
     let mut extents = vec![none; body.truth.pieces.list.len()];
     for (id, element) in body.truth.mesh.elements() {
-        let extent = &mut extents[body.truth.pieces.of_element(id) as usize];
+        let extent = &mut extents[body.truth.pieces.of_element(id).index()];
         extent.count += 1;
-        extent.has_inner |= element.cell.level > 0 || body.cache.bare[id as usize] == 0;
+        extent.has_inner |= element.cell.level > 0 || body.cache.bare[id] == 0;
     }
     extents
 }
 
 impl<D: Dim> Body<D> {
     /// Whether a place [m] lies in an element, taken for evenly deformed.
-    fn holds(&self, id: u32, at: Vector) -> bool {
+    fn holds(&self, id: ElementId, at: Vector) -> bool {
         let Some(element) = self.truth.mesh.element(id) else {
             return false;
         };

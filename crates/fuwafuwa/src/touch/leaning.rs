@@ -6,18 +6,19 @@ use super::sphere::ContactSphere;
 use super::spheres::NONE;
 use crate::body::{Bodies, Body};
 use crate::dim::Dim;
+use crate::ids::{NodeId, PieceId};
 use crate::lanes::on_widest_lanes;
 use crate::rigid::Rigid;
 use crate::solve::Row;
 use crate::vector::three;
 
 /// The sleepers that lean on something rigid, by body and number in ascending order.
-pub fn leaning_on_rigid<D: Dim>(rigid: &Rigid, bodies: &Bodies<D>) -> Vec<(u32, u32)> {
+pub fn leaning_on_rigid<D: Dim>(rigid: &Rigid, bodies: &Bodies<D>) -> Vec<(u32, PieceId)> {
     let mut leaning = Vec::new();
     for (place, body) in bodies.placed() {
         let reach = MARGIN * body.truth.grid.voxel_size();
-        let is_near = |node: u32| {
-            let at = three(body.state.position[node as usize]);
+        let is_near = |node: NodeId| {
+            let at = three(body.state.position[node]);
             body.truth.pieces.sleeps(node) && rigid.shape().distance(at).0 <= reach
         };
         let nodes = body.truth.mesh.nodes().map(|(node, _)| node);
@@ -30,7 +31,7 @@ pub fn leaning_on_rigid<D: Dim>(rigid: &Rigid, bodies: &Bodies<D>) -> Vec<(u32, 
 }
 
 /// The sleepers that lean on a body which is not among them, by body and number in ascending order.
-pub fn leaning_on_body<D: Dim>(body: &Body<D>, bodies: &Bodies<D>) -> Vec<(u32, u32)> {
+pub fn leaning_on_body<D: Dim>(body: &Body<D>, bodies: &Bodies<D>) -> Vec<(u32, PieceId)> {
     let own: Vec<ContactSphere> = spheres_of(NONE, body).collect();
     let Some(radius) = own.first().map(|sphere| sphere.radius) else {
         return Vec::new();

@@ -52,7 +52,7 @@ impl Neighbours {
     pub fn site(&self, place: u32, spheres: &Spheres) -> PieceSite {
         let sphere = &spheres.list[place as usize];
         PieceSite {
-            piece: self.first[sphere.body as usize] + sphere.piece,
+            piece: self.first[sphere.body as usize] + sphere.piece.0,
             voxel: sphere.voxel().map(|along| along as u16),
         }
     }

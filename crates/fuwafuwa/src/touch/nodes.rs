@@ -6,6 +6,7 @@ use super::impulse::Impulse;
 use super::pair::MARGIN;
 use crate::body::{Bodies, Body};
 use crate::dim::Dim;
+use crate::ids::{NodeId, PieceId};
 use crate::rigid::{Rigid, Rigids};
 use crate::shape::Shape;
 use crate::solve::Row;
@@ -30,7 +31,7 @@ pub struct NodePair {
     /// Place among the bodies.
     pub body: u32,
     /// Node id.
-    pub node: u32,
+    pub node: NodeId,
     /// What passed between them.
     pub impulse: Impulse,
     /// How far any node must have come, since all were looked for, before this one may be where it
@@ -63,7 +64,7 @@ pub struct NodePairs {
     leeways: Vec<Leeway>,
     /// Nodes that are gone, new or awake since: body and node.
     #[cfg_attr(feature = "serde", serde(skip))]
-    changed: Vec<(u32, u32)>,
+    changed: Vec<(u32, NodeId)>,
 }
 
 /// How far something rigid may come, and how far it has come [m].
@@ -84,12 +85,12 @@ impl NodePairs {
     }
 
     /// Nodes of a body are gone or new.
-    pub fn tear(&mut self, body: u32, nodes: &[u32]) {
+    pub fn tear(&mut self, body: u32, nodes: &[NodeId]) {
         self.changed.extend(nodes.iter().map(|&node| (body, node)));
     }
 
     /// Pieces woke, given by body and number in ascending order: they meet walls again.
-    pub fn wake<D: Dim>(&mut self, pieces: &[(u32, u32)], bodies: &Bodies<D>) {
+    pub fn wake<D: Dim>(&mut self, pieces: &[(u32, PieceId)], bodies: &Bodies<D>) {
         for (place, body) in bodies.placed() {
             if pieces.iter().all(|&(body, _)| body != place) {
                 continue;
@@ -145,10 +146,10 @@ impl NodePairs {
             self.anchor(place, node, bodies, left);
         }
         for ((index, rigid), leeway) in rigids.placed().zip(&self.leeways) {
-            let is_near = |&&(place, node): &&(u32, u32)| {
+            let is_near = |&&(place, node): &&(u32, NodeId)| {
                 let body = bodies.at(place);
                 let reach = self.reach(place, node, body.truth.grid.voxel_size());
-                let at = three(body.state.position[node as usize]);
+                let at = three(body.state.position[node]);
                 body.truth.mesh.is_alive(node)
                     && rigid.shape().distance(at).0 <= reach + leeway.most
             };
@@ -192,15 +193,15 @@ impl NodePairs {
             squares.push((place, body, Squares::of(body, reach)));
         }
         let mut found = Vec::new();
-        let mut near: Vec<u32> = Vec::new();
+        let mut near: Vec<NodeId> = Vec::new();
         for ((index, rigid), leeway) in rigids.placed().zip(&self.leeways) {
             for (place, body, squares) in &squares {
                 near.clear();
                 squares.within(leeway.most, rigid.shape(), &mut near);
                 if rigid.is_driven() && body.cache.awake.len() < body.truth.mesh.node_count() {
                     let reach = leeway.most + MARGIN * body.truth.grid.voxel_size();
-                    let is_near = |&node: &u32| {
-                        let at = three(body.state.position[node as usize]);
+                    let is_near = |&node: &NodeId| {
+                        let at = three(body.state.position[node]);
                         body.truth.pieces.sleeps(node) && rigid.shape().distance(at).0 <= reach
                     };
                     near.extend(
@@ -228,10 +229,10 @@ impl NodePairs {
                 continue;
             };
             for &node in &body.cache.awake {
-                let Some(&[x, y, z, most]) = anchors.get(node as usize) else {
+                let Some(&[x, y, z, most]) = anchors.get(node.index()) else {
                     continue;
                 };
-                let come = minus(body.state.position[node as usize], [x, y, z, 0.0]);
+                let come = minus(body.state.position[node], [x, y, z, 0.0]);
                 let come = dot(come, come);
                 if come > most * most {
                     self.changed.push((place, node));
@@ -245,18 +246,18 @@ impl NodePairs {
     }
 
     /// Notes where a node is, and how far it may come until the end of the tick.
-    fn anchor<D: Dim>(&mut self, place: u32, node: u32, bodies: &Bodies<D>, left: f32) {
-        let (body, node) = (bodies.at(place), node as usize);
+    fn anchor<D: Dim>(&mut self, place: u32, node: NodeId, bodies: &Bodies<D>, left: f32) {
+        let (body, node) = (bodies.at(place), node);
         let anchors = &mut self.anchors[place as usize];
         anchors.resize(body.state.position.len(), [0.0; 4]);
         let [x, y, z, _] = body.state.position[node];
         let speed = length(body.state.velocity[node]);
-        anchors[node] = [x, y, z, SLACK * body.truth.grid.voxel_size() + speed * left];
+        anchors[node.index()] = [x, y, z, SLACK * body.truth.grid.voxel_size() + speed * left];
     }
 
     /// How close to a wall a node is listed [m]; `size` [m] is that of its voxels.
-    fn reach(&self, body: u32, node: u32, size: f32) -> f32 {
-        self.anchors[body as usize][node as usize][3] + MARGIN * size
+    fn reach(&self, body: u32, node: NodeId, size: f32) -> f32 {
+        self.anchors[body as usize][node.index()][3] + MARGIN * size
     }
 
     /// Makes the new list of those just found and those of the old ones that stay. Pairs that were
@@ -285,7 +286,7 @@ impl NodePairs {
 }
 
 /// What a pair is known by, and sorted by: rigid thing, body and node.
-type Key = (u32, u32, u32);
+type Key = (u32, u32, NodeId);
 
 impl NodePair {
     fn key(&self) -> Key {
@@ -298,9 +299,9 @@ impl NodePair {
     }
 
     /// The number of the piece; nothing when another body stands here since.
-    pub fn piece<D: Dim>(&self, bodies: &Bodies<D>) -> Option<u32> {
+    pub fn piece<D: Dim>(&self, bodies: &Bodies<D>) -> Option<PieceId> {
         let body = bodies.find(self.body)?;
-        let is_known = (self.node as usize) < body.truth.mesh.node_capacity();
+        let is_known = self.node.index() < body.truth.mesh.node_capacity();
         is_known.then(|| body.truth.pieces.of_node(self.node))
     }
 }
@@ -309,7 +310,7 @@ impl NodePair {
 /// reach as a whole, however the body is torn.
 struct Squares {
     /// By their numbers in the bins; each with how close to a wall it is listed [m].
-    nodes: Vec<(u32, f32)>,
+    nodes: Vec<(NodeId, f32)>,
     bins: Bins,
     list: Vec<Square>,
 }
@@ -323,12 +324,10 @@ struct Square {
 }
 
 impl Squares {
-    fn of<D: Dim>(body: &Body<D>, reach: impl Fn(u32) -> f32) -> Self {
+    fn of<D: Dim>(body: &Body<D>, reach: impl Fn(NodeId) -> f32) -> Self {
         let nodes = body.cache.awake.iter().map(|&node| (node, reach(node)));
-        let nodes: Vec<(u32, f32)> = nodes.collect();
-        let points = nodes
-            .iter()
-            .map(|&(node, _)| body.state.position[node as usize]);
+        let nodes: Vec<(NodeId, f32)> = nodes.collect();
+        let points = nodes.iter().map(|&(node, _)| body.state.position[node]);
         let points: Vec<Row> = points.collect();
         let bins = Bins::new::<D>(&points, SQUARE * body.truth.grid.voxel_size());
         let squares = { bins.filled() }.map(|range| Square::around(&bins, range, &nodes));
@@ -340,7 +339,7 @@ impl Squares {
     }
 
     /// Adds the nodes that are no further from a shape than their reach and `range` [m].
-    fn within(&self, range: f32, shape: &Shape, near: &mut Vec<u32>) {
+    fn within(&self, range: f32, shape: &Shape, near: &mut Vec<NodeId>) {
         let is_near = |at: Row, reach: f32| shape.distance(three(at)).0 <= reach;
         for square in &self.list {
             if !is_near(square.centre, square.radius + square.reach + range) {
@@ -357,7 +356,7 @@ impl Squares {
 }
 
 impl Square {
-    fn around(bins: &Bins, points: Range<usize>, nodes: &[(u32, f32)]) -> Self {
+    fn around(bins: &Bins, points: Range<usize>, nodes: &[(NodeId, f32)]) -> Self {
         let (mut low, mut high, mut furthest) = ([f32::MAX; 4], [f32::MIN; 4], 0.0f32);
         for place in points.clone() {
             let at = bins.point(place);
@@ -416,7 +415,7 @@ mod tests {
                     .all(|&(.., node)| body.truth.mesh.is_alive(node))
             );
             for (node, _) in body.truth.mesh.nodes() {
-                let at = three(body.state.position[node as usize]);
+                let at = three(body.state.position[node]);
                 for (index, wall) in walls.placed() {
                     let is_close = wall.shape().distance(at).0 <= MARGIN * size;
                     assert!(!is_close || listed.contains(&(index, 0, node)));
@@ -430,7 +429,7 @@ mod tests {
             let before = body.truth.mesh.node_count();
             let torn = body.tear(&sides.collect::<Vec<_>>());
             let torn = torn.expect("a release leaves the mesh whole");
-            let alive = |&&node: &&u32| body.truth.mesh.is_alive(node);
+            let alive = |&&node: &&NodeId| body.truth.mesh.is_alive(node);
             new += torn.nodes.iter().filter(alive).count();
             gone += torn.nodes.len() - torn.nodes.iter().filter(alive).count();
             assert!(body.truth.mesh.node_count() == before || !torn.nodes.is_empty());

@@ -2,6 +2,7 @@
 
 use crate::body::{Bodies, Body};
 use crate::dim::{Dim, Point};
+use crate::ids::{ElementId, Id, NodeId, PieceId};
 use crate::solve::Row;
 use crate::vector::{plus, scaled};
 
@@ -14,9 +15,9 @@ pub struct ContactSphere {
     /// Place among the bodies.
     pub body: u32,
     /// Element id.
-    pub element: u32,
+    pub element: ElementId,
     /// Piece number.
-    pub piece: u32,
+    pub piece: PieceId,
     /// Half a voxel [m].
     pub radius: f32,
     /// Whether its piece sleeps.
@@ -28,28 +29,28 @@ pub struct ContactSphere {
     /// The voxels around it that share a node with it: bit x + 3 y + 9 z, each from 0 to 2.
     bound: u32,
     /// Its corner nodes; the first four in 2D.
-    pub nodes: [u32; 8],
+    pub nodes: [NodeId; 8],
 }
 
 /// The mean of the rows of a sphere's corner nodes.
 #[inline(always)]
-pub fn mean<D: Dim>(rows: &[Row], nodes: &[u32; 8]) -> Row {
-    let mut sum = rows[nodes[0] as usize];
+pub fn mean<D: Dim>(rows: &[Row], nodes: &[impl Id; 8]) -> Row {
+    let mut sum = rows[nodes[0].index()];
     for &node in &nodes[1..D::CORNERS] {
-        sum = plus(sum, rows[node as usize]);
+        sum = plus(sum, rows[node.index()]);
     }
     scaled(sum, 1.0 / D::CORNERS as f32)
 }
 
 impl ContactSphere {
     /// That of an element of the body at a place among all, if it is at the surface.
-    pub fn of<D: Dim>(place: u32, body: &Body<D>, id: u32) -> Option<Self> {
-        let bare = *body.cache.bare.get(id as usize)?;
+    pub fn of<D: Dim>(place: u32, body: &Body<D>, id: ElementId) -> Option<Self> {
+        let bare = *body.cache.bare.get(id.index())?;
         if bare == 0 {
             return None;
         }
         let element = body.truth.mesh.element(id)?;
-        let mut nodes = [0; 8];
+        let mut nodes = [NodeId(0); 8];
         nodes[..D::CORNERS].copy_from_slice(&element.nodes);
         let piece = body.truth.pieces.of_element(id);
         Some(Self {
@@ -57,16 +58,16 @@ impl ContactSphere {
             element: id,
             piece,
             radius: 0.5 * body.truth.grid.voxel_size(),
-            asleep: body.truth.pieces.list[piece as usize].asleep,
+            asleep: body.truth.pieces.list[piece].asleep,
             bare,
             voxel: element.cell.at.map(|k| k as i16),
-            bound: body.cache.bound[id as usize],
+            bound: body.cache.bound[id],
             nodes,
         })
     }
 
     /// Body and element.
-    pub fn key(&self) -> (u32, u32) {
+    pub fn key(&self) -> (u32, ElementId) {
         (self.body, self.element)
     }
 
@@ -112,7 +113,7 @@ impl ContactSphere {
                     if corner >> axis & 1 == 1 { out } else { -out }
                 })
                 .sum();
-            let at = position[self.nodes[corner] as usize];
+            let at = position[self.nodes[corner].index()];
             sum = plus(sum, scaled(at, weight / D::CORNERS as f32));
         }
         sum
@@ -123,7 +124,7 @@ impl ContactSphere {
     pub fn inverse_mass<D: Dim>(&self, bodies: &Bodies<D>) -> f32 {
         let all = &bodies.at(self.body).state.inverse_mass;
         let nodes = self.nodes[..D::CORNERS].iter();
-        let sum: f32 = nodes.map(|&node| all[node as usize]).sum();
+        let sum: f32 = nodes.map(|&node| all[node]).sum();
         sum / (D::CORNERS * D::CORNERS) as f32
     }
 }

@@ -4,6 +4,7 @@
 use super::sphere::{ContactSphere, NEAR};
 use crate::body::{Bodies, Body};
 use crate::dim::Dim;
+use crate::ids::{ElementId, PieceId};
 use crate::release::Torn;
 use crate::solve::Row;
 use crate::vector::{dot, minus};
@@ -16,7 +17,7 @@ pub const NONE: u32 = u32::MAX;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Spheres {
     /// Body and element of each: the order of the list, wherever it is made anew.
-    keys: Vec<(u32, u32)>,
+    keys: Vec<(u32, ElementId)>,
     /// Those that were first by body and element, then those that came to the surface since.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub list: Vec<ContactSphere>,
@@ -57,7 +58,7 @@ impl Spheres {
     /// A body was taken out: who comes to its place is somebody else.
     pub fn remove_body(&mut self, place: u32) {
         for key in self.keys.iter_mut().filter(|(body, _)| *body == place) {
-            *key = (NONE, NONE);
+            *key = (NONE, ElementId(NONE));
         }
         self.forget();
     }
@@ -78,7 +79,7 @@ impl Spheres {
         for ((sphere, centre), place) in all {
             let body = bodies.at(sphere.body);
             let was_asleep = sphere.asleep;
-            sphere.asleep = body.truth.pieces.list[sphere.piece as usize].asleep;
+            sphere.asleep = body.truth.pieces.list[sphere.piece].asleep;
             // Nobody looks after sleepers: this is where they stay.
             if sphere.asleep != was_asleep {
                 changed.push(place);
@@ -138,7 +139,7 @@ impl Spheres {
             let body = bodies.at(self.list[place as usize].body);
             self.find_lips(place, body, |other| other > place);
         }
-        let place = |&(body, id): &(u32, u32)| {
+        let place = |&(body, id): &(u32, ElementId)| {
             let (at, by_voxel) = (bodies.find(body)?, &self.by_voxel[body as usize]);
             Some(
                 by_voxel[at
@@ -231,7 +232,7 @@ impl Spheres {
 
     /// Wakes the spheres of pieces, given by body and number in ascending order; adds their places to
     /// `changed`.
-    pub fn wake(&mut self, pieces: &[(u32, u32)], changed: &mut Vec<u32>) {
+    pub fn wake(&mut self, pieces: &[(u32, PieceId)], changed: &mut Vec<u32>) {
         for (sphere, place) in self.list.iter_mut().zip(0..) {
             if sphere.asleep && pieces.binary_search(&(sphere.body, sphere.piece)).is_ok() {
                 sphere.asleep = false;

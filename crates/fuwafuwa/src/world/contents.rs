@@ -156,11 +156,8 @@ impl<D: Dim> World<D> {
         hash.add(self.ticks);
         for body in self.bodies.iter() {
             for (id, _) in body.truth.mesh.nodes() {
-                let (at, speed) = (
-                    body.state.position[id as usize],
-                    body.state.velocity[id as usize],
-                );
-                hash.add(u64::from(body.truth.pieces.of_node(id)));
+                let (at, speed) = (body.state.position[id], body.state.velocity[id]);
+                hash.add(u64::from(body.truth.pieces.of_node(id).0));
                 for value in at.iter().chain(&speed) {
                     hash.add(u64::from(value.to_bits()));
                 }
@@ -201,7 +198,7 @@ impl<D: Dim> World<D> {
 
     /// Wakes all pieces of a body.
     fn wake_body(&mut self, body: BodyId) {
-        let pieces = 0..self.bodies[body].truth.pieces.list.len() as u32;
+        let pieces = self.bodies[body].truth.pieces.list.ids();
         let pieces: Vec<Hit> = pieces.map(|piece| (body.place(), piece)).collect();
         self.wake(&pieces);
     }

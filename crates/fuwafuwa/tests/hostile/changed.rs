@@ -38,7 +38,8 @@ fn a_sleeper_changed_from_outside_wakes() {
     let body = thrown.body_mut(thrown.nth_body(0).unwrap()).unwrap();
     *body = body.clone().thrown([0.0, 5.0, 0.0]);
     let id = thrown.nth_body(0).unwrap();
-    let woke = |event: &Event| matches!(event, Event::Woke { body, piece: 0 } if *body == id);
+    let woke =
+        |event: &Event| matches!(event, Event::Woke { body, piece: PieceId(0) } if *body == id);
     assert!(thrown.events().iter().any(woke));
     step(&mut thrown, 10);
     assert!(thrown.bodies().first().unwrap().piece_views()[0].low[1] > 0.3);
@@ -252,7 +253,7 @@ fn a_hand_of_another_shape_pushes_and_is_stopped() {
 fn a_held_node_that_is_let_go_falls() {
     let mut world = World::<Dim2>::new(Settings::default()).unwrap();
     let mut body = ball::<Dim2>(8);
-    let nodes: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
+    let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     nodes.iter().for_each(|&id| body.hold(id));
     world.add_body(body);
     let height = |world: &World<Dim2>| world.bodies().first().unwrap().piece_views()[0].centre[1];
@@ -276,7 +277,10 @@ fn another_body_in_the_place_of_one_is_taken_for_what_it_is() {
     for _ in 0..30 {
         world.step();
         let is_own = |event: &&Event| {
-            let own = With::Piece { body: id, piece: 0 };
+            let own = With::Piece {
+                body: id,
+                piece: PieceId(0),
+            };
             matches!(event, Event::Touched { with, .. } if *with == own)
         };
         touches += world.events().iter().filter(is_own).count();

@@ -5,8 +5,8 @@ mod changed;
 mod quarantine;
 
 use fuwafuwa::{
-    Blade, Body, Dim, Dim2, Dim3, Drive, Event, Grading, Law, Material, Rigid, Settings, Shape,
-    VoxelGrid, With, World,
+    Blade, Body, Dim, Dim2, Dim3, Drive, Event, Grading, Law, Material, PieceId, Rigid, Settings,
+    Shape, VoxelGrid, With, World,
 };
 
 const FLOOR: Shape = Shape::HalfSpace {

@@ -106,7 +106,7 @@ impl Beam {
             let stencil = mesh.stencil(element);
             for (&node, gradient) in element.nodes.iter().zip(&stencil.gradients) {
                 if mesh.node(node).at[0] == self.length as i32 {
-                    load[node as usize * D::N + 1] += gradient[0] * face;
+                    load[node.index() * D::N + 1] += gradient[0] * face;
                 }
             }
         }
@@ -123,8 +123,8 @@ impl Beam {
                 - self.timoshenko(D::N, x - 0.5, elasticity))
                 * f64::from(u8::from(x > 0.0));
             let up = f64::from(node.at[1]) - 0.5 * self.thickness as f64;
-            moved[id as usize * D::N] = -slope * up;
-            moved[id as usize * D::N + 1] = self.timoshenko(D::N, x, elasticity);
+            moved[id.index() * D::N] = -slope * up;
+            moved[id.index() * D::N + 1] = self.timoshenko(D::N, x, elasticity);
         }
         moved
     }

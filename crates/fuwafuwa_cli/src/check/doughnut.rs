@@ -5,7 +5,7 @@ use super::parallel;
 use crate::report::{Outcome, Progress};
 use anyhow::{Result, ensure};
 use fuwafuwa::shape::Vector;
-use fuwafuwa::{Body, Dim2, Drive, Material, Rigid, Settings, VoxelGrid, World};
+use fuwafuwa::{Body, Dim2, Drive, Material, NodeId, Rigid, Settings, VoxelGrid, World};
 
 /// Voxels across, and how fast each hand comes [m/s].
 const CASES: [(usize, f32); 4] = [(24, 0.25), (24, 2.0), (48, 0.25), (48, 2.0)];
@@ -74,7 +74,7 @@ fn squeeze(n: usize, speed: f32) -> Result<f64> {
 }
 
 /// The nodes below or above the middle of the hole that stand on its side.
-fn hole_side(body: &Body<Dim2>, side: f32) -> Vec<u32> {
+fn hole_side(body: &Body<Dim2>, side: f32) -> Vec<NodeId> {
     let nodes = body.mesh().nodes().filter(|(id, node)| {
         let [x, y, _] = body.node_state(*id).0.map(|k| k - 0.5);
         let is_inner = x * x + y * y < 0.36 * 0.36;
@@ -85,7 +85,7 @@ fn hole_side(body: &Body<Dim2>, side: f32) -> Vec<u32> {
 }
 
 /// Where nodes are, from left to right.
-fn places(body: &Body<Dim2>, nodes: &[u32]) -> Vec<Vector> {
+fn places(body: &Body<Dim2>, nodes: &[NodeId]) -> Vec<Vector> {
     let mut places: Vec<Vector> = nodes.iter().map(|&id| body.node_state(id).0).collect();
     places.sort_by(|a, b| a[0].total_cmp(&b[0]));
     places

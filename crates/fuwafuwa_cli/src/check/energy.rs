@@ -10,12 +10,12 @@
 use fuwafuwa::law::{Elasticity, Matrix};
 use fuwafuwa::stencil::{Stencil, Vector64};
 use fuwafuwa::vector::{cross, dot, minus, plus, scaled};
-use fuwafuwa::{Body, Dim};
+use fuwafuwa::{Body, Dim, NodeId};
 
 /// The energy stored in a body [J].
 pub fn of_body<D: Dim>(body: &Body<D>) -> f64 {
     let elements = body.mesh().elements().map(|(_, element)| {
-        let place = |&node: &u32| body.node_state(node).0.map(f64::from);
+        let place = |&node: &NodeId| body.node_state(node).0.map(f64::from);
         let positions: Vec<Vector64> = element.nodes.iter().map(place).collect();
         let size = f64::from(element.cell.width()) * f64::from(body.grid().voxel_size());
         let elasticity = body.material(element).elasticity;

@@ -4,7 +4,7 @@ use anyhow::Result;
 use fuwafuwa::law::{Elasticity, Law};
 use fuwafuwa::pyramid::Grading;
 use fuwafuwa::shape::Vector;
-use fuwafuwa::{Body, Dim, Material, VoxelGrid};
+use fuwafuwa::{Body, Dim, Material, NodeId, VoxelGrid};
 
 /// A soft body that rings without damping and does not tear.
 pub fn material() -> Material {
@@ -29,7 +29,7 @@ pub fn ball<D: Dim>(n: usize, material: Material, grading: Grading) -> Result<Bo
 /// Sets position [m] and velocity [m/s] of every node by its place at rest [m], which is measured
 /// from the middle of a body 1 m across.
 pub fn arrange<D: Dim>(body: &mut Body<D>, state: impl Fn(Vector) -> (Vector, Vector)) {
-    let nodes: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
+    let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     for id in nodes {
         let (position, velocity) = state(at_rest(body, id));
         body.set_node_state(id, position, velocity);
@@ -37,7 +37,7 @@ pub fn arrange<D: Dim>(body: &mut Body<D>, state: impl Fn(Vector) -> (Vector, Ve
 }
 
 /// Where a node is at rest, measured from the middle of a body 1 m across [m].
-pub fn at_rest<D: Dim>(body: &Body<D>, id: u32) -> Vector {
+pub fn at_rest<D: Dim>(body: &Body<D>, id: NodeId) -> Vector {
     let (at, size) = (body.mesh().node(id).at, body.grid().voxel_size());
     [0, 1, 2].map(|axis| match axis {
         axis if axis < D::N => at[axis] as f32 * size - 0.5,

@@ -7,7 +7,7 @@ use fuwafuwa::dim::{neighbourhood, points_in};
 use fuwafuwa::law::{Elasticity, Law, forces};
 use fuwafuwa::pyramid::{Grading, Pyramid};
 use fuwafuwa::sharing::Sharing;
-use fuwafuwa::{Dim, Dim2, Dim3, Mesh, Point, VoxelGrid};
+use fuwafuwa::{Dim, Dim2, Dim3, Mesh, NodeId, Point, VoxelGrid};
 
 /// Largest residual of the default law, relative to stress times the face of a voxel.
 const LIMIT: f64 = 1e-5;
@@ -83,12 +83,12 @@ fn residual<D: Dim>(mesh: &Mesh<D>, sharing: &Sharing<D>, law: Law) -> Result<f6
     };
     let mut sums = vec![[0.0; 3]; mesh.node_capacity()];
     for (_, element) in mesh.elements() {
-        let at = |&node: &u32| deformed(mesh.node(node).at);
+        let at = |&node: &NodeId| deformed(mesh.node(node).at);
         let positions: Vec<_> = element.nodes.iter().map(at).collect();
         let size = f64::from(element.cell.width());
         let all = forces(law, elasticity, mesh.stencil(element), size, &positions);
         for (&node, force) in element.nodes.iter().zip(all) {
-            for (sum, force) in sums[node as usize].iter_mut().zip(force) {
+            for (sum, force) in sums[node.index()].iter_mut().zip(force) {
                 *sum += force;
             }
         }
@@ -97,7 +97,7 @@ fn residual<D: Dim>(mesh: &Mesh<D>, sharing: &Sharing<D>, law: Law) -> Result<f6
     let mut worst = 0.0f64;
     for (id, node) in mesh.nodes() {
         if node.group == D::ALL_CORNERS && !sharing.is_open(node.at) {
-            for force in sums[id as usize] {
+            for force in sums[id.index()] {
                 // f64::max would drop a NaN.
                 let force = if force.is_nan() { f64::INFINITY } else { force };
                 worst = worst.max(force.abs() / stress);

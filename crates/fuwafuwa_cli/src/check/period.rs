@@ -111,7 +111,7 @@ fn ring<D: Dim>(n: usize, grading: Grading, progress: &Progress) -> Result<Ring>
 fn advance_and_weigh<D: Dim>(body: &mut Body<D>, duration: f64) -> f64 {
     let stored = energy::of_body(body);
     let velocity = |body: &Body<D>, id| body.node_state(id).1.map(f64::from);
-    let ids: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
+    let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     let before: Vec<[f64; 3]> = ids.iter().map(|&id| velocity(body, id)).collect();
     body.advance(duration as f32, [0.0; 3]);
     let moving = ids.iter().zip(before).map(|(&id, before)| {

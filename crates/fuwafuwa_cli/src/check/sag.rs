@@ -146,7 +146,7 @@ fn sag_between<D: Dim>(
         let child = (0..D::N).fold(f64::from(material.density), |mass, _| mass * half);
         let shares = &mesh.stencil(element).volumes;
         for (&node, share) in element.nodes.iter().zip(shares) {
-            load[node as usize * D::N + 1] -= child * share;
+            load[node.index() * D::N + 1] -= child * share;
         }
     }
     let still = vec![0.0; load.len()];
@@ -155,7 +155,7 @@ fn sag_between<D: Dim>(
     for (id, node) in mesh.nodes().filter(|(_, node)| node.at[1] == highest) {
         // As much as the voxels below it show of the top; those below a mirror's nodes are half of them.
         let weight = f64::from(node.group.count_ones());
-        sunk -= weight * moved[id as usize * D::N + 1];
+        sunk -= weight * moved[id.index() * D::N + 1];
         count += weight;
     }
     // In voxels: a load grows with their volume, a stiffness with their width in space only.

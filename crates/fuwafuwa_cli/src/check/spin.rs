@@ -7,7 +7,7 @@ use anyhow::{Result, ensure};
 use fuwafuwa::pyramid::Grading;
 use fuwafuwa::vector::{cross, plus};
 use fuwafuwa::world::TICK;
-use fuwafuwa::{Blade, Body, Dim, Dim2, Dim3, Material, Settings, World};
+use fuwafuwa::{Blade, Body, Dim, Dim2, Dim3, Material, PieceId, Settings, World};
 
 /// Dimensions, voxels across, and damping of the bodies.
 const BODIES: [(usize, usize, f32); 4] = [(2, 32, 0.0), (2, 32, 0.08), (3, 24, 0.0), (3, 24, 0.08)];
@@ -76,8 +76,9 @@ fn halves<D: Dim>(n: usize) -> Result<Halves> {
     step(&mut world, APART);
     let pieces = world.bodies().first().unwrap().pieces().list.len();
     ensure!(pieces == 2, "{cut} nodes cut left {pieces} pieces");
-    let motions =
-        |world: &World<D>| [0, 1].map(|piece| motion(world.bodies().first().unwrap(), piece));
+    let motions = |world: &World<D>| {
+        [0, 1].map(|piece| motion(world.bodies().first().unwrap(), PieceId(piece)))
+    };
     let before = motions(&world);
     step(&mut world, DURATION);
     let after = motions(&world);
@@ -93,7 +94,7 @@ fn halves<D: Dim>(n: usize) -> Result<Halves> {
 }
 
 /// The momentum of a piece, and its angular momentum about its own centre.
-fn motion<D: Dim>(body: &Body<D>, piece: u32) -> ([f64; 3], [f64; 3]) {
+fn motion<D: Dim>(body: &Body<D>, piece: PieceId) -> ([f64; 3], [f64; 3]) {
     let nodes = body.mesh().nodes().map(|(id, _)| id);
     let nodes = nodes.filter(|&id| body.pieces().of_node(id) == piece);
     let states: Vec<_> = nodes.map(|id| body.node_state(id)).collect();

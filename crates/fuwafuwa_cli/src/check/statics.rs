@@ -46,7 +46,7 @@ impl Statics {
         let mut held = vec![true; mesh.node_capacity() * D::N];
         for (id, node) in mesh.nodes() {
             for axis in 0..D::N {
-                held[id as usize * D::N + axis] = is_held(node, axis);
+                held[id.index() * D::N + axis] = is_held(node, axis);
             }
         }
         let mut classes = BTreeMap::new();
@@ -60,7 +60,7 @@ impl Statics {
             let places: Vec<u32> = element
                 .nodes
                 .iter()
-                .flat_map(|&node| (0..D::N as u32).map(move |axis| node * D::N as u32 + axis))
+                .flat_map(|&node| (0..D::N as u32).map(move |axis| node.0 * D::N as u32 + axis))
                 .collect();
             let half = 0.5 * f64::from(element.cell.width());
             let scale = (2..D::N).fold(1.0, |scale, _| scale * half);

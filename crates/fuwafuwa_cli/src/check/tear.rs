@@ -91,7 +91,7 @@ fn load<D: Dim>(n: usize, notched: bool) -> Result<f64> {
             body.hold(id);
         }
     }
-    let held: Vec<u32> = nodes
+    let held: Vec<_> = nodes
         .iter()
         .filter(|(_, node)| node.at[0] == 0)
         .map(|&(id, _)| id)

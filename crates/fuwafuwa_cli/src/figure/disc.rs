@@ -5,7 +5,7 @@ use anyhow::Result;
 use fuwafuwa::dim::{add, corner, points_in, scale};
 use fuwafuwa::pyramid::{Grading, Pyramid};
 use fuwafuwa::stencil::slot_at;
-use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, Mesh, Point, VoxelGrid};
+use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, Mesh, NodeId, Point, VoxelGrid};
 use fuwafuwa_painter::solid::{Camera, Solid};
 use fuwafuwa_painter::stage;
 use fuwafuwa_painter::{Frame, Painter, Role, Sample};
@@ -170,7 +170,7 @@ fn draw_level(
 }
 
 /// Nodes in the middle of a straight side of some element.
-fn hanging_nodes(mesh: &Mesh<Dim2>) -> BTreeSet<u32> {
+fn hanging_nodes(mesh: &Mesh<Dim2>) -> BTreeSet<NodeId> {
     let mut hanging = BTreeSet::new();
     for (_, element) in mesh.elements() {
         let slots = &mesh.stencil(element).slots;

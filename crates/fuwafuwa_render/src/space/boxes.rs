@@ -10,7 +10,7 @@ use fuwafuwa::dim::{add, corner, face_corners, scale};
 use fuwafuwa::mesh::Element;
 use fuwafuwa::stencil::slot_index;
 use fuwafuwa::vector::{minus, plus, scaled, three};
-use fuwafuwa::{Body, Dim3, ElementView, Vector};
+use fuwafuwa::{Body, Dim3, ElementId, ElementView, Vector};
 
 /// How far a box stays inside its element [voxels]: so neighbours are told apart.
 const GAP: f32 = 0.03;
@@ -76,7 +76,7 @@ impl Boxes {
         for (id, element) in body.mesh().elements() {
             let bare = body.bare_faces(id);
             let width = element.cell.width() as f32;
-            let piece = body.pieces().of_node(element.nodes[0]) as usize;
+            let piece = body.pieces().of_node(element.nodes[0]).index();
             let middle = element.cell.at.map(|k| (k as f32 + 0.5) * width);
             let depth = planes
                 .get(piece)
@@ -129,10 +129,14 @@ impl Boxes {
 
 /// What [`Body::element_view`] says of an element of level 0, as far as it is shown: most are such, and have no slots to be
 /// worked out but their corners and their middle.
-fn small_view(body: &Body<Dim3>, id: u32, element: &Element, colour: ElementColour) -> ElementView {
+fn small_view(
+    body: &Body<Dim3>,
+    id: ElementId,
+    element: &Element,
+    colour: ElementColour,
+) -> ElementView {
     let mut slots = [[0.0; 3]; 27];
-    let corners: [Vector; 8] =
-        std::array::from_fn(|k| three(body.positions()[element.nodes[k] as usize]));
+    let corners: [Vector; 8] = std::array::from_fn(|k| three(body.positions()[element.nodes[k]]));
     for (k, &at) in corners.iter().enumerate() {
         slots[slot_index(scale(corner(k), 2))] = at;
     }
@@ -275,7 +279,7 @@ mod tests {
         assert_eq!(volume(&world, 0.0).0, 0.0);
         // It lies on its side, away from where it was.
         let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
-        let ids: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
+        let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in ids {
             let [x, y, z] = body.node_state(id).0;
             body.set_node_state(id, [1.0 - y + 5.0, z, 1.0 - x], [0.0; 3]);

@@ -31,9 +31,9 @@ impl Plane {
 pub fn planes(body: &Body<Dim3>, cut: Cut, before: &[(usize, f32)]) -> Vec<Plane> {
     let nodes = || {
         body.mesh().nodes().map(|(id, node)| {
-            let at = three(body.positions()[id as usize]);
+            let at = three(body.positions()[id]);
             (
-                body.pieces().of_node(id) as usize,
+                body.pieces().of_node(id).index(),
                 at,
                 node.at.map(|k| k as f32),
             )

@@ -10,21 +10,24 @@ use super::pool::Pool;
 use super::rest::{Rest, Tint};
 use crate::theme::{Colour, among, bytes, mix};
 use fuwafuwa::dim::{corner, face_corners};
+use fuwafuwa::ids::Table;
 use fuwafuwa::vector::{plus, scaled};
-use fuwafuwa::{Body, Dim3, Point, Vector};
+use fuwafuwa::{Body, Dim3, ElementId, NodeId, Point, Vector};
 
 /// No place.
 pub const NONE: u32 = u32::MAX;
+/// No node.
+pub const NO_NODE: NodeId = NodeId(u32::MAX);
 /// The faces of a voxel that hangs together with nothing.
 const ALL_FACES: u8 = 0b11_1111;
 
 /// The bare faces of a body and all that hangs on them.
 #[derive(Clone, Debug, Default)]
 pub struct Faces {
-    /// By element: what was taken up of it.
-    forms: Vec<Form>,
-    /// By node: its point, or none.
-    of_node: Vec<u32>,
+    /// What was taken up of each element.
+    forms: Table<ElementId, Form>,
+    /// The point of each node, or none.
+    of_node: Table<NodeId, u32>,
     /// Faces; those that are gone have no points.
     pub faces: Pool<Face>,
     /// Points; those that are gone have no node.
@@ -34,7 +37,7 @@ pub struct Faces {
     /// Two triangles of vertices for each face; those that are gone are of no area.
     pub indices: Vec<u32>,
     /// The elements that are crumbs: they have points and faces no more.
-    pub crumbs: Vec<u32>,
+    pub crumbs: Vec<ElementId>,
     /// Points to look at again.
     dirty: Vec<u32>,
     palette: Vec<Colour>,
@@ -49,7 +52,7 @@ pub struct Face {
     pub vertices: [u32; 4],
     /// At each of its points: the next corner of a face there, as 4 · face + place, or none.
     next: [u32; 4],
-    element: u32,
+    element: ElementId,
     /// Which of the faces of the element: 2 · axis + side.
     side: u8,
     is_fresh: bool,
@@ -59,9 +62,9 @@ pub struct Face {
 #[derive(Copy, Clone, Debug)]
 pub struct SkinPoint {
     /// Its node, or none.
-    pub node: u32,
+    pub node: NodeId,
     /// The nodes of a voxel that it belongs to, and that carries its offset.
-    pub voxel: [u32; 8],
+    pub voxel: [NodeId; 8],
     /// How far it is moved [voxels], in the frame of the voxel.
     pub offset: Vector,
     /// The points that it is smoothed with.
@@ -104,7 +107,7 @@ pub struct Corner {
 struct Form {
     bare: u8,
     at: Point,
-    nodes: [u32; 8],
+    nodes: [NodeId; 8],
     /// The places of its faces, or none.
     faces: [u32; 6],
 }
@@ -112,20 +115,20 @@ struct Form {
 const NO_FORM: Form = Form {
     bare: 0,
     at: [0; 3],
-    nodes: [NONE; 8],
+    nodes: [NO_NODE; 8],
     faces: [NONE; 6],
 };
 const NO_FACE: Face = Face {
     points: [NONE; 4],
     vertices: [0; 4],
     next: [NONE; 4],
-    element: NONE,
+    element: ElementId(u32::MAX),
     side: 0,
     is_fresh: false,
 };
 const NO_POINT: SkinPoint = SkinPoint {
-    node: NONE,
-    voxel: [NONE; 8],
+    node: NO_NODE,
+    voxel: [NO_NODE; 8],
     offset: [0.0; 3],
     near: [NONE; 6],
     near_count: 0,
@@ -156,7 +159,7 @@ impl Faces {
         let stale = self.compare(body);
         let any = !stale.is_empty() || !self.dirty.is_empty();
         for &(id, _) in &stale {
-            for face in std::mem::replace(&mut self.forms[id as usize], NO_FORM).faces {
+            for face in std::mem::replace(&mut self.forms[id], NO_FORM).faces {
                 if face != NONE {
                     self.take_down(face);
                 }
@@ -164,13 +167,13 @@ impl Faces {
         }
         let mut new = Vec::new();
         for &(id, form) in &stale {
-            self.forms[id as usize] = form;
+            self.forms[id] = form;
             if form.bare == ALL_FACES {
                 continue;
             }
             for side in (0..6u8).filter(|side| form.bare >> side & 1 == 1) {
                 let face = self.put_up(body, id, side);
-                self.forms[id as usize].faces[usize::from(side)] = face;
+                self.forms[id].faces[usize::from(side)] = face;
                 new.push(face);
             }
         }
@@ -183,15 +186,14 @@ impl Faces {
     }
 
     /// Which elements differ from what they were, and what they are now.
-    fn compare(&mut self, body: &Body<Dim3>) -> Vec<(u32, Form)> {
+    fn compare(&mut self, body: &Body<Dim3>) -> Vec<(ElementId, Form)> {
         let mut stale = Vec::new();
         self.crumbs.clear();
-        for (id, known) in self.forms.iter().enumerate() {
-            let bare = body.bare_faces(id as u32);
+        for (id, known) in self.forms.entries() {
+            let bare = body.bare_faces(id);
             if bare | known.bare == 0 {
                 continue;
             }
-            let id = id as u32;
             let now = match body.mesh().element(id) {
                 Some(element) if bare != 0 => Form {
                     bare,
@@ -216,7 +218,7 @@ impl Faces {
         if self.palette != palette {
             self.palette = palette.to_vec();
             for place in 0..self.points.all.len() as u32 {
-                if self.points[place].node != NONE {
+                if self.points[place].node != NO_NODE {
                     self.look_again(place);
                 }
             }
@@ -230,8 +232,8 @@ impl Faces {
         }
     }
 
-    fn put_up(&mut self, body: &Body<Dim3>, element: u32, side: u8) -> u32 {
-        let form = self.forms[element as usize];
+    fn put_up(&mut self, body: &Body<Dim3>, element: ElementId, side: u8) -> u32 {
+        let form = self.forms[element];
         let mut beyond = form.at;
         beyond[usize::from(side / 2)] += 2 * i32::from(side % 2) - 1;
         let place = self.faces.take(Face {
@@ -242,10 +244,10 @@ impl Faces {
         });
         for (k, vertex) in face_corners::<Dim3>(side.into()).into_iter().enumerate() {
             let node = form.nodes[vertex];
-            let mut point = self.of_node[node as usize];
+            let mut point = self.of_node[node];
             if point == NONE {
                 point = self.points.take(SkinPoint { node, ..NO_POINT });
-                self.of_node[node as usize] = point;
+                self.of_node[node] = point;
             }
             let face = &mut self.faces[place];
             face.points[k] = point;
@@ -297,7 +299,7 @@ impl Faces {
             for vertex in point.vertices.into_iter().filter(|&vertex| vertex != NONE) {
                 self.vertices.give_back(vertex, NO_CORNER);
             }
-            self.of_node[point.node as usize] = NONE;
+            self.of_node[point.node] = NONE;
             self.points.give_back(place, NO_POINT);
             return;
         }
@@ -309,7 +311,7 @@ impl Faces {
         for (face, k) in self.corners(place) {
             let ground = usize::from(face.is_fresh);
             counts[ground] += 1;
-            let form = &self.forms[face.element as usize];
+            let form = &self.forms[face.element];
             let vertex = face_corners::<Dim3>(face.side.into())[k];
             let tint = rest.tint(at, 7 - vertex).filter(|_| ground == 0);
             colours[ground] = plus(

@@ -10,7 +10,7 @@ use crate::frame::{Frame, Look};
 use crate::rigid::MOST_WALLS;
 use crate::theme::Theme;
 use fuwafuwa::vector::{minus, plus, scaled, three};
-use fuwafuwa::{Body, Dim3, Rigid, Shape, Vector, World};
+use fuwafuwa::{Body, Dim3, ElementId, Rigid, Shape, Vector, World};
 use std::ops::Range;
 
 /// How far the floor goes, in distances of the camera.
@@ -174,9 +174,9 @@ fn ball(centre: Vector, radius: f32, number: f32) -> RoundedInstance {
 }
 
 /// A voxel that is a piece of its own: a ball that is squashed as it is.
-fn crumb(body: &Body<Dim3>, id: u32, frame: &Frame<'_, Camera>) -> Option<RoundedInstance> {
+fn crumb(body: &Body<Dim3>, id: ElementId, frame: &Frame<'_, Camera>) -> Option<RoundedInstance> {
     let element = body.mesh().element(id)?;
-    let place = |k: usize| three(body.positions()[element.nodes[k] as usize]);
+    let place = |k: usize| three(body.positions()[element.nodes[k]]);
     let sum = |side: [usize; 4]| side.map(place).into_iter().fold([0.0; 3], plus);
     let (low, high) = (sum([0, 1, 2, 3]), sum([4, 5, 6, 7]));
     let along = |low: [usize; 4], high: [usize; 4]| scaled(minus(sum(high), sum(low)), 0.25);
@@ -192,7 +192,7 @@ fn crumb(body: &Body<Dim3>, id: u32, frame: &Frame<'_, Camera>) -> Option<Rounde
         ],
         half: [0.0; 3],
         colour: [red, green, blue, 1.0],
-        number: id as f32,
+        number: id.0 as f32,
     })
 }
 

@@ -4,12 +4,13 @@
 //! few rounds: what presses on a body presses on its stairs. What is smoothed on one lip of a crack
 //! is smoothed in the same way on the other, so that a closed crack stays closed.
 
-use super::faces::{Faces, Ground, NONE, SkinPoint};
+use super::faces::{Faces, Ground, NO_NODE, NONE, SkinPoint};
 use super::rest::Rest;
 use crate::theme::Colour;
 use bytemuck::{Pod, Zeroable};
+use fuwafuwa::ids::Table;
 use fuwafuwa::vector::{cross, dot, minus, plus, scaled, three};
-use fuwafuwa::{Body, Dim3};
+use fuwafuwa::{Body, Dim3, ElementId, NodeId, PieceId};
 
 /// By how much of the way to the mean of its neighbours a point goes in each round: on the original
 /// surface, at the mouth of a crack, inside. Rounds that go away from it give back the size that the
@@ -76,7 +77,7 @@ impl Skin {
     }
 
     /// The elements that are a piece each: they are no part of the surface.
-    pub fn crumbs(&self) -> &[u32] {
+    pub fn crumbs(&self) -> &[ElementId] {
         &self.faces.crumbs
     }
 
@@ -84,13 +85,13 @@ impl Skin {
     pub(super) fn vertices_of<'a>(
         &'a self,
         body: &'a Body<Dim3>,
-        piece: u32,
+        piece: PieceId,
     ) -> impl Iterator<Item = &'a SkinVertex> {
         let corners = self.faces.vertices.all.iter().zip(&self.vertices);
         let own = corners.filter(move |(corner, _)| {
             let point = self.faces.points.all.get(corner.point as usize);
             point.is_some_and(|point| {
-                point.node != NONE && body.pieces().of_node(point.node) == piece
+                point.node != NO_NODE && body.pieces().of_node(point.node) == piece
             })
         });
         own.map(|(_, vertex)| vertex)
@@ -102,8 +103,8 @@ impl Skin {
         self.places.clear();
         self.places
             .extend(self.faces.points.all.iter().map(|point| match point.node {
-                NONE => [0.0; 4],
-                node => carried(point, positions[node as usize], positions, size),
+                NO_NODE => [0.0; 4],
+                node => carried(point, positions[node], positions, size),
             }));
     }
 
@@ -179,7 +180,12 @@ impl Skin {
 /// Where a point is: its node moved by its offset, as the mean deformation of its voxel turns and
 /// stretches it. Behind that ‖F − R‖, to first order.
 #[inline]
-fn carried(point: &SkinPoint, node: [f32; 4], positions: &[[f32; 4]], size: f32) -> [f32; 4] {
+fn carried(
+    point: &SkinPoint,
+    node: [f32; 4],
+    positions: &Table<NodeId, [f32; 4]>,
+    size: f32,
+) -> [f32; 4] {
     let edges = edges(&point.voxel, positions);
     let moved = edges.iter().zip(point.offset);
     let mut place = moved.fold(node, |place, (&edge, by)| plus(place, scaled(edge, by)));
@@ -193,8 +199,8 @@ fn carried(point: &SkinPoint, node: [f32; 4], positions: &[[f32; 4]], size: f32)
 
 /// The mean edges of a voxel along its axes [m].
 #[inline]
-fn edges(voxel: &[u32; 8], positions: &[[f32; 4]]) -> [[f32; 4]; 3] {
-    let corners = voxel.map(|id| positions[id as usize]);
+fn edges(voxel: &[NodeId; 8], positions: &Table<NodeId, [f32; 4]>) -> [[f32; 4]; 3] {
+    let corners = voxel.map(|id| positions[id]);
     [1, 2, 4].map(|side| {
         let low = [0, 1, 2, 3].map(|k| (k & (side - 1)) | (k & !(side - 1)) << 1);
         let ends = low.map(|k| minus(corners[k + side], corners[k]));
@@ -270,7 +276,7 @@ mod tests {
         let mut world = ball(32);
         let whole = skin(&world).volume();
         let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
-        let ids: Vec<u32> = body.mesh().nodes().map(|(id, _)| id).collect();
+        let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in ids {
             let [x, y, z] = body.node_state(id).0;
             body.set_node_state(id, [1.5 * x, y, z], [0.0; 3]);

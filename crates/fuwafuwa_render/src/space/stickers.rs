@@ -194,7 +194,7 @@ fn around(place: &[f32; 3], reach: f32, mut act: impl FnMut(usize, f32)) {
 mod tests {
     use super::*;
     use crate::Theme;
-    use fuwafuwa::{Blade, Material, Settings, VoxelGrid, World};
+    use fuwafuwa::{Blade, Material, PieceId, Settings, VoxelGrid, World};
 
     #[test]
     fn a_sticker_lies_on_the_skin_and_on_what_is_left_of_it() {
@@ -210,7 +210,7 @@ mod tests {
         };
         let mut sticker = Sticker {
             body: 0,
-            piece: 0,
+            piece: PieceId(0),
             from: [0.5; 3],
             axes: [[0.25, 0.0, 0.0], [0.0, 0.25, 0.0], [0.0, 0.0, 0.25]],
             marks: vec![mark],
@@ -242,7 +242,7 @@ mod tests {
         let body = world.bodies().first().unwrap();
         let nodes = body.mesh().nodes();
         let inside = nodes.min_by(|a, b| {
-            let away = |id: u32| length(minus(body.node_state(id).0, [0.5; 3]));
+            let away = |id| length(minus(body.node_state(id).0, [0.5; 3]));
             away(a.0).total_cmp(&away(b.0))
         });
         sticker.piece = body.pieces().of_node(inside.unwrap().0);
@@ -250,7 +250,7 @@ mod tests {
             assert!((0.73..0.81).contains(&vertex.at[2]), "{vertex:?}");
         }
         // What is not there has no stickers.
-        sticker.piece = 99;
+        sticker.piece = PieceId(99);
         assert!(stuck(&world, &sticker).indices.is_empty());
     }
 }

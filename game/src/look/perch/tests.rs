@@ -1,6 +1,6 @@
 use super::*;
 use fuwafuwa::world::TICK;
-use fuwafuwa::{Blade, Dim3, Material, Settings, VoxelGrid, World};
+use fuwafuwa::{Blade, Dim3, Material, PieceId, Settings, VoxelGrid, World};
 
 const EYE: Vector = [0.5, 0.8, 6.0];
 
@@ -15,7 +15,7 @@ fn ball() -> World<Dim3> {
 }
 
 /// Moves all nodes from where they were at rest.
-fn deform(world: &mut World<Dim3>, to: impl Fn(u32, Vector) -> Vector) {
+fn deform(world: &mut World<Dim3>, to: impl Fn(PieceId, Vector) -> Vector) {
     let body = world.body_mut(world.nth_body(0).unwrap()).unwrap();
     let voxel = body.grid().voxel_size();
     let nodes = body.mesh().nodes();
@@ -111,7 +111,7 @@ fn it_leaves_a_place_that_was_torn_off_for_skin_that_is_left() {
         )
         .unwrap();
     let masses = masses(world.bodies().first().unwrap());
-    let is_gone = |piece: u32| masses[piece as usize] < masses.iter().sum::<f32>() * 0.5;
+    let is_gone = |piece: PieceId| masses[piece] < masses.iter().sum::<f32>() * 0.5;
     deform(&mut world, |piece, at| match is_gone(piece) {
         true => plus(at, [9.0, 0.0, 0.0]),
         false => at,

@@ -2,6 +2,7 @@ use super::*;
 use crate::body::Body;
 use crate::dim::{Dim2, Dim3};
 use crate::grid::VoxelGrid;
+use crate::ids::{ElementId, PieceId, Table};
 use crate::material::Material;
 use crate::touch::pair::{MARGIN, renumber};
 use crate::touch::sphere::ContactSphere;
@@ -66,11 +67,12 @@ fn check<D: Dim>(n: usize) {
         // A third, or nearly all.
         let most = if tick % 2 == 0 { 0.2 } else { -0.45 };
         let sleepers: Vec<bool> = (0..count).map(|_| random(&mut seed) > most).collect();
+        let sleepers = sleepers.into();
         let body = bodies.at_mut(0);
-        body.set_asleep(&vec![true; count], false);
+        body.set_asleep(&vec![true; count].into(), false);
         body.set_asleep(&sleepers, tick % 3 == 1);
         // Up to 30 voxels a tick, most of them hardly one.
-        let speeds: Vec<Row> = (0..count)
+        let speeds: Vec<_> = (0..count)
             .map(|_| {
                 let fast = if random(&mut seed) > 0.45 {
                     3600.0
@@ -82,9 +84,10 @@ fn check<D: Dim>(n: usize) {
                 speed
             })
             .collect();
-        let velocity = |body: &mut Body<D>, sign: &dyn Fn(usize) -> f32| {
-            for node in 0..body.state.position.len() {
-                let piece = body.truth.pieces.of_node(node as u32) as usize;
+        let speeds: Table<PieceId, Row> = speeds.into();
+        let velocity = |body: &mut Body<D>, sign: &dyn Fn(PieceId) -> f32| {
+            for node in body.state.position.ids() {
+                let piece = body.truth.pieces.of_node(node);
                 let moves = if body.truth.pieces.list[piece].asleep {
                     0.0
                 } else {
@@ -98,16 +101,14 @@ fn check<D: Dim>(n: usize) {
         for substep in 0..SUBSTEPS {
             if substep == 3 {
                 velocity(bodies.at_mut(0), &|piece| {
-                    if piece % 3 == 0 { -1.0 } else { 1.0 }
+                    if piece.0 % 3 == 0 { -1.0 } else { 1.0 }
                 });
             }
             if substep == 5 && tick % 3 == 1 {
                 let marked: Vec<bool> = (0..count).map(|piece| piece % 2 == 0).collect();
-                bodies.at_mut(0).set_asleep(&marked, false);
-                let woken: Vec<(u32, u32)> = (0..count as u32)
-                    .step_by(2)
-                    .map(|piece| (0, piece))
-                    .collect();
+                bodies.at_mut(0).set_asleep(&marked.into(), false);
+                let woken = (0..count as u32).step_by(2);
+                let woken: Vec<_> = woken.map(|piece| (0, PieceId(piece))).collect();
                 spheres.wake(&woken, &mut pairs.changed);
             }
             whole += u32::from(pairs.bins.is_none());
@@ -121,7 +122,7 @@ fn check<D: Dim>(n: usize) {
             spheres.note_close(pairs.list.iter().flat_map(|pair| pair.spheres));
             let mut furthest = 0.0f32;
             let body = bodies.at_mut(0);
-            for node in 0..body.state.position.len() {
+            for node in body.state.position.ids() {
                 let step = scaled(body.state.velocity[node], SUBSTEP);
                 furthest = furthest.max(length(step));
                 body.state.position[node] = plus(body.state.position[node], step);
@@ -142,9 +143,9 @@ fn no_pair_is_missed() {
 }
 
 /// The lips of cracks, by element.
-fn lips(spheres: &Spheres) -> Vec<[(u32, u32); 2]> {
+fn lips(spheres: &Spheres) -> Vec<[(u32, ElementId); 2]> {
     let key = |place: u32| spheres.list[place as usize].key();
-    let ascending = |[a, b]: [(u32, u32); 2]| [a.min(b), a.max(b)];
+    let ascending = |[a, b]: [(u32, ElementId); 2]| [a.min(b), a.max(b)];
     let mut lips: Vec<_> = { spheres.lips.iter() }
         .map(|lips| ascending(lips.map(key)))
         .collect();

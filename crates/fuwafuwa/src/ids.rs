@@ -1,0 +1,182 @@
+//! Which node, element or piece of a body is meant: numbers that cannot be taken for each other.
+//!
+//! Each is a place in tables that go by it, and says nothing of the body it is of. Those of nodes and elements are
+//! given out again when what they were of is gone; those of pieces never are.
+
+use std::fmt;
+use std::marker::PhantomData;
+use std::ops::{Deref, DerefMut, Index, IndexMut};
+
+/// A number that says which thing of its kind is meant.
+pub trait Id: Copy {
+    /// The id of what stands at a place of a table.
+    fn of(index: usize) -> Self;
+
+    /// Its place in a table.
+    fn index(self) -> usize;
+}
+
+macro_rules! id {
+    ($(#[$what:meta])* $name:ident) => {
+        $(#[$what])*
+        #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+        #[cfg_attr(feature = "serde", serde(transparent))]
+        pub struct $name(pub u32);
+
+        impl $name {
+            /// Its place in a table that goes by it.
+            #[inline(always)]
+            pub const fn index(self) -> usize {
+                self.0 as usize
+            }
+        }
+
+        impl Id for $name {
+            #[inline(always)]
+            fn of(index: usize) -> Self {
+                Self(index as u32)
+            }
+
+            #[inline(always)]
+            fn index(self) -> usize {
+                self.0 as usize
+            }
+        }
+
+        impl fmt::Display for $name {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                self.0.fmt(f)
+            }
+        }
+    };
+}
+
+/// A place of a list that goes by no ids.
+impl Id for u32 {
+    #[inline(always)]
+    fn of(index: usize) -> Self {
+        index as Self
+    }
+
+    #[inline(always)]
+    fn index(self) -> usize {
+        self as usize
+    }
+}
+
+id! {
+    /// A node of a body.
+    NodeId
+}
+id! {
+    /// An element of a body.
+    ElementId
+}
+id! {
+    /// A piece of a body: its number.
+    PieceId
+}
+
+/// A list that goes by ids of one kind.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(transparent))]
+pub struct Table<I, T> {
+    list: Vec<T>,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    ids: PhantomData<I>,
+}
+
+impl<I: Id, T> Table<I, T> {
+    /// What it has, each with its id, ascending.
+    pub fn entries(&self) -> impl DoubleEndedIterator<Item = (I, &T)> {
+        let entries = self.list.iter().enumerate();
+        entries.map(|(index, entry)| (I::of(index), entry))
+    }
+
+    /// The ids that it has an entry for, ascending.
+    pub fn ids(&self) -> impl Iterator<Item = I> + use<I, T> {
+        (0..self.list.len()).map(I::of)
+    }
+
+    /// The id that the next entry will have.
+    pub fn next_id(&self) -> I {
+        I::of(self.list.len())
+    }
+}
+
+impl<I, T> From<Vec<T>> for Table<I, T> {
+    fn from(list: Vec<T>) -> Self {
+        Self {
+            list,
+            ids: PhantomData,
+        }
+    }
+}
+
+impl<I, T> Default for Table<I, T> {
+    fn default() -> Self {
+        Self::from(Vec::new())
+    }
+}
+
+impl<I: Id, T> Index<I> for Table<I, T> {
+    type Output = T;
+
+    #[inline(always)]
+    fn index(&self, id: I) -> &T {
+        &self.list[id.index()]
+    }
+}
+
+impl<I: Id, T> IndexMut<I> for Table<I, T> {
+    #[inline(always)]
+    fn index_mut(&mut self, id: I) -> &mut T {
+        &mut self.list[id.index()]
+    }
+}
+
+impl<'a, I, T> IntoIterator for &'a Table<I, T> {
+    type Item = &'a T;
+    type IntoIter = std::slice::Iter<'a, T>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.list.iter()
+    }
+}
+
+impl<I, T> Deref for Table<I, T> {
+    type Target = Vec<T>;
+
+    #[inline(always)]
+    fn deref(&self) -> &Vec<T> {
+        &self.list
+    }
+}
+
+impl<I, T> DerefMut for Table<I, T> {
+    #[inline(always)]
+    fn deref_mut(&mut self) -> &mut Vec<T> {
+        &mut self.list
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_goes_by_its_ids() {
+        let mut table: Table<NodeId, char> = vec!['a', 'b'].into();
+        assert_eq!(table.next_id(), NodeId(2));
+        table.push('c');
+        table[NodeId(0)] = 'd';
+        let entries: Vec<_> = table.entries().map(|(id, &entry)| (id.0, entry)).collect();
+        assert_eq!(entries, [(0, 'd'), (1, 'b'), (2, 'c')]);
+        assert_eq!(
+            table.ids().map(|id| id.to_string()).collect::<Vec<_>>(),
+            ["0", "1", "2"]
+        );
+    }
+}
