@@ -11,6 +11,7 @@ mod sound;
 mod state;
 mod truth;
 
+use crate::changes::{Bookmark, Changes};
 use crate::dim::{Dim, Point};
 use crate::grid::VoxelGrid;
 use crate::handle::{Arena, BodyId};
@@ -126,6 +127,19 @@ impl<D: Dim> Body<D> {
         }
         self.cache.awake_is_stale = true;
         self.refresh_awake();
+    }
+
+    /// What changed since the bookmark was put where it is, and puts it to the end; nothing when that is not known,
+    /// for a new reader, another body, or after a while: then everything is to be looked at.
+    pub fn changes_since(&self, bookmark: &mut Bookmark) -> Option<Changes> {
+        let changes = self.cache.history.since(*bookmark);
+        *bookmark = self.bookmark();
+        changes
+    }
+
+    /// At the end of what changed so far.
+    pub fn bookmark(&self) -> Bookmark {
+        self.cache.history.end()
     }
 
     /// The same body, moved `by` [m]. What is then no place is quarantined in its first tick.

@@ -30,6 +30,7 @@ pub mod blade;
 pub mod body;
 mod breakable;
 mod chains;
+pub mod changes;
 #[doc(hidden)]
 pub mod compiled;
 mod contact;
@@ -66,6 +67,7 @@ pub mod world;
 
 pub use blade::{Blade, CutReport};
 pub use body::Body;
+pub use changes::{Bookmark, Changes};
 pub use dim::{Dim, Dim2, Dim3, Point};
 pub use event::{Event, StepReport, With};
 pub use grid::{BuildError, VoxelGrid};

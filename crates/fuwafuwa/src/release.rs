@@ -2,6 +2,7 @@
 
 use crate::body::Body;
 use crate::chains::ascending;
+use crate::changes::Changes;
 use crate::dim::{Dim, Point, voxel_around};
 use crate::disjoint::DisjointSets;
 use crate::ids::{ElementId, NodeId, PieceId, Table};
@@ -9,17 +10,6 @@ use crate::mesh::{Defect, Inheritance, Remodelled};
 use crate::momentum::{Momentum, RigidMotion, centre_of};
 use crate::pyramid::Grading;
 use crate::solve::Row;
-
-/// What a release changed in a body.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Torn {
-    /// Numbers of the pieces that came off.
-    pub parted: Vec<PieceId>,
-    /// Elements that are gone or new, or have other nodes or other bare faces than before.
-    pub elements: Vec<ElementId>,
-    /// Nodes that are gone or new.
-    pub nodes: Vec<NodeId>,
-}
 
 impl<D: Dim> Body<D> {
     /// Releases the sharing of nodes at lattice points, each between the octants of its mask and
@@ -35,9 +25,9 @@ impl<D: Dim> Body<D> {
     }
 
     /// As [`Body::release`]; tells all that it changed.
-    pub(crate) fn tear(&mut self, at: &[(Point, u8)]) -> Result<Torn, Defect> {
+    pub(crate) fn tear(&mut self, at: &[(Point, u8)]) -> Result<Changes, Defect> {
         if self.truth.pyramid.grading() == Grading::Coarse {
-            return Ok(Torn::default());
+            return Ok(Changes::default());
         }
         let mut changed: Vec<Point> = Vec::new();
         for &(point, side) in at {
@@ -47,7 +37,7 @@ impl<D: Dim> Body<D> {
             }
         }
         if changed.is_empty() {
-            return Ok(Torn::default());
+            return Ok(Changes::default());
         }
         changed.extend(
             self.truth
@@ -76,11 +66,14 @@ impl<D: Dim> Body<D> {
         self.find_breakable(&ascending(nodes, self.truth.mesh.node_capacity()));
         self.cache.awake_is_stale = true;
         let new = remodelled.inherited.iter().map(|new| new.node);
-        Ok(Torn {
+        let changes = Changes {
             parted: self.truth.pieces.part(&self.truth.mesh, &places),
             nodes: new.chain(remodelled.abandoned).collect(),
             elements: [beside, remodelled.removed, remodelled.seated].concat(),
-        })
+        };
+        let all = self.truth.mesh.element_count();
+        self.cache.history.add(&changes, all);
+        Ok(changes)
     }
 
     /// The elements around the given points, ascending: a list for each of the places where they

@@ -18,9 +18,9 @@ mod sphere;
 mod spheres;
 
 use crate::body::{Bodies, Body};
+use crate::changes::Changes;
 use crate::dim::Dim;
 use crate::ids::PieceId;
-use crate::release::Torn;
 use crate::rigid::Rigids;
 pub use captives::{Captive, Captives};
 pub use impulse::Impulse;
@@ -67,10 +67,10 @@ impl Nearby {
     }
 
     /// A body was torn.
-    pub fn tear<D: Dim>(&mut self, place: u32, body: &Body<D>, torn: &Torn) {
-        self.nodes.tear(place, &torn.nodes);
+    pub fn tear<D: Dim>(&mut self, place: u32, body: &Body<D>, changes: &Changes) {
+        self.nodes.tear(place, &changes.nodes);
         let changed = &mut self.pairs.changed;
-        self.spheres.tear(place, body, torn, changed);
+        self.spheres.tear(place, body, changes, changed);
         self.captives.tear(&self.spheres);
     }
 

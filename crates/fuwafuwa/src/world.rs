@@ -227,14 +227,14 @@ impl<D: Dim> World<D> {
             };
             self.events.extend(failures.iter().map(released));
             let sides = failures.iter().map(|failure| (failure.at, failure.side));
-            let torn = body.tear(&sides.collect::<Vec<_>>());
-            let torn = torn.expect("a release leaves the mesh whole");
+            let changes = body.tear(&sides.collect::<Vec<_>>());
+            let changes = changes.expect("a release leaves the mesh whole");
             report.released += failures.len() as u32;
-            report.parted += torn.parted.len() as u32;
-            let parts = torn.parted.iter();
+            report.parted += changes.parted.len() as u32;
+            let parts = changes.parted.iter();
             let events = parts.map(|&piece| Event::Parted { body: id, piece });
             self.events.extend(events);
-            self.nearby.tear(id.place(), body, &torn);
+            self.nearby.tear(id.place(), body, &changes);
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::blend::Blend;
 use crate::breakable::BreakableNodes;
+use crate::changes::History;
 use crate::ids::{ElementId, NodeId, PieceId, Table};
 use crate::momentum::RoughMotion;
 
@@ -22,6 +23,8 @@ pub struct Cache {
     ///
     /// [`Sharing::bound`]: crate::sharing::Sharing::bound
     pub bound: Table<ElementId, u32>,
+    /// What tears changed lately.
+    pub history: History,
     /// The rigid motion of each piece, as of the last round of damping: every tick begins with one.
     pub rigid: Table<PieceId, RoughMotion>,
 }

@@ -427,14 +427,14 @@ mod tests {
                 (at, 1 + random((1 << D::CORNERS) - 2) as u8)
             });
             let before = body.truth.mesh.node_count();
-            let torn = body.tear(&sides.collect::<Vec<_>>());
-            let torn = torn.expect("a release leaves the mesh whole");
+            let changes = body.tear(&sides.collect::<Vec<_>>());
+            let changes = changes.expect("a release leaves the mesh whole");
             let alive = |&&node: &&NodeId| body.truth.mesh.is_alive(node);
-            new += torn.nodes.iter().filter(alive).count();
-            gone += torn.nodes.len() - torn.nodes.iter().filter(alive).count();
-            assert!(body.truth.mesh.node_count() == before || !torn.nodes.is_empty());
+            new += changes.nodes.iter().filter(alive).count();
+            gone += changes.nodes.len() - changes.nodes.iter().filter(alive).count();
+            assert!(body.truth.mesh.node_count() == before || !changes.nodes.is_empty());
             body.refresh_awake();
-            pairs.tear(0, &torn.nodes);
+            pairs.tear(0, &changes.nodes);
         }
         assert!(
             new > 50 && (gone > 0 || D::N == 2),

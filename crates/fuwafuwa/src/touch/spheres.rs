@@ -3,9 +3,9 @@
 
 use super::sphere::{ContactSphere, NEAR};
 use crate::body::{Bodies, Body};
+use crate::changes::{Bookmark, Changes};
 use crate::dim::Dim;
 use crate::ids::{ElementId, PieceId};
-use crate::release::Torn;
 use crate::solve::Row;
 use crate::vector::{dot, minus};
 
@@ -27,9 +27,9 @@ pub struct Spheres {
     /// The pairs that are lips of a crack: neighbours in one piece, and yet not held by it.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub lips: Vec<[u32; 2]>,
-    /// Whether nothing but tears happened to bodies since it was made.
+    /// Up to where the body at each place has been followed.
     #[cfg_attr(feature = "serde", serde(skip))]
-    is_listed: bool,
+    followed: Vec<Bookmark>,
     /// Places of those awake.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub awake: Vec<u32>,
@@ -50,31 +50,26 @@ pub struct Spheres {
 }
 
 impl Spheres {
-    /// Bodies may be anything since they were listed.
-    pub fn forget(&mut self) {
-        self.is_listed = false;
-    }
-
     /// A body was taken out: who comes to its place is somebody else.
     pub fn remove_body(&mut self, place: u32) {
         for key in self.keys.iter_mut().filter(|(body, _)| *body == place) {
             *key = (NONE, ElementId(NONE));
         }
-        self.forget();
+        self.followed.clear();
     }
 
-    /// A tick begins: lists the spheres anew, where bodies may be anything, and returns then the place that
-    /// each of those before has now, or [`NONE`]; else adds those that fell asleep to `changed`.
+    /// A tick begins: keeps up with what tore since the last one, and adds who fell asleep to `changed`; where bodies
+    /// may be anything, lists the spheres anew, and returns then the place that each of those before has now, or
+    /// [`NONE`].
     pub fn start_tick<D: Dim>(
         &mut self,
         bodies: &Bodies<D>,
         changed: &mut Vec<u32>,
     ) -> Option<Vec<u32>> {
-        let places = (!self.is_listed).then(|| self.list_anew(bodies));
-        self.is_listed = true;
-        if places.is_some() {
+        let places = (!self.catch_up(bodies, changed)).then(|| {
             changed.clear();
-        }
+            self.list_anew(bodies)
+        });
         let all = self.list.iter_mut().zip(&mut self.centres).zip(0..);
         for ((sphere, centre), place) in all {
             let body = bodies.at(sphere.body);
@@ -100,10 +95,29 @@ impl Spheres {
         places
     }
 
+    /// Keeps up with what tore between two ticks; returns false where that is not all that happened.
+    fn catch_up<D: Dim>(&mut self, bodies: &Bodies<D>, changed: &mut Vec<u32>) -> bool {
+        if self.followed.len() != bodies.place_count() {
+            return false;
+        }
+        for (place, body) in bodies.placed() {
+            match body.changes_since(&mut self.followed[place as usize]) {
+                Some(changes) if changes == Changes::default() => {}
+                Some(changes) => self.tear(place, body, &changes, changed),
+                None => return false,
+            }
+        }
+        true
+    }
+
     /// Lists those known before that are there still, in their order, then the others by body and element.
     fn list_anew<D: Dim>(&mut self, bodies: &Bodies<D>) -> Vec<u32> {
         let known = std::mem::take(&mut self.keys);
         self.list.clear();
+        self.followed = vec![Bookmark::default(); bodies.place_count()];
+        for (place, body) in bodies.placed() {
+            self.followed[place as usize] = body.bookmark();
+        }
         let none = |body: Option<&Body<D>>| {
             let size = body.map_or([0; 3], |body| body.truth.grid.size());
             let voxels = size.map(|extent| extent as usize);
@@ -158,11 +172,12 @@ impl Spheres {
         &mut self,
         place: u32,
         body: &Body<D>,
-        torn: &Torn,
+        changes: &Changes,
         changed: &mut Vec<u32>,
     ) {
+        self.followed[place as usize] = body.bookmark();
         let mut touched = Vec::new();
-        for &id in &torn.elements {
+        for &id in &changes.elements {
             let Some(sphere) = ContactSphere::of(place, body, id) else {
                 continue;
             };
@@ -191,7 +206,7 @@ impl Spheres {
             .for_each(|&own| is_touched[own as usize] = true);
         let is_known = |lips: &[u32; 2]| lips.iter().all(|&own| !is_touched[own as usize]);
         self.lips.retain(is_known);
-        if !torn.parted.is_empty() {
+        if !changes.parted.is_empty() {
             for sphere in self.list.iter_mut().filter(|sphere| sphere.body == place) {
                 sphere.piece = body.truth.pieces.of_element(sphere.element);
             }

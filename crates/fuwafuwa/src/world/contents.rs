@@ -3,6 +3,7 @@
 use super::{Refused, Settings, TICK, World};
 use crate::blade::{Blade, CutReport};
 use crate::body::{Bodies, Body};
+use crate::changes::History;
 use crate::contact::Hit;
 use crate::dim::Dim;
 use crate::event::Event;
@@ -20,7 +21,6 @@ impl<D: Dim> World<D> {
         let shortest = f64::from(TICK) / f64::from(self.settings.most_substeps);
         body.scale_stiffness_for(shortest);
         let id = self.bodies.insert(body);
-        self.nearby.spheres.forget();
         // It may have fallen asleep elsewhere.
         self.wake_body(id);
         id
@@ -53,7 +53,9 @@ impl<D: Dim> World<D> {
     /// [`Gone`] when there is no such body.
     #[inline(never)]
     pub fn cut(&mut self, body: BodyId, blade: &Blade) -> Result<usize, Gone> {
-        let cut = self.body_mut(body)?.cut(blade);
+        self.bodies.get(body)?;
+        self.wake_body(body);
+        let cut = self.bodies.get_mut(body)?.cut(blade);
         let CutReport { released, parted } = cut.expect("a release leaves the mesh whole");
         let energy = 0.0;
         let places = released.iter();
@@ -73,8 +75,10 @@ impl<D: Dim> World<D> {
     pub fn body_mut(&mut self, body: BodyId) -> Result<&mut Body<D>, Gone> {
         self.bodies.get(body)?;
         self.wake_body(body);
-        self.nearby.spheres.forget();
-        self.bodies.get_mut(body)
+        let body = self.bodies.get_mut(body)?;
+        // More may happen to it than tears.
+        body.cache.history = History::default();
+        Ok(body)
     }
 
     /// Takes a body out of the world. All others stay as and what they are; those that leant on it wake.

@@ -1,8 +1,7 @@
 //! The bare faces of a body, the points where they meet and the vertices that are drawn there.
 //!
-//! Faces hang on elements, points on nodes. [`Faces::follow`] compares each element with what it
-//! was at the last look and takes down and puts up only what differs; so it needs to know nothing
-//! of cuts, and a body that was loaded or replaced is followed as well. A point at the mouth of a
+//! Faces hang on elements, points on nodes. [`Faces::follow`] asks the body what changed since the last look, and
+//! takes down and puts up only what differs; of a body that was loaded or replaced it looks at everything. A point at the mouth of a
 //! crack, where the original surface meets the inside, has two vertices in the same place: one
 //! with the normal and the colour of each.
 
@@ -12,7 +11,7 @@ use crate::theme::{Colour, among, bytes, mix};
 use fuwafuwa::dim::{corner, face_corners};
 use fuwafuwa::ids::Table;
 use fuwafuwa::vector::{plus, scaled};
-use fuwafuwa::{Body, Dim3, ElementId, NodeId, Point, Vector};
+use fuwafuwa::{Body, Bookmark, Dim3, ElementId, NodeId, Point, Vector};
 
 /// No place.
 pub const NONE: u32 = u32::MAX;
@@ -40,6 +39,7 @@ pub struct Faces {
     pub crumbs: Vec<ElementId>,
     /// Points to look at again.
     dirty: Vec<u32>,
+    followed: Bookmark,
     palette: Vec<Colour>,
 }
 
@@ -188,8 +188,14 @@ impl Faces {
     /// Which elements differ from what they were, and what they are now.
     fn compare(&mut self, body: &Body<Dim3>) -> Vec<(ElementId, Form)> {
         let mut stale = Vec::new();
-        self.crumbs.clear();
-        for (id, known) in self.forms.entries() {
+        let changes = body.changes_since(&mut self.followed);
+        let is_other = changes.is_none();
+        if is_other {
+            self.crumbs.clear();
+        }
+        let all = || self.forms.ids().collect();
+        for id in changes.map_or_else(all, |changes| changes.elements) {
+            let known = &self.forms[id];
             let bare = body.bare_faces(id);
             if bare | known.bare == 0 {
                 continue;
@@ -203,7 +209,7 @@ impl Faces {
                 },
                 _ => NO_FORM,
             };
-            if bare == ALL_FACES {
+            if bare == ALL_FACES && (is_other || known.bare != ALL_FACES) {
                 self.crumbs.push(id);
             }
             if (now.bare, now.at, now.nodes) != (known.bare, known.at, known.nodes) {
