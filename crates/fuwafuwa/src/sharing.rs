@@ -11,6 +11,7 @@
 //!   c ┃ d
 //! ```
 
+use crate::chains::ascending;
 use crate::dim::{Dim, FAR, Point, add, neighbourhood, points_in, voxel_around};
 use crate::grid::VoxelGrid;
 use std::marker::PhantomData;
@@ -251,10 +252,20 @@ impl<D: Dim> Sharing<D> {
         let near = points
             .iter()
             .flat_map(|&point| neighbourhood::<D>(point, 1));
-        let mut near: Vec<Point> = near.filter(|&near| self.contains(near)).collect();
-        near.sort_unstable_by_key(|&near| self.index(near));
-        near.dedup();
-        near
+        self.each_once(near.filter(|&near| self.contains(near)))
+    }
+
+    /// Points of the lattice, each once, in memory order.
+    pub fn each_once(&self, points: impl Iterator<Item = Point>) -> Vec<Point> {
+        let places = points.map(|at| self.index(at) as u32);
+        let places = ascending(places, self.point_count()).into_iter();
+        places.map(|place| self.point(place as i32)).collect()
+    }
+
+    /// The lattice point at a place in memory order.
+    fn point(&self, place: i32) -> Point {
+        let [x, y, _] = self.size;
+        [place % x, place / x % y, place / x / y]
     }
 
     /// Whether a crack can start or go on at a point: some side is empty, it has more than one
@@ -312,9 +323,7 @@ impl<D: Dim> Sharing<D> {
                 work.extend(neighbourhood::<D>(at, 1));
             }
         }
-        changed.sort_unstable_by_key(|&at| self.index(at));
-        changed.dedup();
-        changed
+        self.each_once(changed.into_iter())
     }
 }
 

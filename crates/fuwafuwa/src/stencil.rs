@@ -72,6 +72,8 @@ pub struct Stencil<D: Dim> {
     pub children: u8,
     /// The slots that carry a node, ascending.
     pub slots: Vec<u8>,
+    /// The same as a mask.
+    pub mask: u32,
     /// Rest offset of each node from the volume centroid.
     pub offsets: Vec<Vector64>,
     /// ∂V/∂x of each node at rest: an exact gradient for every polygon or polyhedron, after
@@ -140,6 +142,7 @@ impl<D: Dim> Stencil<D> {
         let offset = |&slot: &u8| [0, 1, 2].map(|axis: usize| at(slot)[axis] - centroid[axis]);
         let mut stencil = Self {
             children,
+            mask: slots.iter().fold(0, |mask, slot| mask | 1 << slot),
             offsets: slots.iter().map(offset).collect(),
             gradients: slots.iter().map(|&slot| gradients[slot as usize]).collect(),
             volumes: slots
@@ -153,6 +156,13 @@ impl<D: Dim> Stencil<D> {
         };
         stencil.hourglass = stencil.least_bending();
         Ok(stencil)
+    }
+
+    /// Which of its nodes a slot carries, if any.
+    #[inline(always)]
+    pub fn node_at(&self, slot: usize) -> Option<usize> {
+        let before = self.mask & ((1 << slot) - 1);
+        (self.mask >> slot & 1 == 1).then_some(before.count_ones() as usize)
     }
 
     /// How much stiffer than in a plain cell hourglass modes must be to store the energy of pure

@@ -99,10 +99,8 @@ impl<D: Dim> Mesh<D> {
             (0..D::CORNERS).map(corner_of)
         };
         let corners = born.iter().flat_map(corners);
-        let mut points: Vec<Point> = changed.iter().copied().chain(corners).collect();
         // Cells have their corners in common with others.
-        points.sort_unstable_by_key(|&at| sharing.index(at));
-        points.dedup();
+        let points = sharing.each_once(changed.iter().copied().chain(corners));
         let around = |at| self.owners_around(at, D::ALL_CORNERS);
         let places = refitted.iter().filter_map(|&cell| self.places.number(cell));
         let inside = places.flat_map(|place| self.by_cell.at(place));
@@ -236,8 +234,7 @@ fn collect_shares<D: Dim>(
     weight: f64,
     shares: &mut Vec<(NodeId, f64)>,
 ) {
-    let index = slot_index(slot) as u8;
-    if let Ok(place) = stencil.slots.binary_search(&index) {
+    if let Some(place) = stencil.node_at(slot_index(slot)) {
         match shares.iter_mut().find(|share| share.0 == nodes[place]) {
             Some(share) => share.1 += weight,
             None => shares.push((nodes[place], weight)),

@@ -148,9 +148,7 @@ impl<D: Dim> Mesh<D> {
         for (_, element) in self.elements() {
             let nodes = element.nodes.iter().map(|&id| self.node(id)).collect();
             let stencil = self.stencil(element);
-            let is_class = self
-                .classes
-                .get(&(element.children, mask_of(&stencil.slots)));
+            let is_class = self.classes.get(&(element.children, stencil.mask));
             if is_class != Some(&element.stencil) {
                 return None;
             }
@@ -228,12 +226,6 @@ fn are_just<I: Id + Ord>(ids: &[I], expected: impl Iterator<Item = I>) -> bool {
     let mut ids = ids.to_vec();
     ids.sort_unstable();
     ids.into_iter().eq(expected)
-}
-
-/// The slots as a mask.
-#[cfg(feature = "serde")]
-fn mask_of(slots: &[u8]) -> u32 {
-    slots.iter().fold(0, |mask, slot| mask | 1 << slot)
 }
 
 fn check_grading<D: Dim>(grid: &VoxelGrid<D>, levels: &[u8]) -> Result<(), Defect> {
