@@ -3,21 +3,22 @@
 use std::path::PathBuf;
 use tamaire_play::{InputFrame, Level, Round};
 
-/// A crème caramel of 32 voxels across and 20 high: custard of colour 1 under caramel of colour 2.
+/// A crème caramel of 26 voxels across and 16 high: custard of colour 1 under caramel of colour 2.
 fn pudding() -> Vec<u8> {
-    const ACROSS: u8 = 32;
-    const HIGH: u8 = 20;
+    const ACROSS: u8 = 26;
+    const HIGH: u8 = 16;
     let mut voxels = Vec::new();
     for z in 0..HIGH {
         let height = (f32::from(z) + 0.5) / f32::from(HIGH);
         // A truncated cone with a round upper edge.
         let rounding = (height - 0.85).max(0.0) / 0.15;
-        let radius = 16.0 - 4.5 * height - 2.0 * rounding * rounding;
+        let half = 0.5 * f32::from(ACROSS);
+        let radius = half * (1.0 - 0.28 * height - 0.125 * rounding * rounding);
         for (y, x) in (0..ACROSS).flat_map(|y| (0..ACROSS).map(move |x| (y, x))) {
-            let [a, b] = [x, y].map(|k| f32::from(k) + 0.5 - 0.5 * f32::from(ACROSS));
+            let [a, b] = [x, y].map(|k| f32::from(k) + 0.5 - half);
             let from_axis = (a * a + b * b).sqrt();
             // The caramel has run down a little at its rim.
-            let caramel = 0.84 - 0.12 * (from_axis / 12.0).powi(4).min(1.0);
+            let caramel = 0.84 - 0.12 * (from_axis / (0.75 * half)).powi(4).min(1.0);
             if from_axis < radius {
                 voxels.push([x, y, z, 1 + u8::from(height > caramel)]);
             }
@@ -77,7 +78,7 @@ fn a_model_of_any_colours_becomes_the_body_of_a_level() {
     assert_eq!(level.game().name.en, "pudding");
     assert_eq!(level.scene().dim, 3);
     let level = level.scene().build::<fuwafuwa::Dim3>().unwrap();
-    assert!(level.bodies().first().unwrap().grid().solid_count() > 8000);
+    assert!(level.bodies().first().unwrap().grid().solid_count() > 5000);
 
     let folder = std::env::temp_dir().join(format!("tamaire-models-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
