@@ -46,7 +46,7 @@ fn span<D: Dim>(body: &Body<D>) -> Span {
 
 impl<D: Dim> Falling for World<D> {
     fn engine(&self) -> String {
-        let elements = self.bodies().first().unwrap().mesh().element_count();
+        let elements = self.bodies().first().expect("it has a body").mesh().element_count();
         format!("fuwafuwa, {elements} elements")
     }
 
@@ -55,7 +55,7 @@ impl<D: Dim> Falling for World<D> {
     }
 
     fn span(&self) -> Span {
-        span(self.bodies().first().unwrap())
+        span(self.bodies().first().expect("it has a body"))
     }
 
     fn substeps(&self) -> usize {
@@ -63,15 +63,15 @@ impl<D: Dim> Falling for World<D> {
     }
 
     fn stiffness_scale(&self) -> f64 {
-        self.bodies().first().unwrap().stiffness_scale()
+        self.bodies().first().expect("it has a body").stiffness_scale()
     }
 
     fn pieces(&self) -> usize {
-        self.bodies().first().unwrap().pieces().list.len()
+        self.bodies().first().expect("it has a body").pieces().list.len()
     }
 
     fn asleep(&self) -> f64 {
-        let pieces = &self.bodies().first().unwrap().pieces().list;
+        let pieces = &self.bodies().first().expect("it has a body").pieces().list;
         let asleep = pieces.iter().filter(|piece| piece.asleep).count();
         asleep as f64 / pieces.len() as f64
     }

@@ -13,20 +13,12 @@ fn drop<D: Dim>(n: usize) -> Result<(), Box<dyn std::error::Error>> {
         strength: f32::INFINITY,
         ..Material::default()
     };
-    world.add_body(Body::new(ball, &[stiff])?.moved([0.0, 0.5, 0.0]));
+    let ball = world.add_body(Body::new(ball, &[stiff])?.moved([0.0, 0.5, 0.0]));
     println!("{}D ball, {n} voxels across:", D::N);
     for tick in 0..180 {
         let report = world.step();
-        let heights = world
-            .bodies()
-            .first()
-            .unwrap()
-            .mesh()
-            .nodes()
-            .map(|(id, _)| {
-                let (position, _, _) = world.bodies().first().unwrap().node_state(id);
-                position[1]
-            });
+        let nodes = world.bodies()[ball].mesh().nodes();
+        let heights = nodes.map(|(id, _)| world.bodies()[ball].node_state(id).0[1]);
         let (low, high) = heights.fold((f32::MAX, f32::MIN), |(low, high), y| {
             (low.min(y), high.max(y))
         });

@@ -22,14 +22,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         strength: f32::INFINITY,
         ..Material::default()
     };
-    world.add_body(Body::new(VoxelGrid::ball(64, 1.0)?, &[unbreakable])?);
+    let ball = world.add_body(Body::new(VoxelGrid::ball(64, 1.0)?, &[unbreakable])?);
     let hand = world.add_rigid(Rigid::hand([-0.2, 0.5, 0.0], 0.15))?;
     for tick in 0..=300u16 {
         let x = (-0.2 + 0.008 * f32::from(tick)).min(1.5);
         world.set_goal(hand, [x, 0.5, 0.0])?;
         world.step();
         if tick % 30 == 0 {
-            let body = world.bodies().first().unwrap();
+            let body = &world.bodies()[ball];
             let view = body.piece_views()[0];
             let through = body.mass_where(|at| at[0] > 1.2) / view.mass;
             println!(

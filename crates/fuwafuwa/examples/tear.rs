@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Shape::half_space([-1.0, 0.0, 0.0], [1.1, 0.0, 0.0]),
         0.2,
     ))?;
-    world.add_body(Body::new(
+    let ball = world.add_body(Body::new(
         VoxelGrid::ball(64, 1.0)?,
         &[Material::default()],
     )?);
@@ -46,7 +46,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             );
         }
     }
-    let mut pieces = world.bodies().first().unwrap().piece_views();
+    let mut pieces = world.bodies()[ball].piece_views();
     pieces.sort_by(|a, b| b.mass.total_cmp(&a.mass));
     for piece in pieces.iter().take(5) {
         println!("a piece of {:.2} kg at {:.2?}", piece.mass, piece.centre);

@@ -31,6 +31,8 @@ pub(crate) struct History {
     /// How many tears there were before the first that is kept.
     forgotten: u64,
     kept: VecDeque<Changes>,
+    /// How many ids those name.
+    size: usize,
 }
 
 impl Changes {
@@ -48,6 +50,7 @@ impl Default for History {
             number: COUNT.fetch_add(1, Ordering::Relaxed),
             forgotten: 0,
             kept: VecDeque::new(),
+            size: 0,
         }
     }
 }
@@ -63,12 +66,12 @@ impl History {
     /// Adds a tear. More than `most` ids are not kept: from there on it is quicker to look at everything.
     pub fn add(&mut self, changes: &Changes, most: usize) {
         self.kept.push_back(changes.clone());
-        let mut size: usize = self.kept.iter().map(Changes::size).sum();
-        while size > most {
+        self.size += changes.size();
+        while self.size > most {
             let Some(first) = self.kept.pop_front() else {
                 break;
             };
-            size -= first.size();
+            self.size -= first.size();
             self.forgotten += 1;
         }
     }

@@ -215,15 +215,26 @@ impl Contacts {
             let others = rigids.placed();
             for (other, rigid) in others.filter(|&(at, rigid)| at < place || !rigid.is_driven()) {
                 let inverse_mass = hand.inverse_mass() + rigid.inverse_mass();
-                if inverse_mass > 0.0 {
-                    let (gap, normal) = hand.shape().gap(rigid.shape());
-                    let (normal, inertia) = (as_row(normal), 1.0 / inverse_mass);
-                    let friction = hand.friction;
-                    self.hands.push(HandContact {
-                        contact: Contact::new(normal, gap, duration, inertia, friction),
-                        both: [place, other],
-                    });
+                let (gap, normal) = hand.shape().gap(rigid.shape());
+                let relative = minus(as_row(hand.velocity()), as_row(rigid.velocity()));
+                // What is not finite touches nothing.
+                let is_finite = relative.iter().all(|k| k.is_finite());
+                if inverse_mass == 0.0
+                    || !is_finite
+                    || gap >= hand.shape().inradius()
+                    || gap.is_nan()
+                {
+                    continue;
                 }
+                let friction = match rigid.is_driven() {
+                    true => 0.5 * (hand.friction + rigid.friction),
+                    false => hand.friction,
+                };
+                let (normal, inertia) = (as_row(normal), 1.0 / inverse_mass);
+                self.hands.push(HandContact {
+                    contact: Contact::new(normal, gap, duration, inertia, friction),
+                    both: [place, other],
+                });
             }
         }
     }

@@ -4,15 +4,20 @@ use std::fmt;
 use std::marker::PhantomData;
 
 /// What a thing in an [`Arena`] is known by: a place, and how many stood there before.
-pub trait Handle: Copy + Ord + fmt::Debug {
+pub trait Handle: Copy + Ord + fmt::Debug + sealed::Sealed {
     /// What it is a handle of.
     const KIND: &'static str;
 
-    /// The handle of what is the `generation`-th at a place.
+    #[doc(hidden)]
     fn new(place: u32, generation: u32) -> Self;
 
-    /// Its place and generation.
+    #[doc(hidden)]
     fn parts(self) -> (u32, u32);
+}
+
+mod sealed {
+    /// Only worlds give out handles.
+    pub trait Sealed {}
 }
 
 macro_rules! handle {
@@ -31,6 +36,8 @@ macro_rules! handle {
                 self.place
             }
         }
+
+        impl sealed::Sealed for $name {}
 
         impl Handle for $name {
             const KIND: &'static str = $kind;
@@ -55,7 +62,8 @@ handle! {
     RigidId, "rigid thing"
 }
 
-/// A handle was used of something that is not there: it was taken out, or stands in another world.
+/// A handle was used of something that is not there: it was taken out, or never was in this world. A handle of another
+/// world is not always noticed: it may be good for something here too.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Gone {
     /// What it was the handle of.
@@ -69,7 +77,7 @@ impl fmt::Display for Gone {
         let Self { kind, place } = self;
         write!(
             f,
-            "the {kind} that stood at place {place} is not in this world any more"
+            "there is no such {kind} in this world: who had place {place} was taken out"
         )
     }
 }
@@ -178,8 +186,8 @@ impl<K: Handle, T> Arena<K, T> {
 
     /// Takes one out; the others stay where they are.
     pub(crate) fn remove(&mut self, id: K) -> Result<T, Gone> {
-        self.get(id)?;
         let (place, _) = id.parts();
+        self.get(id)?;
         let slot = &mut self.slots[place as usize];
         slot.generation = slot.generation.wrapping_add(1);
         slot.thing.take().ok_or(gone::<K>(place))
@@ -263,7 +271,10 @@ impl<'a, K: Handle, T> IntoIterator for &'a Arena<K, T> {
 impl<K: Handle, T> std::ops::Index<K> for Arena<K, T> {
     type Output = T;
 
-    /// Who has a handle; [`Arena::get`] asks whether anybody has.
+    /// Who has a handle.
+    ///
+    /// # Panics
+    /// When nobody has it any more; [`Arena::get`] tells.
     fn index(&self, id: K) -> &T {
         self.get(id).unwrap_or_else(|gone| panic!("{gone}"))
     }
@@ -288,7 +299,7 @@ mod tests {
         let gone = names.get(ring).unwrap_err();
         assert_eq!(
             gone.to_string(),
-            "the body that stood at place 1 is not in this world any more"
+            "there is no such body in this world: who had place 1 was taken out"
         );
         assert_eq!(names.remove(ring), Err(gone));
         let all: Vec<BodyId> = names.entries().map(|(id, _)| id).collect();

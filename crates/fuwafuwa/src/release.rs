@@ -71,8 +71,8 @@ impl<D: Dim> Body<D> {
             nodes: new.chain(remodelled.abandoned).collect(),
             elements: [beside, remodelled.removed, remodelled.seated].concat(),
         };
-        let all = self.truth.mesh.element_count();
-        self.cache.history.add(&changes, all);
+        let most = self.truth.mesh.element_capacity();
+        self.cache.history.add(&changes, most);
         Ok(changes)
     }
 

@@ -126,7 +126,8 @@ impl Rigid {
         Self::driven(Shape::Ball { centre, radius }, position, Drive::default())
     }
 
-    /// A hand of any shape, `form` being what it is at the origin, at rest at `position` [m].
+    /// A hand of any shape that ends somewhere, at rest at `position` [m]. `form` is what it would be at the origin,
+    /// best with its middle there.
     pub fn driven(form: Shape, position: Vector, drive: Drive) -> Self {
         Self {
             friction: 0.2,
@@ -155,6 +156,11 @@ impl Rigid {
         let others = [&mut self.position_before, &mut self.velocity];
         for vector in places.into_iter().chain(others) {
             vector[D::N..].fill(0.0);
+        }
+        if !self.is_driven() {
+            // It may have been a hand.
+            (self.velocity, self.goal_velocity) = ([0.0; 3], [0.0; 3]);
+            (self.goal, self.goal_before) = (self.position, self.position);
         }
         self.shape = self.form.moved(self.position);
         self
@@ -194,8 +200,12 @@ impl Rigid {
             huge,
             "0 or more, and finite",
         )?;
-        if let (Shape::Ball { radius, .. }, true) = (self.form, self.is_driven()) {
-            within("radius", radius, tiny, FARTHEST, "positive, at most 1e6 m")?;
+        if self.is_driven() {
+            let [low, high] = self.form.bounds();
+            let (field, expected) = (self.form.size_field(), "at most 1e6 m, from the origin");
+            (is_place(low) && is_place(high))
+                .then_some(())
+                .ok_or(BadRigid { field, expected })?;
         }
         match self.drive {
             Drive::Fixed | Drive::Kinematic => Ok(()),
@@ -213,7 +223,7 @@ impl Rigid {
         }
     }
 
-    /// Where it is [m]: of a hand its middle, of what is fixed the origin.
+    /// How far what it would be at the origin was moved [m]: of a hand of the usual form, its middle.
     pub fn position(&self) -> Vector {
         self.position
     }
@@ -231,6 +241,11 @@ impl Rigid {
     /// What it felt, one entry for each substep of the last tick.
     pub fn reactions(&self) -> &[Reaction] {
         &self.reactions
+    }
+
+    /// What it would be at the origin.
+    pub fn form(&self) -> &Shape {
+        &self.form
     }
 
     /// Its shape where it is now.
@@ -329,7 +344,9 @@ impl Rigid {
     pub(crate) fn push(&mut self, impulse: Vector, duration: f32) {
         let inverse_mass = self.inverse_mass();
         for axis in 0..3 {
-            self.velocity[axis] += impulse[axis] * inverse_mass;
+            if inverse_mass > 0.0 {
+                self.velocity[axis] += impulse[axis] * inverse_mass;
+            }
             if let Some(reaction) = self.reactions.last_mut() {
                 reaction.contact[axis] += impulse[axis] / duration;
             }

@@ -132,6 +132,34 @@ impl Shape {
         }
     }
 
+    /// The corners of the box around it [m]; of a half-space, everything. Axes that do not count are 0.
+    pub fn bounds(&self) -> [Vector; 2] {
+        let around = |from: Vector, to: Vector, half: Vector| {
+            let low = [0, 1, 2].map(|axis: usize| from[axis].min(to[axis]) - half[axis]);
+            let high = [0, 1, 2].map(|axis: usize| from[axis].max(to[axis]) + half[axis]);
+            [low, high]
+        };
+        match *self {
+            Self::HalfSpace { .. } => [[f32::NEG_INFINITY; 3], [f32::INFINITY; 3]],
+            Self::Box { centre, half } => around(
+                centre,
+                centre,
+                half.map(|k| if k == f32::MAX { 0.0 } else { k }),
+            ),
+            Self::Capsule { from, to, radius } => around(from, to, [radius; 3]),
+            Self::Ball { centre, radius } => around(centre, centre, [radius; 3]),
+        }
+    }
+
+    /// The field that says how large it is.
+    pub(crate) fn size_field(&self) -> &'static str {
+        match self {
+            Self::HalfSpace { .. } => "normal",
+            Self::Box { .. } => "half",
+            Self::Capsule { .. } | Self::Ball { .. } => "radius",
+        }
+    }
+
     /// Radius of the largest ball that fits into it [m].
     pub fn inradius(&self) -> f32 {
         match *self {

@@ -32,7 +32,8 @@ pub use pairs::SpherePairs;
 pub use sphere::{ContactSphere, mean};
 pub use spheres::Spheres;
 
-/// What may touch what. Between ticks nothing of it counts but the impulses.
+/// What may touch what. Between ticks nothing of it counts but the impulses, who met in front, and the order of the
+/// spheres.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Nearby {
@@ -76,10 +77,10 @@ impl Nearby {
 
     /// A body was taken out: another one may come to its place.
     pub fn remove_body(&mut self, place: u32) {
-        let is_of_it = |sphere: &ContactSphere| sphere.body == place;
-        let spheres = &self.spheres.list;
-        let stays = |pair: &pair::SpherePair| !pair.both(spheres).into_iter().any(is_of_it);
-        self.pairs.list.retain(stays);
+        let is_of_it = |&sphere: &u32| self.spheres.body_of(sphere) == place;
+        self.pairs
+            .list
+            .retain(|pair| !pair.spheres.iter().any(is_of_it));
         self.nodes.list.retain(|pair| pair.body != place);
         self.spheres.remove_body(place);
     }

@@ -147,7 +147,7 @@ impl<D: Dim> Body<D> {
     }
 
     /// Which faces of an element are bare, as a mask: bit 2 · axis + side. Only elements of level 0
-    /// have any. Who remembers this and the nodes of each element knows what a crack changed.
+    /// have any. What a crack changed of it, [`Body::changes_since`] tells.
     ///
     /// # Panics
     /// When the id was never used.

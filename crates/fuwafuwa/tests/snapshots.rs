@@ -1,9 +1,10 @@
 //! The same bits after saving and loading.
 #![cfg(feature = "serde")]
 
-use fuwafuwa::Rigid;
 use fuwafuwa::hash::Hash;
-use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, Settings, Shape, VoxelGrid, World};
+use fuwafuwa::{
+    Blade, Body, Dim, Dim2, Dim3, Material, Rigid, Settings, Shape, VoxelGrid, World, snapshot,
+};
 
 /// A ball that falls on a floor while a hand pushes it against a wall and through.
 fn torn_world<D: Dim>(n: usize) -> World<D> {
@@ -169,4 +170,50 @@ fn a_node_that_is_off_the_plane_or_nowhere_is_refused() {
     let lighter = |row: &mut [u8]| row.copy_from_slice(&(0.5 * mass).to_le_bytes());
     check(mass.to_le_bytes().to_vec(), &lighter);
     assert!(refused > 20, "{refused}");
+}
+
+/// Between two ticks a body was cut, another one was taken out and a third put into its place.
+#[test]
+fn what_was_changed_since_the_last_tick_goes_on_to_the_same_bits() {
+    let ball = |x: f32| {
+        let grid = VoxelGrid::<Dim2>::ball(16, 1.0).unwrap();
+        let body = Body::new(grid, &[Material::default()]).unwrap();
+        body.moved([x, 0.02, 0.0])
+    };
+    let mut world = World::<Dim2>::new(Settings::default()).unwrap();
+    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    world.add_rigid(Rigid::fixed(floor, 0.4)).unwrap();
+    let ids = [0.0, 0.97, 1.94].map(|x| world.add_body(ball(x)));
+    let (down, blade) = (
+        Rigid::hand([1.4, 1.2, 0.0], 0.1),
+        Blade::segment([0.5, -1.0], [0.5, 2.0]),
+    );
+    let hand = world.add_rigid(down).unwrap();
+    world.set_goal(hand, [1.4, 0.7, 0.0]).unwrap();
+    (0..30).for_each(|_| {
+        world.step();
+    });
+    let changes: [&dyn Fn(&mut World<Dim2>); 4] = [
+        &|world| assert!(world.cut(ids[0], &blade).unwrap() > 0),
+        &|world| drop(world.remove_body(ids[1]).unwrap()),
+        &|world| assert_eq!(world.add_body(ball(0.97)), world.nth_body(1).unwrap()),
+        &|world| drop(world.remove_rigid(hand).unwrap()),
+    ];
+    for change in changes {
+        let mut loaded = snapshot::load::<Dim2>(&snapshot::save(&world)).unwrap();
+        change(&mut world);
+        change(&mut loaded);
+        let mut others = [
+            loaded,
+            world.clone(),
+            snapshot::load(&snapshot::save(&world)).unwrap(),
+        ];
+        for _ in 0..5 {
+            let report = world.step();
+            for other in &mut others {
+                assert_eq!(other.step(), report);
+                assert_eq!(other.hash(), world.hash());
+            }
+        }
+    }
 }

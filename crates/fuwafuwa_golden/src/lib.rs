@@ -11,7 +11,8 @@ pub mod exports;
 use fuwafuwa::law::Law;
 use fuwafuwa::world::FEWEST_SUBSTEPS;
 use fuwafuwa::{
-    Blade, Body, Dim, Dim2, Dim3, Event, Material, Rigid, Settings, Shape, VoxelGrid, With, World,
+    Blade, Body, Dim, Dim2, Dim3, Event, Material, Rigid, RigidId, Settings, Shape, VoxelGrid,
+    With, World,
 };
 
 /// A simulation without input, and the bits it must end in.
@@ -70,7 +71,7 @@ fn floor<D: Dim>(settings: Settings) -> World<D> {
 }
 
 /// A ball that falls on a floor while a hand pushes it against a wall and through.
-fn torn_world<D: Dim>(n: usize) -> World<D> {
+fn torn_world<D: Dim>(n: usize) -> (World<D>, RigidId) {
     let mut world = floor::<D>(Settings::default());
     let wall = Shape::half_space([-1.0, 0.0, 0.0], [1.1, 0.0, 0.0]);
     world
@@ -81,20 +82,17 @@ fn torn_world<D: Dim>(n: usize) -> World<D> {
     world.add_body(body.moved([0.0, 0.05, 0.0]));
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
     let hand = Rigid::hand([-0.3, 0.5, depth], 0.08);
-    world.add_rigid(hand).expect("the scenes are sound");
-    world
+    let hand = world.add_rigid(hand).expect("the scenes are sound");
+    (world, hand)
 }
 
 fn hash_of_torn_world<D: Dim>(n: usize, ticks: u32) -> u64 {
-    let mut world = torn_world::<D>(n);
+    let (mut world, hand) = torn_world::<D>(n);
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
     let mut released = 0;
     for tick in 0..ticks {
         world
-            .set_goal(
-                world.nth_hand(0).expect("the scenes are sound"),
-                [-0.3 + tick as f32 * 0.03, 0.5, depth],
-            )
+            .set_goal(hand, [-0.3 + tick as f32 * 0.03, 0.5, depth])
             .expect("the scenes are sound");
         released += world.step().released;
     }
@@ -111,26 +109,21 @@ fn hash_of_heap() -> u64 {
     let mut world = floor::<Dim3>(settings);
     let ball = VoxelGrid::ball(12, 1.0).expect("the scenes are sound");
     let body = Body::new(ball, &[Material::default()]).expect("the scenes are sound");
-    world.add_body(body);
+    let ball = world.add_body(body);
     for (height, slant) in [(0.3, 0.2), (0.6, -0.3)] {
         let blade = Blade {
             from: [-1.0, height - slant, -1.0],
             across: [3.0, 3.0 * slant, 0.0],
             along: [0.0, 0.0, 3.0],
         };
-        world
-            .cut(world.nth_body(0).expect("the scenes are sound"), &blade)
-            .expect("the scenes are sound");
+        world.cut(ball, &blade).expect("the scenes are sound");
     }
     let hand = Rigid::hand([0.4, 1.2, 0.5], 0.12);
-    world.add_rigid(hand).expect("the scenes are sound");
+    let hand = world.add_rigid(hand).expect("the scenes are sound");
     let (mut released, mut touched) = (0, 0.0);
     for tick in 0..50 {
         world
-            .set_goal(
-                world.nth_hand(0).expect("the scenes are sound"),
-                [0.4, 1.2 - tick as f32 * 0.03, 0.5],
-            )
+            .set_goal(hand, [0.4, 1.2 - tick as f32 * 0.03, 0.5])
             .expect("the scenes are sound");
         let report = world.step();
         assert_eq!(report.substeps, FEWEST_SUBSTEPS);

@@ -1,7 +1,7 @@
 //! How long ago each element was remodelled.
 
 use fuwafuwa::mesh::Element;
-use fuwafuwa::{Dim, ElementId, World};
+use fuwafuwa::{BodyId, Dim, ElementId, World};
 
 /// What an element is, as far as remodelling changes it.
 type Form = ([i32; 3], u8, u8);
@@ -9,6 +9,7 @@ type Form = ([i32; 3], u8, u8);
 /// How long ago each element was remodelled, by looking again and again.
 #[derive(Clone, Debug, Default)]
 pub struct Ages {
+    bodies: Vec<BodyId>,
     forms: Vec<Vec<Option<Form>>>,
     /// [s], by body and element id: what [`crate::Look::Elements`] takes.
     pub seconds: Vec<Vec<f32>>,
@@ -17,24 +18,20 @@ pub struct Ages {
 impl Ages {
     /// Looks at a world `duration` [s] after it did last. At the first look all elements are old.
     pub fn follow<D: Dim>(&mut self, world: &World<D>, duration: f32) {
-        let bodies = world.bodies();
-        self.forms.truncate(bodies.len());
-        self.seconds.truncate(bodies.len());
-        for (place, body) in bodies.iter().enumerate() {
-            let young = if place < self.forms.len() {
-                0.0
-            } else {
-                f32::MAX
-            };
-            if place == self.forms.len() {
-                self.forms.push(Vec::new());
-                self.seconds.push(Vec::new());
-            }
-            let (forms, ages) = (&mut self.forms[place], &mut self.seconds[place]);
+        let known = std::mem::take(&mut self.bodies);
+        let mut forms_before = std::mem::take(&mut self.forms);
+        let mut ages_before = std::mem::take(&mut self.seconds);
+        for (id, body) in world.bodies().entries() {
+            let before = known.iter().position(|&known| known == id);
+            let young = before.map_or(f32::MAX, |_| 0.0);
+            let of = |before: usize| std::mem::take(&mut forms_before[before]);
+            let mut forms = before.map_or_else(Vec::new, of);
+            let of = |before: usize| std::mem::take(&mut ages_before[before]);
+            let mut ages = before.map_or_else(Vec::new, of);
             let capacity = body.mesh().element_capacity();
             forms.resize(capacity, None);
             ages.resize(capacity, young);
-            let all = forms.iter_mut().zip(ages).zip(0..);
+            let all = forms.iter_mut().zip(&mut ages).zip(0..);
             for ((known, age), id) in all {
                 let form = body.mesh().element(ElementId(id)).map(form);
                 *age = match form == *known {
@@ -43,6 +40,9 @@ impl Ages {
                 };
                 *known = form;
             }
+            self.bodies.push(id);
+            self.forms.push(forms);
+            self.seconds.push(ages);
         }
     }
 }

@@ -23,11 +23,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     ))?;
     // Each colour of the palette is a material of its own; here all of them are alike.
     let materials = [Material::default(); 255];
-    world.add_body(Body::new(grid, &materials)?.moved([0.0, 0.3, 0.0]));
+    let body = world.add_body(Body::new(grid, &materials)?.moved([0.0, 0.3, 0.0]));
     for tick in 1..=120 {
         world.step();
         if tick % 20 == 0 {
-            for piece in world.bodies().first().unwrap().piece_views().iter().take(4) {
+            for piece in world.bodies()[body].piece_views().iter().take(4) {
                 println!("{tick:3}: piece {} at {:.2?}", piece.number, piece.centre);
             }
         }

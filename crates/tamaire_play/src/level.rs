@@ -152,16 +152,15 @@ impl Level {
     /// [`LevelError`] says what is wrong with it.
     pub fn of(id: &str, scene: Scene) -> Result<Self, LevelError> {
         let level = Self::unbuilt(id, scene)?;
-        match level.scene.dim {
-            2 => level.start::<fuwafuwa::Dim2>().map(|_| ())?,
-            _ => level.start::<fuwafuwa::Dim3>().map(|_| ())?,
-        }
+        let widest = match level.scene.dim {
+            2 => widest_hand(&level.start::<fuwafuwa::Dim2>()?.0),
+            _ => widest_hand(&level.start::<fuwafuwa::Dim3>()?.0),
+        };
         let [low, high] = level.scene.view;
         let axes = 0..usize::from(level.scene.dim);
         let room = axes.map(|axis| high[axis] - low[axis]);
         let room = room.fold(f32::INFINITY, f32::min);
-        let mut hands = level.scene.hand.iter();
-        if hands.any(|hand| 2.0 * hand.inradius() > 0.9 * room) {
+        if widest > 0.9 * room {
             return Err(LevelError::NoGame {
                 id: id.into(),
                 field: "hand",
@@ -247,6 +246,15 @@ impl Level {
         };
         Ok(known.downcast_ref().expect("a level has one dimension"))
     }
+}
+
+/// How wide the widest hand is on any axis [m].
+fn widest_hand<D: Dim>(world: &World<D>) -> f32 {
+    let widths = world.hands().flat_map(|(_, hand)| {
+        let [low, high] = hand.form().bounds();
+        (0..D::N).map(move |axis| high[axis] - low[axis])
+    });
+    widths.fold(0.0, f32::max)
 }
 
 /// What is wrong with a body that is made from a file is wrong with the file: of the level around it nobody

@@ -146,10 +146,12 @@ impl<D: Dim> Round<D> {
     fn reachable(&self, player: usize, wish: Option<Vector>) -> Vector {
         let hand = &self.world.rigids()[self.players[player]];
         let [low, high] = self.level.arena();
+        let [first, last] = hand.form().bounds();
         let mut goal = wish.unwrap_or(hand.goal());
         for axis in 0..D::N {
-            let margin = hand.shape().inradius().min(0.5 * (high[axis] - low[axis]));
-            goal[axis] = goal[axis].clamp(low[axis] + margin, high[axis] - margin);
+            let half = 0.5 * (high[axis] - low[axis]);
+            let [below, above] = [-first[axis], last[axis]].map(|k| k.min(half));
+            goal[axis] = goal[axis].clamp(low[axis] + below, high[axis] - above);
         }
         let goal = near(hand.goal(), goal, TOP_SPEED * TICK);
         near(hand.position(), goal, LEASH)

@@ -1,4 +1,5 @@
-//! Who leans on what is taken out of the world: such sleepers are to wake.
+//! Who leans on what is taken out of the world, directly or by way of others: such sleepers are to wake. A sleeper
+//! wakes by itself only when what it touches moves quickly; what is left hanging hardly does at first.
 
 use super::bins::Bins;
 use super::pair::MARGIN;
@@ -11,10 +12,15 @@ use crate::lanes::on_widest_lanes;
 use crate::rigid::Rigid;
 use crate::solve::Row;
 use crate::vector::three;
+use std::collections::{BTreeMap, BTreeSet};
+use std::marker::PhantomData;
+
+/// A piece: its body and number.
+type Sleeper = (u32, PieceId);
 
 /// The sleepers that lean on something rigid, by body and number in ascending order.
-pub fn leaning_on_rigid<D: Dim>(rigid: &Rigid, bodies: &Bodies<D>) -> Vec<(u32, PieceId)> {
-    let mut leaning = Vec::new();
+pub fn leaning_on_rigid<D: Dim>(rigid: &Rigid, bodies: &Bodies<D>) -> Vec<Sleeper> {
+    let mut leaning = BTreeSet::new();
     for (place, body) in bodies.placed() {
         let reach = MARGIN * body.truth.grid.voxel_size();
         let is_near = |node: NodeId| {
@@ -25,38 +31,85 @@ pub fn leaning_on_rigid<D: Dim>(rigid: &Rigid, bodies: &Bodies<D>) -> Vec<(u32, 
         let nodes = nodes.filter(|&node| is_near(node));
         leaning.extend(nodes.map(|node| (place, body.truth.pieces.of_node(node))));
     }
-    leaning.sort_unstable();
-    leaning.dedup();
-    leaning
+    Sleepers::of(bodies).with_those_on(leaning)
 }
 
 /// The sleepers that lean on a body which is not among them, by body and number in ascending order.
-pub fn leaning_on_body<D: Dim>(body: &Body<D>, bodies: &Bodies<D>) -> Vec<(u32, PieceId)> {
-    let own: Vec<ContactSphere> = spheres_of(NONE, body).collect();
-    let Some(radius) = own.first().map(|sphere| sphere.radius) else {
-        return Vec::new();
-    };
-    let centres = own
-        .iter()
-        .map(|sphere| sphere.mean::<D>(&body.state.position));
-    let centres: Vec<Row> = centres.collect();
-    let bins = Bins::new::<D>(&centres, 2.0 * radius);
-    let (mut leaning, mut near) = (Vec::new(), Vec::new());
-    for (place, other) in bodies.placed() {
-        for sphere in spheres_of(place, other).filter(|sphere| sphere.asleep) {
-            let (at, reach) = (
-                sphere.mean::<D>(&other.state.position),
-                (1.0 + MARGIN) * (radius + sphere.radius),
-            );
-            on_widest_lanes!(simd => bins.near::<D, _>(simd, at, reach, |_| 0, &mut near));
-            if !near.is_empty() {
-                leaning.push((place, sphere.piece));
+pub fn leaning_on_body<D: Dim>(body: &Body<D>, bodies: &Bodies<D>) -> Vec<Sleeper> {
+    let sleepers = Sleepers::of(bodies);
+    let mut leaning = BTreeSet::new();
+    for sphere in spheres_of(NONE, body) {
+        let at = sphere.mean::<D>(&body.state.position);
+        leaning.extend(sleepers.touching(at, sphere.radius));
+    }
+    sleepers.with_those_on(leaning)
+}
+
+/// The contact spheres of all sleepers.
+struct Sleepers<D: Dim> {
+    spheres: Vec<ContactSphere>,
+    centres: Vec<Row>,
+    bins: Bins,
+    /// Radius of the largest [m].
+    largest: f32,
+    dim: PhantomData<D>,
+}
+
+impl<D: Dim> Sleepers<D> {
+    fn of(bodies: &Bodies<D>) -> Self {
+        let (mut spheres, mut centres) = (Vec::new(), Vec::new());
+        for (place, body) in bodies.placed() {
+            for sphere in spheres_of(place, body).filter(|sphere| sphere.asleep) {
+                centres.push(sphere.mean::<D>(&body.state.position));
+                spheres.push(sphere);
             }
         }
+        let radii = spheres.iter().map(|sphere| sphere.radius);
+        let largest = radii.fold(0.0, f32::max);
+        Self {
+            bins: Bins::new::<D>(&centres, reach(largest, largest)),
+            spheres,
+            centres,
+            largest,
+            dim: PhantomData,
+        }
     }
-    leaning.sort_unstable();
-    leaning.dedup();
-    leaning
+
+    /// The pieces that touch a sphere, some more than once.
+    fn touching(&self, at: Row, radius: f32) -> Vec<Sleeper> {
+        let (mut near, furthest) = (Vec::new(), reach(radius, self.largest));
+        on_widest_lanes!(simd => self.bins.near::<D, _>(simd, at, furthest, |_| 0, &mut near));
+        let spheres = near.iter().map(|&near| {
+            let number = self.bins.numbers()[near as usize];
+            &self.spheres[number as usize]
+        });
+        let pieces = spheres.map(|sphere| (sphere.body, sphere.piece));
+        pieces.collect()
+    }
+
+    /// Some pieces, and all that lean on them by way of others, ascending.
+    fn with_those_on(&self, some: BTreeSet<Sleeper>) -> Vec<Sleeper> {
+        let mut own: BTreeMap<Sleeper, Vec<usize>> = BTreeMap::new();
+        for (number, sphere) in self.spheres.iter().enumerate() {
+            let piece = (sphere.body, sphere.piece);
+            own.entry(piece).or_default().push(number);
+        }
+        let mut work: Vec<Sleeper> = some.iter().copied().collect();
+        let mut all = some;
+        while let Some(piece) = work.pop() {
+            for &number in own.get(&piece).into_iter().flatten() {
+                let radius = self.spheres[number].radius;
+                let others = self.touching(self.centres[number], radius).into_iter();
+                work.extend(others.filter(|&other| all.insert(other)));
+            }
+        }
+        all.into_iter().collect()
+    }
+}
+
+/// How close the middles of two spheres are that touch [m].
+fn reach(first: f32, second: f32) -> f32 {
+    (1.0 + MARGIN) * (first + second)
 }
 
 fn spheres_of<D: Dim>(place: u32, body: &Body<D>) -> impl Iterator<Item = ContactSphere> {

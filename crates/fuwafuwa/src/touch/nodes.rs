@@ -247,7 +247,7 @@ impl NodePairs {
 
     /// Notes where a node is, and how far it may come until the end of the tick.
     fn anchor<D: Dim>(&mut self, place: u32, node: NodeId, bodies: &Bodies<D>, left: f32) {
-        let (body, node) = (bodies.at(place), node);
+        let body = bodies.at(place);
         let anchors = &mut self.anchors[place as usize];
         anchors.resize(body.state.position.len(), [0.0; 4]);
         let [x, y, z, _] = body.state.position[node];

@@ -50,6 +50,11 @@ pub struct Spheres {
 }
 
 impl Spheres {
+    /// The place of the body of a sphere; also while they are not listed.
+    pub fn body_of(&self, sphere: u32) -> u32 {
+        self.keys[sphere as usize].0
+    }
+
     /// A body was taken out: who comes to its place is somebody else.
     pub fn remove_body(&mut self, place: u32) {
         for key in self.keys.iter_mut().filter(|(body, _)| *body == place) {

@@ -66,7 +66,8 @@ impl<D: Dim> World<D> {
         Ok(released.len())
     }
 
-    /// A body, to be changed from outside: held, placed, cut. All of it wakes. Another body in its
+    /// A body, to be changed from outside: held, placed, cut. All of it wakes, and who follows it by a bookmark begins
+    /// anew. Another body in its
     /// place would not be softened: remove the one and add the other.
     ///
     /// # Errors

@@ -164,7 +164,7 @@ fn a_stale_handle_is_refused() {
     let heir = world.add_body(body);
     world.add_rigid(Rigid::hand([3.0, 1.0, 0.0], 0.1)).unwrap();
     let gone = world.bodies().get(ball).unwrap_err().to_string();
-    assert!(gone.contains("body") && gone.contains("any more"), "{gone}");
+    assert!(gone.contains("no such body"), "{gone}");
     assert!(world.body_mut(ball).is_err() && world.remove_body(ball).is_err());
     assert!(
         world
@@ -176,7 +176,8 @@ fn a_stale_handle_is_refused() {
     step(&mut world, 5);
 }
 
-/// Three bodies sleep on a floor, the second one on the first: without the first, the third sleeps on.
+/// Three cubes sleep on each other and a fourth beside them: without the lowest, that one alone sleeps on. What leans
+/// by way of another one would else hang in the air: its support moves too slowly at first to wake it.
 #[test]
 fn who_did_not_lean_on_what_is_removed_sleeps_on() {
     let mut world = world::<Dim2>();
@@ -185,27 +186,26 @@ fn who_did_not_lean_on_what_is_removed_sleeps_on() {
         ..Material::default()
     };
     let cube = |at: [f32; 2]| {
-        let grid = VoxelGrid::cube(6, 0.6).unwrap();
+        let grid = VoxelGrid::cube(8, 0.1).unwrap();
         let body = Body::new(grid, &[damped]).unwrap();
         body.moved([at[0], at[1], 0.0])
     };
-    let ids = [[0.0, 0.0], [0.0, 0.62], [2.0, 0.0]].map(|at| world.add_body(cube(at)));
+    let places = [[0.0, 0.0], [0.0, 0.101], [0.0, 0.202], [2.0, 0.0]];
+    let ids = places.map(|at| world.add_body(cube(at)));
     let sleeps = |world: &World<Dim2>, n: usize| world.bodies()[ids[n]].piece_views()[0].asleep;
     for _ in 0..1200 {
         world.step();
-        if (0..3).all(|n| sleeps(&world, n)) {
+        if (0..4).all(|n| sleeps(&world, n)) {
             break;
         }
     }
-    assert!((0..3).all(|n| sleeps(&world, n)), "they come to rest");
+    assert!((0..4).all(|n| sleeps(&world, n)), "they come to rest");
     world.remove_body(ids[0]).unwrap();
-    assert!(!sleeps(&world, 1) && sleeps(&world, 2));
+    assert!(!sleeps(&world, 1) && !sleeps(&world, 2) && sleeps(&world, 3));
     step(&mut world, 60);
-    assert!(
-        world.bodies()[ids[1]].piece_views()[0].low[1] < 0.1,
-        "it fell"
-    );
-    assert!(sleeps(&world, 2));
+    let low = |n: usize| world.bodies()[ids[n]].piece_views()[0].low[1];
+    assert!(low(1) < 0.01 && low(2) < 0.11, "they fell");
+    assert!(sleeps(&world, 3));
 }
 
 /// A plate that is pushed down by its goal, on a ball and then on the floor.

@@ -54,9 +54,16 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
 
 fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {
     let mut world = scene.build::<D>()?;
-    let count = |world: &World<D>| world.bodies().first().unwrap().piece_views().len();
+    let count = |world: &World<D>| {
+        world
+            .bodies()
+            .first()
+            .expect("it has a body")
+            .piece_views()
+            .len()
+    };
     let before = count(&world);
-    let mass = world.bodies().first().unwrap().total_mass();
+    let mass = world.bodies().first().expect("it has a body").total_mass();
     let mut asleep = f64::INFINITY;
     let mut depth = 0.0f64;
     for tick in 0..(PATIENCE * 60.0) as usize {
@@ -66,7 +73,7 @@ fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {
         if world
             .bodies()
             .first()
-            .unwrap()
+            .expect("it has a body")
             .pieces()
             .list
             .iter()
@@ -76,13 +83,20 @@ fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {
             break;
         }
     }
-    let views = world.bodies().first().unwrap().piece_views();
-    let size = f64::from(world.bodies().first().unwrap().grid().voxel_size());
+    let views = world.bodies().first().expect("it has a body").piece_views();
+    let size = f64::from(
+        world
+            .bodies()
+            .first()
+            .expect("it has a body")
+            .grid()
+            .voxel_size(),
+    );
     let outside = views.iter().filter(|view| {
         let mut obstacles = world.obstacles();
         obstacles.any(|obstacle| obstacle.shape().distance(view.centre).0 < 0.0)
     });
-    let kept = world.bodies().first().unwrap().total_mass() / mass;
+    let kept = world.bodies().first().expect("it has a body").total_mass() / mass;
     anyhow::ensure!(
         (kept - 1.0).abs() < 1e-6,
         "mass changed to {kept} of what it was"
@@ -97,7 +111,7 @@ fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {
 
 /// How deep the deepest node is in a wall [m].
 fn deepest<D: Dim>(world: &World<D>) -> f64 {
-    let body = world.bodies().first().unwrap();
+    let body = world.bodies().first().expect("it has a body");
     let mut deepest = 0.0f32;
     for (id, _) in body.mesh().nodes() {
         let at = body.node_state(id).0;

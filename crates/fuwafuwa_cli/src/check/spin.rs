@@ -55,12 +55,17 @@ struct Halves {
 /// Cuts a body that spins in two. The halves part by themselves, each spinning as the whole did.
 fn halves<D: Dim>(n: usize) -> Result<Halves> {
     let mut world = spinning::<D>(n, material())?;
-    let whole = world.bodies().first().unwrap().momentum().angular;
+    let whole = world
+        .bodies()
+        .first()
+        .expect("it has a body")
+        .momentum()
+        .angular;
     let (across, along) = ([0.0, 3.0, 0.0], [0.0, 0.0, 3.0]);
     let from = [0.0, -1.5, -1.5];
     let cut = world
         .cut(
-            world.nth_body(0).unwrap(),
+            world.nth_body(0).expect("it has a body"),
             &Blade {
                 from,
                 across,
@@ -74,10 +79,21 @@ fn halves<D: Dim>(n: usize) -> Result<Halves> {
         }
     };
     step(&mut world, APART);
-    let pieces = world.bodies().first().unwrap().pieces().list.len();
+    let pieces = world
+        .bodies()
+        .first()
+        .expect("it has a body")
+        .pieces()
+        .list
+        .len();
     ensure!(pieces == 2, "{cut} nodes cut left {pieces} pieces");
     let motions = |world: &World<D>| {
-        [0, 1].map(|piece| motion(world.bodies().first().unwrap(), PieceId(piece)))
+        [0, 1].map(|piece| {
+            motion(
+                world.bodies().first().expect("it has a body"),
+                PieceId(piece),
+            )
+        })
     };
     let before = motions(&world);
     step(&mut world, DURATION);
@@ -89,7 +105,15 @@ fn halves<D: Dim>(n: usize) -> Result<Halves> {
     Ok(Halves {
         spin: worst([0, 1].map(|piece| along_first(before[piece].1, after[piece].1))),
         momentum: worst([0, 1].map(|piece| along_first(before[piece].0, after[piece].0))),
-        both: along_first(whole, world.bodies().first().unwrap().momentum().angular),
+        both: along_first(
+            whole,
+            world
+                .bodies()
+                .first()
+                .expect("it has a body")
+                .momentum()
+                .angular,
+        ),
     })
 }
 
@@ -127,13 +151,23 @@ fn kept<D: Dim>(n: usize, damping: f32) -> Result<f64> {
         ..material()
     };
     let mut world = spinning::<D>(n, material)?;
-    let before = world.bodies().first().unwrap().momentum().angular;
+    let before = world
+        .bodies()
+        .first()
+        .expect("it has a body")
+        .momentum()
+        .angular;
     for _ in 0..(DURATION / TICK).round() as usize {
         world.step();
     }
     Ok(along_first(
         before,
-        world.bodies().first().unwrap().momentum().angular,
+        world
+            .bodies()
+            .first()
+            .expect("it has a body")
+            .momentum()
+            .angular,
     ))
 }
 

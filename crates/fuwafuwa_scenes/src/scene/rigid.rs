@@ -1,7 +1,7 @@
 //! What is rigid in a scene: obstacles and hands, and shapes as they are written down.
 
 use super::error::{Wrong, require, require_vector};
-use fuwafuwa::{Dim, Drive, Rigid, RigidId, Shape, World};
+use fuwafuwa::{Dim, Drive, Refused, Rigid, RigidId, Shape, World};
 use serde::{Deserialize, Serialize};
 
 /// A rigid shape as it is written down: exactly one of the fields but `friction`.
@@ -68,14 +68,13 @@ pub struct BallText {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HandText {
-    /// Of a ball (2D: a disc) [m]. Instead of it, a box or a capsule: where it would be if its goal were the
-    /// origin.
+    /// Of a ball (2D: a disc) [m]. Either this or one of the next two.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub radius: Option<f32>,
-    /// A box.
+    /// An upright box, where it would be if its goal were the origin.
     #[serde(rename = "box", default, skip_serializing_if = "Option::is_none")]
     pub boxed: Option<BoxText>,
-    /// A bar with round ends.
+    /// A bar with round ends, as the box.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub capsule: Option<CapsuleText>,
     /// Whether it goes where it is sent, whatever is in the way.
@@ -206,14 +205,6 @@ impl HandText {
         }
     }
 
-    /// Radius of the largest ball that fits into it [m].
-    pub fn inradius(&self) -> f32 {
-        let boxed = { self.boxed.iter() }.flat_map(|boxed| boxed.half[..2].iter().copied());
-        let capsule = self.capsule.iter().map(|capsule| capsule.radius);
-        let all = self.radius.into_iter().chain(boxed).chain(capsule);
-        all.fold(f32::INFINITY, f32::min)
-    }
-
     /// Where the goal is at a time [s].
     pub fn goal(&self, seconds: f32) -> [f32; 3] {
         let place = |point: &[f32; 4]| [point[1], point[2], point[3]];
@@ -235,7 +226,7 @@ impl HandText {
 pub(crate) fn send<D: Dim>(world: &mut World<D>, goals: &[[f32; 3]]) {
     let hands: Vec<RigidId> = world.hands().map(|(hand, _)| hand).collect();
     for (hand, &goal) in hands.into_iter().zip(goals) {
-        let _is_place = world.set_goal(hand, goal);
+        let _sent: Result<(), Refused> = world.set_goal(hand, goal);
     }
 }
 
