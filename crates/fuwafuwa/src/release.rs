@@ -134,6 +134,11 @@ impl<D: Dim> Body<D> {
             .blocks
             .update(&self.truth.mesh, &self.truth.grid, removed, seated);
         self.settle(&new);
+        for &id in seated {
+            let piece = self.truth.pieces.of_element(id);
+            let asleep = self.truth.pieces.list[piece].asleep;
+            self.state.blocks.set_asleep(id, asleep);
+        }
         let seated = seated.iter().filter_map(|&id| self.truth.mesh.element(id));
         let fresh = seated.filter(|element| element.cell.level == 0);
         let fresh: Vec<Point> = fresh.map(|element| element.cell.at).collect();

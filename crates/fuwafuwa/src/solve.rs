@@ -12,6 +12,10 @@
 mod assign;
 mod block;
 mod kernel;
+#[cfg(feature = "serde")]
+mod restore;
+#[cfg(feature = "serde")]
+mod saved;
 mod turn;
 
 pub use crate::lanes::Row;
@@ -38,12 +42,8 @@ const PAD: usize = 4;
 
 /// All elements of a body in blocks, with the forces they put on their nodes.
 #[derive(Clone, Debug)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Blocks<D: Dim> {
     law: Law,
-    /// No snapshot has them: [`Blocks::set_elasticities`] sets them anew.
-    #[cfg_attr(feature = "serde", serde(skip))]
     moduli: Vec<Moduli>,
     voxel_size: f32,
     blocks: Vec<Block>,
@@ -67,8 +67,10 @@ pub struct Blocks<D: Dim> {
     /// of what a substep has to move, or half of it.
     forces: Vec<f32>,
     /// Kept for the next evaluation, so that it need not be cleared.
-    #[cfg_attr(feature = "serde", serde(skip))]
     scratch: Option<Box<[Scratch; GROUP]>>,
+    /// What was read from a file, until [`Blocks::restore`] puts it in its place.
+    #[cfg(feature = "serde")]
+    saved: Option<saved::Saved>,
     dim: PhantomData<D>,
 }
 
@@ -103,6 +105,8 @@ impl<D: Dim> Blocks<D> {
             nodes: vec![VACANT; LANES],
             forces: vec![0.0; LANES * D::N + PAD],
             scratch: None,
+            #[cfg(feature = "serde")]
+            saved: None,
             dim: PhantomData,
         }
     }
@@ -229,8 +233,8 @@ impl<D: Dim> Blocks<D> {
         self.blocks.iter().map(inverted).sum()
     }
 
-    /// Lets an element sleep, or wakes it: a block whose elements all sleep is not evaluated, and
-    /// keeps the forces it had.
+    /// Lets an element sleep, or wakes it: while it sleeps it keeps the rotation and the forces it had, and a block
+    /// whose elements all sleep is not evaluated.
     pub fn set_asleep(&mut self, id: ElementId, asleep: bool) {
         let (block, lane) = self.assigned[id];
         let sleepers = &mut self.blocks[block as usize].asleep;
@@ -339,6 +343,54 @@ mod tests {
             bits.collect::<Vec<u32>>()
         });
         assert_eq!(by_best, by_other);
+    }
+
+    /// Sleepers that shared a block with who was awake turned on and pulled anew: what happened when they woke went
+    /// by how elements were put together. And who came into a block had the forces of who had been there.
+    fn check_sleepers<D: Dim>() {
+        let grid = VoxelGrid::<D>::ball(8, 1.0).unwrap();
+        let sharing = Sharing::new(&grid);
+        let pyramid = Pyramid::new(&grid, &sharing, Grading::Graded);
+        let mesh = Mesh::grade(&grid, &sharing, &pyramid).unwrap();
+        let elasticity = Elasticity::new(5000.0, 0.3).unwrap();
+        let mut blocks = Blocks::<D>::new(Law::PatchExact, &[elasticity], grid.voxel_size());
+        let all: Vec<ElementId> = mesh.elements().map(|(id, _)| id).collect();
+        blocks.update(&mesh, &grid, &[], &all);
+        let mut position = vec![[0.0; 4]; mesh.node_capacity()];
+        let mut evaluate = |blocks: &mut Blocks<D>, bend: f32| {
+            for (id, node) in mesh.nodes() {
+                let [x, y, z] = node.at.map(|k| k as f32 / 8.0);
+                let bent = [x - bend * y * y, bend * x + y, z + bend * x * y, 0.0];
+                position[id.index()][..D::N].copy_from_slice(&bent[..D::N]);
+            }
+            blocks.evaluate(&position);
+        };
+        evaluate(&mut blocks, 0.1);
+        let sleeps = |id: &ElementId| id.0 % 16 < 12;
+        let state = |blocks: &Blocks<D>, id: ElementId| {
+            let nodes = mesh.element(id).unwrap().nodes.iter();
+            let forces = nodes.map(|&node| blocks.slot(id, node) as usize);
+            let forces = forces.flat_map(|place| &blocks.forces[place..][..D::N]);
+            (blocks.rotation(id), forces.copied().collect::<Vec<f32>>())
+        };
+        for &id in &all {
+            blocks.set_asleep(id, sleeps(&id));
+        }
+        let before: Vec<_> = all.iter().map(|&id| state(&blocks, id)).collect();
+        evaluate(&mut blocks, 0.2);
+        for (id, before) in all.iter().zip(before) {
+            assert_eq!(state(&blocks, *id) == before, sleeps(id), "{id}");
+        }
+        blocks.update(&mesh, &grid, &[], &all);
+        for &id in &all {
+            assert!(state(&blocks, id).1.iter().all(|&force| force == 0.0));
+        }
+    }
+
+    #[test]
+    fn sleepers_stay_as_they_are_beside_who_is_awake() {
+        check_sleepers::<Dim2>();
+        check_sleepers::<Dim3>();
     }
 
     #[test]

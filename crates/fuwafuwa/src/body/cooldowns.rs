@@ -30,6 +30,12 @@ impl Cooldowns {
         self.points.extend(points.map(|at| (at, duration)));
     }
 
+    /// The points that it knows.
+    #[cfg(feature = "serde")]
+    pub fn points(&self) -> impl Iterator<Item = Point> + '_ {
+        self.points.iter().map(|&(at, _)| at)
+    }
+
     /// Whether a point cools down.
     pub fn covers(&self, at: Point) -> bool {
         self.points.iter().any(|&(point, _)| is_near(at, point))

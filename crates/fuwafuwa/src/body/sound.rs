@@ -23,6 +23,13 @@ impl<D: Dim> Body<D> {
             self.state.has_room(self.truth.mesh.node_capacity()),
             "states",
         )?;
+        ensure(
+            self.state.blocks.is_sound(&self.truth.mesh),
+            "states of elements",
+        )?;
+        let points = self.state.cooldowns.points();
+        let is_known = { points }.all(|at| self.truth.sharing.contains(at));
+        ensure(is_known, "points that cool down")?;
         for (id, node) in self.truth.mesh.nodes() {
             let defect = |what: &str| Err(Defect::of(format!("the node at {:?} {what}", node.at)));
             if !self.is_somewhere(id) {
@@ -33,6 +40,18 @@ impl<D: Dim> Body<D> {
             }
         }
         Ok(())
+    }
+
+    /// Works out what no snapshot has, once it has been checked.
+    pub(crate) fn restore(&mut self) {
+        let Truth { mesh, grid, .. } = &self.truth;
+        self.state.blocks.restore(mesh, grid);
+        for (id, _) in mesh.elements() {
+            let piece = self.truth.pieces.of_element(id);
+            let asleep = self.truth.pieces.list[piece].asleep;
+            self.state.blocks.set_asleep(id, asleep);
+        }
+        self.rebuild();
     }
 
     /// Whether where a node is, where it goes and how it has suffered are numbers, and none of them leads out

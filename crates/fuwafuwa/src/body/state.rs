@@ -26,7 +26,7 @@ pub struct State<D: Dim> {
     /// Whether nodes were placed from outside since forces were last computed.
     pub placed: bool,
     /// How each element has turned, and the forces of the last substep: where an element has come to turns
-    /// step by step, and the next crack goes where the last forces pulled.
+    /// step by step, and the next crack goes where the last forces pulled. Snapshots have no more of them.
     pub blocks: Blocks<D>,
 }
 

@@ -55,7 +55,7 @@ impl<D: Dim> Blocks<D> {
     }
 
     /// The place of an element's force on a node.
-    fn slot(&self, id: ElementId, node: NodeId) -> u32 {
+    pub(super) fn slot(&self, id: ElementId, node: NodeId) -> u32 {
         let (block, lane) = self.assigned[id];
         let block = &self.blocks[block as usize];
         let first = block.first as usize + lane as usize;
@@ -190,8 +190,14 @@ impl<D: Dim> Blocks<D> {
                 }
             }
         }
+        // Who was here before leaves nothing: a crack that is looked for before the next evaluation would go there.
+        for place in 0..newcomer.element.nodes.len() {
+            let force = (first + place * LANES + lane) * D::N;
+            self.forces[force..][..D::N].fill(0.0);
+        }
         block.elements[lane] = newcomer.id.0;
         block.asleep &= !(1 << lane);
+        block.inverted &= !(1 << lane);
         let open = self.open.entry(block.home).or_default();
         if is_last {
             open.remove(&index);

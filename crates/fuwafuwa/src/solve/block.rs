@@ -8,6 +8,7 @@ use crate::dim::Dim;
 use crate::lanes::{Eight, LANES, Row, on_widest_lanes};
 use crate::law::Law;
 use fearless_simd::Simd;
+use std::ops::Range;
 
 /// Blocks that go through the three loops of the kernel together: their scratch fits the L1 cache.
 pub const GROUP: usize = 8;
@@ -84,6 +85,24 @@ impl Block {
         self.first as usize + self.node_count as usize * LANES
     }
 
+    /// The lanes whose elements sleep while others are awake, as a mask.
+    #[inline(always)]
+    fn sleepers(&self) -> u8 {
+        if matches!(self.asleep, 0 | ALL_LANES) {
+            return 0;
+        }
+        let elements = self.elements.iter().enumerate();
+        elements.fold(self.asleep, |sleepers, (lane, &element)| {
+            sleepers & !(u8::from(element == VACANT) << lane)
+        })
+    }
+
+    /// Where its forces stand among those of a group, the first of which has the number `first`.
+    #[inline(always)]
+    fn forces<D: Dim>(&self, first: usize) -> Range<usize> {
+        (self.first as usize - first) * D::N..(self.end() - first) * D::N
+    }
+
     /// Its stencil: one for all lanes, or else one for each.
     #[inline(always)]
     fn stencil<'a>(&self, shared: &Shared<'a>) -> (&'a [f32], &'a [Eight]) {
@@ -104,12 +123,52 @@ impl Block {
         first: usize,
     ) -> BlockView<'a> {
         let places = self.first as usize..self.end();
+        let forces = &mut forces[self.forces::<D>(first)];
         BlockView {
             nodes: &shared.nodes[places.clone()],
             half_size: &self.half_size,
             rotation: &mut self.rotation,
-            forces: &mut forces[(places.start - first) * D::N..(places.end - first) * D::N],
+            forces,
             inverted: &mut self.inverted,
+        }
+    }
+}
+
+/// What a block has whose elements do not all sleep: the sleepers among them stay as they are, so that it changes
+/// no bit who shares a block.
+struct Kept {
+    /// Its place in the group, and the lanes that sleep, as a mask.
+    place: usize,
+    sleepers: u8,
+    inverted: u8,
+    rotation: [Eight; 4],
+    forces: Vec<f32>,
+}
+
+impl Kept {
+    fn of<D: Dim>(place: usize, block: &Block, all: &[f32], first: usize) -> Option<Self> {
+        let sleepers = block.sleepers();
+        (sleepers != 0).then(|| Self {
+            place,
+            sleepers,
+            inverted: block.inverted,
+            rotation: block.rotation,
+            forces: all[block.forces::<D>(first)].to_vec(),
+        })
+    }
+
+    fn put_back<D: Dim>(&self, blocks: &mut [Block], all: &mut [f32], first: usize) {
+        let block = &mut blocks[self.place];
+        block.inverted = block.inverted & !self.sleepers | self.inverted & self.sleepers;
+        let forces = all[block.forces::<D>(first)].chunks_exact_mut(D::N);
+        let forces = forces.zip(self.forces.chunks_exact(D::N)).enumerate();
+        for (_, (force, kept)) in forces.filter(|(at, _)| self.sleepers >> (at % LANES) & 1 == 1) {
+            force.copy_from_slice(kept);
+        }
+        for (parts, kept) in block.rotation.iter_mut().zip(&self.rotation) {
+            for lane in (0..LANES).filter(|lane| self.sleepers >> lane & 1 == 1) {
+                parts[lane] = kept[lane];
+            }
         }
     }
 }
@@ -129,6 +188,10 @@ pub fn evaluate_group<D: Dim, S: Simd>(
         shared,
     } = group;
     let law = shared.law;
+    let with_sleepers = blocks.iter().enumerate();
+    let kept: Vec<Kept> = with_sleepers
+        .filter_map(|(place, block)| Kept::of::<D>(place, block, all, first))
+        .collect();
     for (block, scratch) in blocks.iter_mut().zip(&mut *scratch) {
         if block.asleep == ALL_LANES {
             continue;
@@ -165,6 +228,9 @@ pub fn evaluate_group<D: Dim, S: Simd>(
                 forces::<D, S>(simd, law, moduli, &PerLane(each), view, scratch);
             }
         }
+    }
+    for kept in kept {
+        kept.put_back::<D>(blocks, all, first);
     }
 }
 

@@ -198,7 +198,7 @@ impl<D: Dim> World<D> {
     /// Works out what is not saved.
     #[cfg(feature = "serde")]
     pub(crate) fn rebuild(&mut self) {
-        self.bodies.iter_mut().for_each(Body::rebuild);
+        self.bodies.iter_mut().for_each(Body::restore);
     }
 
     /// Wakes all pieces of a body.

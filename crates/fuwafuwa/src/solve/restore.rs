@@ -1,0 +1,110 @@
+//! Blocks in a snapshot: all but the state of each element is made anew from the mesh, for it changes no bit how
+//! elements are put together.
+
+use super::Blocks;
+use super::block::VACANT;
+use super::saved::Saved;
+use crate::dim::Dim;
+use crate::grid::VoxelGrid;
+use crate::ids::ElementId;
+use crate::lanes::LANES;
+use crate::mesh::{Element, Mesh};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::ops::Range;
+
+impl<D: Dim> Blocks<D> {
+    /// Whether blocks that were read from a file have a state for each element of a mesh. Its numbers may be any:
+    /// what is not finite moves no node that is not quarantined after the tick.
+    pub fn is_sound(&self, mesh: &Mesh<D>) -> bool {
+        let numbers = |(_, element): (_, &Element)| parts::<D>() + element.nodes.len() * D::N;
+        let numbers: usize = mesh.elements().map(numbers).sum();
+        let fits = |saved: &Saved| {
+            saved.inverted.len() == mesh.element_count() && saved.numbers.len() == numbers
+        };
+        self.saved.as_ref().is_some_and(fits)
+    }
+
+    /// Puts the elements of a mesh into blocks and gives them the state that was read from a file. Sleepers are
+    /// still to be told, and stiffnesses to be set.
+    pub fn restore(&mut self, mesh: &Mesh<D>, grid: &VoxelGrid<D>) {
+        let Some(Saved {
+            law,
+            numbers,
+            inverted,
+        }) = self.saved.take()
+        else {
+            return;
+        };
+        *self = Self::new(law, &[], grid.voxel_size());
+        let all: Vec<ElementId> = mesh.elements().map(|(id, _)| id).collect();
+        self.update(mesh, grid, &[], &all);
+        let mut numbers = numbers.into_iter();
+        for (&id, inverted) in all.iter().zip(inverted) {
+            let (index, lane) = self.assigned[id];
+            let block = &mut self.blocks[index as usize];
+            block.inverted |= u8::from(inverted) << lane;
+            let rotation = block.rotation[..parts::<D>()].iter_mut();
+            for (part, number) in rotation.zip(numbers.by_ref()) {
+                part[lane as usize] = number;
+            }
+            for node in 0..block.node_count as usize {
+                let place = self.place(index, lane, node);
+                let forces = self.forces[place].iter_mut();
+                for (force, number) in forces.zip(numbers.by_ref()) {
+                    *force = number;
+                }
+            }
+        }
+    }
+
+    fn to_be_saved(&self) -> Saved {
+        let mut saved = Saved {
+            law: self.law,
+            numbers: Vec::new(),
+            inverted: Vec::new(),
+        };
+        let assigned = self.assigned.iter();
+        for &(index, lane) in assigned.filter(|&&(index, _)| index != VACANT) {
+            let block = &self.blocks[index as usize];
+            let rotation = block.rotation[..parts::<D>()].iter();
+            let rotation = rotation.map(|part| part[lane as usize]);
+            saved.numbers.extend(rotation);
+            for node in 0..block.node_count as usize {
+                let place = self.place(index, lane, node);
+                saved.numbers.extend_from_slice(&self.forces[place]);
+            }
+            saved.inverted.push(block.inverted >> lane & 1 == 1);
+        }
+        saved
+    }
+
+    /// Where the force on a node of the element in a lane of a block stands; nodes count in the order of the element.
+    fn place(&self, index: u32, lane: u8, node: usize) -> Range<usize> {
+        let first = self.blocks[index as usize].first as usize;
+        let place = (first + node * LANES + lane as usize) * D::N;
+        place..place + D::N
+    }
+}
+
+/// How many numbers a rotation has: cosine and sine, or a quaternion.
+const fn parts<D: Dim>() -> usize {
+    match D::N {
+        2 => 2,
+        _ => 4,
+    }
+}
+
+impl<D: Dim> Serialize for Blocks<D> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.to_be_saved().serialize(serializer)
+    }
+}
+
+impl<'a, D: Dim> Deserialize<'a> for Blocks<D> {
+    fn deserialize<S: Deserializer<'a>>(deserializer: S) -> Result<Self, S::Error> {
+        let saved = Saved::deserialize(deserializer)?;
+        let mut blocks = Self::new(saved.law, &[], 0.0);
+        blocks.saved = Some(saved);
+        Ok(blocks)
+    }
+}
