@@ -127,11 +127,17 @@ impl Pieces {
         self.node_seen.resize(mesh.node_capacity(), 0);
     }
 
-    /// Whether there is a number for each element and node, as far as lists that were read from a file go.
+    /// Whether there is a piece for each element and node, alive or not, as far as lists that were read from a file go.
     #[cfg(feature = "serde")]
     pub(crate) fn has_room<D: Dim>(&self, mesh: &Mesh<D>) -> bool {
+        let is_there = |piece: &PieceId| piece.index() < self.list.len();
         self.of_element.len() == mesh.element_capacity()
             && self.of_node.len() == mesh.node_capacity()
+            && self
+                .of_element
+                .iter()
+                .chain(self.of_node.iter())
+                .all(is_there)
     }
 
     /// A new node belongs where the node it took its state from belongs.

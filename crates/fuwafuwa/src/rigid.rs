@@ -188,6 +188,10 @@ impl Rigid {
                 .then_some(())
                 .ok_or(BadRigid { field, expected })?;
         }
+        let (field, expected) = ("velocity", "finite");
+        (self.velocity.iter().all(|k| k.is_finite()))
+            .then_some(())
+            .ok_or(BadRigid { field, expected })?;
         self.form.check()?;
         let (field, expected) = ("shape", "what it is at the origin, moved to its position");
         (self.shape == self.form.moved(self.position))

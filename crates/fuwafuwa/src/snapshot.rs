@@ -86,8 +86,9 @@ pub fn save<D: Dim>(world: &World<D>) -> Vec<u8> {
 /// # Errors
 /// [`BadSnapshot`] when it is none, has another format or other dimensions, was damaged, or when the
 /// voxels, connections, elements, nodes or pieces of a body in it contradict each other, or a node is nowhere.
-/// What elements are deformed by (their rotations and last forces) is taken as it stands: do not step
-/// snapshots of strangers.
+///
+/// So who wrote it does not matter: what is loaded can be stepped, and goes out of hand at the worst, as what is
+/// placed badly does. It takes time and memory by how long the snapshot is, and not by what it says of lengths.
 #[inline(never)]
 pub fn load<D: Dim>(bytes: &[u8]) -> Result<World<D>, BadSnapshot> {
     if bytes.len() < HEADER || bytes[..4] != MAGIC {

@@ -85,6 +85,24 @@ impl Nearby {
         self.spheres.remove_body(place);
     }
 
+    /// Forgets what was read from a file and is of nothing that is there. What a tick forgets by itself, because
+    /// bodies may be anything, may go now: impulses are all that counts.
+    #[cfg(feature = "serde")]
+    pub fn keep_known<D: Dim>(&mut self, bodies: &Bodies<D>, rigids: &Rigids) {
+        self.nodes.keep_known(bodies, rigids);
+        let known = self.spheres.count_keys();
+        let is_known = |pair: &pair::SpherePair| {
+            let [a, b] = pair.spheres;
+            a < b && (b as usize) < known
+        };
+        self.pairs.list.retain(is_known);
+        self.pairs.list.sort_by_key(|pair| pair.spheres);
+        self.pairs.list.dedup_by_key(|pair| pair.spheres);
+        let nodes = self.nodes.list.iter_mut().map(|pair| &mut pair.impulse);
+        let pairs = self.pairs.list.iter_mut().map(|pair| &mut pair.impulse);
+        nodes.chain(pairs).for_each(Impulse::flatten::<D>);
+    }
+
     /// Something rigid was taken out.
     pub fn remove_rigid(&mut self, place: u32) {
         self.nodes.list.retain(|pair| pair.rigid != place);

@@ -53,6 +53,42 @@ fn a_saved_world_goes_on_to_the_same_bits() {
     check_resumes::<Dim3>(12);
 }
 
+/// Crumbs of one body, some asleep and some awake, while a hand goes through them; and one that is cut.
+fn check_crumbs_resume<D: Dim>(n: usize) {
+    let mut world = torn_world::<D>(2 * n);
+    let ball = world.nth_body(0).unwrap();
+    let cube = Body::new(VoxelGrid::cube(n, 0.5).unwrap(), &[Material::default()]).unwrap();
+    let crumbs = world.add_body(cube.moved([-1.5, 0.0, 0.3]));
+    world.body_mut(crumbs).unwrap().crumble().unwrap();
+    let hand = world.add_rigid(Rigid::hand([-3.0, 0.1, 0.5], 0.1)).unwrap();
+    let (mut mixed, mut resumed) = (0, load::<D>(&save(&world)).unwrap());
+    for tick in 0..240 {
+        let along = (tick as f32 - 100.0).max(0.0) * 0.02 - 3.0;
+        for world in [&mut world, &mut resumed] {
+            world.set_goal(hand, [along, 0.1, 0.5]).unwrap();
+            push(world, tick.min(50)..tick.min(50) + 1);
+            if tick == 45 {
+                let blade = Blade::segment([0.5, -2.0], [0.6, 2.0]);
+                assert!(world.cut(ball, &blade).unwrap() > 0);
+            }
+        }
+        assert_eq!(resumed.hash(), world.hash(), "tick {tick}");
+        let pieces = &world.bodies()[crumbs].pieces().list;
+        let asleep = pieces.iter().filter(|piece| piece.asleep).count();
+        mixed += usize::from(asleep > 0 && asleep < pieces.len());
+        if tick % 40 == 20 {
+            resumed = load::<D>(&save(&world)).unwrap();
+        }
+    }
+    assert!(mixed > 20, "{mixed}");
+}
+
+#[test]
+fn what_sleeps_and_wakes_goes_on_to_the_same_bits() {
+    check_crumbs_resume::<Dim2>(8);
+    check_crumbs_resume::<Dim3>(4);
+}
+
 /// Torn, held, placed, gone out of hand, woken again or asleep: each is a state that a body can be in.
 fn check_any_state<D: Dim>(n: usize) {
     let mut world = torn_world::<D>(n);
@@ -216,4 +252,109 @@ fn what_was_changed_since_the_last_tick_goes_on_to_the_same_bits() {
             }
         }
     }
+}
+
+/// A world where something tears, something leans on something else, something sleeps and something was stopped
+/// for good, as a snapshot.
+fn full_of_all<D: Dim>(n: usize) -> World<D> {
+    let mut world = torn_world::<D>(n);
+    let small = |at: [f32; 3]| {
+        let grid = VoxelGrid::ball(2, 0.2).unwrap();
+        let body = Body::new(grid, &[Material::default()]).unwrap();
+        body.moved(at)
+    };
+    world.add_body(small([0.4, 1.05, 0.4]));
+    world.add_body(small([-3.0, 0.0, 0.0]));
+    world.add_body(small([-2.9, 0.2, 0.0]));
+    world.add_body(small([5.0, 3.0, 0.0]).thrown([f32::NAN; 3]));
+    let gone = world.add_body(small([-5.0, 1.0, 0.0]));
+    push(&mut world, 0..40);
+    world.remove_body(gone).unwrap();
+    world
+}
+
+/// Changes of a few bytes here and there; most are of numbers in single precision, whose last bytes count.
+struct Changer(u32);
+
+impl Changer {
+    fn below(&mut self, bound: usize) -> usize {
+        self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (self.0 >> 8) as usize % bound
+    }
+
+    fn change(&mut self, state: &mut Vec<u8>) {
+        for _ in 0..[1, 1, 2, 5][self.below(4)] {
+            let place = self.below(state.len() - 4);
+            match self.below(6) {
+                0 => state[place] ^= 1 << self.below(8),
+                1 => state[place] = self.below(256) as u8,
+                2 => state[place] = [0, 0x7f, 0x80, 0xff][self.below(4)],
+                3 => drop(state.remove(place)),
+                4 => state.insert(place, self.below(256) as u8),
+                _ => {
+                    let odd = [f32::NAN, f32::INFINITY, -f32::MAX, 1e-40, -0.0, 1e20];
+                    let odd = odd[self.below(odd.len())].to_le_bytes();
+                    state[place..place + 4].copy_from_slice(&odd);
+                }
+            }
+        }
+    }
+}
+
+/// Whatever of a snapshot is changed, it is refused or can be stepped; returns how many were stepped.
+fn check_changed<D: Dim>(n: usize, variants: u32) -> u32 {
+    let bytes = save(&full_of_all::<D>(n));
+    let (header, state) = bytes.split_at(17);
+    let (mut stepped, mut panicked) = (0, Vec::new());
+    for seed in 0..variants {
+        let mut changed = state.to_vec();
+        Changer(seed).change(&mut changed);
+        let snapshot = with_state(header, changed);
+        let ended = std::panic::catch_unwind(|| {
+            let Ok(mut world) = load::<D>(&snapshot) else {
+                return 0;
+            };
+            (0..3).for_each(|_| _ = world.step());
+            let again = load::<D>(&save(&world)).map(|again| again.hash());
+            assert_eq!(again, Ok(world.hash()));
+            for body in world.bodies().ids().collect::<Vec<_>>() {
+                world.remove_body(body).unwrap();
+            }
+            1
+        });
+        match ended {
+            Ok(count) => stepped += count,
+            Err(_) => panicked.push(seed),
+        }
+    }
+    assert!(panicked.is_empty(), "panics in {panicked:?}");
+    stepped
+}
+
+/// A list that is said to be as long as can be: no room is made for it before its entries are there.
+#[test]
+fn what_is_said_to_be_long_takes_no_memory() {
+    let bytes = save(&full_of_all::<Dim2>(6));
+    let (header, state) = bytes.split_at(17);
+    for place in 0..state.len() {
+        for length in [&[0xff, 0xff, 0xff, 0xff, 0x0f][..], &[0xff; 9]] {
+            let rest = state[place..].iter().skip(1);
+            let changed = state[..place].iter().chain(length).chain(rest);
+            drop(load::<Dim2>(&with_state(
+                header,
+                changed.copied().collect(),
+            )));
+        }
+    }
+}
+
+/// Blocks of elements were taken as they stood, and led out of their tables.
+#[test]
+fn what_a_stranger_wrote_is_refused_or_can_be_stepped() {
+    let stepped = [
+        check_changed::<Dim2>(8, 1500),
+        check_changed::<Dim3>(4, 1000),
+    ];
+    println!("so many were stepped: {stepped:?}");
+    assert!(stepped.iter().all(|&stepped| stepped > 200), "{stepped:?}");
 }

@@ -84,6 +84,16 @@ impl NodePairs {
         self.changed.clear();
     }
 
+    /// Forgets what is of no body, node or rigid thing that is there; leaves each pair once, in their order.
+    #[cfg(feature = "serde")]
+    pub fn keep_known<D: Dim>(&mut self, bodies: &Bodies<D>, rigids: &Rigids) {
+        let is_known =
+            |pair: &NodePair| rigids.find(pair.rigid).is_some() && pair.piece(bodies).is_some();
+        self.list.retain(is_known);
+        self.list.sort_by_key(NodePair::key);
+        self.list.dedup_by_key(|pair| pair.key());
+    }
+
     /// Nodes of a body are gone or new.
     pub fn tear(&mut self, body: u32, nodes: &[NodeId]) {
         self.changed.extend(nodes.iter().map(|&node| (body, node)));

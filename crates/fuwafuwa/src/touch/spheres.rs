@@ -50,6 +50,12 @@ pub struct Spheres {
 }
 
 impl Spheres {
+    /// How many were known at the end of the last tick.
+    #[cfg(feature = "serde")]
+    pub fn count_keys(&self) -> usize {
+        self.keys.len()
+    }
+
     /// The place of the body of a sphere; also while they are not listed.
     pub fn body_of(&self, sphere: u32) -> u32 {
         self.keys[sphere as usize].0

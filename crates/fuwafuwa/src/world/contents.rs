@@ -13,6 +13,10 @@ use crate::rigid::{Rigid, Rigids};
 use crate::shape::Vector;
 use crate::touch::{leaning_on_body, leaning_on_rigid};
 
+/// A world that was saved is no older than this: none lives for a thousand million years.
+#[cfg(feature = "serde")]
+const MOST_TICKS: u64 = 1 << 60;
+
 impl<D: Dim> World<D> {
     /// Puts a body into the world. One that is too stiff for the most substeps allowed is softened: see
     /// [`Body::stiffness_scale`].
@@ -190,6 +194,7 @@ impl<D: Dim> World<D> {
                 "something rigid in it cannot be",
                 self.rigids.iter().all(is_sound),
             ),
+            ("it is older than can be", self.ticks <= MOST_TICKS),
         ];
         let wrong = checks.into_iter().find(|(_, is_good)| !is_good);
         wrong.map(|(defect, _)| defect)
@@ -199,6 +204,7 @@ impl<D: Dim> World<D> {
     #[cfg(feature = "serde")]
     pub(crate) fn rebuild(&mut self) {
         self.bodies.iter_mut().for_each(Body::restore);
+        self.nearby.keep_known(&self.bodies, &self.rigids);
     }
 
     /// Wakes all pieces of a body.
