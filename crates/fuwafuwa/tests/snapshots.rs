@@ -229,7 +229,8 @@ fn what_was_changed_since_the_last_tick_goes_on_to_the_same_bits() {
     (0..30).for_each(|_| {
         world.step();
     });
-    let changes: [&dyn Fn(&mut World<Dim2>); 4] = [
+    type Change<'a> = &'a dyn Fn(&mut World<Dim2>);
+    let changes: [Change<'_>; 4] = [
         &|world| assert!(world.cut(ids[0], &blade).unwrap() > 0),
         &|world| drop(world.remove_body(ids[1]).unwrap()),
         &|world| assert_eq!(world.add_body(ball(0.97)), world.nth_body(1).unwrap()),
