@@ -100,6 +100,7 @@ impl<D: Dim> Body<D> {
             seated,
             inherited,
             abandoned,
+            ..
         } = remodelled;
         let new = ascending(
             inherited.iter().map(|new| new.node),
@@ -115,7 +116,7 @@ impl<D: Dim> Body<D> {
         };
         let before: Vec<_> = self.pieces_in(&old).into_iter().map(momentum).collect();
 
-        self.inherit(inherited);
+        self.inherit(remodelled);
         let new = seated
             .iter()
             .copied()
@@ -172,7 +173,8 @@ impl<D: Dim> Body<D> {
     }
 
     /// New nodes take over the weighted state of old ones, all read before any is written.
-    fn inherit(&mut self, inherited: &[Inheritance]) {
+    fn inherit(&mut self, remodelled: &Remodelled) {
+        let inherited = &remodelled.inherited;
         let mean = |rows: &Table<NodeId, Row>, from: &[(NodeId, f64)]| {
             let mut sum = [0.0f64; 4];
             for &(old, weight) in from {
@@ -184,7 +186,8 @@ impl<D: Dim> Body<D> {
         };
         let state = |new: &Inheritance| {
             let (position, velocity) = (&self.state.position, &self.state.velocity);
-            (mean(position, &new.from), mean(velocity, &new.from))
+            let from = remodelled.from(new);
+            (mean(position, from), mean(velocity, from))
         };
         let states: Vec<(Row, Row)> = inherited.iter().map(state).collect();
         self.make_room();
@@ -194,8 +197,9 @@ impl<D: Dim> Body<D> {
             self.state.ahead[node] = position;
             self.state.velocity[node] = velocity;
             self.state.damage[node] = 0.0;
-            self.truth.pieces.inherit(new.node, new.from[0].0);
-            self.inherit_hold(new.node, &new.from);
+            let from = remodelled.from(new);
+            self.truth.pieces.inherit(new.node, from[0].0);
+            self.inherit_hold(new.node, from);
         }
     }
 

@@ -3,7 +3,7 @@
 
 use fuwafuwa::dim::{neighbourhood, points_in};
 use fuwafuwa::law::{Elasticity, Law, forces};
-use fuwafuwa::mesh::{Inheritance, Remodelled};
+use fuwafuwa::mesh::Remodelled;
 use fuwafuwa::pyramid::{Grading, Pyramid};
 use fuwafuwa::sharing::Sharing;
 use fuwafuwa::{Dim, Dim2, Dim3, Mesh, Point, VoxelGrid};
@@ -134,8 +134,8 @@ fn assert_affine_motion_is_inherited<D: Dim>(
     remodelled: &Remodelled,
     seed: u64,
 ) {
-    for Inheritance { node, from } in &remodelled.inherited {
-        let at = after.node(*node).at;
+    for new in &remodelled.inherited {
+        let (at, from) = (after.node(new.node).at, remodelled.from(new));
         for axis in 0..D::N {
             let inherited: f64 = from
                 .iter()

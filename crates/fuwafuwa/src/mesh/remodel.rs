@@ -8,6 +8,7 @@ use crate::ids::{ElementId, NodeId, Table};
 use crate::pyramid::{Cell, Pyramid, parts};
 use crate::sharing::Sharing;
 use crate::stencil::{Stencil, slot_index};
+use std::ops::Range;
 
 /// What one remodelling changed.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -18,6 +19,8 @@ pub struct Remodelled {
     pub seated: Vec<ElementId>,
     /// Nodes that are new, and where their state comes from.
     pub inherited: Vec<Inheritance>,
+    /// Old nodes and their weights, for one new node after the other.
+    pub shares: Vec<(NodeId, f64)>,
     /// Nodes that no element carries any more.
     pub abandoned: Vec<NodeId>,
 }
@@ -31,8 +34,15 @@ pub struct Remodelled {
 pub struct Inheritance {
     /// The new node.
     pub node: NodeId,
-    /// Old nodes and their weights.
-    pub from: Vec<(NodeId, f64)>,
+    /// Which of the shares are its own.
+    pub from: Range<usize>,
+}
+
+impl Remodelled {
+    /// The old nodes, and their weights, whose state a new one takes.
+    pub fn from(&self, new: &Inheritance) -> &[(NodeId, f64)] {
+        &self.shares[new.from.clone()]
+    }
 }
 
 impl<D: Dim> Mesh<D> {
@@ -80,6 +90,7 @@ impl<D: Dim> Mesh<D> {
             removed,
             seated,
             inherited: past.inherited,
+            shares: past.shares,
             abandoned,
         })
     }
@@ -145,23 +156,27 @@ pub struct Past {
     pub replaced: Vec<(ElementId, Element)>,
     /// New nodes, and where their state comes from.
     pub inherited: Vec<Inheritance>,
+    /// Old nodes and their weights, for one new node after the other.
+    shares: Vec<(NodeId, f64)>,
 }
 
 impl Past {
-    /// The old nodes, with weights, that a new node at `at` next to `voxel` inherits from: the
+    /// Adds a new node at `at` next to `voxel`, with the old nodes and weights that it inherits from: the
     /// lattice of the voxel's old owner, completed where it carries no node, and interpolated
     /// linearly inside the child that holds the voxel.
-    pub fn shares<D: Dim>(
-        &self,
+    pub fn inherit<D: Dim>(
+        &mut self,
         mesh: &Mesh<D>,
+        node: NodeId,
         voxel: Point,
         at: Point,
-    ) -> Result<Vec<(NodeId, f64)>, Defect> {
+    ) -> Result<(), Defect> {
+        let mut shares = std::mem::take(&mut self.shares);
+        let first = shares.len();
         let (owner, child) = self
             .owner(mesh, voxel)
             .ok_or_else(|| Defect(format!("the voxel {voxel:?} had no owner")))?;
         let cell = owner.cell;
-        let mut shares = Vec::new();
         for vertex in 0..D::CORNERS {
             let (slot, weight) = if cell.level == 0 {
                 let here = (0..D::N).all(|axis| at[axis] - cell.at[axis] == corner(vertex)[axis]);
@@ -180,10 +195,14 @@ impl Past {
                 (add(corner(child), corner(vertex)), weight)
             };
             if weight != 0.0 {
-                collect_shares(mesh.stencil(owner), &owner.nodes, slot, weight, &mut shares);
+                let own = (first, &mut shares);
+                collect_shares(mesh.stencil(owner), &owner.nodes, slot, weight, own);
             }
         }
-        Ok(shares)
+        let from = first..shares.len();
+        self.shares = shares;
+        self.inherited.push(Inheritance { node, from });
+        Ok(())
     }
 
     /// The old owner of a voxel and the child it lies in.
@@ -226,16 +245,18 @@ impl Past {
     }
 }
 
-/// Adds `weight` of a slot to the nodes that stand for it: its own, or those it hands on to.
+/// Adds `weight` of a slot to the nodes that stand for it: its own, or those it hands on to. Those of one new node
+/// begin at a place of all shares.
 fn collect_shares<D: Dim>(
     stencil: &Stencil<D>,
     nodes: &[NodeId],
     slot: Point,
     weight: f64,
-    shares: &mut Vec<(NodeId, f64)>,
+    (first, shares): (usize, &mut Vec<(NodeId, f64)>),
 ) {
     if let Some(place) = stencil.node_at(slot_index(slot)) {
-        match shares.iter_mut().find(|share| share.0 == nodes[place]) {
+        let mut own = shares[first..].iter_mut();
+        match own.find(|share| share.0 == nodes[place]) {
             Some(share) => share.1 += weight,
             None => shares.push((nodes[place], weight)),
         }
@@ -246,7 +267,8 @@ fn collect_shares<D: Dim>(
         for end in [0, 2] {
             let mut next = slot;
             next[axis] = end;
-            collect_shares(stencil, nodes, next, weight / (2 * order) as f64, shares);
+            let weight = weight / (2 * order) as f64;
+            collect_shares(stencil, nodes, next, weight, (first, &mut *shares));
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Which nodes an element has, and so which class: what its surroundings ask for.
 
-use super::remodel::{Inheritance, Past};
+use super::remodel::Past;
 use super::{Defect, Element, Mesh, Node};
 use crate::dim::{Dim, Point, add, corner, scale, voxel_around};
 use crate::ids::{ElementId, NodeId};
@@ -38,8 +38,7 @@ impl<D: Dim> Mesh<D> {
             }
             let (node, is_new) = self.node_id(node, sharing.index(at));
             if let (true, Some(past)) = (is_new, &mut past) {
-                let from = past.shares(self, voxel_around::<D>(at, octant), at)?;
-                past.inherited.push(Inheritance { node, from });
+                past.inherit(self, node, voxel_around::<D>(at, octant), at)?;
             }
             slots |= 1 << slot;
             seated[count] = node;
