@@ -86,11 +86,16 @@ impl Captives {
             piece.high = [0, 1, 2, 3].map(|axis: usize| piece.high[axis].max(centre[axis]));
         }
         let placed = |&place: &u32| (place, own(&pieces, place), spheres.centres[place as usize]);
-        let placed: Vec<(u32, u32, Row)> = small.iter().map(placed).collect();
+        let mut placed: Vec<(u32, u32, Row)> = small.iter().map(placed).collect();
+        // In the order in which a box is passed along the first axis; who is nowhere is in no box.
+        placed.retain(|(.., centre)| centre[0].is_finite());
+        placed.sort_unstable_by(|(.., a), (.., b)| a[0].total_cmp(&b[0]));
         let mut near: Vec<u32> = Vec::new();
         for piece in { pieces.iter_mut().flatten() }.filter(|piece| piece.has_inner) {
             piece.has_inner = false;
-            for &(place, count, centre) in &placed {
+            let first = placed.partition_point(|(.., centre)| centre[0] < piece.low[0]);
+            let within = |&&(.., centre): &&(u32, u32, Row)| centre[0] <= piece.high[0];
+            for &(place, count, centre) in placed[first..].iter().take_while(within) {
                 if count < piece.count && piece.encloses(centre) {
                     piece.has_inner = true;
                     near.push(place);
