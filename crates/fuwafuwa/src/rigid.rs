@@ -206,7 +206,7 @@ impl Rigid {
         )?;
         if self.is_driven() {
             let [low, high] = self.form.bounds();
-            let (field, expected) = (self.form.size_field(), "at most 1e6 m, from the origin");
+            let (field, expected) = ("shape", "one that ends within 1e6 m of its middle");
             (is_place(low) && is_place(high))
                 .then_some(())
                 .ok_or(BadRigid { field, expected })?;

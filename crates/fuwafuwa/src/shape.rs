@@ -151,15 +151,6 @@ impl Shape {
         }
     }
 
-    /// The field that says how large it is.
-    pub(crate) fn size_field(&self) -> &'static str {
-        match self {
-            Self::HalfSpace { .. } => "normal",
-            Self::Box { .. } => "half",
-            Self::Capsule { .. } | Self::Ball { .. } => "radius",
-        }
-    }
-
     /// Radius of the largest ball that fits into it [m].
     pub fn inradius(&self) -> f32 {
         match *self {

@@ -178,7 +178,7 @@ impl HandText {
         let added = world.add_rigid(hand);
         added
             .map(|_| ())
-            .map_err(|reason| Wrong::new("radius", reason))
+            .map_err(|reason| Wrong::new("shape", reason))
     }
 
     /// Its shape, where it would be if its goal were the origin.
