@@ -215,15 +215,13 @@ impl Contacts {
             let others = rigids.placed();
             for (other, rigid) in others.filter(|&(at, rigid)| at < place || !rigid.is_driven()) {
                 let inverse_mass = hand.inverse_mass() + rigid.inverse_mass();
-                let (gap, normal) = hand.shape().gap(rigid.shape());
                 let relative = minus(as_row(hand.velocity()), as_row(rigid.velocity()));
+                if inverse_mass == 0.0 || !relative.iter().all(|k| k.is_finite()) {
+                    continue;
+                }
+                let (gap, normal) = hand.shape().gap(rigid.shape());
                 // What is not finite touches nothing.
-                let is_finite = relative.iter().all(|k| k.is_finite());
-                if inverse_mass == 0.0
-                    || !is_finite
-                    || gap >= hand.shape().inradius()
-                    || gap.is_nan()
-                {
+                if gap.is_nan() || gap >= hand.shape().inradius() {
                     continue;
                 }
                 let friction = match rigid.is_driven() {

@@ -172,8 +172,7 @@ impl Rigid {
     /// [`BadRigid`] names the first field that is out of range.
     pub fn check(&self) -> Result<(), BadRigid> {
         let within = |field, k: f32, low: f32, high: f32, expected| {
-            let good = k >= low && k <= high;
-            good.then_some(()).ok_or(BadRigid { field, expected })
+            require(k >= low && k <= high, field, expected)
         };
         let (tiny, huge) = (f32::MIN_POSITIVE, f32::MAX);
         let places = [
@@ -183,20 +182,14 @@ impl Rigid {
             ("position", self.position_before),
         ];
         for (field, place) in places {
-            let expected = "within 1e6 m of the origin";
-            is_place(place)
-                .then_some(())
-                .ok_or(BadRigid { field, expected })?;
+            require(is_place(place), field, "within 1e6 m of the origin")?;
         }
-        let (field, expected) = ("velocity", "finite");
-        (self.velocity.iter().all(|k| k.is_finite()))
-            .then_some(())
-            .ok_or(BadRigid { field, expected })?;
+        let is_finite = self.velocity.iter().all(|k| k.is_finite());
+        require(is_finite, "velocity", "finite")?;
         self.form.check()?;
-        let (field, expected) = ("shape", "what it is at the origin, moved to its position");
-        (self.shape == self.form.moved(self.position))
-            .then_some(())
-            .ok_or(BadRigid { field, expected })?;
+        let is_moved = self.shape == self.form.moved(self.position);
+        let expected = "what it is at the origin, moved to its position";
+        require(is_moved, "shape", expected)?;
         within(
             "friction",
             self.friction,
@@ -205,11 +198,8 @@ impl Rigid {
             "0 or more, and finite",
         )?;
         if self.is_driven() {
-            let [low, high] = self.form.bounds();
-            let (field, expected) = ("shape", "one that ends within 1e6 m of its middle");
-            (is_place(low) && is_place(high))
-                .then_some(())
-                .ok_or(BadRigid { field, expected })?;
+            let ends = self.form.bounds().into_iter().all(is_place);
+            require(ends, "shape", "one that ends within 1e6 m of its middle")?;
         }
         match self.drive {
             Drive::Fixed | Drive::Kinematic => Ok(()),
@@ -264,13 +254,8 @@ impl Rigid {
 
     /// Sends it to a goal [m]; the third coordinate does not count in the plane.
     pub(crate) fn send<D: Dim>(&mut self, goal: Vector) -> Result<(), BadRigid> {
-        let checks = [
-            (self.is_driven(), "drive", "one that follows a goal"),
-            (is_place(goal), "goal", "within 1e6 m of the origin"),
-        ];
-        for (is_good, field, expected) in checks {
-            is_good.then_some(()).ok_or(BadRigid { field, expected })?;
-        }
+        require(self.is_driven(), "drive", "one that follows a goal")?;
+        require(is_place(goal), "goal", "within 1e6 m of the origin")?;
         self.goal[..D::N].copy_from_slice(&goal[..D::N]);
         Ok(())
     }
@@ -361,6 +346,10 @@ impl Rigid {
         self.position = position;
         self.shape = self.form.moved(position);
     }
+}
+
+fn require(good: bool, field: &'static str, expected: &'static str) -> Result<(), BadRigid> {
+    good.then_some(()).ok_or(BadRigid { field, expected })
 }
 
 /// Whether something rigid or its goal may be there.
