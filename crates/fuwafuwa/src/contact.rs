@@ -146,21 +146,27 @@ impl Contacts {
         let friction = |body: Option<&Body<D>>| body.map_or(0.0, Body::friction);
         let frictions: Vec<f32> = bodies.places().map(friction).collect();
         let (all, captives) = (&nearby.spheres, &nearby.captives);
+        let widths = bodies.placed().map(|(_, body)| body.truth.grid.voxel_size());
+        let widest = widths.fold(0.0, f32::max);
         let shares = threads::shares(&mut nearby.pairs.list);
         let found = threads::map(shares, |(first, pairs)| {
             let (mut contacts, mut hits) = (Vec::new(), Vec::new());
             for (pair, place) in pairs.iter_mut().zip(first..) {
                 let [a, b] = pair.spheres.map(|place| place as usize);
-                let both = pair.both(&all.list);
                 let apart = minus(all.centres[a], all.centres[b]);
                 let squared = inner::<D>(apart, apart);
-                let touching = both[0].radius + both[1].radius;
-                let furthest = (1.0 + MARGIN) * touching;
-                if squared > furthest * furthest {
+                let is_beyond = |touching: f32| {
+                    let furthest = (1.0 + MARGIN) * touching;
+                    squared > furthest * furthest
+                };
+                let both = pair.both(&all.list);
+                // Most are so far apart that nothing more need be read of them.
+                if is_beyond(widest) || is_beyond(both[0].radius + both[1].radius) {
                     pair.met_in_front = false;
                     pair.impulse.release();
                     continue;
                 }
+                let touching = both[0].radius + both[1].radius;
                 if captives.is_inside(pair.spheres, both) {
                     // What came out is not to be drawn in again.
                     pair.met_in_front = true;

@@ -272,20 +272,18 @@ impl Spheres {
     pub fn note_close(&mut self, close: impl Iterator<Item = u32>) {
         let was_close = self.is_close.clone();
         self.is_close.fill(false);
+        close.for_each(|place| self.is_close[place as usize] = true);
         self.close.clear();
-        for place in close {
-            let is_close = &mut self.is_close[place as usize];
-            if !*is_close && !self.list[place as usize].asleep {
-                *is_close = true;
-                self.close.push(place);
+        let all = self.is_close.iter_mut().zip(&self.list).zip(&mut self.moved);
+        for (place, ((is_close, sphere), moved)) in all.enumerate().filter(|(_, all)| *all.0.0) {
+            *is_close = !sphere.asleep;
+            if *is_close {
+                self.close.push(place as u32);
+            }
+            if *is_close && !was_close[place] {
+                *moved = 0.0;
             }
         }
-        for &place in &self.close {
-            if !was_close[place as usize] {
-                self.moved[place as usize] = 0.0;
-            }
-        }
-        self.close.sort_unstable();
     }
 
     /// Moves all that are awake along with the bodies.
