@@ -30,8 +30,8 @@
 //!
 //! Both engines run in one process, on one thread, a frame of the one and a frame of the other in turns. Times are
 //! processor time of `World::step` and `PhysicsWorld::step` alone. fuwafuwa gets as many substeps as its stiffness asks
-//! for, so that it is never softened. Rapier gets as few as it can do with and not be squashed more than 2 percentage points
-//! deeper.
+//! for, so that it is never softened, and no more, down to the eight that any world has. Rapier gets as few as it can do
+//! with and not be squashed more than 2 percentage points deeper.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 // Units stand in brackets: [m].

@@ -1,12 +1,13 @@
 //! The same scenes in fuwafuwa.
 
 use fuwafuwa::law::Elasticity;
+use fuwafuwa::world::{FEWEST_SUBSTEPS, TICK};
 use fuwafuwa::{Body, Dim, Material, Rigid, Settings, Shape, VoxelGrid, World};
 
 use crate::world::{Falling, Span};
 use crate::{Drop, Result, WIDTH};
 
-/// So many that nothing is softened, see [`Body::stiffness_scale`].
+/// What the settings of a world allow.
 const MOST_SUBSTEPS: u32 = 1024;
 
 /// A body without damping and strong enough for anything, above a half-space.
@@ -22,14 +23,16 @@ pub fn world<D: Dim>(scene: &Drop) -> Result<World<D>> {
         strength: f32::INFINITY,
         ..Material::default()
     };
+    let body = Body::new(VoxelGrid::<D>::ball(scene.n, WIDTH)?, &[material])?;
+    // As few as leave it unsoftened, see [`Body::stiffness_scale`].
+    let asked = (f64::from(TICK) / body.longest_substep()).ceil() as u32;
     let mut world = World::<D>::new(Settings {
         gravity: [0.0, -scene.gravity, 0.0],
         drag: 0.0,
-        most_substeps: MOST_SUBSTEPS,
+        most_substeps: asked.clamp(FEWEST_SUBSTEPS, MOST_SUBSTEPS),
     })?;
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
     world.add_rigid(Rigid::fixed(floor, scene.friction))?;
-    let body = Body::new(VoxelGrid::<D>::ball(scene.n, WIDTH)?, &[material])?;
     let lowest = span(&body).lowest;
     world.add_body(body.moved([0.0, scene.height - lowest, 0.0]));
     Ok(world)

@@ -12,8 +12,9 @@ use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, Rigid, Settings, Shape, VoxelGri
 const BODIES: usize = 10;
 const VOXELS: usize = 4;
 const WIDTH: f32 = 0.1;
-/// Stiff enough that the lowest is squeezed by no more than some 2 % [Pa].
-const YOUNG: f64 = 5e4;
+/// Stiff enough that a column as high as the stack would not buckle under its own weight [Pa]: that takes
+/// ρ g A h³ / (7.84 I) [Greenhill 1881], which is 1.5e5 here.
+const YOUNG: f64 = 2.4e5;
 /// How long they stand, and from when on still [s].
 const DURATION: f32 = 60.0;
 const SETTLED: f32 = 5.0;
