@@ -146,7 +146,9 @@ impl Contacts {
         let friction = |body: Option<&Body<D>>| body.map_or(0.0, Body::friction);
         let frictions: Vec<f32> = bodies.places().map(friction).collect();
         let (all, captives) = (&nearby.spheres, &nearby.captives);
-        let widths = bodies.placed().map(|(_, body)| body.truth.grid.voxel_size());
+        let widths = bodies
+            .placed()
+            .map(|(_, body)| body.truth.grid.voxel_size());
         let widest = widths.fold(0.0, f32::max);
         let shares = threads::shares(&mut nearby.pairs.list);
         let found = threads::map(shares, |(first, pairs)| {

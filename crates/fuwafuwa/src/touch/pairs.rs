@@ -14,7 +14,7 @@
 use super::bins::Bins;
 use super::neighbours::Neighbours;
 use super::pair::{SpherePair, merge};
-use super::path::{Path, STRAY, Span, Traveller, widened};
+use super::path::{Path, STRAY, Span, Start, Traveller, widened};
 use super::spheres::{NONE, Spheres};
 use crate::body::Bodies;
 use crate::dim::Dim;
@@ -47,6 +47,9 @@ pub struct SpherePairs {
     /// By sphere.
     #[cfg_attr(feature = "serde", serde(skip))]
     paths: Vec<Path>,
+    /// Where they begin.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    starts: Vec<Start>,
     /// Where the middles of all paths are; nothing while all must be looked for.
     #[cfg_attr(feature = "serde", serde(skip))]
     bins: Option<Bins>,
@@ -97,6 +100,7 @@ impl SpherePairs {
     pub fn start_tick(&mut self, is_listed_anew: bool) {
         if is_listed_anew {
             self.bins = None;
+            self.starts.clear();
         }
         self.is_new_tick = true;
         for pair in &mut self.list {
@@ -164,13 +168,24 @@ impl SpherePairs {
         self.spare = spare;
     }
 
+    /// For so many spheres.
+    fn make_room(&mut self, count: usize) {
+        self.paths.resize(count, Path::default());
+        self.starts.resize(count, Start::UNKNOWN);
+    }
+
     /// Lays the path of a sphere anew from where it is.
     fn lay<D: Dim>(&mut self, place: u32, spheres: &Spheres, bodies: &Bodies<D>) {
+        let now = spheres.centres[place as usize];
+        let start = &mut self.starts[place as usize];
         let mut velocity = [0.0; 4];
         if !spheres.list[place as usize].asleep {
-            velocity = spheres.velocity(place, bodies);
+            velocity = start.expected(now, self.elapsed, spheres.velocity(place, bodies));
         }
-        let now = spheres.centres[place as usize];
+        *start = Start {
+            at: now,
+            time: self.elapsed,
+        };
         let from = minus(now, scaled(velocity, self.elapsed));
         self.paths[place as usize] = Path { from, velocity };
         let speed = length(velocity);
@@ -193,8 +208,11 @@ impl SpherePairs {
     fn find_all<D: Dim>(&mut self, spheres: &Spheres, bodies: &Bodies<D>) {
         let count = spheres.list.len();
         self.changed.clear();
+        self.make_room(count);
+        self.starts
+            .iter_mut()
+            .for_each(|start| start.time -= self.elapsed);
         (self.elapsed, self.pace) = (0.0, 0.0);
-        self.paths.resize(count, Path::default());
         (0..count as u32).for_each(|place| self.lay(place, spheres, bodies));
         self.measure(spheres);
         let bins = self.bin::<D>(spheres);
@@ -353,7 +371,7 @@ impl SpherePairs {
     /// Looks again for the pairs of some, given in ascending order; those of the others stay.
     fn find_again<D: Dim>(&mut self, changed: &[u32], spheres: &Spheres, bodies: &Bodies<D>) {
         let count = spheres.list.len();
-        self.paths.resize(count, Path::default());
+        self.make_room(count);
         self.loose_at.resize(count, NONE);
         let mut is_changed = vec![false; count];
         for &place in changed {

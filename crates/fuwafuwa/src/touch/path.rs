@@ -7,6 +7,10 @@ use crate::vector::{dot, minus, plus, scaled};
 /// How far a sphere may stray from its path, in voxels: more makes longer lists, less more looks.
 pub const STRAY: f32 = 0.35;
 
+/// A path goes on by this share as its sphere went on since its last one began, and else as it goes now: what swings
+/// comes back, and strays less so.
+const AS_BEFORE: f32 = 0.8;
+
 /// The way of a sphere while its pairs hold: a straight line.
 #[derive(Copy, Clone, Debug, Default)]
 pub struct Path {
@@ -21,6 +25,34 @@ impl Path {
     #[inline(always)]
     pub fn at(&self, time: f32) -> Row {
         plus(self.from, scaled(self.velocity, time))
+    }
+}
+
+/// Where a path was laid.
+#[derive(Copy, Clone, Debug)]
+pub struct Start {
+    /// [m]
+    pub at: Row,
+    /// As seen from when all were looked for [s]; no number if there was no path before.
+    pub time: f32,
+}
+
+impl Start {
+    pub const UNKNOWN: Self = Self {
+        at: [0.0; 4],
+        time: f32::NAN,
+    };
+
+    /// How fast a sphere is expected to go on that is here now [m], goes so fast [m/s], and began its last path at this
+    /// start: mostly as it went since.
+    pub fn expected(&self, here: Row, now: f32, velocity: Row) -> Row {
+        let passed = now - self.time;
+        if passed > 0.0 {
+            let mean = scaled(minus(here, self.at), 1.0 / passed);
+            plus(scaled(mean, AS_BEFORE), scaled(velocity, 1.0 - AS_BEFORE))
+        } else {
+            velocity
+        }
     }
 }
 

@@ -274,7 +274,11 @@ impl Spheres {
         self.is_close.fill(false);
         close.for_each(|place| self.is_close[place as usize] = true);
         self.close.clear();
-        let all = self.is_close.iter_mut().zip(&self.list).zip(&mut self.moved);
+        let all = self
+            .is_close
+            .iter_mut()
+            .zip(&self.list)
+            .zip(&mut self.moved);
         for (place, ((is_close, sphere), moved)) in all.enumerate().filter(|(_, all)| *all.0.0) {
             *is_close = !sphere.asleep;
             if *is_close {
