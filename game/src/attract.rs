@@ -23,6 +23,7 @@ pub fn attract(number: usize) -> Session {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::platform::Clock;
     use fuwafuwa::world::TICK;
     use tamaire_play::{InputFrame, Level, Route};
 
@@ -30,10 +31,10 @@ mod tests {
     fn what_was_recorded_still_goes_as_it_went() {
         let classic = Level::open("classic").unwrap();
         for (number, route) in [Route::Squeeze, Route::Shave].into_iter().enumerate() {
-            let mut session = attract(number);
+            let (mut session, clock) = (attract(number), Clock::of_machine());
             assert_eq!(session.round().level().hash(), classic.hash());
             while !session.is_over() {
-                session.advance(TICK, |_| InputFrame::default(), |_| {});
+                session.advance(TICK, &clock, |_| InputFrame::default(), |_| {});
                 assert!(session.take_complaint().is_none(), "{route:?}");
             }
             let outcome = session.round().progress().outcome.unwrap();

@@ -11,7 +11,7 @@ pub mod trial;
 use crate::attract::attract;
 use crate::input::{Action, Devices, Means, Players, Seat};
 use crate::look::{Camera, Effects, Opening, Theme, View};
-use crate::platform::{Files, Forces, Pads, SavedReplay, Sound};
+use crate::platform::{Clock, Files, Forces, Pads, SavedReplay, Sound};
 use crate::records::Records;
 use crate::session::Session;
 use crate::settings::Settings;
@@ -95,7 +95,9 @@ pub struct Game {
     /// What the player should know, and for how long [s].
     pub notices: Vec<(String, f32)>,
     /// Seconds since the game began.
-    pub time: f32,
+    pub time: f64,
+    /// Tells how long ticks take.
+    pub clock: Clock,
     /// An action whose key or button the next one pressed becomes.
     pub rebinding: Option<Action>,
     /// Whether the window has lost the focus.
@@ -149,6 +151,7 @@ impl Game {
             replays: Vec::new(),
             notices: Vec::new(),
             time: 0.0,
+            clock: Clock::of_machine(),
             rebinding: None,
             is_away: false,
             lesson: Lesson::default(),
@@ -407,6 +410,14 @@ impl Game {
             true => Means::Pad,
             false => Means::Stick,
         };
+    }
+
+    /// Whether the round is seen, if dimly: what is not goes on neither in time nor in sound.
+    pub fn is_seen(&self) -> bool {
+        !matches!(
+            self.screen,
+            Screen::Levels | Screen::Replays | Screen::Settings(_) | Screen::Forces(_)
+        )
     }
 
     /// Lets a round that people play stand still.

@@ -21,6 +21,7 @@ pub mod game;
 pub mod headless;
 pub mod input;
 pub mod look;
+pub mod pace;
 pub mod platform;
 pub mod records;
 pub mod screens;

@@ -1,19 +1,16 @@
 //! A round in time: played by people, tried by a bot, or watched again.
 
-use fuwafuwa::world::TICK;
+use crate::pace::Pace;
+use crate::platform::Clock;
 use std::sync::Arc;
 use tamaire_play::{AnyRound, InputFrame, Level, Playback, Replay, ReplayError};
-
-/// After a long frame no more ticks than this are caught up on; the rest of the time is dropped.
-const MOST_TICKS: u32 = 4;
 
 /// A round in time.
 pub struct Session {
     player: Player,
     /// The same level as somebody played it before, to race against.
     ghost: Option<Playback>,
-    /// Time that has passed and was not played yet [s].
-    owed: f32,
+    pace: Pace,
     /// Why a replay or a ghost was stopped.
     complaint: Option<ReplayError>,
 }
@@ -40,12 +37,11 @@ impl Session {
     }
 
     fn of(player: Player) -> Self {
-        let (ghost, owed, complaint) = (None, 0.0, None);
         Self {
             player,
-            ghost,
-            owed,
-            complaint,
+            ghost: None,
+            pace: Pace::default(),
+            complaint: None,
         }
     }
 
@@ -96,25 +92,22 @@ impl Session {
         self.complaint.take()
     }
 
-    /// Lets `seconds` pass, a whole number of ticks of them. `wish` says what people want, in the
-    /// very tick in which it counts; `seen` looks at the round after each tick.
+    /// Lets `seconds` pass, a whole number of ticks of them, and fewer where the `clock` says that they take too
+    /// long. `wish` says what people want, in the very tick in which it counts; `seen` looks at the round after each
+    /// tick.
     pub fn advance(
         &mut self,
         seconds: f32,
+        clock: &Clock,
         mut wish: impl FnMut(&AnyRound) -> InputFrame,
         mut seen: impl FnMut(&AnyRound),
     ) {
-        self.owed += seconds;
-        let mut ticks = 0;
-        while self.owed >= TICK {
-            self.owed -= TICK;
-            if ticks == MOST_TICKS {
-                self.owed = 0.0;
-                break;
-            }
-            ticks += 1;
+        self.pace.begin(seconds.into());
+        while self.pace.is_due() {
+            let began = clock.now();
             self.tick(&mut wish);
             seen(self.round());
+            self.pace.note(clock.now() - began);
         }
     }
 

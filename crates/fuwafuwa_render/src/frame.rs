@@ -22,10 +22,18 @@ pub struct Frame<'a, C = Camera> {
     /// A world whose bodies and hands are seen through, in space.
     pub ghost: Option<&'a World<Dim3>>,
     /// A clock for slow motion that means nothing, like the march of dashes [s].
-    pub seconds: f32,
+    pub seconds: f64,
 }
 
+/// After so long all that moves by the clock is where it was [s]: the shaders count in single precision.
+const CYCLE: f64 = 16.0;
+
 impl<'a, C> Frame<'a, C> {
+    /// The clock as the shaders have it [s].
+    pub(crate) fn phase(&self) -> f32 {
+        self.seconds.rem_euclid(CYCLE) as f32
+    }
+
     /// The skin of a world as it stands, and nothing beside it.
     pub fn new(camera: C, theme: &'a Theme) -> Self {
         Self {

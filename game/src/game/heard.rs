@@ -33,7 +33,8 @@ pub(super) fn soundscape(game: &Game) -> Soundscape {
         music: true,
         hush: match game.screen {
             _ if game.is_away => Hush::Everything,
-            Screen::Paused | Screen::Settings(_) | Screen::Forces(_) | Screen::Title => Hush::World,
+            Screen::Paused | Screen::Title => Hush::World,
+            _ if !game.is_seen() => Hush::World,
             _ => Hush::Nothing,
         },
     }

@@ -14,15 +14,12 @@ const SLOW: f32 = 0.2;
 impl Game {
     /// Lets `seconds` pass.
     pub fn pass(&mut self, seconds: f32) {
-        self.time += seconds;
+        self.time += f64::from(seconds);
         for notice in &mut self.notices {
             notice.1 -= seconds;
         }
         self.notices.retain(|notice| notice.1 > 0.0);
-        let runs = !matches!(
-            self.screen,
-            Screen::Paused | Screen::Settings(_) | Screen::Forces(_)
-        ) && !self.stepping;
+        let runs = self.is_seen() && self.screen != Screen::Paused && !self.stepping;
         let pace = if self.slow { SLOW } else { 1.0 } * self.settings.speed;
         if runs {
             self.pass_ticks(seconds * pace);
@@ -85,10 +82,12 @@ impl Game {
             camera,
             sound,
             forces,
+            clock,
             ..
         } = self;
         session.advance(
             seconds,
+            clock,
             |round| {
                 is_heard = true;
                 if !in_round {
@@ -160,5 +159,66 @@ impl Game {
     /// Whether a body that is in has beamed for long enough.
     pub fn has_cheered(&self) -> bool {
         self.cheered >= CHEER
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::platform::{Clock, Files, Pads, Sound};
+    use std::cell::Cell;
+
+    /// A game in its first level, on a machine that takes so long for a tick [s].
+    fn game(tick: f64) -> Game {
+        let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
+        let now = Cell::new(0.0);
+        game.clock = Clock::of(move || {
+            now.set(now.get() + tick);
+            now.get()
+        });
+        game.start(0);
+        game
+    }
+
+    fn ticks_in(game: &mut Game, seconds: f32) -> u64 {
+        let before = game.session.round().ticks();
+        game.pass(seconds);
+        game.session.round().ticks() - before
+    }
+
+    #[test]
+    fn a_slow_machine_plays_a_tick_a_frame() {
+        let mut quick = game(0.001);
+        assert_eq!(ticks_in(&mut quick, 0.051), 3);
+        let mut slow = game(0.04);
+        for _ in 0..5 {
+            assert_eq!(ticks_in(&mut slow, 0.05), 1);
+        }
+    }
+
+    #[test]
+    fn what_is_not_seen_stands_still() {
+        let mut game = game(0.001);
+        for screen in [
+            Screen::Levels,
+            Screen::Replays,
+            Screen::Settings(Box::new(Screen::Title)),
+            Screen::Forces(Box::new(Screen::Title)),
+            Screen::Paused,
+        ] {
+            game.go(Screen::Title);
+            assert_eq!(ticks_in(&mut game, 0.02), 1, "what plays by itself is seen");
+            game.go(screen.clone());
+            assert_eq!(ticks_in(&mut game, 0.05), 0, "{screen:?}");
+        }
+    }
+
+    #[test]
+    fn after_weeks_time_passes_as_on_the_first_day() {
+        let mut game = game(0.001);
+        game.time = 60.0 * 86_400.0;
+        let before = game.time;
+        (0..144).for_each(|_| game.pass(1.0 / 144.0));
+        assert!((game.time - before - 1.0).abs() < 1e-4);
     }
 }

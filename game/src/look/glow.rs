@@ -20,7 +20,7 @@ pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &Look) {
         let breath = if look.still {
             0.5
         } else {
-            0.5 + 0.5 * (5.0 * look.time).sin()
+            0.5 + 0.5 * (5.0 * look.time).sin() as f32
         };
         for obstacle in round.world().obstacles() {
             shine(painter, view, *obstacle.shape(), 0.55 + 0.45 * breath);

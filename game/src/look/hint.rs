@@ -7,7 +7,7 @@ use fuwafuwa::{Dim, Dim2, Dim3, Rigid, Vector};
 use tamaire_play::Round;
 
 /// How long it takes from the hand to the basket [s].
-const ROUND_TRIP: f32 = 3.2;
+const ROUND_TRIP: f64 = 3.2;
 
 /// Draws it.
 pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &Look) {
@@ -47,7 +47,7 @@ fn draw_ring(painter: &Painter, hand: &Rigid, look: &Look) {
     let wave = if look.still {
         0.4
     } else {
-        (0.8 * look.time).rem_euclid(1.0)
+        (0.8 * look.time).rem_euclid(1.0) as f32
     };
     for late in [0.0, 0.5] {
         let wave = (wave + late).rem_euclid(1.0);
@@ -74,7 +74,7 @@ fn draw_way(painter: &Painter, round: &Round<Dim2>, from: Vector, hand: f32, loo
     let time = if look.still {
         0.62
     } else {
-        (look.time / ROUND_TRIP).rem_euclid(1.0)
+        (look.time / ROUND_TRIP).rem_euclid(1.0) as f32
     };
     let part = |low: f32, high: f32| smooth(((time - low) / (high - low)).clamp(0.0, 1.0));
     let reach = part(0.06, 0.34);
@@ -158,7 +158,7 @@ fn draw_arrows(painter: &Painter, view: &View, from: Vec2, to: Vec2, strength: f
     let march = if look.still {
         0.0
     } else {
-        (1.2 * look.time).rem_euclid(1.0)
+        (1.2 * look.time).rem_euclid(1.0) as f32
     };
     let count = (from.distance(to) / (3.2 * size)).floor().max(1.0);
     for step in 0..count as usize {

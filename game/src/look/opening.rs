@@ -12,14 +12,14 @@ const FEWEST: f32 = 0.05;
 #[derive(Copy, Clone, Debug, Default)]
 pub struct Opening {
     /// When it began, in seconds of the game.
-    since: f32,
+    since: f64,
     /// How much somebody wants to be left of a body, 0 to 1.
     wish: Option<f32>,
 }
 
 impl Opening {
     /// Begins with whole bodies.
-    pub fn begin(time: f32) -> Self {
+    pub fn begin(time: f64) -> Self {
         Self {
             since: time,
             wish: None,
@@ -27,8 +27,8 @@ impl Opening {
     }
 
     /// How much of a body is left, 0 to 1; `still` = with reduced motion.
-    pub fn share(&self, time: f32, still: bool) -> f32 {
-        let swing = 0.5 + 0.5 * (TAU * (time - self.since) / PERIOD).cos();
+    pub fn share(&self, time: f64, still: bool) -> f32 {
+        let swing = 0.5 + 0.5 * (TAU * (time - self.since) as f32 / PERIOD).cos();
         let by_itself = if still {
             0.5
         } else {
@@ -38,7 +38,7 @@ impl Opening {
     }
 
     /// Somebody takes it, and cuts off more.
-    pub fn cut(&mut self, more: f32, time: f32, still: bool) {
+    pub fn cut(&mut self, more: f32, time: f64, still: bool) {
         let share = self.share(time, still) - more;
         self.wish = Some(share.clamp(FEWEST, 1.0));
     }
@@ -52,7 +52,7 @@ mod tests {
     fn it_opens_by_itself_until_somebody_takes_it() {
         let mut opening = Opening::begin(10.0);
         assert_eq!(opening.share(10.0, false), 1.0);
-        assert!((opening.share(10.0 + 0.5 * PERIOD, false) - LEAST).abs() < 1e-3);
+        assert!((opening.share(10.0 + 0.5 * f64::from(PERIOD), false) - LEAST).abs() < 1e-3);
         opening.cut(0.2, 10.0, false);
         assert_eq!(opening.share(13.0, false), 0.8);
         opening.cut(9.0, 13.0, false);

@@ -18,7 +18,7 @@ pub struct Look<'a> {
     /// What flies about.
     pub effects: &'a Effects,
     /// Seconds since the game began, for blinking.
-    pub time: f32,
+    pub time: f64,
     /// The same level as somebody played it before.
     pub ghost: Option<&'a AnyRound>,
     /// Whether to show what the hand could do, until it moves.

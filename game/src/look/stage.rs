@@ -27,7 +27,7 @@ pub struct Stage {
     /// The level of the round that `ages` follows, and how far it had come [ticks].
     followed: Option<(Arc<Level>, u64)>,
     maps: Maps,
-    time: f32,
+    time: f64,
 }
 
 /// Puts the picture that a renderer made ready into egui's pass.
@@ -159,7 +159,7 @@ impl Stage {
             self.ages = Ages::default();
         }
         self.followed = Some((round.level().clone(), ticks));
-        let seconds = (look.time - self.time).max(0.0);
+        let seconds = (look.time - self.time).max(0.0) as f32;
         self.ages.follow(round.world(), seconds);
         self.time = look.time;
     }
@@ -228,7 +228,7 @@ fn faces<D: Dim>(round: &Round<D>, look: &Look) -> Vec<Face> {
     };
     let face = |(number, feeling): (usize, &Feeling)| {
         // Blinks every four seconds or so, not all at once.
-        let phase = (look.time + 1.3 * number as f32).rem_euclid(3.7);
+        let phase = (look.time + 1.3 * number as f64).rem_euclid(3.7) as f32;
         let hands = round.hands().map(|hand| hand.position());
         let away = |hand: &Vector| length(minus(*hand, feeling.at));
         let nearest = hands.min_by(|a, b| away(a).total_cmp(&away(b)));

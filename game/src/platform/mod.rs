@@ -1,6 +1,7 @@
 //! What differs between a desktop and a browser: where things are kept, how sound comes out, which
 //! sticks can be read and felt. Nothing else in the game knows on which it runs.
 
+mod clock;
 mod files;
 mod forces;
 #[cfg(not(target_family = "wasm"))]
@@ -10,6 +11,7 @@ mod sound;
 mod sound;
 mod sticks;
 
+pub use clock::Clock;
 pub use files::{Files, SavedReplay};
 pub use forces::Forces;
 pub use sound::Sound;

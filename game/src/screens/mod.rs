@@ -21,7 +21,9 @@ use egui::{Color32, FontId, Rect, Ui, pos2, vec2};
 
 /// Shows the screen that is on.
 pub fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
-    play::world(game, stage, ui);
+    if game.is_seen() {
+        play::world(game, stage, ui);
+    }
     match game.screen.clone() {
         Screen::Title => title::show(game, ui),
         Screen::Levels => levels::show(game, stage, ui),

@@ -14,7 +14,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     let bob = if game.settings.reduced_motion {
         0.0
     } else {
-        6.0 * (1.6 * game.time).sin()
+        6.0 * (1.6 * game.time).sin() as f32
     };
     let mut wanted = None;
     column(ui, 340.0, ACROSS, |ui| {

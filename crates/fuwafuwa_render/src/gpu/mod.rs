@@ -210,7 +210,7 @@ impl Renderer {
             view: [middle[0], middle[1], camera.height, window[0] / window[1]],
             size: [size[0], size[1], window[0], window[1]],
             tune: [
-                frame.seconds,
+                frame.phase(),
                 rigid.walls.len() as f32,
                 flag(self.format.is_srgb()),
                 flag(frame.look == Look::Skin),

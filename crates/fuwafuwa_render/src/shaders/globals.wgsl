@@ -21,6 +21,8 @@ struct Globals {
 }
 @group(0) @binding(0) var<uniform> globals: Globals;
 
+// Five breaths in the sixteen seconds after which the clock begins anew [rad/s].
+const BREATHS = 1.9634954;
 const LIGHT = vec3f(-0.47, 0.62, 0.63);
 
 // To the coordinates of the picture, -1 to 1.

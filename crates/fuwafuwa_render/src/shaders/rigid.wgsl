@@ -134,7 +134,7 @@ fn dashes(at: vec2f, in: ShapeCorner) -> f32 {
 @fragment
 fn glow(in: ShapeCorner) -> @location(0) vec4f {
     let distance = distance_to(in.at, in);
-    let breath = 0.5 + 0.5 * sin(2.0 * globals.tune.x);
+    let breath = 0.5 + 0.5 * sin(BREATHS * globals.tune.x);
     let strength = 0.30 + 0.06 * breath + 0.3 * in.form.z;
     let edge = exp(-abs(distance) / 0.05);
     if distance > 0.0 {

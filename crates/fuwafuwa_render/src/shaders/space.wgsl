@@ -26,6 +26,8 @@ struct Globals {
 }
 @group(0) @binding(0) var<uniform> globals: Globals;
 
+// Five breaths in the sixteen seconds after which the clock begins anew [rad/s].
+const BREATHS = 1.9634954;
 const LIGHT = vec3f(-0.42, 0.80, 0.45);
 
 // A triangle that covers the picture.

@@ -189,7 +189,7 @@ fn glow(in: RoundedCorner, @builtin(front_facing) is_front: bool) -> @location(0
     let least = min(beyond.x, min(beyond.y, beyond.z));
     let most = max(beyond.x, max(beyond.y, beyond.z));
     let edge = beyond.x + beyond.y + beyond.z - least - most;
-    let breath = 0.5 + 0.5 * sin(2.0 * globals.tune.x);
+    let breath = 0.5 + 0.5 * sin(BREATHS * globals.tune.x);
     let strength = 0.10 + 0.03 * breath + 0.22 * in.number;
     var along = in.own.x;
     if beyond.y == most {

@@ -213,7 +213,7 @@ impl Renderer {
             eye: four(camera.eye(), 0.0),
             look: four(camera.target, camera.distance),
             tune: [
-                frame.seconds,
+                frame.phase(),
                 self.geometry.walls.len() as f32,
                 0.0,
                 hand_count,
