@@ -7,6 +7,7 @@ mod presses;
 use crate::game::{Game, Screen};
 use crate::input::{Action, Means, Seat};
 use crate::look::Stage;
+use crate::platform::GpuWatch;
 use crate::screens;
 use egui::{Event, Key};
 use fingers::Fingers;
@@ -37,6 +38,8 @@ const OF_MENUS: [Key; 8] = [
 pub struct App {
     /// Its state.
     pub game: Game,
+    /// An eye on what it is drawn with.
+    pub gpu: GpuWatch,
     stage: Stage,
     navigators: Vec<(sticks::DeviceId, Navigator)>,
     presses: Presses,
@@ -52,19 +55,21 @@ pub struct App {
 pub struct NoGpu;
 
 impl App {
-    /// The game in a window of eframe's.
+    /// The game in a window of eframe's, which closes when its GPU is lost.
     ///
     /// # Errors
     /// When the window has no GPU, not even one in software.
     pub fn new(context: &eframe::CreationContext, game: Game) -> Result<Self, NoGpu> {
         dress(&context.egui_ctx);
-        let stage = Stage::new(context.wgpu_render_state.as_ref().ok_or(NoGpu)?);
+        let state = context.wgpu_render_state.as_ref().ok_or(NoGpu)?;
+        let (stage, gpu) = (Stage::new(state), GpuWatch::of(state));
         let screen_before = game.screen.clone();
         let navigators = Vec::new();
         let presses = Presses::default();
         context.egui_ctx.add_plugin(presses.clone());
         Ok(Self {
             game,
+            gpu,
             stage,
             navigators,
             presses,
@@ -245,6 +250,13 @@ impl App {
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
+        if self.gpu.is_lost() {
+            // Nothing is drawn any more; the round may be watched later.
+            if self.game.is_in_round() {
+                self.game.keep_replay();
+            }
+            return ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
         fit(&ctx, self.game.settings.text_size);
         let seconds = ctx.input(|input| input.stable_dt).min(0.1);
         self.hear_sticks(&ctx, seconds);

@@ -3,11 +3,14 @@
 use crate::app::App;
 use crate::game::Game;
 use crate::headless;
-use crate::platform::{Files, Pads, Sound};
+use crate::platform::{Files, GpuWatch, Pads, Sound};
 use clap::Parser;
+use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-use std::path::PathBuf;
-use std::process::ExitCode;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+use std::rc::Rc;
+use std::time::{Duration, Instant};
 use tamaire_play::Level;
 
 /// Push a soft body into a basket that is too small for it.
@@ -100,8 +103,56 @@ fn trouble(error: &eframe::Error) -> String {
     }
 }
 
-/// Opens the window and returns when it is closed.
+/// Whose GPU is lost so soon does not begin anew: it would be lost again and again.
+const LEAST_LIFE: Duration = Duration::from_secs(10);
+
+/// Opens the window and returns when it is closed. When its GPU is lost the program begins anew: no window system lets
+/// go of a window that broke down.
 fn show(file: Option<PathBuf>, mute: bool, is_open: &mut bool) -> eframe::Result {
+    let gpu = Rc::new(RefCell::new(None::<GpuWatch>));
+    let began = Instant::now();
+    // What is left of a lost GPU makes the window panic.
+    let closed = catch_unwind(AssertUnwindSafe(|| {
+        open_window(file, mute, gpu.clone(), is_open)
+    }));
+    let is_lost = gpu.take().is_some_and(|gpu| gpu.tried_is_lost());
+    match closed {
+        _ if is_lost && began.elapsed() > LEAST_LIFE => {
+            eprintln!("tamaire: the GPU was lost; the game begins anew");
+            Err(eframe::Error::AppCreation(Box::new(begin_anew())))
+        }
+        Ok(closed) => closed,
+        Err(panic) => resume_unwind(panic),
+    }
+}
+
+/// Puts the same program with the same arguments in the place of this one; returns why that cannot be.
+#[cfg(unix)]
+fn begin_anew() -> std::io::Error {
+    use std::os::unix::process::CommandExt;
+    std::env::current_exe().map_or_else(|error| error, |program| again(&program).exec())
+}
+
+/// The same elsewhere: this one ends, another one begins.
+#[cfg(not(unix))]
+fn begin_anew() -> std::io::Error {
+    let begun = std::env::current_exe().and_then(|program| again(&program).spawn());
+    begun.map_or_else(|error| error, |_| std::process::exit(0))
+}
+
+fn again(program: &Path) -> Command {
+    let mut command = Command::new(program);
+    command.args(std::env::args_os().skip(1));
+    command
+}
+
+/// Opens the window and returns when it is closed.
+fn open_window(
+    file: Option<PathBuf>,
+    mute: bool,
+    gpu: Rc<RefCell<Option<GpuWatch>>>,
+    is_open: &mut bool,
+) -> eframe::Result {
     let options = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("玉入れ tamaire")
@@ -119,6 +170,7 @@ fn show(file: Option<PathBuf>, mute: bool, is_open: &mut bool) -> eframe::Result
                 game.open(file);
             }
             let app = App::new(context, game)?;
+            gpu.replace(Some(app.gpu.clone()));
             *is_open = true;
             Ok(Box::new(app))
         }),

@@ -420,6 +420,12 @@ impl Game {
         )
     }
 
+    /// Whether people are in the middle of a round.
+    pub fn is_in_round(&self) -> bool {
+        let is_on = matches!(self.screen, Screen::Play | Screen::Paused);
+        is_on && self.session.is_played() && !self.session.is_over()
+    }
+
     /// Lets a round that people play stand still.
     pub fn rest(&mut self) {
         if self.screen == Screen::Play && self.session.is_played() {

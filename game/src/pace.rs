@@ -123,7 +123,10 @@ mod tests {
             // Else it takes what there is: no time goes by idly, and a frame is a tick and its picture.
             let cost = 1e-3 * f64::from(cost);
             assert!(seen.longest < (1.25 * cost).max(BUDGET) + 4e-3, "{told}");
-            assert!(seen.speed > 0.9 * (f64::from(TICK) / (cost + 3e-3)).min(1.0), "{told}");
+            assert!(
+                seen.speed > 0.9 * (f64::from(TICK) / (cost + 3e-3)).min(1.0),
+                "{told}"
+            );
             assert!(seen.uneven < 0.15, "{told}");
             // No cliff.
             if let Some(before) = before {
@@ -138,7 +141,11 @@ mod tests {
     fn a_fast_screen_and_a_slow_picture_change_no_speed() {
         for (picture, rate) in [(1e-3, 144.0), (3e-3, 50.0), (15e-3, 60.0), (25e-3, 60.0)] {
             let seen = minute(4e-3, picture, rate);
-            assert!((seen.speed - 1.0).abs() < 0.02, "{picture} {rate}: {}", seen.speed);
+            assert!(
+                (seen.speed - 1.0).abs() < 0.02,
+                "{picture} {rate}: {}",
+                seen.speed
+            );
         }
     }
 

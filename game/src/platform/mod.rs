@@ -4,6 +4,7 @@
 mod clock;
 mod files;
 mod forces;
+mod gpu;
 #[cfg(not(target_family = "wasm"))]
 mod sound;
 #[cfg(target_family = "wasm")]
@@ -14,5 +15,6 @@ mod sticks;
 pub use clock::Clock;
 pub use files::{Files, SavedReplay};
 pub use forces::Forces;
+pub use gpu::GpuWatch;
 pub use sound::Sound;
 pub use sticks::Pads;

@@ -1,0 +1,55 @@
+//! Whether the GPU is still there: a driver that starts anew, a laptop that wakes or a card that is pulled takes all
+//! that was on it along.
+
+use eframe::egui_wgpu::RenderState;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// An eye on a GPU.
+#[derive(Clone)]
+pub struct GpuWatch {
+    queue: wgpu::Queue,
+    /// Four bytes that tell whether anything can still be written.
+    probe: wgpu::Buffer,
+    is_lost: Arc<AtomicBool>,
+}
+
+impl GpuWatch {
+    /// On that of a window. What fails on it is told once, and does not end the game where it happens: to begin anew in
+    /// another window is all that helps.
+    pub fn of(state: &RenderState) -> Self {
+        let is_lost = Arc::new(AtomicBool::new(false));
+        let lost = is_lost.clone();
+        let device = &state.device;
+        device.set_device_lost_callback(move |_, _| lost.store(true, Ordering::Relaxed));
+        let failed = is_lost.clone();
+        device.on_uncaptured_error(Arc::new(move |error| {
+            if !failed.swap(true, Ordering::Relaxed) {
+                eprintln!("tamaire: the GPU failed: {error}");
+            }
+        }));
+        let probe = wgpu::BufferDescriptor {
+            label: Some("probe"),
+            size: wgpu::COPY_BUFFER_ALIGNMENT,
+            usage: wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        };
+        Self {
+            queue: state.queue.clone(),
+            probe: device.create_buffer(&probe),
+            is_lost,
+        }
+    }
+
+    /// Whether it is gone, as far as was told.
+    pub fn is_lost(&self) -> bool {
+        self.is_lost.load(Ordering::Relaxed)
+    }
+
+    /// Whether it is gone, by trying.
+    pub fn tried_is_lost(&self) -> bool {
+        let size = wgpu::BufferSize::new(wgpu::COPY_BUFFER_ALIGNMENT);
+        let written = size.and_then(|size| self.queue.write_buffer_with(&self.probe, 0, size));
+        written.is_none() || self.is_lost()
+    }
+}
