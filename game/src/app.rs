@@ -45,8 +45,9 @@ pub struct App {
     presses: Presses,
     fingers: Fingers,
     screen_before: Screen,
-    /// Whether the window ever had the focus.
+    /// Whether the window ever had the focus, and whether it was asked to fill the screen.
     had_focus: bool,
+    is_full: bool,
 }
 
 /// The window has no GPU, not even one in software.
@@ -76,6 +77,7 @@ impl App {
             fingers: Fingers::default(),
             screen_before,
             had_focus: false,
+            is_full: false,
         })
     }
 
@@ -153,6 +155,15 @@ impl App {
         }
     }
 
+    /// Makes the window as large as was chosen.
+    fn fill_screen(&mut self, ctx: &egui::Context) {
+        let wanted = self.game.settings.full_screen;
+        if wanted != self.is_full {
+            self.is_full = wanted;
+            ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(wanted));
+        }
+    }
+
     /// As if a key were pressed and let go in the next frame.
     fn press(&self, key: Key) {
         self.presses.waiting().keys.push(key);
@@ -225,6 +236,10 @@ impl App {
                 continue;
             }
             let action = game.settings.bindings.of_key(key);
+            if key == Key::F11 && action.is_none() {
+                game.settings.full_screen ^= true;
+                game.keep_settings();
+            }
             // In a menu these move about in it, whatever they mean in a round. But for what must not be looked for.
             let is_of_menu = game.screen != Screen::Play && OF_MENUS.contains(&key);
             if let Some(action) =
@@ -257,6 +272,7 @@ impl eframe::App for App {
             }
             return ctx.send_viewport_cmd(egui::ViewportCommand::Close);
         }
+        self.fill_screen(&ctx);
         fit(&ctx, self.game.settings.text_size);
         let seconds = ctx.input(|input| input.stable_dt).min(0.1);
         self.hear_sticks(&ctx, seconds);

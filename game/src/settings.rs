@@ -35,6 +35,8 @@ pub struct Settings {
     pub sensitivity: f32,
     /// Whether a stick points at a place in the arena, instead of saying how fast to go.
     pub stick_places: bool,
+    /// Whether the window fills the screen.
+    pub full_screen: bool,
     /// No shaking, no leaning, fewer particles.
     pub reduced_motion: bool,
     /// Colours that nobody mixes up.
@@ -64,6 +66,7 @@ impl Default for Settings {
             speed: 1.0,
             sensitivity: 1.0,
             stick_places: false,
+            full_screen: false,
             reduced_motion: false,
             colour_safe: false,
             text_size: 1.0,

@@ -80,6 +80,15 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, from: Screen) {
                 to_forces = button(ui, &theme, said.try_forces, size, Weight::Other).clicked();
             });
             section(ui, &theme, said.look_section, |ui| {
+                if !cfg!(target_family = "wasm") {
+                    choice(
+                        ui,
+                        &theme,
+                        said.full_screen,
+                        &mut chosen.full_screen,
+                        &options,
+                    );
+                }
                 choice(
                     ui,
                     &theme,

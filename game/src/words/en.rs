@@ -124,6 +124,7 @@ pub(super) const WORDS: Words = Words {
     speed: "Game speed",
     sensitivity: "Sensitivity",
     stick_places: "Stick points at the place",
+    full_screen: "Full screen, also by F11",
     reduced_motion: "Less motion",
     colour_safe: "Safe colours",
     text_size: "Text size",

@@ -119,6 +119,7 @@ pub(super) const WORDS: Words = Words {
     speed: "はやさ",
     sensitivity: "うごきの大きさ",
     stick_places: "スティックで場所をさす",
+    full_screen: "ぜんがめん（F11）",
     reduced_motion: "うごきをへらす",
     colour_safe: "見分けやすい色",
     text_size: "文字の大きさ",

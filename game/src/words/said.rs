@@ -62,6 +62,7 @@ pub struct Words {
     pub speed: &'static str,
     pub sensitivity: &'static str,
     pub stick_places: &'static str,
+    pub full_screen: &'static str,
     pub reduced_motion: &'static str,
     pub colour_safe: &'static str,
     pub text_size: &'static str,

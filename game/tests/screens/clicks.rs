@@ -298,3 +298,24 @@ fn the_font_has_every_letter_of_the_game() {
         assert!(is_there, "{letter}: run game/fonts/make.py");
     }
 }
+
+#[test]
+fn a_key_fills_the_screen_and_the_choice_is_kept() {
+    let folder = folder("full-screen");
+    let files = Files::in_folder(&folder);
+    let mut window = window(files.clone());
+    for wanted in [true, false, true] {
+        window.key_press(Key::F11);
+        // The window is asked in the frame after.
+        let asked = (0..2).any(|_| {
+            frames(&mut window, 1);
+            let root = &window.output().viewport_output[&egui::ViewportId::ROOT];
+            let command = egui::ViewportCommand::Fullscreen(wanted);
+            root.commands.contains(&command)
+        });
+        assert!(asked && game(&mut window).settings.full_screen == wanted);
+    }
+    let again = Game::new(files, Sound::none(), Pads::none());
+    assert!(again.settings.full_screen);
+    fs::remove_dir_all(folder).unwrap();
+}
