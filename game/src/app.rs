@@ -6,18 +6,14 @@ mod presses;
 
 use crate::game::{Game, Screen};
 use crate::input::{Action, Means, Seat};
-use crate::look::Stage;
+use crate::look::{Stage, dress};
 use crate::platform::GpuWatch;
 use crate::screens;
 use egui::{Event, Key};
 use fingers::Fingers;
 use pointing::{look_around, point};
 use presses::Presses;
-use std::sync::Arc;
 use sticks::{Change, Control, Navigator, PadButton};
-
-/// The font that the game writes with.
-const FONT: &[u8] = include_bytes!("../fonts/MPLUSRounded1c-Bold.ttf");
 
 /// Each screen has room enough in a window of this many points.
 const ROOM: egui::Vec2 = egui::vec2(900.0, 640.0);
@@ -306,24 +302,4 @@ fn fit(ctx: &egui::Context, text_size: f32) {
     if !ctx.input(|input| input.pointer.any_down()) {
         ctx.set_zoom_factor(zoom);
     }
-}
-
-/// Gives egui the game's font and takes its toolbox look away.
-fn dress(context: &egui::Context) {
-    let mut fonts = egui::FontDefinitions::empty();
-    let name = "rounded".to_string();
-    fonts
-        .font_data
-        .insert(name.clone(), Arc::new(egui::FontData::from_static(FONT)));
-    for family in [egui::FontFamily::Proportional, egui::FontFamily::Monospace] {
-        fonts.families.entry(family).or_default().push(name.clone());
-    }
-    context.set_fonts(fonts);
-    context.set_theme(egui::Theme::Light);
-    // The text size is a setting.
-    context.options_mut(|options| options.zoom_with_keyboard = false);
-    context.all_styles_mut(|style| {
-        style.interaction.selectable_labels = false;
-        style.spacing.item_spacing = egui::vec2(10.0, 6.0);
-    });
 }

@@ -2,15 +2,16 @@
 
 mod film;
 mod force_log;
+mod plain;
 mod played;
 mod report;
+mod studio;
 
 use crate::platform::Files;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use film::Film;
+use film::{Film, FilmError};
 use force_log::ForceLog;
-use fuwafuwa_painter::PaintError;
 use played::{Played, RATE, of_bot, of_replay};
 use report::{Refusal, Report};
 use std::io::{self, Write};
@@ -50,6 +51,9 @@ pub struct Options {
     /// Film it: a strip of moments (.png) or an animation (.gif)
     #[arg(long, requires = "headless", value_name = "FILE", value_parser = film_path)]
     pub film: Option<PathBuf>,
+    /// Take a photo of its end (.png)
+    #[arg(long, requires = "headless", value_name = "FILE", value_parser = photo_path)]
+    pub photo: Option<PathBuf>,
     /// Write a replay of the round (.tamaire)
     #[arg(long, requires = "headless", value_name = "FILE", conflicts_with = "replay", value_parser = replay_path)]
     pub save: Option<PathBuf>,
@@ -83,7 +87,7 @@ enum Trouble {
     #[error("{}: {reason}", path.display())]
     File { path: PathBuf, reason: io::Error },
     #[error("the film: {0}")]
-    Film(#[from] PaintError),
+    Film(#[from] FilmError),
 }
 
 /// Plays, and tells how it went.
@@ -133,7 +137,7 @@ pub fn list() {
 fn try_bot(options: &Options) -> Result<String, Trouble> {
     let level = options.level.as_deref().unwrap_or(NAMED[0].0);
     let level = Arc::new(Level::open(level)?);
-    for path in options.film.iter().chain(&options.save) {
+    for path in pictures(options).chain(&options.save) {
         can_be_written(path)?;
     }
     let mut log = force_log(options)?;
@@ -160,8 +164,8 @@ fn check(path: &Path, options: &Options) -> Result<String, Trouble> {
         reason,
     };
     std::fs::File::open(path).map_err(unreadable)?;
-    if let Some(film) = &options.film {
-        can_be_written(film)?;
+    for path in pictures(options) {
+        can_be_written(path)?;
     }
     let refused = |reason| Trouble::Replay {
         path: path.into(),
@@ -183,12 +187,20 @@ fn tell(played: &Played, by: report::Player, options: &Options) -> Result<String
     if let Some(path) = &options.film {
         write(path, &Film::of(path).shoot(&played.round)?)?;
     }
+    if let Some(path) = &options.photo {
+        write(path, &Film::Photo.shoot(&played.round)?)?;
+    }
     let report = Report::of(played, by);
     Ok(if options.json {
         report::json(&report)
     } else {
         report.to_string()
     })
+}
+
+/// Where films and photos are to go.
+fn pictures(options: &Options) -> impl Iterator<Item = &PathBuf> {
+    options.film.iter().chain(&options.photo)
 }
 
 /// The table of forces, if it was asked for.
@@ -252,6 +264,11 @@ fn seconds(text: &str) -> Result<f32, String> {
 /// Where a film goes.
 fn film_path(text: &str) -> Result<PathBuf, String> {
     ends_in(text, &["png", "gif"])
+}
+
+/// Where a photo goes.
+fn photo_path(text: &str) -> Result<PathBuf, String> {
+    ends_in(text, &["png"])
 }
 
 /// Where a replay goes.

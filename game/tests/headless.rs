@@ -96,6 +96,11 @@ fn cube_model(width: u8) -> Vec<u8> {
 
 /// Runs the game in a folder, without a display.
 fn tamaire(folder: &Path, arguments: &str) -> Output {
+    tamaire_with(folder, arguments, &[])
+}
+
+/// The same with variables of the environment.
+fn tamaire_with(folder: &Path, arguments: &str, variables: &[(&str, &str)]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_tamaire"));
     for name in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
         command.env_remove(name);
@@ -103,6 +108,9 @@ fn tamaire(folder: &Path, arguments: &str) -> Output {
     let arguments = arguments.split_whitespace();
     command
         .current_dir(folder)
+        // Where it is missing, some drivers complain.
+        .env("XDG_RUNTIME_DIR", folder)
+        .envs(variables.iter().copied())
         .args(arguments)
         .output()
         .unwrap()
@@ -218,16 +226,48 @@ fn a_replay_is_genuine_until_someone_changes_it() {
 }
 
 #[test]
-fn films_are_written() {
+fn films_and_photos_are_written() {
     let folder = folder();
-    for (film, start) in [("round.png", &b"\x89PNG"[..]), ("round.gif", b"GIF89a")] {
-        let line = format!("--headless --level far.toml --bot idle --seconds 1 --film {film}");
+    let pictures = [
+        ("film", "round.png", &b"\x89PNG"[..]),
+        ("film", "round.gif", b"GIF89a"),
+        ("photo", "end.png", b"\x89PNG"),
+    ];
+    for (what, picture, start) in pictures {
+        let line = format!("--headless --level far.toml --bot idle --seconds 1 --{what} {picture}");
         let output = tamaire(folder.path(), &line);
         assert_eq!(output.status.code(), Some(0), "{output:?}");
-        let bytes = fs::read(folder.path().join(film)).unwrap();
-        assert!(bytes.starts_with(start) && bytes.len() > 1000, "{film}");
+        let bytes = fs::read(folder.path().join(picture)).unwrap();
+        assert!(bytes.starts_with(start) && bytes.len() > 1000, "{picture}");
         // Who waits at a terminal sees a bar; this is none.
-        assert_eq!(text(&output.stderr), format!("wrote {film}\n"));
+        let said = text(&output.stderr);
+        assert!(said.ends_with(&format!("wrote {picture}\n")), "{said}");
+        assert!(!has_adapter() || said.lines().count() == 1, "{said}");
+    }
+}
+
+/// Whether this machine has to have something to draw with.
+fn has_adapter() -> bool {
+    std::env::var("CI").is_ok_and(|value| value == "1" || value == "true")
+}
+
+#[test]
+fn without_anything_to_draw_with_a_photo_shows_elements_and_says_so() {
+    // An interface that is not of this system.
+    let none = if cfg!(target_os = "macos") {
+        "dx12"
+    } else {
+        "metal"
+    };
+    for (folder, level) in [(folder(), "far.toml"), (folder_in_space(), "solid.toml")] {
+        let line = format!("--headless --level {level} --bot idle --seconds 1 --photo it.png");
+        let output = tamaire_with(folder.path(), &line, &[("WGPU_BACKEND", none)]);
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{said}");
+        assert!(said.contains("nothing to draw with"), "{said}");
+        assert_eq!(said.lines().count(), 2, "{said}");
+        let photo = fs::read(folder.path().join("it.png")).unwrap();
+        assert!(photo.starts_with(b"\x89PNG") && photo.len() > 1000);
     }
 }
 
@@ -243,6 +283,7 @@ fn what_makes_no_sense_is_refused_with_a_reason() {
     check_refused("--headless --seconds 0", 2, &["1 to 3600 seconds"]);
     check_refused("--headless --seconds -3", 2, &["1 to 3600 seconds"]);
     check_refused("--headless --film film.mp4", 2, &[".png or .gif"]);
+    check_refused("--headless --photo photo.gif", 2, &[".png"]);
     check_refused("--headless --film no/folder.png", 2, &["no such folder"]);
     check_refused("--headless --save it.txt", 2, &[".tamaire"]);
     check_refused("--headless --replay none.tamaire", 2, &["none.tamaire"]);

@@ -32,6 +32,7 @@ pub mod theme;
 pub use error::PaintError;
 pub use face::{Face, Mood};
 pub use paper::{Frame, Spot};
+pub use raster::png_of;
 use std::rc::Rc;
 pub use theme::Role;
 pub use tiny_skia::Pixmap;

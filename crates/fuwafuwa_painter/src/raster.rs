@@ -33,7 +33,10 @@ impl Painter {
 }
 
 /// Pixels as the bytes of a PNG file.
-pub(crate) fn png_of(pixels: &Pixmap) -> Result<Vec<u8>, PaintError> {
+///
+/// # Errors
+/// When they cannot be packed.
+pub fn png_of(pixels: &Pixmap) -> Result<Vec<u8>, PaintError> {
     let straight = pixels.pixels().iter().flat_map(|pixel| {
         let pixel = pixel.demultiply();
         [pixel.red(), pixel.green(), pixel.blue(), pixel.alpha()]

@@ -35,5 +35,6 @@ pub use ages::Ages;
 pub use anchor::{Anchor, anchor, anchor_at};
 pub use frame::{Basket, Camera, Frame, Look, Mark, Particle, Sticker};
 pub use geometry::Geometry;
-pub use gpu::{ImageError, Renderer};
+pub use gpu::Renderer;
+pub use gpu::image::{ImageError, Step, image};
 pub use theme::{Colour, Theme};

@@ -1,20 +1,18 @@
-//! A round as a strip of moments or as an animation.
+//! A round as a strip of moments, as an animation or as a photo of its end.
 //!
-//! The round is played a second time: the same input gives the same world, and painting disturbs
-//! no timing.
+//! The round is played a second time: the same input gives the same world, and drawing disturbs
+//! no timing. It is drawn as in a window; where there is nothing to draw with, element by element.
 
+use super::plain;
 use super::played::progress;
 use super::report::by_route;
-use crate::look::{Camera, Effects, Mood};
-use fuwafuwa::vector::{plus, scaled};
+use super::studio::{Moment, Studio};
+use crate::look::{Camera, Effects};
 use fuwafuwa::world::TICK;
-use fuwafuwa::{Dim2, Dim3, Rigid, Shape};
-use fuwafuwa_painter::soft::{self, Extras};
-use fuwafuwa_painter::solid::{Camera as SolidCamera, Solid};
-use fuwafuwa_painter::stage;
-use fuwafuwa_painter::{Face, PaintError, Painter, Pixmap, Role, film};
+use fuwafuwa_painter::{PaintError, Pixmap, film, png_of};
+use fuwafuwa_render::ImageError;
 use std::path::Path;
-use tamaire_play::{AnyRound, Round};
+use tamaire_play::AnyRound;
 
 /// Moments in a strip, and how many stand side by side.
 const MOMENTS: usize = 12;
@@ -26,15 +24,39 @@ const HUNDREDTHS: u16 = 5;
 const LAST: u16 = 200;
 /// Ticks that are shown after a win, so that the body can beam.
 const CHEER: usize = 60;
-/// Width of a moment [px].
-const WIDTH: u32 = 400;
-/// As much of the walls is seen around the arena [m].
-const WALL: f32 = 0.05;
+/// A moment of a film, and a photo.
+const MOMENT: Print = Print {
+    size: [480, 300],
+    is_captioned: true,
+};
+const PHOTO: Print = Print {
+    size: [1280, 800],
+    is_captioned: false,
+};
 
 /// What kind of film is made.
 pub enum Film {
     Strip,
     Animation,
+    Photo,
+}
+
+/// How a picture is to come out.
+#[derive(Copy, Clone)]
+struct Print {
+    /// Width and height without its caption [px].
+    size: [u32; 2],
+    /// Whether it says below when it is and how it stands.
+    is_captioned: bool,
+}
+
+/// Why there is no film.
+#[derive(Debug, thiserror::Error)]
+pub enum FilmError {
+    #[error(transparent)]
+    Paint(#[from] PaintError),
+    #[error(transparent)]
+    Draw(#[from] ImageError),
 }
 
 impl Film {
@@ -47,29 +69,37 @@ impl Film {
     }
 
     /// The film of a round, as the bytes of its file.
-    pub fn shoot(&self, played: &AnyRound) -> Result<Vec<u8>, PaintError> {
-        let ticks = played.frames().len();
+    pub fn shoot(&self, played: &AnyRound) -> Result<Vec<u8>, FilmError> {
+        let is_won = played.progress().outcome.is_some();
+        let ticks = played.frames().len() + if is_won { CHEER } else { 0 };
         match self {
             Self::Strip => {
                 let mut moments = Vec::new();
                 // The first is the start, the last the end.
                 let gaps = MOMENTS.min(ticks + 1) - 1;
                 let is_shown = |tick| moments_at(ticks, gaps).any(|moment| moment == tick);
-                pass(played, ticks, is_shown, |pixels, _| {
+                pass(played, ticks, MOMENT, is_shown, |pixels, _| {
                     moments.push(pixels);
                     Ok(())
                 })?;
-                film::strip(&moments, COLUMNS)?.png()
+                Ok(film::strip(&moments, COLUMNS)?.png()?)
             }
             Self::Animation => {
-                let is_won = played.progress().outcome.is_some();
-                let ticks = ticks + if is_won { CHEER } else { 0 };
                 let mut gif = film::Gif::default();
                 let is_shown = |tick| tick == ticks || tick % PACE == 0;
-                pass(played, ticks, is_shown, |pixels, tick| {
+                pass(played, ticks, MOMENT, is_shown, |pixels, tick| {
                     gif.add(&pixels, if tick == ticks { LAST } else { HUNDREDTHS })
                 })?;
-                gif.finish()
+                Ok(gif.finish()?)
+            }
+            Self::Photo => {
+                let mut photo = Vec::new();
+                let is_last = |tick| tick == ticks;
+                pass(played, ticks, PHOTO, is_last, |pixels, _| {
+                    photo = png_of(&pixels)?;
+                    Ok(())
+                })?;
+                Ok(photo)
             }
         }
     }
@@ -84,92 +114,69 @@ fn moments_at(ticks: usize, gaps: usize) -> impl Iterator<Item = usize> {
 fn pass(
     played: &AnyRound,
     ticks: usize,
+    print: Print,
     is_shown: impl Fn(usize) -> bool,
     mut show: impl FnMut(Pixmap, usize) -> Result<(), PaintError>,
-) -> Result<(), PaintError> {
+) -> Result<(), FilmError> {
+    let mut studio = Studio::open();
+    if studio.is_none() {
+        eprintln!(
+            "tamaire: there is nothing to draw with, neither Vulkan nor OpenGL, not even in software, so bodies are shown element by element."
+        );
+    }
     let mut round = AnyRound::new(played.level().clone());
-    let mut effects = Effects::default();
+    let (mut effects, mut camera) = (Effects::default(), Camera::default());
     let bar = progress("filming", ticks as u64);
     for tick in 0..=ticks {
         bar.inc(u64::from(tick > 0));
         if tick > 0 {
             let frame = played.frames().get(tick - 1).copied();
             round.step(frame.unwrap_or_default());
-            effects.see(&round, &mut Camera::default(), false);
+            effects.see(&round, &mut camera, false);
             effects.pass(TICK);
+            let hand = round.hands()[0].position();
+            camera.follow(hand, round.level().arena(), TICK, false);
         }
-        if is_shown(tick) {
-            show(moment(&round, &effects, tick == ticks)?, tick)?;
+        if !is_shown(tick) {
+            continue;
         }
+        let caption = caption(&round, tick == ticks);
+        let caption = print.is_captioned.then_some(caption.as_str());
+        let pixels = match &mut studio {
+            Some(studio) => {
+                let moment = Moment {
+                    round: &round,
+                    effects: &effects,
+                    camera: &camera,
+                    time: tick as f32 * TICK,
+                    caption,
+                };
+                let drawn = studio.shoot(&moment, print.size)?;
+                pixels_of(&drawn, Studio::size(&moment, print.size))?
+            }
+            None => plain::picture(&round, print.size, caption)?,
+        };
+        show(pixels, tick)?;
     }
     Ok(())
 }
 
-/// A picture of a round as it is now, and whether that is how it stays.
-fn moment(round: &AnyRound, effects: &Effects, is_last: bool) -> Result<Pixmap, PaintError> {
-    let mut painter = match round {
-        AnyRound::Plane(round) => plane(round, effects),
-        AnyRound::Space(round) => space(round)?,
-    };
-    painter.caption(&caption(round, is_last));
-    painter.pixels()
+/// What was drawn, as the films of the painter take it.
+fn pixels_of(drawn: &[u8], [width, height]: [u32; 2]) -> Result<Pixmap, PaintError> {
+    let what = "a picture";
+    let mut pixels = Pixmap::new(width, height).ok_or(PaintError::NoSize { what })?;
+    pixels.data_mut().copy_from_slice(drawn);
+    Ok(pixels)
 }
 
-/// As the game shows it.
-fn plane(round: &Round<Dim2>, effects: &Effects) -> Painter {
-    let [low, high] = round.level().arena();
-    let view = [low.map(|k| k - WALL), high.map(|k| k + WALL)];
-    let (mut painter, frame) = Painter::for_view(view, WIDTH);
-    let world = round.world();
-    let look_at = round.hands().next().map_or([0.0; 3], Rigid::position);
-    let bodies = world.bodies().iter().enumerate();
-    let faces = bodies.filter_map(|(place, body)| {
-        let feeling = effects.feelings.get(place);
-        let mood = match feeling.map_or(Mood::Calm, |feeling| feeling.mood) {
-            Mood::Calm => fuwafuwa_painter::Mood::Calm,
-            Mood::Wince => fuwafuwa_painter::Mood::Wince,
-            Mood::Shock => fuwafuwa_painter::Mood::Shock,
-            Mood::Beam => fuwafuwa_painter::Mood::Beam,
-        };
-        Face::on(body, mood, look_at)
-    });
-    let extras = Extras {
-        basket: round.basket().copied(),
-        faces: faces.collect(),
-    };
-    soft::world(&mut painter, frame, world, &extras);
-    for speck in &effects.specks {
-        let radius = speck.radius * speck.strength() * frame.unit;
-        painter.dot(frame.spot(speck.at), radius, Role::Crumb);
-    }
-    painter
-}
-
-/// From above and the front, without faces and walls.
-fn space(round: &Round<Dim3>) -> Result<Painter, PaintError> {
-    let [low, high] = round.level().arena();
-    let middle = [0, 1, 2].map(|axis| 0.5 * (low[axis] + high[axis]));
-    let across = high[0] - low[0];
-    let mut solid = Solid::new(SolidCamera {
-        eye: plus(middle, scaled([0.0, 1.1, 1.5], across)),
-        target: middle,
-        across: 1.1 * across,
-    });
-    stage::space(&mut solid, round.world(), stage::space_skin);
-    if let Some(&Shape::Box { centre, half }) = round.basket() {
-        solid.edges(centre, half, 2.0, Role::BasketRim);
-    }
-    let high = WIDTH * 5 / 8;
-    let mut painter = Painter::new(WIDTH, high);
-    painter.image([0.0; 2], solid.pixels(WIDTH, high)?);
-    Ok(painter)
-}
-
+/// When it is, and how the round stands.
 fn caption(round: &AnyRound, is_last: bool) -> String {
     let progress = round.progress();
     let seconds = round.frames().len() as f32 * TICK;
     match (progress.outcome, progress.pieces) {
-        (Some(outcome), _) => format!("{} in {seconds:.1} s!", by_route(outcome.route)),
+        (Some(outcome), _) => {
+            format!("{} in {:.1} s!", by_route(outcome.route), outcome.seconds())
+        }
         (None, _) if is_last => format!("not won in {seconds:.1} s"),
         (None, 1) => format!("{seconds:.1} s"),
         (None, pieces) => format!("{seconds:.1} s, {pieces} pieces"),

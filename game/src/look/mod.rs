@@ -1,8 +1,9 @@
-//! How a round looks: the camera, the faces, what flies about, the colours, little pictures of levels.
+//! How a round looks: the camera, the faces, what flies about, the colours and letters, little pictures of levels.
 
 mod calm;
 mod camera;
 mod confetti;
+mod dress;
 mod effects;
 mod face;
 mod feelings;
@@ -17,6 +18,7 @@ mod theme;
 
 pub use camera::{Camera, View};
 pub use confetti::Confetti;
+pub use dress::dress;
 pub use effects::Effects;
 pub use face::{Face, Mood};
 pub use feelings::Feeling;

@@ -83,7 +83,11 @@ pub enum Step<'a> {
     Inside(&'a mut RenderPass<'static>),
 }
 
-/// An image of a format and a size in pixels, as `draw` draws it in two steps.
+/// An image of a format and a size in pixels, as `draw` draws it in two steps: red, green, blue and opacity of each pixel,
+/// row by row from the upper left corner. Waits until it is there. For who draws something over a world, or beside it.
+///
+/// # Errors
+/// As [`Renderer::render_to_image`].
 pub fn image(
     device: &Device,
     queue: &Queue,

@@ -6,8 +6,6 @@ mod pipelines;
 pub(crate) mod stage;
 pub(crate) mod targets;
 
-pub use image::ImageError;
-
 use crate::frame::{Camera, Frame, Look};
 use crate::geometry::Geometry;
 use buffer::{GrowingBuffer, drawable};
