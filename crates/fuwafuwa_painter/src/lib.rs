@@ -5,32 +5,25 @@
 //! ([`Painter::pixels`]) or a frame of a [`film`], the same in all of them. Bodies in space are
 //! painted by [`solid`] into an image that lies on the paper like any other shape.
 //!
-//! Whole worlds are put on a painter by [`stage`], which shows elements and voxels as they are, or by
-//! [`soft`], the look of the game, with outlines from [`smoothing`] and [faces](Face).
+//! Whole worlds are put on a painter by [`stage`], which shows elements and voxels as they are. The look of the game is
+//! that of the crate `fuwafuwa_render` alone.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
-// Units and sources stand in brackets: [m], [RFC 4648].
-#![allow(rustdoc::broken_intra_doc_links)]
+#![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
 
 mod canvas;
-mod cover;
 mod error;
-mod face;
 pub mod film;
 mod letters;
 mod paper;
-mod puff;
 mod raster;
 mod shadow;
-pub mod smoothing;
-pub mod soft;
 pub mod solid;
 pub mod stage;
 mod svg;
 pub mod theme;
 
 pub use error::PaintError;
-pub use face::{Face, Mood};
 pub use paper::{Frame, Spot};
 pub use raster::png_of;
 use std::rc::Rc;
@@ -128,38 +121,6 @@ impl Painter {
         });
     }
 
-    /// Adds a closed line of dashes and gaps of about two lengths [px].
-    pub fn dashed(&mut self, ring: &[Spot], [dash, gap]: [f32; 2], width: f32, role: Role) {
-        let count = ring.len();
-        let whole: f32 = (0..count)
-            .map(|k| distance(ring[k], ring[(k + 1) % count]))
-            .sum();
-        // A whole number of them, so that the last one is like the others.
-        let number = (whole / (dash + gap)).round().max(1.0);
-        let dash = whole / number * dash / (dash + gap);
-        let gap = whole / number - dash;
-        let (mut spots, mut left, mut is_dash) = (Vec::new(), dash, true);
-        for k in 0..count {
-            let (mut at, to) = (ring[k], ring[(k + 1) % count]);
-            loop {
-                if is_dash {
-                    spots.push(at);
-                }
-                let far = distance(at, to);
-                if far < left {
-                    left -= far;
-                    break;
-                }
-                at = [0, 1].map(|axis: usize| at[axis] + (to[axis] - at[axis]) * left / far);
-                if is_dash {
-                    spots.push(at);
-                    self.line(std::mem::take(&mut spots), width, role);
-                }
-                (is_dash, left) = (!is_dash, if is_dash { gap } else { dash });
-            }
-        }
-    }
-
     /// Adds a line of text in the middle below everything, on paper of its own.
     pub fn caption(&mut self, text: &str) {
         const HEIGHT: f32 = 13.0;
@@ -253,11 +214,6 @@ pub enum Sample {
     Line(Role),
 }
 
-fn distance(a: Spot, b: Spot) -> f32 {
-    let [x, y] = [a[0] - b[0], a[1] - b[1]];
-    (x * x + y * y).sqrt()
-}
-
 /// The corners of a rectangle.
 pub fn rectangle([x, y]: Spot, size: Spot) -> Vec<Spot> {
     let (right, bottom) = (x + size[0], y + size[1]);
@@ -268,23 +224,6 @@ pub fn rectangle([x, y]: Spot, size: Spot) -> Vec<Spot> {
 mod tests {
     use super::*;
     use theme::colour;
-
-    #[test]
-    fn dashes_run_all_the_way_round() {
-        let mut painter = Painter::new(40, 40);
-        let square = rectangle([10.0; 2], [20.0; 2]);
-        painter.dashed(&square, [6.0, 4.0], 1.0, Role::Ink);
-        let lengths = painter.shapes.iter().map(|shape| match shape {
-            Shape::Line { spots, .. } => spots
-                .windows(2)
-                .map(|ends| distance(ends[0], ends[1]))
-                .sum(),
-            _ => 0.0,
-        });
-        let lengths: Vec<f32> = lengths.collect();
-        assert_eq!(lengths.len(), 8);
-        assert!(lengths.iter().all(|length| (length - 6.0).abs() < 0.01));
-    }
 
     #[test]
     fn a_caption_stands_on_paper_of_its_own() {

@@ -19,15 +19,3 @@ impl Frame {
         [x + at[0] * self.unit, y - at[1] * self.unit]
     }
 }
-
-/// The corners of an ellipse, for an upright pair of axes.
-pub fn ellipse(middle: Spot, size: Spot) -> impl Iterator<Item = Spot> {
-    const ROUND: usize = 32;
-    (0..ROUND).map(move |k| {
-        let turn = k as f32 / ROUND as f32 * std::f32::consts::TAU;
-        [
-            middle[0] + size[0] * turn.cos(),
-            middle[1] + size[1] * turn.sin(),
-        ]
-    })
-}

@@ -1,6 +1,6 @@
 //! The painter's shapes as pixels.
 
-use crate::theme::{colour, opacity};
+use crate::theme::colour;
 use crate::{PaintError, Painter, Role, Shape, Spot};
 use tiny_skia::{
     Color, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, PixmapPaint, Stroke,
@@ -125,8 +125,7 @@ fn path_of(spots: &[Spot], closed: bool) -> Result<Path, PaintError> {
 fn brush(role: Role) -> Paint<'static> {
     let [red, green, blue] = colour(role);
     let mut paint = Paint::default();
-    let alpha = (255.0 * opacity(role)).round() as u8;
-    paint.set_color_rgba8(red, green, blue, alpha);
+    paint.set_color_rgba8(red, green, blue, 255);
     paint.anti_alias = true;
     paint
 }

@@ -115,16 +115,6 @@ impl Solid {
         }
     }
 
-    /// Adds the edges of an upright block, of a width [px].
-    pub fn edges(&mut self, centre: Vector, half: Vector, width: f32, role: Role) {
-        for axis in 0..3 {
-            for [u, v] in [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]] {
-                let ends = [-1.0, 1.0].map(|side| corner(centre, half, axis, [side, u, v]));
-                self.segment(ends, width, role);
-            }
-        }
-    }
-
     /// Adds a floor at a height [m].
     pub fn floor(&mut self, height: f32) {
         self.floor = Some(height);

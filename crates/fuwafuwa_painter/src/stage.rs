@@ -158,7 +158,7 @@ pub fn space(solid: &mut Solid, world: &World<Dim3>, draw: DrawSpace) {
             Shape::HalfSpace { normal, offset } if normal[1] > 0.99 => solid.floor(offset),
             // The other walls would hide what is inside.
             Shape::HalfSpace { .. } => {}
-            shape => solid_shape(solid, shape, Role::Bar),
+            shape => solid_shape(solid, shape, Role::Obstacle),
         }
     }
     for body in world.bodies() {
@@ -306,22 +306,12 @@ fn crumbs<D: Dim>(body: &Body<D>) -> BTreeSet<PieceId> {
         .collect()
 }
 
+/// Paints something rigid in the plane.
 fn rigid(painter: &mut Painter, frame: Frame, shape: Shape, role: Role) {
-    match shape {
+    let rim = match shape {
         Shape::Ball { centre, radius } => {
-            painter.dot(frame.spot(centre), radius * frame.unit, role);
+            return painter.dot(frame.spot(centre), radius * frame.unit, role);
         }
-        _ => {
-            let round = rim(shape, 0.0);
-            let spots = round.iter().map(|&at| frame.spot(at));
-            painter.area(spots.collect(), role);
-        }
-    }
-}
-
-/// The outline [m] of a rigid shape in the plane; boxes have corners of a radius [m].
-pub fn rim(shape: Shape, rounding: f32) -> Vec<Vector> {
-    match shape {
         Shape::HalfSpace { normal, offset } => {
             const FAR: f32 = 1e3;
             let on = scaled(normal, offset);
@@ -332,23 +322,8 @@ pub fn rim(shape: Shape, rounding: f32) -> Vec<Vector> {
         }
         Shape::Box { centre, half } => {
             let signs = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-            let radius = rounding.min(half[0]).min(half[1]);
-            let corner = |[x, y]: [f32; 2]| {
-                plus(
-                    centre,
-                    [x * (half[0] - radius), y * (half[1] - radius), 0.0],
-                )
-            };
-            if radius <= 0.0 {
-                return signs.map(corner).to_vec();
-            }
-            let corners = signs.into_iter().enumerate();
-            let arcs = corners.flat_map(|(k, sign)| {
-                let turns = (0..=ROUND / 4)
-                    .map(move |step| k as f32 + 4.0 * step as f32 / ROUND as f32 - 2.0);
-                turns.map(move |quarters| plus(corner(sign), on_circle(radius, 0.5 * quarters)))
-            });
-            arcs.collect()
+            let corner = |[x, y]: [f32; 2]| plus(centre, [x * half[0], y * half[1], 0.0]);
+            signs.map(corner).to_vec()
         }
         Shape::Capsule { from, to, radius } => {
             let along = (to[1] - from[1]).atan2(to[0] - from[0]);
@@ -360,19 +335,8 @@ pub fn rim(shape: Shape, rounding: f32) -> Vec<Vector> {
             });
             round.collect()
         }
-        Shape::Ball { centre, radius } => {
-            let turns = (0..2 * ROUND).map(|k| k as f32 / ROUND as f32);
-            turns
-                .map(|turn| plus(centre, on_circle(radius, turn)))
-                .collect()
-        }
-    }
-}
-
-/// A place on a circle around the origin, at a number of half turns.
-fn on_circle(radius: f32, half_turns: f32) -> Vector {
-    let angle = half_turns * std::f32::consts::PI;
-    [radius * angle.cos(), radius * angle.sin(), 0.0]
+    };
+    painter.area(rim.into_iter().map(|at| frame.spot(at)).collect(), role);
 }
 
 #[cfg(test)]

@@ -46,24 +46,8 @@ pub enum Role {
     Crumb,
     /// Something rigid that never moves.
     Obstacle,
-    /// The same in a game.
-    Bar,
-    /// The rigid hand, that of player 1 where there are two.
+    /// The rigid hand.
     Hand,
-    /// The hand of player 2.
-    OtherHand,
-    /// What a hand is marked with.
-    HandMark,
-    /// The region that a body has to get into.
-    Basket,
-    /// The border of that region.
-    BasketRim,
-    /// The cheeks of a face.
-    Cheek,
-    /// An open mouth.
-    Mouth,
-    /// The tongue in it.
-    Tongue,
     /// What bodies stand on, in space.
     Floor,
 }
@@ -106,25 +90,7 @@ pub fn colour(role: Role) -> Colour {
         Role::Crumb => [0xF6, 0xBE, 0x92],
         Role::Obstacle => [0xA9, 0xAF, 0xBC],
         Role::Hand => [0x4A, 0x76, 0xA8],
-        Role::Bar => [0xB3, 0xAE, 0xD4],
-        Role::OtherHand => [0xE3, 0xA8, 0x3C],
-        Role::HandMark => [0xFF, 0xF4, 0xE4],
-        Role::Basket => [0xA9, 0xD8, 0xB4],
-        Role::BasketRim => [0x5E, 0x9C, 0x78],
-        Role::Cheek => [0xEE, 0x6A, 0x78],
-        Role::Mouth => [0x8F, 0x2F, 0x40],
-        Role::Tongue => [0xF4, 0x8D, 0x92],
         Role::Floor => [0xF1, 0xED, 0xE7],
-    }
-}
-
-/// How much of what lies below is hidden by a role, 1 = all.
-pub fn opacity(role: Role) -> f32 {
-    match role {
-        Role::Basket => 0.4,
-        Role::Cheek => 0.45,
-        Role::HandMark => 0.8,
-        _ => 1.0,
     }
 }
 
