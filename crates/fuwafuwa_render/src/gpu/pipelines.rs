@@ -73,12 +73,20 @@ impl Pipelines {
         };
         let (shape_layout, body_layout) = (images(4), images(6));
         let skin = module(device, "skin", wgsl!("globals.wgsl", "skin.wgsl"));
-        let blur = module(device, "blur", wgsl!("globals.wgsl", "blur.wgsl"));
-        let shape = module(device, "shape", wgsl!("globals.wgsl", "shape.wgsl"));
+        let blur = module(
+            device,
+            "blur",
+            wgsl!("globals.wgsl", "whole.wgsl", "blur.wgsl"),
+        );
+        let shape = module(
+            device,
+            "shape",
+            wgsl!("globals.wgsl", "whole.wgsl", "shape.wgsl"),
+        );
         let body = module(
             device,
             "body",
-            wgsl!("globals.wgsl", "light.wgsl", "body.wgsl"),
+            wgsl!("globals.wgsl", "whole.wgsl", "light.wgsl", "body.wgsl"),
         );
         let rigid = module(
             device,

@@ -12,20 +12,9 @@ struct Blur {
 @group(1) @binding(2) var smooth_sampler: sampler;
 @group(1) @binding(3) var<uniform> blur: Blur;
 
-struct Covering {
-    @builtin(position) clip: vec4f,
-    @location(0) uv: vec2f,
-}
-
 struct Images {
     @location(0) colour: vec4f,
     @location(1) relief: vec4f,
-}
-
-@vertex
-fn whole(@builtin(vertex_index) index: u32) -> Covering {
-    let clip = covering(index);
-    return Covering(vec4f(clip, 0.0, 1.0), to_uv(clip));
 }
 
 // The mean of four places inside a texel of the target.

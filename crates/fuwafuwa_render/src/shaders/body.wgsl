@@ -7,24 +7,17 @@
 @group(1) @binding(5) var shapes: texture_2d<f32>;
 @group(1) @binding(6) var smooth_sampler: sampler;
 
-struct Covering {
-    @builtin(position) clip: vec4f,
-    @location(0) uv: vec2f,
-    @location(1) at: vec2f,
-}
-
-@vertex
-fn whole(@builtin(vertex_index) index: u32) -> Covering {
-    let clip = covering(index);
-    return Covering(vec4f(clip, 0.0, 1.0), to_uv(clip), to_world(clip));
-}
-
 // The rectangle around all bodies.
 @vertex
 fn bounding(@builtin(vertex_index) index: u32) -> Covering {
     let at = mix(globals.bounds.xy, globals.bounds.zw, vec2f(f32(index & 1u), f32(index >> 1u)));
     let clip = to_clip(at);
-    return Covering(clip, to_uv(clip.xy), at);
+    return Covering(clip, to_uv(clip.xy));
+}
+
+// The place that is seen there.
+fn place_at(uv: vec2f) -> vec2f {
+    return to_world(vec2f(2.0, -2.0) * uv + vec2f(-1.0, 1.0));
 }
 
 // How deep inside the arena a place is [m], its corners a little rounded, and the way inside.
@@ -52,12 +45,13 @@ fn shadow(uv: vec2f) -> f32 {
 @fragment
 fn arena(in: Covering) -> @location(0) vec4f {
     let pixel = globals.view.z / globals.size.w;
-    let inside = depth(in.at);
+    let at = place_at(in.uv);
+    let inside = depth(at);
     let centred = (in.uv - 0.5) * vec2f(globals.view.w, 1.0);
     let rim = smoothstep(0.1, 0.85, length(centred) / max(1.0, 0.75 * globals.view.w));
     var floor_light = to_linear(mix(globals.floor_middle.rgb, globals.floor_rim.rgb, rim));
     // Dots on a grid show how things move.
-    let grid = abs(fract(in.at / 0.125) - 0.5) * 0.125;
+    let grid = abs(fract(at / 0.125) - 0.5) * 0.125;
     floor_light *= 0.93 + 0.07 * smoothstep(0.006 - pixel, 0.006 + pixel, length(grid));
     // The frame throws a shadow from above and from the left.
     let facing = dot(inside.xy, normalize(LIGHT.xy));
@@ -86,7 +80,7 @@ fn body(in: Covering) -> @location(0) vec4f {
         return vec4f(0.0);
     }
     let metres = globals.view.z / globals.size.w;
-    let alpha = sharp.a * smoothstep(-metres, metres, depth(in.at).z);
+    let alpha = sharp.a * smoothstep(-metres, metres, depth(place_at(in.uv)).z);
     if globals.tune.w < 0.5 {
         return shown(to_linear(sharp.rgb / sharp.a), alpha);
     }
@@ -94,25 +88,13 @@ fn body(in: Covering) -> @location(0) vec4f {
     let soft = textureSampleLevel(soft_colour, smooth_sampler, in.uv, 0.0);
     let shape = textureSampleLevel(shapes, smooth_sampler, in.uv, 0.0);
     let normal = normalize(vec3f(-shape.xy, 1.0));
-    let thick = shape.z;
     let base = to_linear(soft.rgb);
 
-    // Thin places are deep in colour, thick ones milky.
-    let deep = base * mix(vec3f(1.0), base, 0.25) * vec3f(1.06, 0.86, 0.92);
-    let milky = mix(base, vec3f(1.0, 0.93, 0.86), 0.22);
-    var colour = mix(deep, milky, thick);
-    // Where it is squashed, it blushes.
-    colour = mix(colour, colour * vec3f(1.0, 0.55, 0.62), 0.75 * shape.w);
-    // The inside, where it is fresh.
-    let fresh = mix(to_linear(globals.fresh.rgb), base, 0.15);
     let torn = smoothstep(0.0, 0.6, relief.g);
-    colour = mix(colour, fresh, 0.9 * torn);
+    var colour = flesh_colour(base, shape.z, shape.w, torn);
 
-    let light = normalize(LIGHT);
-    let half_way = normalize(light + vec3f(0.0, 0.0, 1.0));
-    let wrapped = clamp(dot(normal, light) * 0.5 + 0.5, 0.0, 1.0);
-    let towards = max(dot(normal, half_way), 0.0);
-    let fourth = towards * towards * towards * towards;
+    let wrapped = around(normal);
+    let towards = mirrored(normal, vec3f(0.0, 0.0, 1.0));
     let rim = (1.0 - normal.z) * sqrt(1.0 - normal.z);
     let low = clamp(dot(normal.xy, -normalize(LIGHT.xy)), 0.0, 1.0);
     // What is torn is rough: its light comes from all sides.
@@ -121,7 +103,7 @@ fn body(in: Covering) -> @location(0) vec4f {
     colour += base * vec3f(1.0, 0.62, 0.5) * rim * low * 0.9 * (1.0 - torn);
     // Reflections: a soft one, and a sharp one on what is round enough.
     let wet = 1.0 - 0.7 * torn;
-    colour += vec3f(1.0, 0.97, 0.94) * wet * (0.24 * fourth * fourth * fourth * smoothstep(0.0, 0.25, 1.0 - normal.z)
+    colour += vec3f(1.0, 0.97, 0.94) * wet * (0.24 * pow12(towards) * smoothstep(0.0, 0.25, 1.0 - normal.z)
         + 0.6 * smoothstep(0.974, 0.994, towards) * smoothstep(0.75, 0.95, soft.a));
     // A thin line of deeper colour holds the shape together.
     colour *= mix(0.74, 1.0, smoothstep(0.2, 0.7, soft.a + 0.3 * torn));

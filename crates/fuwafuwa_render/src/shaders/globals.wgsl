@@ -36,12 +36,3 @@ fn to_world(clip: vec2f) -> vec2f {
     let seen = clip * 0.5 * globals.view.z * vec2f(globals.view.w, 1.0);
     return globals.view.xy + globals.axes.xy * seen.x + globals.axes.zw * seen.y;
 }
-
-// A triangle that covers the picture.
-fn covering(index: u32) -> vec2f {
-    return vec2f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0);
-}
-
-fn to_uv(clip: vec2f) -> vec2f {
-    return vec2f(0.5, 0.5) + vec2f(0.5, -0.5) * clip;
-}

@@ -13,18 +13,42 @@ fn shown(light: vec3f, alpha: f32) -> vec4f {
     return vec4f(sqrt(soft) * alpha, alpha);
 }
 
+// How far a surface is turned to the light, from 0 for its back to 1: light goes around soft things.
+fn around(normal: vec3f) -> f32 {
+    return clamp(dot(normal, normalize(LIGHT)) * 0.5 + 0.5, 0.0, 1.0);
+}
+
+// How closely a surface mirrors the light into an eye in a direction, 0 to 1.
+fn mirrored(normal: vec3f, eye: vec3f) -> f32 {
+    return max(dot(normal, normalize(normalize(LIGHT) + eye)), 0.0);
+}
+
+fn pow12(base: f32) -> f32 {
+    let fourth = base * base * base * base;
+    return fourth * fourth * fourth;
+}
+
+// Flesh before light falls on it, how thick, squashed and torn it is from 0 to 1.
+fn flesh_colour(base: vec3f, thick: f32, squashed: f32, torn: f32) -> vec3f {
+    // Thin places are deep in colour, thick ones milky.
+    let deep = base * mix(vec3f(1.0), base, 0.25) * vec3f(1.06, 0.86, 0.92);
+    let milky = mix(base, vec3f(1.0, 0.93, 0.86), 0.22);
+    var colour = mix(deep, milky, thick);
+    // Where it is squashed, it blushes.
+    colour = mix(colour, colour * vec3f(1.0, 0.55, 0.62), 0.75 * squashed);
+    // The inside, where it is fresh.
+    return mix(colour, mix(to_linear(globals.fresh.rgb), base, 0.15), 0.9 * torn);
+}
+
 // A lacquered surface, as the eye sees it from a direction: soft light, a soft and a sharp reflection,
 // a brighter rim.
 fn lacquered(base: vec3f, normal: vec3f, eye: vec3f, gloss: f32) -> vec3f {
-    let light = normalize(LIGHT);
-    let half_way = normalize(light + eye);
-    let wrapped = clamp(dot(normal, light) * 0.5 + 0.5, 0.0, 1.0);
-    let towards = max(dot(normal, half_way), 0.0);
-    let fourth = towards * towards * towards * towards;
+    let wrapped = around(normal);
+    let towards = mirrored(normal, eye);
     let away = 1.0 - clamp(dot(normal, eye), 0.0, 1.0);
     let rim = away * away * away;
     var light_out = base * mix(0.42, 1.12, wrapped * wrapped);
-    light_out += vec3f(1.0, 0.98, 0.94) * gloss * (0.16 * fourth * fourth * fourth + 0.75 * smoothstep(0.965, 0.985, towards));
+    light_out += vec3f(1.0, 0.98, 0.94) * gloss * (0.16 * pow12(towards) + 0.75 * smoothstep(0.965, 0.985, towards));
     light_out += base * rim * 0.5 * clamp(0.4 - normal.y, 0.0, 1.0);
     return light_out;
 }

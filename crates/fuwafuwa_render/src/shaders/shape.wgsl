@@ -5,22 +5,11 @@
 @group(1) @binding(3) var wide_relief: texture_2d<f32>;
 @group(1) @binding(4) var smooth_sampler: sampler;
 
-struct Covering {
-    @builtin(position) clip: vec4f,
-    @location(0) uv: vec2f,
-}
-
 struct Images {
     // What shines through, and how far inside a piece it is.
     @location(0) colour: vec4f,
     // Slope to the right and upwards, thickness, strain.
     @location(1) shape: vec4f,
-}
-
-@vertex
-fn whole(@builtin(vertex_index) index: u32) -> Covering {
-    let clip = covering(index);
-    return Covering(vec4f(clip, 0.0, 1.0), to_uv(clip));
 }
 
 // Between texels by B-splines, so that slopes are smooth too.

@@ -29,12 +29,3 @@ struct Globals {
 // Five breaths in the sixteen seconds after which the clock begins anew [rad/s].
 const BREATHS = 1.9634954;
 const LIGHT = vec3f(-0.42, 0.80, 0.45);
-
-// A triangle that covers the picture.
-fn covering(index: u32) -> vec2f {
-    return vec2f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0);
-}
-
-fn to_uv(clip: vec2f) -> vec2f {
-    return vec2f(0.5, 0.5) + vec2f(0.5, -0.5) * clip;
-}

@@ -86,21 +86,18 @@ fn rough3(at: vec3f) -> vec3f {
     return 2.0 * vec3f(noise3(at), noise3(at + 31.7), noise3(at + 73.1)) - 1.0;
 }
 
+fn towards_eye(at: vec3f) -> vec3f {
+    return normalize(globals.eye.xyz - at);
+}
+
 // Flesh that light goes into: `fresh` 1 where it is torn, 0 on the skin.
 fn flesh(base: vec3f, fresh: f32, strain: f32, at: vec3f, normal: vec3f, facing: vec3f) -> vec3f {
-    let light = normalize(LIGHT);
-    let eye = normalize(globals.eye.xyz - at);
+    let eye = towards_eye(at);
     let open = open_to_light(at, facing);
-    // Thin places are deep in colour, thick ones milky.
     let thick = smoothstep(0.0, 0.9, dot(normal, eye));
-    let deep = base * mix(vec3f(1.0), base, 0.25) * vec3f(1.06, 0.86, 0.92);
-    let milky = mix(base, vec3f(1.0, 0.93, 0.86), 0.22);
-    var colour = mix(deep, milky, thick);
-    // Where it is squashed, it blushes.
-    colour = mix(colour, colour * vec3f(1.0, 0.55, 0.62), 0.75 * smoothstep(0.05, 0.6, strain));
-    colour = mix(colour, mix(to_linear(globals.fresh.rgb), base, 0.15), 0.9 * fresh);
+    var colour = flesh_colour(base, thick, smoothstep(0.05, 0.6, strain), fresh);
 
-    let wrapped = clamp(dot(normal, light) * 0.5 + 0.5, 0.0, 1.0);
+    let wrapped = around(normal);
     // Red goes around the edge of the shadow farther than blue.
     let share = wrapped * mix(0.5, 1.0, open);
     let lit = smoothstep(vec3f(0.02, 0.1, 0.12), vec3f(0.95, 1.0, 1.0), vec3f(share));
@@ -112,9 +109,8 @@ fn flesh(base: vec3f, fresh: f32, strain: f32, at: vec3f, normal: vec3f, facing:
     let rim = away * away * away;
     colour += base * vec3f(1.0, 0.62, 0.5) * rim * (1.0 - wrapped) * 0.55 * (1.0 - fresh);
     // Reflections: a soft one, and a sharp one, on what is lit.
-    let towards = max(dot(normal, normalize(light + eye)), 0.0);
-    let fourth = towards * towards * towards * towards;
+    let towards = mirrored(normal, eye);
     let wet = (1.0 - fresh) * open;
-    colour += vec3f(1.0, 0.97, 0.94) * wet * (0.16 * fourth * fourth * fourth + 0.24 * smoothstep(0.970, 0.999, towards));
+    colour += vec3f(1.0, 0.97, 0.94) * wet * (0.16 * pow12(towards) + 0.24 * smoothstep(0.970, 0.999, towards));
     return under_hands(colour, at, facing);
 }

@@ -100,10 +100,6 @@ fn rough_corner(@location(0) normal: vec3f, @location(1) eighth: vec3f, instance
     return corner_of(normal, eighth, instance, instance.centre.w * (1.0 + 0.45 * bump));
 }
 
-fn towards_eye(at: vec3f) -> vec3f {
-    return normalize(globals.eye.xyz - at);
-}
-
 fn in_light(colour: vec3f, at: vec3f, normal: vec3f) -> vec3f {
     let facing = smoothstep(-0.1, 0.25, dot(normal, normalize(LIGHT)));
     let open = mix(1.0, open_to_light(at, normal), facing);
@@ -169,8 +165,7 @@ fn crumb(in: RoundedCorner) -> @location(0) vec4f {
 @fragment
 fn dust(in: RoundedCorner) -> @location(0) vec4f {
     let normal = rough_normal(in);
-    let wrapped = clamp(dot(normal, normalize(LIGHT)) * 0.5 + 0.5, 0.0, 1.0);
-    let colour = to_linear(in.colour.rgb) * mix(0.75, 1.1, wrapped);
+    let colour = to_linear(in.colour.rgb) * mix(0.75, 1.1, around(normal));
     return shown(colour, in.colour.a);
 }
 

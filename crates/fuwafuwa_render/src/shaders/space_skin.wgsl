@@ -35,12 +35,11 @@ fn skin(in: SkinCorner) -> @location(0) vec4f {
 @fragment
 fn sticker(in: SkinCorner) -> @location(0) vec4f {
     let normal = normalize(in.normal.xyz);
-    let light = normalize(LIGHT);
     let open = open_to_light(in.at, normal);
-    let wrapped = clamp(dot(normal, light) * 0.5 + 0.5, 0.0, 1.0);
-    var colour = to_linear(in.colour.rgb) * mix(vec3f(0.66, 0.62, 0.68), vec3f(1.08), wrapped * mix(0.6, 1.0, open));
+    let share = around(normal) * mix(0.6, 1.0, open);
+    var colour = to_linear(in.colour.rgb) * mix(vec3f(0.66, 0.62, 0.68), vec3f(1.08), share);
     colour *= from_around(in.at, normal);
-    let towards = max(dot(normal, normalize(light + normalize(globals.eye.xyz - in.at))), 0.0);
+    let towards = mirrored(normal, towards_eye(in.at));
     colour += vec3f(0.35 * open * smoothstep(0.975, 0.999, towards));
     return shown(under_hands(colour, in.at, normal), in.colour.a);
 }
@@ -48,7 +47,7 @@ fn sticker(in: SkinCorner) -> @location(0) vec4f {
 // A body that is seen through, more so where it faces the eye.
 @fragment
 fn ghost(in: SkinCorner) -> @location(0) vec4f {
-    let away = 1.0 - abs(dot(normalize(in.normal.xyz), normalize(globals.eye.xyz - in.at)));
+    let away = 1.0 - abs(dot(normalize(in.normal.xyz), towards_eye(in.at)));
     let colour = mix(vec3f(0.45, 0.42, 0.62), in.colour.rgb, 0.25);
     return shown(to_linear(colour), 0.16 + 0.6 * smoothstep(0.35, 1.0, away));
 }
@@ -68,13 +67,12 @@ fn box_corner(@location(0) at: vec3f, @location(1) sides: vec4f, @location(2) co
 @fragment
 fn box_side(in: BoxCorner) -> @location(0) vec4f {
     let across = cross(dpdx(in.at), dpdy(in.at));
-    let eye = normalize(globals.eye.xyz - in.at);
+    let eye = towards_eye(in.at);
     let flat = normalize(across);
     let normal = select(-flat, flat, dot(flat, eye) > 0.0);
-    let wrapped = clamp(dot(normal, normalize(LIGHT)) * 0.5 + 0.5, 0.0, 1.0);
     let open = open_to_light(in.at, normal);
     var colour = to_linear(in.colour.rgb);
-    colour *= mix(0.55, 1.1, min(wrapped, mix(0.4, 1.0, open))) * from_around(in.at, normal);
+    colour *= mix(0.55, 1.1, min(around(normal), mix(0.4, 1.0, open))) * from_around(in.at, normal);
     // Lines along the edges, a pixel and a half wide.
     let lines = smoothstep(vec4f(0.0), 1.7 * fwidth(in.sides) + 0.015, in.sides);
     colour *= mix(0.55, 1.0, min(min(lines.x, lines.y), min(lines.z, lines.w)));

@@ -62,6 +62,7 @@ impl Pipelines {
         let window_layout = layout(device, "window", &[texture(0), sampler(1)]);
         let skin = wgsl!(
             "space.wgsl",
+            "whole.wgsl",
             "light.wgsl",
             "space_light.wgsl",
             "space_skin.wgsl"
@@ -69,12 +70,13 @@ impl Pipelines {
         let skin = module(device, "skin", skin);
         let rigid = wgsl!(
             "space.wgsl",
+            "whole.wgsl",
             "light.wgsl",
             "space_light.wgsl",
             "space_rigid.wgsl"
         );
         let rigid = module(device, "rigid", rigid);
-        let window = module(device, "window", wgsl!("space.wgsl", "space_window.wgsl"));
+        let window = module(device, "window", wgsl!("whole.wgsl", "space_window.wgsl"));
         let stage =
             |extra, module, entries| Stage::new(device, &globals_layout, extra, module, entries);
         let solid = Target {
