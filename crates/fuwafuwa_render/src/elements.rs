@@ -1,11 +1,12 @@
 //! Elements as coloured quads with lines around them.
 
 use crate::frame::ElementColour;
-use crate::plane::{Flat, flat, minus, plus, scaled, unit};
+use crate::plane::{Flat, flat, unit};
 use crate::theme::{Colour, Theme, bytes, mix};
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::dim::{add, corner, scale};
 use fuwafuwa::stencil::slot_index;
+use fuwafuwa::vector::{minus, plus, scaled};
 use fuwafuwa::{Body, Dim2, ElementView};
 use std::collections::BTreeSet;
 

@@ -1,7 +1,8 @@
 //! How to look at a world, as plain data.
 
-use crate::plane::{Flat, dot, flat, minus, plus, scaled};
+use crate::plane::{Flat, flat};
 use crate::theme::Theme;
+use fuwafuwa::vector::{dot, minus, plus, scaled};
 use fuwafuwa::{Dim3, PieceId, Shape, Vector, World};
 
 /// Everything that a picture needs beside the world; for one in space, a camera in space.

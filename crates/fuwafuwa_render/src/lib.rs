@@ -4,7 +4,7 @@
 //! it and draws what has to be drawn apart; [`Renderer::paint`] puts the picture into a pass of a
 //! window, and [`Renderer::render_to_image`] into an image, without any window.
 //!
-//! The way through: [`theme`] and [`frame`] are what a caller says → `rest` how a body is smooth
+//! The way through: [`theme`] and [`frame`] are what a caller says → `stairs` and `rest` how a body is smooth
 //! before it moves → `rings` its smooth outlines now → `skin`, `elements`, `rigid` turn a world into vertices, without a GPU →
 //! `geometry` all of them → `gpu` draws them. [`anchor`] and [`ages`] answer questions of those
 //! who paint on top.
@@ -29,6 +29,7 @@ mod rigid;
 mod rings;
 mod skin;
 pub mod space;
+mod stairs;
 pub mod theme;
 
 pub use ages::Ages;

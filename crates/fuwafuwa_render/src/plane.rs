@@ -1,4 +1,6 @@
-//! Small vectors of the plane.
+//! What small vectors of the plane have beside the arithmetic of `fuwafuwa::vector`.
+
+use fuwafuwa::vector::{length, minus, plus, scaled};
 
 /// A vector or a place in the plane [m].
 pub type Flat = [f32; 2];
@@ -7,24 +9,8 @@ pub fn flat([x, y, _]: [f32; 3]) -> Flat {
     [x, y]
 }
 
-pub fn plus(a: Flat, b: Flat) -> Flat {
-    [a[0] + b[0], a[1] + b[1]]
-}
-
-pub fn minus(a: Flat, b: Flat) -> Flat {
-    [a[0] - b[0], a[1] - b[1]]
-}
-
-pub fn scaled(a: Flat, k: f32) -> Flat {
-    [a[0] * k, a[1] * k]
-}
-
 pub fn mixed(a: Flat, b: Flat, share: f32) -> Flat {
-    [a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share]
-}
-
-pub fn dot(a: Flat, b: Flat) -> f32 {
-    a[0] * b[0] + a[1] * b[1]
+    plus(a, scaled(minus(b, a), share))
 }
 
 /// Twice the area between two vectors, positive when the second is to the left of the first.
@@ -34,5 +20,5 @@ pub fn cross(a: Flat, b: Flat) -> f32 {
 
 /// The same direction with length 1; nothing where there is no direction.
 pub fn unit(a: Flat) -> Flat {
-    scaled(a, 1.0 / dot(a, a).sqrt().max(1e-12))
+    scaled(a, 1.0 / length(a).max(1e-12))
 }

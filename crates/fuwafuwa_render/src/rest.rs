@@ -4,7 +4,9 @@
 //! deformed body carries the offsets along by the deformation of its voxels: so the skin is as
 //! smooth after any motion as before, and no squash is smoothed away.
 
-use crate::plane::{Flat, dot, minus, plus, scaled};
+use crate::plane::Flat;
+use crate::stairs::{limited, smoothed};
+use fuwafuwa::vector::{minus, plus, scaled};
 use fuwafuwa::{Dim2, VoxelGrid};
 
 /// Steps to the four sides, anticlockwise from the right.
@@ -52,11 +54,11 @@ impl Rest {
                     ring.push(start_of(voxel, facing));
                     (voxel, facing) = next_side(grid, voxel, facing);
                 }
-                let moved = smoothed(&ring);
+                let moved = without_stairs(&ring);
                 let moved: Vec<Flat> = moved
                     .iter()
                     .zip(&ring)
-                    .map(|(a, b)| limited(minus(*a, *b)))
+                    .map(|(a, b)| limited(minus(*a, *b), FARTHEST))
                     .collect();
                 let next = moved.iter().cycle().skip(1);
                 offsets.extend(moved.iter().zip(next).map(|(a, b)| [*a, *b]));
@@ -121,18 +123,13 @@ fn next_side(grid: &VoxelGrid<Dim2>, voxel: [i32; 3], direction: usize) -> ([i32
     }
 }
 
-/// A closed line without its stairs: 3 S − 3 S² + S³ of it, S being a blur along the line. What is
-/// much longer than the blur reaches does not shrink, as it would with S alone [Taubin 1995].
-fn smoothed(ring: &[Flat]) -> Vec<Flat> {
+/// A closed line without its stairs.
+fn without_stairs(ring: &[Flat]) -> Vec<Flat> {
     if ring.len() < SMALL {
         return ring.to_vec();
     }
     let reach = REACH * (ring.len() as f32).sqrt();
-    let once = blurred(ring, reach);
-    let twice = blurred(&once, reach);
-    let thrice = blurred(&twice, reach);
-    let sum = |k: usize| plus(scaled(minus(once[k], twice[k]), 3.0), thrice[k]);
-    (0..ring.len()).map(sum).collect()
+    smoothed(ring, |ring| blurred(ring, reach))
 }
 
 /// A closed line, each point of it moved to the mean of those around it, by a bell curve of a
@@ -152,17 +149,10 @@ fn blurred(ring: &[Flat], sigma: f32) -> Vec<Flat> {
     (0..count).map(mean).collect()
 }
 
-fn limited(offset: Flat) -> Flat {
-    let length = dot(offset, offset).sqrt();
-    match length > FARTHEST {
-        true => scaled(offset, FARTHEST / length),
-        false => offset,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fuwafuwa::vector::length;
 
     /// The smoothed surface of a disc [voxels], as the starts of its sides.
     fn surface(grid: &VoxelGrid<Dim2>) -> Vec<Flat> {
@@ -184,7 +174,7 @@ mod tests {
             let half = 0.5 * n as f32;
             let radii: Vec<f32> = surface(&grid)
                 .iter()
-                .map(|p| dot(minus(*p, [half; 2]), minus(*p, [half; 2])).sqrt())
+                .map(|p| length(minus(*p, [half; 2])))
                 .collect();
             let round = (grid.solid_count() as f32 / std::f32::consts::PI).sqrt();
             for radius in radii {

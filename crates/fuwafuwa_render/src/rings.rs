@@ -6,9 +6,10 @@
 //! quadratic B-spline, of which the corners get more points than the rest. What is smoothed on
 //! one lip of a crack is smoothed in the same way on the other, so that a closed crack stays closed.
 
-use crate::plane::{Flat, cross, dot, flat, minus, mixed, plus, scaled, unit};
+use crate::plane::{Flat, cross, flat, mixed, unit};
 use crate::rest::{Rest, SMALL};
 use fuwafuwa::ids::Table;
+use fuwafuwa::vector::{dot, minus, plus, scaled};
 use fuwafuwa::{Body, Dim2, NodeId};
 
 /// The closed curves around the pieces of a body, with the buffers that make them.

@@ -1,11 +1,12 @@
 //! The triangles that fill the curves around pieces, and the bands along them.
 
 use crate::elements::fills;
-use crate::plane::{Flat, flat, minus, plus, scaled};
+use crate::plane::{Flat, flat};
 use crate::rings::{Rings, sides, strain};
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::dim::{corner, scale};
 use fuwafuwa::stencil::slot_index;
+use fuwafuwa::vector::{minus, plus, scaled};
 use fuwafuwa::{Body, Dim, Dim2, ElementView};
 
 /// Pieces of less area are crumbs [voxels].

@@ -3,9 +3,10 @@
 //! As in the plane: every point of the surface gets an offset, in voxels and in the frame of the
 //! body at rest, and a deformed body carries the offsets along.
 
+use crate::stairs::{limited, smoothed};
 use fuwafuwa::dim::{add, corner, face_corners, points_in, voxel_around};
 use fuwafuwa::sharing::{Groups, Sharing};
-use fuwafuwa::vector::{length, minus, plus, scaled};
+use fuwafuwa::vector::{minus, plus, scaled};
 use fuwafuwa::{Dim, Dim3, Point, Vector, VoxelGrid};
 
 /// The variance of the smoothing [voxels²] as a share of the root of the number of faces of the
@@ -88,7 +89,7 @@ impl Rest {
         let places: Vec<Vector> = rest.points.iter().map(|point| place(point.at)).collect();
         let variance = REACH * (face_count as f32).sqrt();
         let rounds = ((variance / VARIANCE) as usize).min(MOST_ROUNDS);
-        let smooth = smoothed(&places, &neighbours, rounds);
+        let smooth = smoothed(&places, |places| blurred(places, &neighbours, rounds));
         for (point, (&to, &from)) in rest.points.iter_mut().zip(smooth.iter().zip(&places)) {
             point.offset = limited(minus(to, from), farthest(grid, point.at));
         }
@@ -212,29 +213,21 @@ fn place(at: Point) -> Vector {
     at.map(|k| k as f32)
 }
 
-/// A surface without its stairs: 3 S − 3 S² + S³ of it, S being `rounds` of blur. What is much
-/// longer than the blur reaches does not shrink, as it would with S alone [Taubin 1995].
-fn smoothed(places: &[Vector], neighbours: &[Vec<u32>], rounds: usize) -> Vec<Vector> {
-    let blurred = |places: &[Vector]| {
-        let mut now = places.to_vec();
-        let mut next = now.clone();
-        for _ in 0..rounds {
-            for (to, (from, near)) in next.iter_mut().zip(now.iter().zip(neighbours)) {
-                let sum = near
-                    .iter()
-                    .fold([0.0; 3], |sum, &k| plus(sum, now[k as usize]));
-                let share = 0.5 / near.len().max(1) as f32;
-                *to = plus(scaled(*from, 0.5), scaled(sum, share));
-            }
-            std::mem::swap(&mut now, &mut next);
+/// A surface after some rounds, in each of which every point goes half of the way to the mean of its neighbours.
+fn blurred(places: &[Vector], neighbours: &[Vec<u32>], rounds: usize) -> Vec<Vector> {
+    let mut now = places.to_vec();
+    let mut next = now.clone();
+    for _ in 0..rounds {
+        for (to, (from, near)) in next.iter_mut().zip(now.iter().zip(neighbours)) {
+            let sum = near
+                .iter()
+                .fold([0.0; 3], |sum, &k| plus(sum, now[k as usize]));
+            let share = 0.5 / near.len().max(1) as f32;
+            *to = plus(scaled(*from, 0.5), scaled(sum, share));
         }
-        now
-    };
-    let once = blurred(places);
-    let twice = blurred(&once);
-    let thrice = blurred(&twice);
-    let sum = |k: usize| plus(scaled(minus(once[k], twice[k]), 3.0), thrice[k]);
-    (0..places.len()).map(sum).collect()
+        std::mem::swap(&mut now, &mut next);
+    }
+    now
 }
 
 /// How far a point may be moved [voxels].
@@ -247,13 +240,6 @@ fn farthest(grid: &VoxelGrid<Dim3>, at: Point) -> f32 {
     let share = solid as f32 / (8 * AROUND * AROUND * AROUND) as f32;
     let thick = ((share - SOLID[0]) / (SOLID[1] - SOLID[0])).clamp(0.0, 1.0);
     FARTHEST[0] + (FARTHEST[1] - FARTHEST[0]) * thick
-}
-
-fn limited(offset: Vector, farthest: f32) -> Vector {
-    match length(offset) {
-        length if length > farthest => scaled(offset, farthest / length),
-        _ => offset,
-    }
 }
 
 /// A number that a lattice point keeps for each axis, 0 to 1.
@@ -271,6 +257,7 @@ fn grain(at: Point, axis: u32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fuwafuwa::vector::length;
 
     #[test]
     fn a_ball_is_round() {
