@@ -278,6 +278,7 @@ fn mixed(a: Vector, b: Vector, share: f32) -> Vector {
     plus(scaled(a, 1.0 - share), scaled(b, share))
 }
 
-fn unit(v: Vector) -> Vector {
+/// The same direction with length 1.
+pub fn unit(v: Vector) -> Vector {
     scaled(v, 1.0 / length(v).max(1e-12))
 }

@@ -2,12 +2,12 @@
 //! soft shadow on the floor. Enough to judge shape, cracks and levels; no more.
 
 use crate::PaintError;
-use crate::canvas::Canvas;
 pub use crate::canvas::{Camera, Triangle};
+use crate::canvas::{Canvas, unit};
 use crate::shadow::Shadow;
 use crate::theme::Role;
 use fuwafuwa::shape::Vector;
-use fuwafuwa::vector::{cross, length, minus, plus, scaled};
+use fuwafuwa::vector::{cross, minus, plus, scaled};
 use tiny_skia::Pixmap;
 
 /// What stands in space, to become an image.
@@ -153,10 +153,6 @@ fn corner(centre: Vector, half: Vector, axis: usize, sides: [f32; 3]) -> Vector 
         corner[along] += side * half[along];
     }
     corner
-}
-
-fn unit(v: Vector) -> Vector {
-    scaled(v, 1.0 / length(v).max(1e-12))
 }
 
 #[cfg(test)]

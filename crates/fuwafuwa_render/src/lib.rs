@@ -37,5 +37,6 @@ pub use anchor::{Anchor, anchor, anchor_at};
 pub use frame::{Basket, Camera, Frame, Look, Mark, Particle, Sticker};
 pub use geometry::Geometry;
 pub use gpu::Renderer;
-pub use gpu::image::{ImageError, Step, image};
+pub use gpu::image::{ImageError, Step, image, pass_into};
+pub use gpu::targets::new_image;
 pub use theme::{Colour, Theme};

@@ -6,10 +6,10 @@ use super::{Camera, Face, Theme, View};
 use eframe::egui_wgpu::RenderState;
 use egui::{Color32, Painter, Rect, TextureId, pos2};
 use fuwafuwa::{Dim, Vector};
-use fuwafuwa_render::{Frame, Renderer, Sticker, space};
+use fuwafuwa_render::{Frame, Renderer, Sticker, new_image, pass_into, space};
 use std::sync::Arc;
 use tamaire_play::{AnyRound, Level, Round};
-use wgpu::{CommandEncoder, FilterMode, TextureFormat, TextureUsages, TextureView};
+use wgpu::{FilterMode, TextureFormat, TextureUsages};
 
 /// Colours and pixels of a picture.
 const FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
@@ -77,21 +77,8 @@ impl Maps {
     /// The picture of a level.
     fn picture(&mut self, state: &RenderState, level: &Arc<Level>, theme: &Theme) -> Picture {
         let RenderState { device, queue, .. } = state;
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("map"),
-            size: wgpu::Extent3d {
-                width: SIZE[0],
-                height: SIZE[1],
-                depth_or_array_layers: 1,
-            },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: FORMAT,
-            usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        });
-        let target = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
+        let target = new_image(device, "map", SIZE, 1, FORMAT, usage);
         let rect = Rect::from_min_max(pos2(0.0, 0.0), pos2(SIZE[0] as f32, SIZE[1] as f32));
         let view = view(rect, level);
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -102,7 +89,7 @@ impl Maps {
                     .get_or_insert_with(|| Renderer::new(device, FORMAT));
                 let frame = frame(camera(&view), &round, theme);
                 renderer.prepare(device, queue, &mut encoder, round.world(), &frame, SIZE);
-                renderer.paint(&mut pass(&mut encoder, &target));
+                renderer.paint(&mut pass_into(&mut encoder, &target));
                 faces(&round, None)
             }
             AnyRound::Space(round) => {
@@ -118,7 +105,7 @@ impl Maps {
                     ..frame(camera, &round, theme)
                 };
                 renderer.prepare(device, queue, &mut encoder, round.world(), &frame, SIZE);
-                renderer.paint(&mut pass(&mut encoder, &target));
+                renderer.paint(&mut pass_into(&mut encoder, &target));
                 Vec::new()
             }
         };
@@ -137,24 +124,6 @@ fn faces<D: Dim>(round: &Round<D>, eye: Option<Vector>) -> Vec<Face> {
     bodies
         .map(|(number, body)| face_of(number, &Feeling::of(body, eye), 1.0))
         .collect()
-}
-
-/// A pass that fills a picture.
-fn pass(encoder: &mut CommandEncoder, target: &TextureView) -> wgpu::RenderPass<'static> {
-    let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: Some("map"),
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: target,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations {
-                load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                store: wgpu::StoreOp::Store,
-            },
-        })],
-        ..wgpu::RenderPassDescriptor::default()
-    });
-    pass.forget_lifetime()
 }
 
 fn view(rect: Rect, level: &Level) -> View {

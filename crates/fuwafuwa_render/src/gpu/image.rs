@@ -1,6 +1,7 @@
 //! A picture without a window.
 
 use super::Renderer;
+use super::targets::{clear, new_texture};
 use crate::frame::Frame;
 use fuwafuwa::{Dim2, World};
 use std::fmt;
@@ -111,16 +112,8 @@ pub fn image(
         height: size[1],
         depth_or_array_layers: 1,
     };
-    let texture = device.create_texture(&TextureDescriptor {
-        label: Some("image"),
-        size: extent,
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: TextureDimension::D2,
-        format,
-        usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC,
-        view_formats: &[],
-    });
+    let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC;
+    let texture = new_texture(device, "image", size, 1, format, usage);
     let view = texture.create_view(&TextureViewDescriptor::default());
     let buffer = device.create_buffer(&BufferDescriptor {
         label: Some("image"),
@@ -130,20 +123,7 @@ pub fn image(
     });
     let mut encoder = device.create_command_encoder(&CommandEncoderDescriptor::default());
     draw(Step::Before(&mut encoder));
-    let pass = encoder.begin_render_pass(&RenderPassDescriptor {
-        label: Some("image"),
-        color_attachments: &[Some(RenderPassColorAttachment {
-            view: &view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: Operations {
-                load: LoadOp::Clear(Color::TRANSPARENT),
-                store: StoreOp::Store,
-            },
-        })],
-        ..RenderPassDescriptor::default()
-    });
-    let mut pass = pass.forget_lifetime();
+    let mut pass = pass_into(&mut encoder, &view);
     draw(Step::Inside(&mut pass));
     drop(pass);
     let into = TexelCopyBufferInfo {
@@ -177,4 +157,14 @@ pub fn image(
         image.chunks_exact_mut(4).for_each(|pixel| pixel.swap(0, 2));
     }
     Ok(image)
+}
+
+/// A pass that fills an image, clear at first: what renderers paint into where there is no window.
+pub fn pass_into(encoder: &mut CommandEncoder, view: &TextureView) -> RenderPass<'static> {
+    let pass = encoder.begin_render_pass(&RenderPassDescriptor {
+        label: Some("image"),
+        color_attachments: &[clear(view, None)],
+        ..RenderPassDescriptor::default()
+    });
+    pass.forget_lifetime()
 }

@@ -13,7 +13,7 @@ use bytemuck::{Pod, Zeroable};
 use fuwafuwa::{Dim2, World};
 use pipelines::Pipelines;
 use std::ops::Range;
-use targets::{NARROW, REACH, Targets, bind};
+use targets::{NARROW, REACH, Targets, bind, clear, new_uniforms};
 use wgpu::*;
 
 /// Standard deviation of the wide blur, which makes a body look thick, as a share of the radius
@@ -64,12 +64,7 @@ impl Renderer {
     /// has them; no depth and no multisampling.
     pub fn new(device: &Device, target_format: TextureFormat) -> Self {
         let pipelines = Pipelines::new(device, target_format);
-        let uniforms = device.create_buffer(&BufferDescriptor {
-            label: Some("globals"),
-            size: size_of::<Globals>() as u64,
-            usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+        let uniforms = new_uniforms(device, "globals", size_of::<Globals>() as u64);
         let resource = uniforms.as_entire_binding();
         let (vertex, index) = (BufferUsages::VERTEX, BufferUsages::INDEX);
         let buffer = |label, usage| GrowingBuffer::new(device, label, usage);
@@ -236,17 +231,7 @@ impl Renderer {
 
     fn draw_bodies(&self, encoder: &mut CommandEncoder) {
         let (pipelines, targets) = (&self.pipelines, &self.targets);
-        let attachments = [0, 1].map(|k| {
-            Some(RenderPassColorAttachment {
-                view: &targets.rough[k],
-                depth_slice: None,
-                resolve_target: Some(&targets.skin[k]),
-                ops: Operations {
-                    load: LoadOp::Clear(Color::TRANSPARENT),
-                    store: StoreOp::Discard,
-                },
-            })
-        });
+        let attachments = [0, 1].map(|k| clear(&targets.rough[k], Some(&targets.skin[k])));
         let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
             label: Some("bodies"),
             color_attachments: &attachments,
@@ -291,17 +276,7 @@ impl Renderer {
     fn blur(&self, encoder: &mut CommandEncoder) {
         let (pipelines, targets) = (&self.pipelines, &self.targets);
         let mut step = |pipeline, from, into: &[TextureView; 2], divisor| {
-            let attachments = into.each_ref().map(|view| {
-                Some(RenderPassColorAttachment {
-                    view,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: Operations {
-                        load: LoadOp::Clear(Color::TRANSPARENT),
-                        store: StoreOp::Store,
-                    },
-                })
-            });
+            let attachments = into.each_ref().map(|view| clear(view, None));
             let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
                 label: Some("blur"),
                 color_attachments: &attachments,

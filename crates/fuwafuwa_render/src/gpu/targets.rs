@@ -65,12 +65,7 @@ impl Targets {
         let soft = |label, divisor| [0, 1].map(|_| pair(label, divisor, 1, SOFT_FORMAT, readable));
         let skin = pair("skin", 1, 1, SKIN_FORMAT, readable);
         let (narrow, wide) = (soft("narrow", NARROW), soft("wide", WIDE));
-        let uniforms = device.create_buffer(&BufferDescriptor {
-            label: Some("blurs"),
-            size: 6 * STRIDE,
-            usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+        let uniforms = new_uniforms(device, "blurs", 6 * STRIDE);
         let smooth = smooth(device);
         let sources = [
             &skin, &narrow[0], &narrow[1], &narrow[0], &wide[0], &wide[1],
@@ -177,16 +172,29 @@ pub fn within(device: &Device, window: [u32; 2]) -> [u32; 2] {
     window.map(|side| ((side as f32 * shrunk.min(1.0)) as u32).max(1))
 }
 
-/// An image to draw into.
+/// An image to draw into, seen as a whole.
 pub fn new_image(
+    device: &Device,
+    label: &str,
+    size: [u32; 2],
+    samples: u32,
+    format: TextureFormat,
+    usage: TextureUsages,
+) -> TextureView {
+    let texture = new_texture(device, label, size, samples, format, usage);
+    texture.create_view(&TextureViewDescriptor::default())
+}
+
+/// An image to draw into.
+pub fn new_texture(
     device: &Device,
     label: &str,
     [width, height]: [u32; 2],
     samples: u32,
     format: TextureFormat,
     usage: TextureUsages,
-) -> TextureView {
-    let texture = device.create_texture(&TextureDescriptor {
+) -> Texture {
+    device.create_texture(&TextureDescriptor {
         label: Some(label),
         size: Extent3d {
             width,
@@ -199,8 +207,36 @@ pub fn new_image(
         format,
         usage,
         view_formats: &[],
-    });
-    texture.create_view(&TextureViewDescriptor::default())
+    })
+}
+
+/// What a pass draws into, clear at first; `smoothed` is where its samples are put together, if it has several.
+pub fn clear<'a>(
+    view: &'a TextureView,
+    smoothed: Option<&'a TextureView>,
+) -> Option<RenderPassColorAttachment<'a>> {
+    Some(RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: smoothed,
+        ops: Operations {
+            load: LoadOp::Clear(Color::TRANSPARENT),
+            store: match smoothed {
+                Some(_) => StoreOp::Discard,
+                None => StoreOp::Store,
+            },
+        },
+    })
+}
+
+/// Room for so many bytes that shaders are told.
+pub fn new_uniforms(device: &Device, label: &str, size: u64) -> Buffer {
+    device.create_buffer(&BufferDescriptor {
+        label: Some(label),
+        size,
+        usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
 }
 
 /// Looks between the pixels of an image.

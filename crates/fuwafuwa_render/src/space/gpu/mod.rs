@@ -10,7 +10,7 @@ use super::rounded;
 use crate::frame::Frame;
 use crate::gpu::buffer::GrowingBuffer;
 use crate::gpu::image::{ImageError, Step, image};
-use crate::gpu::targets::bind;
+use crate::gpu::targets::{bind, clear, new_uniforms};
 use crate::rigid::MOST_WALLS;
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::vector::{cross, length, scaled};
@@ -83,14 +83,8 @@ impl Renderer {
     /// has them; no depth and no multisampling.
     pub fn new(device: &Device, target_format: TextureFormat) -> Self {
         let pipelines = Pipelines::new(device, target_format);
-        let uniforms = [0, 1, 2].map(|_| {
-            device.create_buffer(&BufferDescriptor {
-                label: Some("globals"),
-                size: size_of::<Globals>() as u64,
-                usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
-        });
+        let uniforms =
+            [0, 1, 2].map(|_| new_uniforms(device, "globals", size_of::<Globals>() as u64));
         let globals = uniforms.each_ref().map(|buffer| {
             let resource = buffer.as_entire_binding();
             bind(device, &pipelines.globals_layout, &[resource])
@@ -260,15 +254,7 @@ impl Renderer {
     fn draw_picture(&self, encoder: &mut CommandEncoder) {
         let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
             label: Some("space"),
-            color_attachments: &[Some(RenderPassColorAttachment {
-                view: &self.targets.rough,
-                depth_slice: None,
-                resolve_target: Some(&self.targets.picture),
-                ops: Operations {
-                    load: LoadOp::Clear(Color::TRANSPARENT),
-                    store: StoreOp::Discard,
-                },
-            })],
+            color_attachments: &[clear(&self.targets.rough, Some(&self.targets.picture))],
             depth_stencil_attachment: Some(depth_attachment(&self.targets.depth, StoreOp::Discard)),
             ..RenderPassDescriptor::default()
         });
