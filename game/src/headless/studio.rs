@@ -175,3 +175,48 @@ fn draw(ui: &Ui, rect: Rect, moment: &Moment, stage: &mut Stage, theme: &Theme) 
         );
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Arc;
+    use tamaire_play::Level;
+
+    const SIZE: [u32; 2] = [480, 300];
+
+    /// How many pixels from one row up to another are nearly of a colour.
+    fn count(picture: &[u8], rows: std::ops::Range<usize>, colour: [u8; 3]) -> usize {
+        let row = 4 * SIZE[0] as usize;
+        let pixels = picture[rows.start * row..rows.end * row].chunks(4);
+        let is_near = |pixel: &&[u8]| (0..3).all(|k| pixel[k].abs_diff(colour[k]) < 12);
+        pixels.filter(is_near).count()
+    }
+
+    #[test]
+    fn a_moment_has_a_face_a_basket_and_its_caption_in_both_dimensions() {
+        let Some(mut studio) = Studio::open() else {
+            let is_ci = std::env::var("CI").is_ok_and(|value| value == "1" || value == "true");
+            assert!(!is_ci, "mesa-vulkan-drivers brings an adapter");
+            return;
+        };
+        for id in ["classic", "classic-3d"] {
+            let round = AnyRound::new(Arc::new(Level::open(id).expect("it comes along")));
+            let moment = Moment {
+                round: &round,
+                effects: &Effects::default(),
+                camera: &Camera::default(),
+                time: 1.0,
+                caption: Some("hello"),
+            };
+            let [width, height] = Studio::size(&moment, SIZE);
+            let picture = studio.shoot(&moment, SIZE).expect("it is small");
+            assert_eq!(picture.len() as u32, 4 * width * height);
+            assert!(picture.chunks(4).all(|pixel| pixel[3] == 255), "{id}");
+            let (world, below) = (0..300, 300..height as usize);
+            let [eyes, wood, letters] = [[74, 44, 42], [216, 171, 110], [74, 54, 52]];
+            assert!(count(&picture, world.clone(), eyes) > 30, "{id}: no eyes");
+            assert!(count(&picture, world, wood) > 200, "{id}: no bars");
+            assert!(count(&picture, below, letters) > 20, "{id}: no letters");
+        }
+    }
+}
