@@ -39,6 +39,7 @@ Examples:
   tamaire --level hoop
   tamaire --headless --bot shave --seed 7 --film shave.gif --save shave.tamaire
   tamaire --headless --replay shave.tamaire --json
+  tamaire --headless --level hoop --seconds 3 --photo hoop.png
 
 Exit status: 0 played to the end, won or not; 1 the replay is refused, or the window broke down;
 2 the arguments make no sense, or a file cannot be read or written";
