@@ -73,7 +73,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                         fill: 0.0,
                     }),
                     particles: &particles,
-                    seconds: tick as f32 / 60.0,
+                    seconds: tick as f64 / 60.0,
                     ..Frame::new(camera, theme)
                 };
                 let begin = Instant::now();

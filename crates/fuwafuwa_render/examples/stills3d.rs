@@ -221,7 +221,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                     look,
                     basket,
                     particles: &particles,
-                    seconds: tick as f32 / 60.0,
+                    seconds: tick as f64 / 60.0,
                     ..Frame::new(camera, theme)
                 };
                 let begin = Instant::now();

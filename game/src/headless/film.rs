@@ -148,7 +148,7 @@ fn pass(
                     round: &round,
                     effects: &effects,
                     camera: &camera,
-                    time: tick as f32 * TICK,
+                    time: tick as f64 * f64::from(TICK),
                     caption,
                 };
                 let drawn = studio.shoot(&moment, print.size)?;

@@ -33,7 +33,7 @@ pub struct Moment<'a> {
     /// From where.
     pub camera: &'a Camera,
     /// Seconds since the film began.
-    pub time: f32,
+    pub time: f64,
     /// What stands below it, if anything does.
     pub caption: Option<&'a str>,
 }
@@ -76,7 +76,7 @@ impl Studio {
         };
         let input = RawInput {
             screen_rect: Some(points(size_in_pixels)),
-            time: Some(f64::from(moment.time)),
+            time: Some(moment.time),
             ..RawInput::default()
         };
         let (stage, theme) = (&mut self.stage, &self.theme);
