@@ -5,7 +5,7 @@ mod force_log;
 mod played;
 mod report;
 
-use crate::platform::Files;
+use crate::platform::replay_in;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use film::Film;
@@ -155,11 +155,6 @@ fn try_bot(options: &Options) -> Result<String, Trouble> {
 
 /// Runs a replay.
 fn check(path: &Path, options: &Options) -> Result<String, Trouble> {
-    let unreadable = |reason| Trouble::File {
-        path: path.into(),
-        reason,
-    };
-    std::fs::File::open(path).map_err(unreadable)?;
     if let Some(film) = &options.film {
         can_be_written(film)?;
     }
@@ -167,7 +162,13 @@ fn check(path: &Path, options: &Options) -> Result<String, Trouble> {
         path: path.into(),
         reason,
     };
-    let replay = Files::replay(path).map_err(refused)?;
+    let replay = replay_in(path).map_err(|error| match error {
+        ReplayError::Unreadable(reason) => Trouble::File {
+            path: path.into(),
+            reason: io::Error::other(reason),
+        },
+        error => refused(error),
+    })?;
     let mut log = force_log(options)?;
     let played = of_replay(Arc::new(replay), &mut log).map_err(refused)?;
     let by = report::Player::Replay {

@@ -8,6 +8,7 @@ use fuwafuwa_scenes::Scene;
 use fuwafuwa_scenes::scene::shortened;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
+use std::str::Utf8Error;
 use std::sync::Arc;
 
 /// Number of the format and of the rules; it changes when an older round would run differently.
@@ -38,6 +39,9 @@ pub struct Replay {
 /// Why a replay is not played.
 #[derive(Debug, thiserror::Error)]
 pub enum ReplayError {
+    /// It cannot be read.
+    #[error("it cannot be read: {0}")]
+    Unreadable(String),
     /// It is no replay.
     #[error("this is no replay: {0}")]
     Text(String),
@@ -84,6 +88,15 @@ impl Replay {
             frames: round.frames().iter().map(InputFrame::row).collect(),
             scene: level.scene().clone(),
         }
+    }
+
+    /// The replay in the bytes of a file.
+    ///
+    /// # Errors
+    /// As [`Replay::read`].
+    pub fn of_bytes(bytes: &[u8]) -> Result<Self, ReplayError> {
+        let no_text = |error: Utf8Error| ReplayError::Text(error.to_string());
+        Self::read(std::str::from_utf8(bytes).map_err(no_text)?)
     }
 
     /// The replay in a text.

@@ -2,15 +2,22 @@
 //! sticks can be read and felt. Nothing else in the game knows on which it runs.
 
 mod files;
+#[cfg(not(target_family = "wasm"))]
+mod folder;
 mod forces;
+mod given;
 #[cfg(not(target_family = "wasm"))]
 mod sound;
 #[cfg(target_family = "wasm")]
 #[path = "silence.rs"]
 mod sound;
 mod sticks;
+mod storage;
+mod writer;
 
-pub use files::{Files, SavedReplay};
+pub use files::{Damage, Files, News};
 pub use forces::Forces;
+pub use given::replay_in;
 pub use sound::Sound;
 pub use sticks::Pads;
+pub use storage::{Change, Entry, Kind, Nowhere, Storage};
