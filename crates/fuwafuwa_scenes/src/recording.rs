@@ -1,7 +1,8 @@
 //! What hands did in a scene, tick by tick, so that it can be run again and compared.
 
+use crate::file::text_of;
 use crate::scene::send;
-use crate::scene::{MAX_SECONDS, Scene, SceneError, shortened, text_of};
+use crate::scene::{MAX_SECONDS, Scene, SceneError, shortened};
 use fuwafuwa::{Dim, World};
 use serde::{Deserialize, Serialize};
 use std::io;
@@ -75,8 +76,7 @@ impl Recording {
     /// [`RecordingError`] when the file cannot be read, holds no recording, or one of another format.
     pub fn open(path: &Path) -> Result<Self, RecordingError> {
         let name = path.display().to_string();
-        let too_long = format!("longer than {MAX_BYTES} bytes, the most that are read");
-        let text = match text_of(path, MAX_BYTES, &too_long) {
+        let text = match text_of(path, MAX_BYTES) {
             Ok(text) => text,
             Err(reason) => return Err(RecordingError::File { name, reason }),
         };
