@@ -22,7 +22,7 @@ use lesson::Lesson;
 use std::path::Path;
 use std::sync::Arc;
 use tamaire_play::level::{NAMED, NAMED_3D};
-use tamaire_play::{AnyRound, Level, Outcome, Playback, Replay, ReplayError};
+use tamaire_play::{AnyRound, Level, Outcome, Playback, Replay, ReplayError, shortened};
 use tamaire_sound::{Cue, Menu};
 use trial::Trial;
 
@@ -51,6 +51,9 @@ pub enum Screen {
 const NOTICE: f32 = 6.0;
 /// How fast it can be read, at leisure [letters/s].
 const READING: f32 = 15.0;
+
+/// Most letters of a notice: what it quotes may be as long as a file.
+const LETTERS: usize = 600;
 
 /// The state of the game.
 pub struct Game {
@@ -197,6 +200,7 @@ impl Game {
 
     /// Tells the player something; what is still to be read is not said twice.
     pub fn notify(&mut self, text: String) {
+        let text = shortened(&text, LETTERS);
         self.notices.retain(|(known, _)| *known != text);
         let reading = text.chars().count() as f32 / READING;
         self.notices.push((text, reading.max(NOTICE)));

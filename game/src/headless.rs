@@ -142,7 +142,12 @@ fn try_bot(options: &Options) -> Result<String, Trouble> {
     let most = (options.seconds * RATE) as u64;
     let played = of_bot(level, Bot::new(*kind, options.seed), most, &mut log);
     if let Some(path) = &options.save {
-        write(path, played.round.replay().text().as_bytes())?;
+        let text = played.round.replay().text_to_keep();
+        let text = text.map_err(|reason| Trouble::File {
+            path: path.clone(),
+            reason: io::Error::other(reason.to_string()),
+        })?;
+        write(path, text.as_bytes())?;
     }
     let by = report::Player::Bot {
         bot: options.bot.clone(),

@@ -99,6 +99,18 @@ impl Recording {
         }
     }
 
+    /// It as a text, if that can be opened again.
+    ///
+    /// # Errors
+    /// What is too long in it.
+    pub fn text(&self) -> Result<String, String> {
+        self.check()?;
+        let text = toml::to_string(self).map_err(|error| error.to_string())?;
+        let found = text.len() as u64;
+        let expected = format!("expected {MAX_BYTES} bytes at most, found {found}");
+        (found <= MAX_BYTES).then_some(text).ok_or(expected)
+    }
+
     fn check(&self) -> Result<(), String> {
         let ticks = self.goals.len();
         if ticks > MAX_TICKS {
@@ -212,7 +224,9 @@ mod tests {
         let scene = Scene::open("drop", &["body.n=8".into()]).unwrap();
         let mut recording = Recording::of::<Dim2>(&scene, 1, |_| {}).unwrap();
         recording.goals = vec![Vec::new(); MAX_TICKS + 1];
-        assert!(recording.check().unwrap_err().contains("ticks at most"));
+        for refusal in [recording.check(), recording.text().map(drop)] {
+            assert!(refusal.unwrap_err().contains("ticks at most"));
+        }
     }
 
     #[test]

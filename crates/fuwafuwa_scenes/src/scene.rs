@@ -49,6 +49,7 @@ mod body;
 mod budget;
 mod build;
 mod change;
+mod embed;
 mod error;
 mod game;
 mod grid;

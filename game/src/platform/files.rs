@@ -266,17 +266,8 @@ fn merge_records(storage: &dyn Storage, records: &Records) -> io::Result<()> {
 
 /// Keeps a replay under a name that is free; says where, or why not.
 fn save_replay(storage: &dyn Storage, replay: &Replay) -> Result<String, String> {
-    let text = replay.text();
-    let most = Kind::Replay.most_bytes();
-    if text.len() as u64 > most {
-        let found = text.len();
-        return Err(format!(
-            "the replay has {found} bytes, expected {most} at most"
-        ));
-    }
     // One that could not be watched is none.
-    let level = Replay::read(&text).and_then(|replay| replay.level());
-    level.map_err(|error| error.to_string())?;
+    let text = replay.text_to_keep().map_err(|error| error.to_string())?;
     let is_plain = |letter: &char| letter.is_alphanumeric() || *letter == '-';
     let stem: String = replay.level.chars().filter(is_plain).take(60).collect();
     let mut number = 1;

@@ -1,12 +1,12 @@
 //! What the game keeps, as files of a folder.
 
-use super::given::read_file;
 use super::storage::{Change, Entry, Kind, Storage};
 use std::fs::{self, File, TryLockError};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::{Duration, Instant};
+use tamaire_play::bytes_of;
 
 /// How long another program is waited for that changes something; it takes some milliseconds.
 const PATIENCE: Duration = Duration::from_secs(5);
@@ -78,7 +78,7 @@ impl Storage for Folder {
     }
 
     fn read(&self, kind: Kind, name: &str) -> io::Result<Option<Vec<u8>>> {
-        match read_file(&self.path(kind, name)?, kind.most_bytes()) {
+        match bytes_of(&self.path(kind, name)?, kind.most_bytes()) {
             Err(error) if is_missing(&error) => Ok(None),
             read => read.map(Some),
         }
@@ -177,7 +177,6 @@ mod tests {
         let storage = Folder(folder.path().into());
         let error = storage.read(Kind::Note, "settings").unwrap_err();
         assert!(error.to_string().contains("a pipe"), "{error}");
-        assert!(read_file(Path::new("/dev/zero"), 10).is_err());
         fs::write(folder.path().join("long.toml"), vec![b' '; 1 + (1 << 20)]).unwrap();
         let error = storage.read(Kind::Note, "long").unwrap_err();
         assert!(error.to_string().contains("longer than"), "{error}");

@@ -18,7 +18,7 @@ impl Kind {
     pub fn most_bytes(self) -> u64 {
         match self {
             Self::Note => 1 << 20,
-            Self::Replay => 1 << 25,
+            Self::Replay => tamaire_play::replay::MAX_BYTES as u64,
         }
     }
 }

@@ -172,7 +172,7 @@ fn of_file<D: Dim>(text: &BodyText, file: &Path, budget: &mut Budget) -> Result<
     }
 }
 
-fn check_across(n: usize) -> Result<(), Wrong> {
+pub(super) fn check_across(n: usize) -> Result<(), Wrong> {
     let expected = format!("expected 1 to {MAX_EXTENT} voxels across, found {n}");
     require((1..=MAX_EXTENT).contains(&n), "n", expected)
 }
@@ -184,7 +184,7 @@ fn voxel_size<D: Dim>(text: &BodyText, grid: &VoxelGrid<D>) -> f32 {
 }
 
 /// `"79" = 1` and `"#d04030" = 2`, read.
-fn colours(text: &BodyText) -> Result<Colours, Wrong> {
+pub(super) fn colours(text: &BodyText) -> Result<Colours, Wrong> {
     let found = text.colours.len();
     let expected = format!("expected {MAX_COLOURS} at most, found {found}");
     require(found <= MAX_COLOURS, "colours", expected)?;
