@@ -7,6 +7,7 @@ mod presses;
 use crate::game::{Game, Screen};
 use crate::input::{Action, Means, Seat};
 use crate::look::Stage;
+use crate::platform::Given;
 use crate::screens;
 use egui::{Event, Key};
 use fingers::Fingers;
@@ -237,7 +238,7 @@ impl App {
         ctx.input_mut(|input| input.events.retain(|event| !is_taken(event)));
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
         for file in dropped {
-            game.open(file.path());
+            game.open(Given::at(file.path()));
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::app::App;
 use crate::game::Game;
 use crate::headless;
-use crate::platform::{Files, Pads, Sound};
+use crate::platform::{Files, Given, Pads, Sound};
 use clap::Parser;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::path::PathBuf;
@@ -116,7 +116,7 @@ fn show(file: Option<PathBuf>, mute: bool, is_open: &mut bool) -> eframe::Result
             let sound = if mute { Sound::none() } else { Sound::open() };
             let mut game = Game::new(Files::usual(), sound, Pads::open());
             if let Some(file) = &file {
-                game.open(file);
+                game.open(Given::at(file));
             }
             let app = App::new(context, game)?;
             *is_open = true;

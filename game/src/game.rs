@@ -11,7 +11,7 @@ pub mod trial;
 use crate::attract::attract;
 use crate::input::{Action, Devices, Means, Players, Seat};
 use crate::look::{Camera, Effects, Opening, Theme, View};
-use crate::platform::{Damage, Entry, Files, Forces, News, Pads, Sound, replay_in};
+use crate::platform::{Damage, Entry, Files, Forces, Given, News, Pads, Sound};
 use crate::records::Records;
 use crate::session::Session;
 use crate::settings::Settings;
@@ -19,7 +19,6 @@ use crate::words::Words;
 use fuwafuwa::world::TICK;
 use fuwafuwa_render::frame::ElementColour;
 use lesson::Lesson;
-use std::path::Path;
 use std::sync::Arc;
 use tamaire_play::level::{NAMED, NAMED_3D};
 use tamaire_play::{AnyRound, Level, Outcome, Playback, Replay, ReplayError, shortened};
@@ -279,24 +278,17 @@ impl Game {
         self.go(Screen::Play);
     }
 
-    /// A file was dropped onto the window or named on the command line: a level, a picture, a model or a replay. A level
-    /// that comes along may be named too.
-    pub fn open(&mut self, path: &Path) {
-        let ending = path
-            .extension()
-            .and_then(|ending| ending.to_str())
-            .unwrap_or("");
-        if ending.eq_ignore_ascii_case("tamaire") {
-            let replay = replay_in(path);
-            let outcome = replay.and_then(|replay| self.watch(Arc::new(replay)));
-            if let Err(error) = outcome {
-                self.tell_of_replay(&path.display().to_string(), &error);
+    /// Plays what was dropped onto the window or named on the command line: a level, a picture, a model or a replay.
+    pub fn open(&mut self, given: Given) {
+        match given {
+            Given::Level(Ok(level)) => self.offer(*level),
+            Given::Level(Err(error)) => self.notify((self.words().level_error)(&error)),
+            Given::Replay(place, replay) => {
+                let outcome = replay.and_then(|replay| self.watch(Arc::from(replay)));
+                if let Err(error) = outcome {
+                    self.tell_of_replay(&place, &error);
+                }
             }
-            return;
-        }
-        match Level::open(&path.to_string_lossy()) {
-            Ok(level) => self.offer(level),
-            Err(error) => self.notify((self.words().level_error)(&error)),
         }
     }
 

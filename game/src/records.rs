@@ -108,7 +108,19 @@ impl Records {
     }
 
     /// The same with the wishes of these levels by name that were once written down by place.
-    pub fn by_name<'a>(mut self, levels: impl Iterator<Item = &'a Level>) -> Self {
+    /// Levels that are files were once known by their folders too.
+    pub fn by_name<'a>(self, levels: impl Iterator<Item = &'a Level>) -> Self {
+        let mut named = Self::default();
+        for (id, record) in self.0 {
+            let name = id.rsplit(['/', '\\']).next();
+            // One without an ending is no level that comes along.
+            let name = name.filter(|name| name.contains('.')).unwrap_or(&id);
+            named.0.entry(name.into()).or_default().take(record);
+        }
+        named.wishes_by_name(levels)
+    }
+
+    fn wishes_by_name<'a>(mut self, levels: impl Iterator<Item = &'a Level>) -> Self {
         for level in levels {
             let Some(record) = self.0.get_mut(&level.id) else {
                 continue;
@@ -170,9 +182,8 @@ mod tests {
         assert_eq!(WishName::of(&wish).0, "squeeze, within 20 s, keep 0.9");
         let (old, refused) = Records::read("[classic]\nwishes = [0, 2, 77]\n");
         assert!(refused.is_empty(), "{refused:?}");
-        let names = old.by_name([&level].into_iter()).0["classic"]
-            .wishes
-            .clone();
+        let names = old.by_name([&level].into_iter());
+        let names = names.of("classic").unwrap().wishes.clone();
         let wanted = [
             WishName::of(&wishes[0]),
             WishName::of(&wishes[2]),
@@ -190,6 +201,14 @@ mod tests {
         ));
         let both = "[b]\nbest = { mix = 1 }\n[a]\nwishes = [\"y\", \"x\"]\nbest = { squeeze = 10, shave = 40 }\n";
         assert_eq!(mine, read(both));
+    }
+
+    #[test]
+    fn a_level_that_is_a_file_is_known_by_its_name() {
+        let text = "[\"/home/me/own.toml\"]\nbest = { mix = 9 }\n['C:\\me\\own.toml']\nbest = { mix = 8 }\n['/me/classic']\n";
+        let records = Records::read(text).0.by_name(std::iter::empty());
+        assert_eq!(records.of("own.toml").unwrap().best[&Route::Mix], 8);
+        assert_eq!((records.0.len(), records.of("classic")), (2, None));
     }
 
     #[test]

@@ -17,7 +17,7 @@ mod writer;
 
 pub use files::{Damage, Files, News};
 pub use forces::Forces;
-pub use given::replay_in;
+pub use given::{Given, replay_in};
 pub use sound::Sound;
 pub use sticks::Pads;
 pub use storage::{Change, Entry, Kind, Nowhere, Storage};
