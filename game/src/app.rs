@@ -269,6 +269,11 @@ impl eframe::App for App {
         self.presses.waiting().in_order = is_list && self.game.rebinding.is_none();
         ctx.request_repaint();
     }
+
+    /// Some systems end the program with its last window, and nothing is dropped.
+    fn on_exit(&mut self) {
+        self.game.files.close();
+    }
 }
 
 /// Shows letters and all else at a size that was chosen, or smaller where the window lacks room.

@@ -164,6 +164,16 @@ impl Files {
         self.news(done)
     }
 
+    /// Writes what is still to be written at the end of the program.
+    pub fn close(&mut self) {
+        for news in self.finish() {
+            if let News::Failed(reason) = news {
+                // There is no window any more.
+                eprintln!("tamaire: this could not be written: {reason}");
+            }
+        }
+    }
+
     /// Whether something is still to be written.
     pub fn is_busy(&self) -> bool {
         self.resting.is_some() || self.writer.is_busy()
@@ -229,12 +239,7 @@ impl Files {
 
 impl Drop for Files {
     fn drop(&mut self) {
-        for news in self.finish() {
-            if let News::Failed(reason) = news {
-                // There is no window any more.
-                eprintln!("tamaire: this could not be written: {reason}");
-            }
-        }
+        self.close();
     }
 }
 
