@@ -11,6 +11,9 @@ use tamaire_play::bytes_of;
 /// How long another program is waited for that changes something; it takes some milliseconds.
 const PATIENCE: Duration = Duration::from_secs(5);
 
+/// How the names of files begin that take the place of others once they are whole.
+const DRAFT: &str = "draft-";
+
 /// A folder for all that the game keeps.
 pub struct Folder(pub PathBuf);
 
@@ -112,9 +115,14 @@ fn is_missing(error: &io::Error) -> bool {
 
 /// Writes a file so that it is never half there: as a draft that nobody else writes, which then takes its place.
 fn write_whole(folder: &Path, path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let mut draft = tempfile::Builder::new()
-        .prefix("draft-")
-        .tempfile_in(folder)?;
+    // Those of a game that was killed while it wrote; nobody else writes now.
+    for file in fs::read_dir(folder)?.flatten() {
+        if file.file_name().to_string_lossy().starts_with(DRAFT) {
+            // One that cannot be removed is in nobody's way.
+            let _removed = fs::remove_file(file.path());
+        }
+    }
+    let mut draft = tempfile::Builder::new().prefix(DRAFT).tempfile_in(folder)?;
     draft.write_all(bytes)?;
     draft.as_file().sync_all()?;
     draft.persist(path).map_err(|failed| failed.error)?;
@@ -152,6 +160,20 @@ mod tests {
         assert_eq!(count.len(), 80);
         let names = storage.list(Kind::Note).unwrap();
         assert_eq!(names.len(), 1, "no draft is left: {names:?}");
+    }
+
+    #[test]
+    fn what_a_killed_game_left_half_written_is_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("draft-1a2b"), "half").unwrap();
+        let storage = Folder(folder.path().into());
+        let whole = |_: Option<&[u8]>| Some(b"whole".to_vec());
+        storage.change(Kind::Note, "it", &mut { whole }).unwrap();
+        let names = fs::read_dir(folder.path()).unwrap();
+        let names = names.map(|file| file.unwrap().file_name().into_string().unwrap());
+        let mut names: Vec<String> = names.collect();
+        names.sort();
+        assert_eq!(names, ["it.toml", "lock"]);
     }
 
     #[test]
