@@ -7,7 +7,7 @@ mod presses;
 use crate::game::{Game, Screen};
 use crate::input::{Action, Means, Seat};
 use crate::look::{Stage, dress};
-use crate::platform::GpuWatch;
+use crate::platform::{Given, GpuWatch};
 use crate::screens;
 use egui::{Event, Key};
 use fingers::Fingers;
@@ -253,7 +253,7 @@ impl App {
         ctx.input_mut(|input| input.events.retain(|event| !is_taken(event)));
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
         for file in dropped {
-            game.open(file.path());
+            game.open(Given::at(file.path()));
         }
     }
 }
@@ -265,6 +265,8 @@ impl eframe::App for App {
             // Nothing is drawn any more; the round may be watched later.
             if self.game.is_in_round() {
                 self.game.keep_replay();
+                self.game.go(Screen::Title);
+                self.game.files.close();
             }
             return ctx.send_viewport_cmd(egui::ViewportCommand::Close);
         }
@@ -291,6 +293,11 @@ impl eframe::App for App {
         );
         self.presses.waiting().in_order = is_list && self.game.rebinding.is_none();
         ctx.request_repaint();
+    }
+
+    /// Some systems end the program with its last window, and nothing is dropped.
+    fn on_exit(&mut self) {
+        self.game.files.close();
     }
 }
 

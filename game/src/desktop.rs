@@ -3,7 +3,7 @@
 use crate::app::App;
 use crate::game::Game;
 use crate::headless;
-use crate::platform::{Files, GpuWatch, Pads, Sound};
+use crate::platform::{Files, Given, GpuWatch, Pads, Sound};
 use clap::Parser;
 use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -168,7 +168,7 @@ fn open_window(
             let sound = if mute { Sound::none() } else { Sound::open() };
             let mut game = Game::new(Files::usual(), sound, Pads::open());
             if let Some(file) = &file {
-                game.open(file);
+                game.open(Given::at(file));
             }
             let app = App::new(context, game)?;
             gpu.replace(Some(app.gpu.clone()));

@@ -11,7 +11,7 @@ pub mod trial;
 use crate::attract::attract;
 use crate::input::{Action, Devices, Means, Players, Seat};
 use crate::look::{Camera, Effects, Opening, Theme, View};
-use crate::platform::{Clock, Files, Forces, Pads, SavedReplay, Sound};
+use crate::platform::{Clock, Damage, Entry, Files, Forces, Given, News, Pads, Sound};
 use crate::records::Records;
 use crate::session::Session;
 use crate::settings::Settings;
@@ -19,10 +19,9 @@ use crate::words::Words;
 use fuwafuwa::world::TICK;
 use fuwafuwa_render::frame::ElementColour;
 use lesson::Lesson;
-use std::path::Path;
 use std::sync::Arc;
 use tamaire_play::level::{NAMED, NAMED_3D};
-use tamaire_play::{AnyRound, Level, Outcome, Playback, Replay, ReplayError};
+use tamaire_play::{AnyRound, Level, Outcome, Playback, Replay, ReplayError, shortened};
 use tamaire_sound::{Cue, Menu};
 use trial::Trial;
 
@@ -51,6 +50,9 @@ pub enum Screen {
 const NOTICE: f32 = 6.0;
 /// How fast it can be read, at leisure [letters/s].
 const READING: f32 = 15.0;
+
+/// Most letters of a notice: what it quotes may be as long as a file.
+const LETTERS: usize = 600;
 
 /// The state of the game.
 pub struct Game {
@@ -91,7 +93,7 @@ pub struct Game {
     /// The last win: how, and whether it was the best by its route.
     pub won: Option<(Outcome, bool)>,
     /// The rounds that were kept, as they were when their screen came up.
-    pub replays: Vec<SavedReplay>,
+    pub replays: Vec<Entry>,
     /// What the player should know, and for how long [s].
     pub notices: Vec<(String, f32)>,
     /// Seconds since the game began.
@@ -119,9 +121,9 @@ pub struct Game {
 
 impl Game {
     /// The game at its start, with what is kept in `files`.
-    pub fn new(files: Files, sound: Sound, pads: Pads) -> Self {
-        let (settings, settings_aside) = files.read::<Settings>("settings.toml");
-        let (records, records_aside) = files.read::<Records>("records.toml");
+    pub fn new(mut files: Files, sound: Sound, pads: Pads) -> Self {
+        let (settings, settings_damage) = files.settings();
+        let (records, records_damage) = files.records();
         let open = |(id, _): &(&str, &str)| Level::open(id);
         let levels = NAMED
             .iter()
@@ -131,8 +133,8 @@ impl Game {
         let levels: Vec<Arc<Level>> = levels.collect();
         let mut game = Self {
             screen: Screen::Title,
-            settings: settings.in_range(),
-            records,
+            records: records.by_name(levels.iter().map(Arc::as_ref)),
+            settings,
             files,
             session: attract(0),
             levels,
@@ -163,14 +165,24 @@ impl Game {
             cheered: 0.0,
             attracted: 0,
         };
-        if settings_aside.is_some() {
-            // Nobody knows how strong it was to be, nor how the motors lie.
-            game.settings.haptics = 0.0;
+        if settings_damage.is_some() && game.settings.haptics == 0.0 {
             game.notify(game.words().forces_zero.to_string());
         }
-        for aside in [settings_aside, records_aside].into_iter().flatten() {
-            let kept = game.words().settings_kept;
-            game.notify(format!("{kept} {}", aside.display()));
+        if settings_damage
+            .as_ref()
+            .is_some_and(|damage| damage.aside.is_some())
+        {
+            // It is told once.
+            game.keep_settings();
+        }
+        if records_damage
+            .as_ref()
+            .is_some_and(|damage| damage.aside.is_some())
+        {
+            game.files.keep_records(&game.records);
+        }
+        for damage in [settings_damage, records_damage].into_iter().flatten() {
+            game.tell_of(damage);
         }
         if game.pads.complaint().is_some() {
             game.notify(game.words().no_sticks.to_string());
@@ -190,6 +202,7 @@ impl Game {
 
     /// Tells the player something; what is still to be read is not said twice.
     pub fn notify(&mut self, text: String) {
+        let text = shortened(&text, LETTERS);
         self.notices.retain(|(known, _)| *known != text);
         let reading = text.chars().count() as f32 / READING;
         self.notices.push((text, reading.max(NOTICE)));
@@ -268,33 +281,36 @@ impl Game {
         self.go(Screen::Play);
     }
 
-    /// A file was dropped onto the window or named on the command line: a level, a picture, a model or a replay. A level
-    /// that comes along may be named too.
-    pub fn open(&mut self, path: &Path) {
-        let ending = path
-            .extension()
-            .and_then(|ending| ending.to_str())
-            .unwrap_or("");
-        if ending.eq_ignore_ascii_case("tamaire") {
-            return self.open_replay(path, Self::watch);
-        }
-        match Level::open(&path.to_string_lossy()) {
-            Ok(level) => self.offer(level),
-            Err(error) => self.notify((self.words().level_error)(&error)),
+    /// Plays what was dropped onto the window or named on the command line: a level, a picture, a model or a replay.
+    pub fn open(&mut self, given: Given) {
+        match given {
+            Given::Level(Ok(level)) => self.offer(*level),
+            Given::Level(Err(error)) => self.notify((self.words().level_error)(&error)),
+            Given::Replay(place, replay) => {
+                let outcome = replay.and_then(|replay| self.watch(Arc::from(replay)));
+                if let Err(error) = outcome {
+                    self.tell_of_replay(&place, &error);
+                }
+            }
         }
     }
 
-    /// Does something with the replay in a file.
-    pub fn open_replay(
+    /// Does something with a replay that is kept.
+    pub fn open_kept(
         &mut self,
-        path: &Path,
+        name: &str,
         act: fn(&mut Self, Arc<Replay>) -> Result<(), ReplayError>,
     ) {
-        let outcome = Files::replay(path).and_then(|replay| act(self, Arc::new(replay)));
+        let replay = self.files.replay(name);
+        let outcome = replay.and_then(|replay| act(self, Arc::new(replay)));
         if let Err(error) = outcome {
-            let reason = (self.words().replay_error)(&error);
-            self.notify(format!("{}: {reason}", path.display()));
+            self.tell_of_replay(&self.files.place(name), &error);
         }
+    }
+
+    fn tell_of_replay(&mut self, place: &str, error: &ReplayError) {
+        let reason = (self.words().replay_error)(error);
+        self.notify(format!("{place}: {reason}"));
     }
 
     fn offer(&mut self, level: Level) {
@@ -307,31 +323,56 @@ impl Game {
         self.start(place);
     }
 
-    /// Keeps the settings; what cannot be written is said and lost only at the end of the game.
+    /// Keeps the settings, once they rest; what cannot be written is said and lost only at the end of the game.
     pub fn keep_settings(&mut self) {
-        let written = self.files.write("settings.toml", &self.settings);
-        self.report(written);
+        self.files.keep_settings(&self.settings);
     }
 
     /// Keeps the round as it was played so far.
     pub fn keep_replay(&mut self) {
-        match self.files.save_replay(&self.session.round().replay()) {
-            Ok(path) => self.notify(format!("{} {}", self.words().saved, path.display())),
-            Err(error) => self.report(Err(error)),
-        }
+        self.files.save_replay(self.session.round().replay());
     }
 
     /// Deletes a round that was kept.
-    pub fn delete(&mut self, saved: &SavedReplay) {
-        let deleted = self.files.delete(saved);
-        self.report(deleted);
+    pub fn delete(&mut self, saved: &Entry) {
+        if let Err(error) = self.files.delete(&saved.name) {
+            self.tell(News::Failed(error.to_string()));
+        }
         self.replays = self.files.replays();
     }
 
-    fn report(&mut self, written: std::io::Result<()>) {
-        if let Err(error) = written {
-            self.notify(format!("{} {error}", self.words().not_written));
+    /// Writes what is still to be written, and waits until it is.
+    pub fn finish_writing(&mut self) {
+        for news in self.files.finish() {
+            self.tell(news);
         }
+    }
+
+    /// Tells what became of what was to be written.
+    fn tell(&mut self, news: News) {
+        match news {
+            News::Saved(place) => {
+                self.replays = self.files.replays();
+                self.notify(format!("{} {place}", self.words().saved));
+            }
+            News::Failed(reason) => {
+                self.notify(format!("{} {reason}", self.words().not_written));
+            }
+        }
+    }
+
+    /// Names what of what was kept could not be used.
+    fn tell_of(&mut self, damage: Damage) {
+        const MOST: usize = 4;
+        let refused = damage.refused.iter().take(MOST);
+        let refused: Vec<&str> = refused.map(String::as_str).collect();
+        let more = if damage.refused.len() > MOST {
+            ", …"
+        } else {
+            ""
+        };
+        let refused = format!("{}{more}", refused.join(", "));
+        self.notify((self.words().damaged)(&refused, damage.aside.as_deref()));
     }
 
     /// Something was asked for with a key or button.

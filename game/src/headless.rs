@@ -7,7 +7,7 @@ mod played;
 mod report;
 mod studio;
 
-use crate::platform::Files;
+use crate::platform::replay_in;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use film::{Film, FilmError};
@@ -146,7 +146,12 @@ fn try_bot(options: &Options) -> Result<String, Trouble> {
     let most = (options.seconds * RATE) as u64;
     let played = of_bot(level, Bot::new(*kind, options.seed), most, &mut log);
     if let Some(path) = &options.save {
-        write(path, played.round.replay().text().as_bytes())?;
+        let text = played.round.replay().text_to_keep();
+        let text = text.map_err(|reason| Trouble::File {
+            path: path.clone(),
+            reason: io::Error::other(reason.to_string()),
+        })?;
+        write(path, text.as_bytes())?;
     }
     let by = report::Player::Bot {
         bot: options.bot.clone(),
@@ -159,11 +164,6 @@ fn try_bot(options: &Options) -> Result<String, Trouble> {
 
 /// Runs a replay.
 fn check(path: &Path, options: &Options) -> Result<String, Trouble> {
-    let unreadable = |reason| Trouble::File {
-        path: path.into(),
-        reason,
-    };
-    std::fs::File::open(path).map_err(unreadable)?;
     for path in pictures(options) {
         can_be_written(path)?;
     }
@@ -171,7 +171,13 @@ fn check(path: &Path, options: &Options) -> Result<String, Trouble> {
         path: path.into(),
         reason,
     };
-    let replay = Files::replay(path).map_err(refused)?;
+    let replay = replay_in(path).map_err(|error| match error {
+        ReplayError::Unreadable(reason) => Trouble::File {
+            path: path.into(),
+            reason: io::Error::other(reason),
+        },
+        error => refused(error),
+    })?;
     let mut log = force_log(options)?;
     let played = of_replay(Arc::new(replay), &mut log).map_err(refused)?;
     let by = report::Player::Replay {

@@ -1,7 +1,7 @@
 //! Tamaire (玉入れ): push a soft body into a basket that is too small for it, whole or in pieces.
 //!
 //! The way through, each module using only those above it:
-//! [`input`] devices become wishes for the hands → [`words`] what is said, in each language → [`settings`] what players chose → [`records`] what they reached
+//! [`input`] devices become wishes for the hands → [`words`] what is said, in each language → [`sift`] what can be used of a text → [`settings`] what players chose → [`records`] what they reached
 //! → [`platform`] files, sound and sticks
 //! → [`session`] a round in time, played or watched → [`felt`] what there is to feel of it → [`attract`] what plays behind the title → [`look`] how it looks
 //! → [`headless`] a round without a window → [`game`] the state, and what can happen to it → [`screens`] what there is to see and to choose → [`app`] the loop → [`desktop`] the way in.
@@ -27,4 +27,5 @@ pub mod records;
 pub mod screens;
 pub mod session;
 pub mod settings;
+pub mod sift;
 pub mod words;

@@ -1,8 +1,9 @@
 //! What players reached, by level.
 
+use crate::sift::sift;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
-use tamaire_play::{Level, Outcome, Route};
+use tamaire_play::{Level, Outcome, Route, Wish};
 
 /// What was reached in all levels, by their ids.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -15,11 +16,73 @@ pub struct Records(BTreeMap<String, Record>);
 pub struct Record {
     /// Fewest ticks by each route.
     pub best: BTreeMap<Route, u64>,
-    /// Which of the level's wishes came true, by their place.
-    pub wishes: BTreeSet<usize>,
+    /// Which of the level's wishes came true.
+    pub wishes: BTreeSet<WishName>,
+}
+
+/// A wish by what it asks for, wherever it stands in its level.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(from = "Written")]
+pub struct WishName(String);
+
+/// A wish as it was once written down, by its place, and as it is now.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Written {
+    Place(usize),
+    Name(String),
+}
+
+impl From<Written> for WishName {
+    fn from(written: Written) -> Self {
+        Self(match written {
+            Written::Place(place) => place.to_string(),
+            Written::Name(name) => name,
+        })
+    }
+}
+
+impl WishName {
+    /// That of a wish.
+    pub fn of(wish: &Wish) -> Self {
+        let route = wish.route.map(|route| match route {
+            Route::Squeeze => "squeeze".to_string(),
+            Route::Shave => "shave".to_string(),
+            Route::Mix => "mix".to_string(),
+        });
+        let parts = [
+            route,
+            wish.seconds.map(|most| format!("within {most} s")),
+            wish.kept.map(|least| format!("keep {least}")),
+            wish.pieces.map(|least| format!("{least} pieces")),
+        ];
+        Self(parts.into_iter().flatten().collect::<Vec<_>>().join(", "))
+    }
+}
+
+impl Record {
+    /// Takes over what is better in another one of the same level.
+    fn take(&mut self, other: Self) {
+        for (route, ticks) in other.best {
+            let best = self.best.entry(route).or_insert(ticks);
+            *best = ticks.min(*best);
+        }
+        self.wishes.extend(other.wishes);
+    }
 }
 
 impl Records {
+    /// Those in a text, and what of it could not be used.
+    pub fn read(text: &str) -> (Self, Vec<String>) {
+        let sifted = sift::<Self>(text);
+        (sifted.value, sifted.refused)
+    }
+
+    /// It as a text.
+    pub fn text(&self) -> String {
+        toml::to_string(self).expect("records have nothing that cannot be written")
+    }
+
     /// What was reached in a level.
     pub fn of(&self, level: &str) -> Option<&Record> {
         self.0.get(level)
@@ -28,13 +91,47 @@ impl Records {
     /// Takes note of a win; says whether it was faster than any before by that route.
     pub fn note(&mut self, level: &Level, outcome: &Outcome) -> bool {
         let record = self.0.entry(level.id.clone()).or_default();
-        let wishes = level.game().wish.iter().enumerate();
-        let fulfilled = wishes.filter(|(_, wish)| outcome.fulfils(wish));
-        record.wishes.extend(fulfilled.map(|(place, _)| place));
+        let wishes = level.game().wish.iter();
+        let fulfilled = wishes.filter(|wish| outcome.fulfils(wish));
+        record.wishes.extend(fulfilled.map(WishName::of));
         let best = record.best.entry(outcome.route).or_insert(u64::MAX);
         let is_better = outcome.ticks < *best;
         *best = outcome.ticks.min(*best);
         is_better
+    }
+
+    /// Takes over what is better in others.
+    pub fn take(&mut self, others: Self) {
+        for (level, record) in others.0 {
+            self.0.entry(level).or_default().take(record);
+        }
+    }
+
+    /// The same with the wishes of these levels by name that were once written down by place.
+    /// Levels that are files were once known by their folders too.
+    pub fn by_name<'a>(self, levels: impl Iterator<Item = &'a Level>) -> Self {
+        let mut named = Self::default();
+        for (id, record) in self.0 {
+            let name = id.rsplit(['/', '\\']).next();
+            // One without an ending is no level that comes along.
+            let name = name.filter(|name| name.contains('.')).unwrap_or(&id);
+            named.0.entry(name.into()).or_default().take(record);
+        }
+        named.wishes_by_name(levels)
+    }
+
+    fn wishes_by_name<'a>(mut self, levels: impl Iterator<Item = &'a Level>) -> Self {
+        for level in levels {
+            let Some(record) = self.0.get_mut(&level.id) else {
+                continue;
+            };
+            for (place, wish) in level.game().wish.iter().enumerate() {
+                if record.wishes.remove(&WishName(place.to_string())) {
+                    record.wishes.insert(WishName::of(wish));
+                }
+            }
+        }
+        self
     }
 }
 
@@ -42,27 +139,85 @@ impl Records {
 mod tests {
     use super::*;
 
-    #[test]
-    fn the_best_of_each_route_and_every_wish_is_kept() {
-        let level = Level::open("classic").unwrap();
-        let mut outcome = Outcome {
+    fn outcome() -> Outcome {
+        Outcome {
             ticks: 900,
             route: Route::Squeeze,
             kept: 1.0,
             inside: 0.9,
             pieces: 1,
             lost: 0,
-        };
+        }
+    }
+
+    #[test]
+    fn the_best_of_each_route_and_every_wish_is_kept() {
+        let level = Level::open("classic").unwrap();
+        let mut outcome = outcome();
         let mut records = Records::default();
         assert!(records.note(&level, &outcome));
         outcome.ticks = 1000;
         assert!(!records.note(&level, &outcome));
         outcome.route = Route::Shave;
         assert!(records.note(&level, &outcome));
-        let text = toml::to_string(&records).unwrap();
-        let read: Records = toml::from_str(&text).unwrap();
+        let (read, refused) = Records::read(&records.text());
+        assert_eq!((&read, refused.len()), (&records, 0));
         let record = read.of("classic").unwrap();
         assert_eq!(record.best[&Route::Squeeze], 900);
-        assert!(record.wishes.len() >= 2, "{text}");
+        assert!(record.wishes.len() >= 2, "{}", records.text());
+    }
+
+    #[test]
+    fn a_wish_is_known_by_what_it_asks_for() {
+        let level = Level::open("classic").unwrap();
+        let wishes = &level.game().wish;
+        let names: BTreeSet<WishName> = wishes.iter().map(WishName::of).collect();
+        assert_eq!(names.len(), wishes.len(), "each has its own: {names:?}");
+        let wish = Wish {
+            seconds: Some(20.0),
+            kept: Some(0.9),
+            pieces: None,
+            route: Some(Route::Squeeze),
+        };
+        assert_eq!(WishName::of(&wish).0, "squeeze, within 20 s, keep 0.9");
+        let (old, refused) = Records::read("[classic]\nwishes = [0, 2, 77]\n");
+        assert!(refused.is_empty(), "{refused:?}");
+        let names = old.by_name([&level].into_iter());
+        let names = names.of("classic").unwrap().wishes.clone();
+        let wanted = [
+            WishName::of(&wishes[0]),
+            WishName::of(&wishes[2]),
+            WishName("77".into()),
+        ];
+        assert_eq!(names, wanted.into());
+    }
+
+    #[test]
+    fn the_better_of_two_is_kept_of_each() {
+        let read = |text| Records::read(text).0;
+        let mut mine = read("[a]\nwishes = [\"x\"]\nbest = { squeeze = 10, shave = 50 }\n");
+        mine.take(read(
+            "[a]\nwishes = [\"y\"]\nbest = { squeeze = 20, shave = 40 }\n[b]\nbest = { mix = 1 }\n",
+        ));
+        let both = "[b]\nbest = { mix = 1 }\n[a]\nwishes = [\"y\", \"x\"]\nbest = { squeeze = 10, shave = 40 }\n";
+        assert_eq!(mine, read(both));
+    }
+
+    #[test]
+    fn a_level_that_is_a_file_is_known_by_its_name() {
+        let text = "[\"/home/me/own.toml\"]\nbest = { mix = 9 }\n['C:\\me\\own.toml']\nbest = { mix = 8 }\n['/me/classic']\n";
+        let records = Records::read(text).0.by_name(std::iter::empty());
+        assert_eq!(records.of("own.toml").unwrap().best[&Route::Mix], 8);
+        assert_eq!((records.0.len(), records.of("classic")), (2, None));
+    }
+
+    #[test]
+    fn a_bad_record_costs_that_record_alone() {
+        let text =
+            "[a]\nbest = { squeeze = 10, fly = 3, mix = -1 }\n[b]\nbest = 7\nwishes = [\"x\"]\n";
+        let (records, refused) = Records::read(text);
+        assert_eq!(refused.len(), 3, "{refused:?}");
+        assert_eq!(records.of("a").unwrap().best[&Route::Squeeze], 10);
+        assert_eq!(records.of("b").unwrap().wishes.len(), 1);
     }
 }

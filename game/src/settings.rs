@@ -1,6 +1,7 @@
 //! What players chose. It is kept in a file that a person can read.
 
 use crate::input::Bindings;
+use crate::sift::{Sifted, sift};
 use crate::words::Language;
 use force_feedback::Calibration;
 use serde::{Deserialize, Serialize};
@@ -76,6 +77,49 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// Those in a text, and what of it could not be used. What is not known to be good is not felt.
+    pub fn read(text: &str) -> (Self, Vec<String>) {
+        let Sifted {
+            value,
+            table,
+            mut refused,
+        } = sift::<Self>(text);
+        let mut settings = value.clone().in_range();
+        let (found, kept) = (value.numbers(), settings.numbers());
+        for ((name, found), (_, kept)) in found.into_iter().zip(kept) {
+            // What is no number is not even itself.
+            if found != kept {
+                refused.push(format!("{name} ({found} is out of its range)"));
+            }
+        }
+        let of_motors = |refused: &String| refused.starts_with("calibrations");
+        let is_damaged = !refused.is_empty();
+        if is_damaged && !table.contains_key("haptics") || refused.iter().any(of_motors) {
+            // Nobody knows how strong it was to be, or how the motors lie.
+            settings.haptics = 0.0;
+        }
+        (settings, refused)
+    }
+
+    /// It as a text.
+    pub fn text(&self) -> String {
+        toml::to_string(self).expect("settings have nothing that cannot be written")
+    }
+
+    /// All that has a range, by name.
+    fn numbers(&self) -> [(&'static str, f32); 8] {
+        [
+            ("volume", self.volume),
+            ("effects", self.effects),
+            ("music", self.music),
+            ("interface", self.interface),
+            ("haptics", self.haptics),
+            ("speed", self.speed),
+            ("sensitivity", self.sensitivity),
+            ("text_size", self.text_size),
+        ]
+    }
+
     /// The same with every number in its range, and a key for every action.
     pub fn in_range(mut self) -> Self {
         let usual = Self::default();
@@ -144,7 +188,34 @@ mod tests {
             ..settings
         };
         assert_eq!(settings.force("stick").unwrap().calibration, wanted);
-        let text = toml::to_string(&settings).unwrap();
-        assert_eq!(toml::from_str::<Settings>(&text).unwrap(), settings);
+        assert_eq!(Settings::read(&settings.text()), (settings, Vec::new()));
+    }
+
+    #[test]
+    fn a_bad_value_is_named_and_all_else_stays() {
+        let text = "speed = 0.75\nvolume = 7.0\nmusic = \"loud\"\nhaptics = 0.4\n";
+        let (settings, refused) = Settings::read(text);
+        let wanted = Settings {
+            speed: 0.75,
+            volume: 1.0,
+            haptics: 0.4,
+            ..Settings::default()
+        };
+        assert_eq!(settings, wanted);
+        assert!(refused[0].starts_with("music (") && refused[1].starts_with("volume (7 is"));
+        for text in [
+            "speed = \"fast\"",
+            "haptics = \"much\"",
+            "haptics = 0.4\n[calibrations.stick]\ngain = 3\n",
+        ] {
+            let (settings, refused) = Settings::read(text);
+            let found = (settings.haptics, refused.len());
+            assert_eq!(
+                found,
+                (0.0, 1),
+                "{text}: nobody knows how strong it is to be"
+            );
+        }
+        assert_eq!(Settings::read(""), (Settings::default(), Vec::new()));
     }
 }

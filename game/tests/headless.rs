@@ -297,6 +297,28 @@ fn what_makes_no_sense_is_refused_with_a_reason() {
     );
 }
 
+#[cfg(unix)]
+#[test]
+fn pipes_and_devices_are_refused_and_not_waited_for() {
+    let folder = folder();
+    let pipe = folder.path().join("pipe.tamaire");
+    assert!(
+        Command::new("mkfifo")
+            .arg(&pipe)
+            .status()
+            .unwrap()
+            .success()
+    );
+    for file in ["pipe.tamaire", "/dev/zero"] {
+        for flag in ["--replay", "--level"] {
+            let output = tamaire(folder.path(), &format!("--headless {flag} {file}"));
+            let said = text(&output.stderr);
+            assert_eq!(output.status.code(), Some(2), "{said}");
+            assert!(said.contains(file) && said.contains("a device"), "{said}");
+        }
+    }
+}
+
 #[test]
 fn without_a_display_a_round_is_played_all_the_same() {
     if !cfg!(target_os = "linux") {

@@ -124,6 +124,11 @@ fn run_in<D: Filmed>(scene: &Scene, arguments: &Arguments) -> Result<ExitCode> {
         None => false,
     };
     anyhow::ensure!(ticks > 0, "--frames must be at least 1");
+    let most = fuwafuwa_scenes::recording::MAX_TICKS as u64;
+    anyhow::ensure!(
+        arguments.record.is_none() || ticks <= most,
+        "--record takes {most} ticks at most, expected fewer --frames"
+    );
     for path in arguments.film.iter().chain(&arguments.record) {
         check_folder(path)?;
     }
@@ -177,7 +182,9 @@ fn run_in<D: Filmed>(scene: &Scene, arguments: &Arguments) -> Result<ExitCode> {
         write(&beside.with_extension("svg"), painter.svg()?.as_bytes())?;
     }
     if let Some(path) = &arguments.record {
-        write(path, toml::to_string(&recording)?.as_bytes())?;
+        let text = recording.text();
+        let text = text.map_err(|reason| anyhow::anyhow!("{}: {reason}", path.display()))?;
+        write(path, text.as_bytes())?;
     }
     let pieces = || world.bodies().iter().flat_map(|body| body.piece_views());
     let summary = Summary {

@@ -5,9 +5,11 @@
 #![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
 #![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
 
+mod file;
 pub mod import;
 pub mod recording;
 pub mod scene;
 
+pub use file::bytes_of;
 pub use recording::Recording;
 pub use scene::{Scene, SceneError};

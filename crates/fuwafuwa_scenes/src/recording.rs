@@ -1,7 +1,8 @@
 //! What hands did in a scene, tick by tick, so that it can be run again and compared.
 
+use crate::file::text_of;
 use crate::scene::send;
-use crate::scene::{MAX_SECONDS, Scene, SceneError, shortened, text_of};
+use crate::scene::{MAX_SECONDS, Scene, SceneError, shortened};
 use fuwafuwa::{Dim, World};
 use serde::{Deserialize, Serialize};
 use std::io;
@@ -75,8 +76,7 @@ impl Recording {
     /// [`RecordingError`] when the file cannot be read, holds no recording, or one of another format.
     pub fn open(path: &Path) -> Result<Self, RecordingError> {
         let name = path.display().to_string();
-        let too_long = format!("longer than {MAX_BYTES} bytes, the most that are read");
-        let text = match text_of(path, MAX_BYTES, &too_long) {
+        let text = match text_of(path, MAX_BYTES) {
             Ok(text) => text,
             Err(reason) => return Err(RecordingError::File { name, reason }),
         };
@@ -97,6 +97,18 @@ impl Recording {
             Ok(()) => Ok(recording),
             Err(reason) => Err(RecordingError::Text { name, reason }),
         }
+    }
+
+    /// It as a text, if that can be opened again.
+    ///
+    /// # Errors
+    /// What is too long in it.
+    pub fn text(&self) -> Result<String, String> {
+        self.check()?;
+        let text = toml::to_string(self).map_err(|error| error.to_string())?;
+        let found = text.len() as u64;
+        let expected = format!("expected {MAX_BYTES} bytes at most, found {found}");
+        (found <= MAX_BYTES).then_some(text).ok_or(expected)
     }
 
     fn check(&self) -> Result<(), String> {
@@ -212,7 +224,9 @@ mod tests {
         let scene = Scene::open("drop", &["body.n=8".into()]).unwrap();
         let mut recording = Recording::of::<Dim2>(&scene, 1, |_| {}).unwrap();
         recording.goals = vec![Vec::new(); MAX_TICKS + 1];
-        assert!(recording.check().unwrap_err().contains("ticks at most"));
+        for refusal in [recording.check(), recording.text().map(drop)] {
+            assert!(refusal.unwrap_err().contains("ticks at most"));
+        }
     }
 
     #[test]

@@ -46,8 +46,10 @@
 //! and [`Model::grid`](crate::import::Model::grid).
 
 mod body;
+mod budget;
 mod build;
 mod change;
+mod embed;
 mod error;
 mod game;
 mod grid;
@@ -59,16 +61,19 @@ pub use game::{GameText, RouteText, WishText, Words};
 pub(crate) use rigid::send;
 pub use rigid::{BallText, BoxText, CapsuleText, HalfSpaceText, HandText, ObstacleText};
 
+use crate::file::text_of;
+use budget::Budget;
 use error::{Origin, Wrong, require, require_vector};
 use fuwafuwa::world::Refused;
 use fuwafuwa::{Dim, Material, Settings, Shape, World};
 use serde::{Deserialize, Serialize};
-use std::fs::File;
-use std::io::{self, Read};
 use std::path::Path;
 
 /// Most bytes of a scene's file.
 pub const MAX_TEXT_BYTES: u64 = 1 << 20;
+
+/// Most materials of a scene: as many as have a number.
+pub const MAX_MATERIALS: usize = 255;
 
 /// Most bodies of a scene.
 pub const MAX_BODIES: usize = 1024;
@@ -154,8 +159,7 @@ impl Scene {
                 known: known.join(", "),
             });
         }
-        let too_long = format!("a scene has {MAX_TEXT_BYTES} bytes at most");
-        let text = text_of(path, MAX_TEXT_BYTES, &too_long).map_err(|source| SceneError::File {
+        let text = text_of(path, MAX_TEXT_BYTES).map_err(|source| SceneError::File {
             path: name.into(),
             source,
         })?;
@@ -251,6 +255,9 @@ impl Scene {
             }
             refused => Wrong::new("gravity", refused),
         })?;
+        let count = self.material.len();
+        let expected = format!("expected {MAX_MATERIALS} at most, found {count}");
+        require(count <= MAX_MATERIALS, "material", expected)?;
         for (index, text) in self.material.iter().enumerate() {
             let checked = text.check();
             checked.map_err(|wrong| wrong.inside("material", index))?;
@@ -264,9 +271,9 @@ impl Scene {
             let expected = format!("expected {MAX_RIGID} at most, found {count}");
             require(count <= MAX_RIGID, field, expected)?;
         }
-        let mut voxels = 0;
+        let mut budget = Budget::of_scene(most_voxels);
         for (index, text) in self.body.iter().enumerate() {
-            let body = text.build(&materials, most_voxels, &mut voxels);
+            let body = text.build(&materials, &mut budget);
             world.add_body(body.map_err(|wrong| wrong.inside("body", index))?);
         }
         for (index, text) in self.obstacle.iter().enumerate() {
@@ -330,17 +337,6 @@ impl Scene {
         let expected = format!("expected 2 or 3, found {}", self.dim);
         require((2..=3).contains(&self.dim), "dim", expected)
     }
-}
-
-/// The text of a file, refused for the given reason when it is longer than `most` bytes: what has no
-/// end is none.
-pub(crate) fn text_of(path: &Path, most: u64, too_long: &str) -> io::Result<String> {
-    let mut text = String::new();
-    let mut file = File::open(path)?.take(most + 1);
-    if file.read_to_string(&mut text)? as u64 > most {
-        return Err(io::Error::new(io::ErrorKind::FileTooLarge, too_long));
-    }
-    Ok(text)
 }
 
 fn usual_gravity() -> [f32; 3] {

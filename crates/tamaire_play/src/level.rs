@@ -123,7 +123,12 @@ impl Level {
         let ending = ending.unwrap_or_default().to_ascii_lowercase();
         match FRAMES.iter().find(|(made_from, _)| *made_from == ending) {
             Some((_, frame)) => Self::framed(frame, path).map_err(|error| blame(id, error)),
-            None => Self::of(id, Scene::open(id, &[])?),
+            None => {
+                let mut scene = Scene::open(id, &[])?;
+                scene.embed_files(&[])?;
+                forget_folders(&mut scene);
+                Self::of(id, scene)
+            }
         }
     }
 
@@ -143,6 +148,8 @@ impl Level {
         level.game.name.en = name.chars().take(60).collect();
         level.game.name.ja = None;
         level.scene.game = Some(level.game);
+        level.scene.embed_files(&[])?;
+        forget_folders(&mut level.scene);
         Self::of(&level.id, level.scene)
     }
 
@@ -248,6 +255,13 @@ impl Level {
     }
 }
 
+/// Whoever gets a replay has no business in the folders of who made it.
+fn forget_folders(scene: &mut Scene) {
+    for file in scene.body.iter_mut().filter_map(|body| body.file.as_mut()) {
+        *file = file.file_name().unwrap_or_default().into();
+    }
+}
+
 /// How wide the widest hand is on any axis [m].
 fn widest_hand<D: Dim>(world: &World<D>) -> f32 {
     let widths = world.hands().flat_map(|(_, hand)| {
@@ -261,7 +275,10 @@ fn widest_hand<D: Dim>(world: &World<D>) -> f32 {
 /// has heard.
 fn blame(file: &str, error: LevelError) -> LevelError {
     match error {
-        LevelError::Scene(SceneError::Shape { error, .. }) => LevelError::NoBody(error.to_string()),
+        LevelError::Scene(SceneError::Shape { mut error, .. }) => {
+            error.file = file.into();
+            LevelError::NoBody(error.to_string())
+        }
         LevelError::Scene(SceneError::Build { reason, .. }) => {
             LevelError::NoBody(format!("{file}: {reason}"))
         }

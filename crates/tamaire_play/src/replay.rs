@@ -8,10 +8,16 @@ use fuwafuwa_scenes::Scene;
 use fuwafuwa_scenes::scene::shortened;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
+use std::str::Utf8Error;
 use std::sync::Arc;
 
 /// Number of the format and of the rules; it changes when an older round would run differently.
 pub const VERSION: u32 = 5;
+
+/// Most bytes of a replay: what is longer is not read.
+pub const MAX_BYTES: usize = 1 << 25;
+/// Most letters of the name of a level in one.
+const MAX_NAME: usize = 200;
 
 /// A round: the level itself, what was played in it, and what came of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -38,6 +44,9 @@ pub struct Replay {
 /// Why a replay is not played.
 #[derive(Debug, thiserror::Error)]
 pub enum ReplayError {
+    /// It cannot be read.
+    #[error("it cannot be read: {0}")]
+    Unreadable(String),
     /// It is no replay.
     #[error("this is no replay: {0}")]
     Text(String),
@@ -86,11 +95,22 @@ impl Replay {
         }
     }
 
+    /// The replay in the bytes of a file.
+    ///
+    /// # Errors
+    /// As [`Replay::read`].
+    pub fn of_bytes(bytes: &[u8]) -> Result<Self, ReplayError> {
+        check_length(bytes.len())?;
+        let no_text = |error: Utf8Error| ReplayError::Text(error.to_string());
+        Self::read(std::str::from_utf8(bytes).map_err(no_text)?)
+    }
+
     /// The replay in a text.
     ///
     /// # Errors
     /// [`ReplayError`] when it is none, or one of another version.
     pub fn read(text: &str) -> Result<Self, ReplayError> {
+        check_length(text.len())?;
         #[derive(Deserialize)]
         struct Header {
             version: u32,
@@ -102,6 +122,11 @@ impl Replay {
             return Err(ReplayError::Version { found: version });
         }
         let replay: Self = toml::from_str(text).map_err(wrong)?;
+        let letters = replay.level.chars().count();
+        if letters > MAX_NAME {
+            let reason = format!("level: expected {MAX_NAME} letters at most, found {letters}");
+            return Err(ReplayError::Text(reason));
+        }
         let ticks = replay.frames.len();
         if ticks > MAX_TICKS {
             let reason = format!("expected {MAX_TICKS} ticks at most, found {ticks}");
@@ -132,6 +157,16 @@ impl Replay {
     /// It as a text.
     pub fn text(&self) -> String {
         toml::to_string(self).expect("a replay has nothing that cannot be written")
+    }
+
+    /// The same, if it can be read and watched again.
+    ///
+    /// # Errors
+    /// [`ReplayError`] says why not.
+    pub fn text_to_keep(&self) -> Result<String, ReplayError> {
+        let text = self.text();
+        Self::read(&text)?.level()?;
+        Ok(text)
     }
 
     /// Number of ticks.
@@ -174,7 +209,13 @@ fn marks(ticks: usize) -> usize {
 /// The name of a level without its folders and its ending.
 fn stem(id: &str) -> String {
     let stem = Path::new(id).file_stem().unwrap_or_default();
-    stem.to_string_lossy().into()
+    stem.to_string_lossy().chars().take(MAX_NAME).collect()
+}
+
+fn check_length(found: usize) -> Result<(), ReplayError> {
+    let reason = format!("expected {MAX_BYTES} bytes at most, found {found}");
+    let good = found <= MAX_BYTES;
+    good.then_some(()).ok_or(ReplayError::Text(reason))
 }
 
 /// A replay that is being played.
@@ -265,6 +306,20 @@ mod tests {
             let error = Replay::read(&text).unwrap_err().to_string();
             assert!(error.len() < 1000, "{} bytes", error.len());
         }
+    }
+
+    #[test]
+    fn what_could_not_be_read_again_is_not_kept() {
+        let level = Arc::new(Level::open("classic").unwrap());
+        let mut replay = Replay::of(&Round::<Dim2>::new(level));
+        assert_eq!(replay.text_to_keep().unwrap(), replay.text());
+        replay.game = "z".repeat(MAX_BYTES);
+        let error = replay.text_to_keep().unwrap_err().to_string();
+        assert!(error.contains("bytes at most"), "{error}");
+        replay.game = String::new();
+        replay.level = "z".repeat(MAX_NAME + 1);
+        let error = replay.text_to_keep().unwrap_err().to_string();
+        assert!(error.contains("letters at most"), "{error}");
     }
 
     #[test]

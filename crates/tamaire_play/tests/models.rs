@@ -1,7 +1,7 @@
 //! The models among the levels are not drawn by hand: here is what they are.
 
 use std::path::PathBuf;
-use tamaire_play::{InputFrame, Level, Round};
+use tamaire_play::{InputFrame, Level, Replay, Round};
 
 /// A crème caramel of 26 voxels across and 16 high: custard of colour 1 under caramel of colour 2.
 fn pudding() -> Vec<u8> {
@@ -96,6 +96,26 @@ fn a_model_of_any_colours_becomes_the_body_of_a_level() {
         let begin = format!("no body can be made of {file}{place}");
         assert!(said.starts_with(&begin), "{said}");
         assert!(!said.contains("classic"), "nobody asked for it: {said}");
+    }
+    std::fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn a_replay_does_not_tell_the_folders_of_who_made_it() {
+    let name = format!("tamaire-secret-{}", std::process::id());
+    let folder = std::env::temp_dir().join(&name);
+    std::fs::create_dir_all(&folder).unwrap();
+    let shape = "shape = \"ball\"\nn = 24";
+    let (_, classic) = tamaire_play::level::NAMED_3D[0];
+    assert!(classic.contains(shape), "{classic}");
+    let body = "file = \"mine.vox\"\ncolours = { \"1\" = 1, \"2\" = 1 }";
+    std::fs::write(folder.join("own.toml"), classic.replace(shape, body)).unwrap();
+    std::fs::write(folder.join("mine.vox"), pudding()).unwrap();
+    for file in ["mine.vox", "own.toml"] {
+        let level = Level::open(&folder.join(file).to_string_lossy()).unwrap();
+        let round = Round::<fuwafuwa::Dim3>::new(std::sync::Arc::new(level));
+        let text = Replay::of(&round).text_to_keep().unwrap();
+        assert!(text.contains("mine.vox") && !text.contains(&name), "{file}");
     }
     std::fs::remove_dir_all(folder).unwrap();
 }

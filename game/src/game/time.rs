@@ -41,6 +41,9 @@ impl Game {
                 self.notify(format!("{} ({trouble})", self.words().no_sound));
             }
         }
+        for news in self.files.pass(seconds) {
+            self.tell(news);
+        }
         self.celebrate(seconds);
         self.learn(seconds);
         self.feel(seconds);
@@ -148,8 +151,7 @@ impl Game {
                 tamaire_play::Route::Shave => tamaire_sound::Route::Shave,
                 tamaire_play::Route::Mix => tamaire_sound::Route::Mix,
             }));
-            let written = self.files.write("records.toml", &self.records);
-            self.report(written);
+            self.files.keep_records(&self.records);
         }
         if self.has_cheered() && self.won.is_some() {
             self.go(Screen::Result);

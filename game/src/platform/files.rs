@@ -1,30 +1,51 @@
-//! What is kept between two evenings: settings, records, replays.
+//! What is kept between two evenings: settings, records, replays. All is written on a thread of its own.
 
-use serde::Serialize;
-use serde::de::DeserializeOwned;
-use std::fs::{self, File};
-use std::io::{self, Write};
-use std::path::{Path, PathBuf};
-use std::time::SystemTime;
+use super::storage::{Entry, Kind, Nowhere, Storage};
+use super::writer::Writer;
+use crate::records::Records;
+use crate::settings::Settings;
+use std::io;
+use std::sync::Arc;
 use tamaire_play::{Replay, ReplayError};
 
-/// Most bytes of a replay that are read.
-const MAX_REPLAY_BYTES: u64 = 1 << 25;
+const SETTINGS: &str = "settings";
+const RECORDS: &str = "records";
 
-/// The folder in which everything is kept.
-#[derive(Clone, Debug)]
+/// Settings are written when they were not changed for so long [s]: a slider that is dragged changes them in each frame.
+const REST: f32 = 1.0;
+
+/// What is kept, and where.
 pub struct Files {
-    /// Nothing where the system names no place to keep things: then the game forgets.
-    folder: Option<PathBuf>,
+    storage: Arc<dyn Storage>,
+    writer: Writer<Done>,
+    /// Settings that are still to be written, and in how long [s].
+    resting: Option<(String, f32)>,
+    /// Whether it was told that something failed, and nothing was written since.
+    is_failing: bool,
 }
 
-/// A replay in the folder.
-#[derive(Clone, Debug)]
-pub struct SavedReplay {
-    /// Its file.
-    pub path: PathBuf,
-    /// When it was written.
-    pub written: SystemTime,
+/// What became of something that was to be written.
+enum Done {
+    Note(io::Result<()>),
+    Replay(Result<String, String>),
+}
+
+/// What there is to tell of what was written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum News {
+    /// A replay is kept, here.
+    Saved(String),
+    /// What was to be kept could not be written. Of settings and records this is told once.
+    Failed(String),
+}
+
+/// What could not be used of what was kept.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Damage {
+    /// Each thing: where it stands, and why.
+    pub refused: Vec<String>,
+    /// Where all is kept as it was, if it could be.
+    pub aside: Option<String>,
 }
 
 impl Files {
@@ -32,160 +53,240 @@ impl Files {
     #[cfg(not(target_family = "wasm"))]
     pub fn usual() -> Self {
         let folders = directories::ProjectDirs::from("", "", "tamaire");
-        let folder = folders.map(|folders| folders.data_dir().to_path_buf());
-        Self { folder }
+        match folders {
+            Some(folders) => Self::in_folder(folders.data_dir()),
+            None => Self::on(Nowhere {
+                reason: Some("the system names no folder to keep things in"),
+            }),
+        }
     }
 
     /// A folder of one's own.
-    pub fn in_folder(folder: impl Into<PathBuf>) -> Self {
-        let folder = Some(folder.into());
-        Self { folder }
+    #[cfg(not(target_family = "wasm"))]
+    pub fn in_folder(folder: impl Into<std::path::PathBuf>) -> Self {
+        Self::on(super::folder::Folder(folder.into()))
     }
 
-    /// Nothing is kept.
+    /// Nothing is kept, by choice.
     pub fn nowhere() -> Self {
-        Self { folder: None }
+        Self::on(Nowhere { reason: None })
     }
 
-    /// What was kept under a name; the usual where there is nothing. What cannot be read is put
-    /// aside, and the second value says where.
-    pub fn read<T: DeserializeOwned + Default>(&self, name: &str) -> (T, Option<PathBuf>) {
-        let Some(path) = self.folder.as_ref().map(|folder| folder.join(name)) else {
-            return (T::default(), None);
-        };
-        if !path.exists() {
-            return (T::default(), None);
+    /// All is kept there.
+    pub fn on(storage: impl Storage + 'static) -> Self {
+        Self {
+            storage: Arc::new(storage),
+            writer: Writer::new(),
+            resting: None,
+            is_failing: false,
         }
-        let text = fs::read_to_string(&path).unwrap_or_default();
-        if let (false, Ok(value)) = (text.is_empty(), toml::from_str(&text)) {
+    }
+
+    /// The settings that were kept, the usual for what cannot be used of them.
+    pub fn settings(&mut self) -> (Settings, Option<Damage>) {
+        // Nobody knows how strong forces were to be.
+        let lost = Settings {
+            haptics: 0.0,
+            ..Settings::default()
+        };
+        self.read(SETTINGS, Settings::read, lost)
+    }
+
+    /// The records that were kept.
+    pub fn records(&mut self) -> (Records, Option<Damage>) {
+        self.read(RECORDS, Records::read, Records::default())
+    }
+
+    /// What was kept under a name, and `lost` where that cannot be read at all.
+    fn read<T: Default>(
+        &mut self,
+        name: &str,
+        of: fn(&str) -> (T, Vec<String>),
+        lost: T,
+    ) -> (T, Option<Damage>) {
+        let bytes = match self.storage.read(Kind::Note, name) {
+            Ok(Some(bytes)) => bytes,
+            Ok(None) => return (T::default(), None),
+            Err(error) => {
+                let place = self.storage.place(Kind::Note, name);
+                let refused = vec![format!("{place} ({error})")];
+                let aside = None;
+                let is_told = std::mem::replace(&mut self.is_failing, true);
+                let damage = (!is_told).then_some(Damage { refused, aside });
+                let was_kept = error.kind() != io::ErrorKind::NotFound;
+                return (if was_kept { lost } else { T::default() }, damage);
+            }
+        };
+        let text = String::from_utf8_lossy(&bytes);
+        let (value, refused) = of(&text);
+        if refused.is_empty() {
             return (value, None);
         }
-        let free = (1..).map(|number| path.with_extension(format!("broken-{number}.toml")));
-        let aside = free.into_iter().find(|aside| !aside.exists());
-        let aside = aside.expect("some number is free");
-        let moved = fs::rename(&path, &aside);
-        (T::default(), Some(if moved.is_ok() { aside } else { path }))
+        let aside = put_aside(&*self.storage, name, &bytes).ok();
+        (value, Some(Damage { refused, aside }))
     }
 
-    /// Keeps something under a name.
-    ///
-    /// # Errors
-    /// What the system says when it cannot be written.
-    pub fn write<T: Serialize>(&self, name: &str, value: &T) -> io::Result<()> {
-        let Some(folder) = &self.folder else {
-            return Ok(());
-        };
-        let text = toml::to_string(value).map_err(io::Error::other)?;
-        write_whole(&folder.join(name), &text)
+    /// Keeps these settings, once they rest and at the end of the program.
+    pub fn keep_settings(&mut self, settings: &Settings) {
+        self.resting = Some((settings.text(), REST));
     }
 
-    /// Keeps a replay; says in which file.
-    ///
-    /// # Errors
-    /// What the system says when it cannot be written.
-    pub fn save_replay(&self, replay: &Replay) -> io::Result<PathBuf> {
-        let missing = || io::Error::new(io::ErrorKind::NotFound, "no folder for files");
-        let folder = self.folder.as_ref().ok_or_else(missing)?.join("replays");
-        let is_plain = |letter: char| letter.is_alphanumeric() || letter == '-';
-        let stem = Path::new(&replay.level).file_stem().unwrap_or_default();
-        let name: String = stem
-            .to_string_lossy()
-            .chars()
-            .filter(|&k| is_plain(k))
-            .collect();
-        let free = (1..).map(|number| folder.join(format!("{name}-{number}.tamaire")));
-        let path = free.into_iter().find(|path| !path.exists());
-        let path = path.expect("some number is free");
-        write_whole(&path, &replay.text())?;
-        Ok(path)
+    /// Keeps these records, and those that another program wrote in the meantime.
+    pub fn keep_records(&mut self, records: &Records) {
+        let (storage, records) = (self.storage.clone(), records.clone());
+        self.writer
+            .write(move || Done::Note(merge_records(&*storage, &records)));
     }
 
-    /// The replays in the folder, the newest first.
-    pub fn replays(&self) -> Vec<SavedReplay> {
-        let Some(folder) = &self.folder else {
-            return Vec::new();
-        };
-        let entries = fs::read_dir(folder.join("replays"))
-            .into_iter()
-            .flatten()
-            .flatten();
-        let mut found: Vec<SavedReplay> = entries
-            .filter(|entry| {
-                entry
-                    .path()
-                    .extension()
-                    .is_some_and(|ending| ending == "tamaire")
-            })
-            .filter_map(|entry| {
-                let written = entry.metadata().and_then(|data| data.modified()).ok()?;
-                let path = entry.path();
-                Some(SavedReplay { path, written })
-            })
-            .collect();
-        found.sort_by(|a, b| b.written.cmp(&a.written).then(a.path.cmp(&b.path)));
+    /// Keeps a replay.
+    pub fn save_replay(&mut self, replay: Replay) {
+        let storage = self.storage.clone();
+        self.writer
+            .write(move || Done::Replay(save_replay(&*storage, &replay)));
+    }
+
+    /// Lets `seconds` pass; tells what became of what was to be written.
+    pub fn pass(&mut self, seconds: f32) -> Vec<News> {
+        if let Some((_, left)) = &mut self.resting {
+            *left -= seconds;
+            if *left <= 0.0 {
+                self.write_settings();
+            }
+        }
+        let done = self.writer.results();
+        self.news(done)
+    }
+
+    /// Writes what is still to be written, and waits until it is.
+    pub fn finish(&mut self) -> Vec<News> {
+        self.write_settings();
+        let done = self.writer.finish();
+        self.news(done)
+    }
+
+    /// Writes what is still to be written at the end of the program.
+    pub fn close(&mut self) {
+        for news in self.finish() {
+            if let News::Failed(reason) = news {
+                // There is no window any more.
+                eprintln!("tamaire: this could not be written: {reason}");
+            }
+        }
+    }
+
+    /// Whether something is still to be written.
+    pub fn is_busy(&self) -> bool {
+        self.resting.is_some() || self.writer.is_busy()
+    }
+
+    fn write_settings(&mut self) {
+        if let Some((text, _)) = self.resting.take() {
+            let storage = self.storage.clone();
+            let mut change = move |_: Option<&[u8]>| Some(text.clone().into_bytes());
+            self.writer
+                .write(move || Done::Note(storage.change(Kind::Note, SETTINGS, &mut change)));
+        }
+    }
+
+    fn news(&mut self, done: Vec<Done>) -> Vec<News> {
+        let mut news = Vec::new();
+        for done in done {
+            match done {
+                Done::Replay(saved) => news.push(saved.map_or_else(News::Failed, News::Saved)),
+                Done::Note(Ok(())) => self.is_failing = false,
+                Done::Note(Err(error)) if !self.is_failing => {
+                    self.is_failing = true;
+                    news.push(News::Failed(error.to_string()));
+                }
+                Done::Note(Err(_)) => {}
+            }
+        }
+        news
+    }
+
+    /// The replays that are kept, the newest first.
+    pub fn replays(&self) -> Vec<Entry> {
+        let mut found = self.storage.list(Kind::Replay).unwrap_or_default();
+        found.sort_by(|a, b| b.written.cmp(&a.written).then(a.name.cmp(&b.name)));
         found
     }
 
-    /// The replay in a file.
+    /// The replay of a name.
     ///
     /// # Errors
     /// [`ReplayError`] when it cannot be read or is none.
-    pub fn replay(path: &Path) -> Result<Replay, ReplayError> {
-        let unreadable = |error: io::Error| ReplayError::Text(error.to_string());
-        let length = fs::metadata(path).map_err(unreadable)?.len();
-        if length > MAX_REPLAY_BYTES {
-            let reason = format!("longer than {MAX_REPLAY_BYTES} bytes, the most that are read");
-            return Err(ReplayError::Text(reason));
-        }
-        Replay::read(&fs::read_to_string(path).map_err(unreadable)?)
+    pub fn replay(&self, name: &str) -> Result<Replay, ReplayError> {
+        let unreadable = |reason: String| ReplayError::Unreadable(reason);
+        let read = self.storage.read(Kind::Replay, name);
+        let bytes = read.map_err(|error| unreadable(error.to_string()))?;
+        let bytes = bytes.ok_or_else(|| unreadable("it is no longer there".into()))?;
+        Replay::of_bytes(&bytes)
+    }
+
+    /// Where a replay is kept, for people to read.
+    pub fn place(&self, name: &str) -> String {
+        self.storage.place(Kind::Replay, name)
     }
 
     /// Deletes a replay.
     ///
     /// # Errors
     /// What the system says when it cannot.
-    pub fn delete(&self, replay: &SavedReplay) -> io::Result<()> {
-        fs::remove_file(&replay.path)
+    pub fn delete(&self, name: &str) -> io::Result<()> {
+        self.storage.remove(Kind::Replay, name)
     }
 }
 
-/// Writes a file so that it is never half there.
-fn write_whole(path: &Path, text: &str) -> io::Result<()> {
-    let folder = path.parent().unwrap_or(Path::new("."));
-    fs::create_dir_all(folder)?;
-    let draft = path.with_extension("draft");
-    let mut file = File::create(&draft)?;
-    file.write_all(text.as_bytes())?;
-    file.sync_all()?;
-    fs::rename(&draft, path)
+impl Drop for Files {
+    fn drop(&mut self) {
+        self.close();
+    }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::settings::Settings;
-
-    fn folder(name: &str) -> PathBuf {
-        let folder = std::env::temp_dir().join(format!("tamaire-{name}-{}", std::process::id()));
-        let _ = fs::remove_dir_all(&folder);
-        folder
+/// Keeps bytes that cannot be used for whoever wrote them; says where.
+fn put_aside(storage: &dyn Storage, name: &str, bytes: &[u8]) -> io::Result<String> {
+    let mut number = 1;
+    loop {
+        let aside = format!("{name}.broken-{number}");
+        let mut is_there = false;
+        storage.change(Kind::Note, &aside, &mut |found| {
+            is_there = found.is_none_or(|found| found == bytes);
+            found.is_none().then(|| bytes.to_vec())
+        })?;
+        if is_there {
+            return Ok(storage.place(Kind::Note, &aside));
+        }
+        number += 1;
     }
+}
 
-    #[test]
-    fn what_was_written_is_read_again_and_what_is_broken_is_put_aside() {
-        let folder = folder("files");
-        let files = Files::in_folder(&folder);
-        let settings = Settings {
-            speed: 0.75,
-            ..Settings::default()
-        };
-        files.write("settings.toml", &settings).unwrap();
-        assert_eq!(files.read("settings.toml"), (settings, None));
-        fs::write(folder.join("settings.toml"), "speed = \"fast\"").unwrap();
-        let (read, aside) = files.read::<Settings>("settings.toml");
-        assert_eq!(read, Settings::default());
-        let kept = fs::read_to_string(aside.unwrap()).unwrap();
-        assert_eq!(kept, "speed = \"fast\"");
-        fs::remove_dir_all(folder).unwrap();
+fn merge_records(storage: &dyn Storage, records: &Records) -> io::Result<()> {
+    storage.change(Kind::Note, RECORDS, &mut |found| {
+        let text = String::from_utf8_lossy(found.unwrap_or_default());
+        let mut all = Records::read(&text).0;
+        all.take(records.clone());
+        Some(all.text().into_bytes())
+    })
+}
+
+/// Keeps a replay under a name that is free; says where, or why not.
+fn save_replay(storage: &dyn Storage, replay: &Replay) -> Result<String, String> {
+    // One that could not be watched is none.
+    let text = replay.text_to_keep().map_err(|error| error.to_string())?;
+    let is_plain = |letter: &char| letter.is_alphanumeric() || *letter == '-';
+    let stem: String = replay.level.chars().filter(is_plain).take(60).collect();
+    let mut number = 1;
+    loop {
+        let name = format!("{stem}-{number}");
+        let mut is_free = false;
+        let written = storage.change(Kind::Replay, &name, &mut |found| {
+            is_free = found.is_none();
+            is_free.then(|| text.clone().into_bytes())
+        });
+        written.map_err(|error| error.to_string())?;
+        if is_free {
+            return Ok(storage.place(Kind::Replay, &name));
+        }
+        number += 1;
     }
 }

@@ -3,7 +3,10 @@
 
 mod clock;
 mod files;
+#[cfg(not(target_family = "wasm"))]
+mod folder;
 mod forces;
+mod given;
 mod gpu;
 #[cfg(not(target_family = "wasm"))]
 mod sound;
@@ -11,10 +14,14 @@ mod sound;
 #[path = "silence.rs"]
 mod sound;
 mod sticks;
+mod storage;
+mod writer;
 
 pub use clock::Clock;
-pub use files::{Files, SavedReplay};
+pub use files::{Damage, Files, News};
 pub use forces::Forces;
+pub use given::{Given, replay_in};
 pub use gpu::GpuWatch;
 pub use sound::Sound;
 pub use sticks::Pads;
+pub use storage::{Change, Entry, Kind, Nowhere, Storage};

@@ -4,6 +4,7 @@ use super::kit::{fitted, focus_ring, header, liveliness, page, place_of_page, ve
 use super::marks;
 use crate::game::{Game, Screen};
 use crate::look::{Maps, Stage};
+use crate::records::WishName;
 use egui::{Color32, Rect, Response, Role, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
 use tamaire_play::Route;
 use tamaire_sound::Menu;
@@ -83,13 +84,14 @@ fn tile(ui: &mut Ui, game: &Game, maps: &Maps, place: usize, size: Vec2) -> Resp
     let record = game.records.of(&level.id);
     let base = rect.bottom() - 26.0;
     let mut x = rect.center().x;
-    let wishes = level.game().wish.len();
+    let wishes = &level.game().wish;
     let routes = [Route::Squeeze, Route::Shave];
     let has_basket = level.game().basket.is_some();
-    let width = 24.0 * wishes as f32 + if has_basket { 16.0 + 64.0 } else { 0.0 };
+    let width = 24.0 * wishes.len() as f32 + if has_basket { 16.0 + 64.0 } else { 0.0 };
     x -= 0.5 * width;
-    for wish in 0..wishes {
-        let reached = record.is_some_and(|record| record.wishes.contains(&wish));
+    for wish in wishes {
+        let name = WishName::of(wish);
+        let reached = record.is_some_and(|record| record.wishes.contains(&name));
         let star = if reached { "★" } else { "☆" };
         let tone = if reached { theme.accent } else { theme.faint };
         words(ui, pos2(x + 12.0, base), star, 20.0, tone);

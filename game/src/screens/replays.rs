@@ -2,9 +2,8 @@
 
 use super::kit::{Weight, button, card, fitted, header, page, place_of_page, veil};
 use crate::game::{Game, Screen};
-use crate::platform::SavedReplay;
+use crate::platform::Entry;
 use egui::{Id, RichText, Ui, vec2};
-use std::path::PathBuf;
 use tamaire_sound::Menu;
 
 /// Width of a button.
@@ -24,9 +23,9 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     let mut wanted: Option<(usize, Wish)> = None;
     // What was asked to be deleted is deleted when it is asked for again.
     let doomed = Id::unique("doomed");
-    let is_doomed = |ui: &Ui, saved: &SavedReplay| {
-        let asked = ui.data(|data| data.get_temp::<Option<PathBuf>>(doomed));
-        asked.flatten().as_ref() == Some(&saved.path)
+    let is_doomed = |ui: &Ui, saved: &Entry| {
+        let asked = ui.data(|data| data.get_temp::<Option<String>>(doomed));
+        asked.flatten().as_ref() == Some(&saved.name)
     };
     let mut back = ui.input(|input| input.key_pressed(egui::Key::Escape));
     let area = place_of_page(ui);
@@ -78,23 +77,22 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
         game.blip(Menu::Confirm);
         let saved = game.replays[place].clone();
         match wish {
-            Wish::Watch => game.open_replay(&saved.path, Game::watch),
-            Wish::Race => game.open_replay(&saved.path, Game::race),
+            Wish::Watch => game.open_kept(&saved.name, Game::watch),
+            Wish::Race => game.open_kept(&saved.name, Game::race),
             Wish::Delete if is_doomed(ui, &saved) => game.delete(&saved),
             Wish::Delete => {}
         }
-        let asked = matches!(wish, Wish::Delete).then_some(saved.path);
+        let asked = matches!(wish, Wish::Delete).then_some(saved.name);
         ui.data_mut(|data| data.insert_temp(doomed, asked));
     }
 }
 
 /// By its level, where that is known, and its number.
-fn name_of(game: &Game, saved: &SavedReplay) -> String {
-    let stem = saved.path.file_stem().unwrap_or_default().to_string_lossy();
-    let known = stem.rsplit_once('-').and_then(|(id, number)| {
+fn name_of(game: &Game, saved: &Entry) -> String {
+    let known = saved.name.rsplit_once('-').and_then(|(id, number)| {
         let level = game.levels.iter().find(|level| level.id == id)?;
         let name = game.settings.language.of(&level.game().name);
         Some(format!("{name} {number}"))
     });
-    known.unwrap_or_else(|| stem.into())
+    known.unwrap_or_else(|| saved.name.clone())
 }

@@ -120,7 +120,7 @@ pub(super) const WORDS: Words = Words {
     },
     restore: "Switch forces on again",
     restored: "Forces are on again.",
-    forces_zero: "The settings were lost, so forces are at 0 until you choose again.",
+    forces_zero: "How strong forces were is lost, so they are at 0 until you choose again.",
     speed: "Game speed",
     sensitivity: "Sensitivity",
     stick_places: "Stick points at the place",
@@ -192,7 +192,12 @@ pub(super) const WORDS: Words = Words {
         Means::Fingers => None,
     },
     watching: "Replay",
-    settings_kept: "What was kept could not be read. It was put aside as",
+    damaged: |refused, aside| match aside {
+        Some(aside) => {
+            format!("This was not understood: {refused}. All is kept as it was in {aside}")
+        }
+        None => format!("This could not be read: {refused}."),
+    },
     not_written: "This could not be written:",
     level_error: |error| error.to_string(),
     replay_error: |error| error.to_string(),

@@ -187,7 +187,12 @@ pub(super) const WORDS: Words = Words {
         Means::Fingers => None,
     },
     watching: "リプレイ",
-    settings_kept: "のこしたものが読めませんでした。もとのファイル：",
+    damaged: |refused, aside| match aside {
+        Some(aside) => {
+            format!("読めないところがありました：{refused}。もとのまま {aside} にのこしました。")
+        }
+        None => format!("読めませんでした：{refused}。"),
+    },
     not_written: "書きこめませんでした：",
     level_error,
     replay_error,
@@ -211,6 +216,7 @@ fn level_error(error: &LevelError) -> String {
 
 fn replay_error(error: &ReplayError) -> String {
     match error {
+        ReplayError::Unreadable(reason) => format!("読めませんでした。{reason}"),
         ReplayError::Text(reason) => format!("リプレイではないようです。{reason}"),
         ReplayError::Version { found } => {
             format!("ほかのバージョン（{found}）のリプレイなので、見られません。")

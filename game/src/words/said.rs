@@ -82,7 +82,8 @@ pub struct Words {
     /// How one looks deeper into bodies in space.
     pub look_inside: fn(Means, &[String; 2]) -> Option<String>,
     pub watching: &'static str,
-    pub settings_kept: &'static str,
+    /// What could not be used of what was kept, and where that is put aside.
+    pub damaged: fn(&str, Option<&str>) -> String,
     pub not_written: &'static str,
     pub level_error: fn(&LevelError) -> String,
     pub replay_error: fn(&ReplayError) -> String,

@@ -57,15 +57,17 @@ fn one_key_begins_the_round_again_at_once() {
 fn a_round_is_won_kept_watched_raced_and_deleted() {
     let folder = folder("win");
     let files = Files::in_folder(&folder);
-    let mut window = window(files.clone());
+    let mut window = window(Files::in_folder(&folder));
     game(&mut window).start(0);
     win(&mut window);
     let (outcome, is_best) = game(&mut window).won.unwrap();
     assert!(is_best && outcome.route == Route::Squeeze, "{outcome:?}");
     window.get_by_label("Squeezed in!");
     click(&mut window, "Save replay");
+    game(&mut window).finish_writing();
     assert!(notices(&window).contains("classic-1.tamaire"));
-    let saved = fs::read_to_string(&files.replays()[0].path).unwrap();
+    let path = files.place(&files.replays()[0].name);
+    let saved = fs::read_to_string(&path).unwrap();
 
     click(&mut window, "Race it");
     assert_eq!(screen(&window), Screen::Play);
@@ -108,7 +110,6 @@ fn a_round_is_won_kept_watched_raced_and_deleted() {
     game(&mut window).go(Screen::Replays);
 
     // Somebody else's, or none at all.
-    let path = files.replays()[0].path.clone();
     fs::write(
         &path,
         saved.replacen(&format!("version = {VERSION}"), "version = 999", 1),
@@ -158,7 +159,7 @@ fn a_round_is_won_kept_watched_raced_and_deleted() {
 fn settings_are_kept_and_the_language_changes_at_once() {
     let folder = folder("settings");
     let files = Files::in_folder(&folder);
-    let mut window = window(files.clone());
+    let mut window = window(Files::in_folder(&folder));
     click(&mut window, "Settings");
     let slider = egui::accesskit::Role::Slider;
     let before = game(&mut window).settings.volume;
@@ -182,6 +183,7 @@ fn settings_are_kept_and_the_language_changes_at_once() {
     window.get_by_label(said.volume);
     click(&mut window, said.back);
     window.get_by_label(said.play);
+    game(&mut window).finish_writing();
     let again = Game::new(files, Sound::none(), Pads::none());
     assert_eq!(again.settings.language, Language::Japanese);
     assert_eq!(again.settings.volume, after);
@@ -302,8 +304,7 @@ fn the_font_has_every_letter_of_the_game() {
 #[test]
 fn a_key_fills_the_screen_and_the_choice_is_kept() {
     let folder = folder("full-screen");
-    let files = Files::in_folder(&folder);
-    let mut window = window(files.clone());
+    let mut window = window(Files::in_folder(&folder));
     for wanted in [true, false, true] {
         window.key_press(Key::F11);
         // The window is asked in the frame after.
@@ -315,7 +316,8 @@ fn a_key_fills_the_screen_and_the_choice_is_kept() {
         });
         assert!(asked && game(&mut window).settings.full_screen == wanted);
     }
-    let again = Game::new(files, Sound::none(), Pads::none());
+    drop(window);
+    let again = Game::new(Files::in_folder(&folder), Sound::none(), Pads::none());
     assert!(again.settings.full_screen);
     fs::remove_dir_all(folder).unwrap();
 }

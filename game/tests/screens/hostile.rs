@@ -93,6 +93,42 @@ fn a_picture_is_played_and_what_is_broken_is_named() {
     fs::remove_dir_all(folder).unwrap();
 }
 
+#[cfg(unix)]
+#[test]
+fn pipes_and_devices_are_refused_and_not_waited_for() {
+    let folder = folder("pipes");
+    let mut window = window(Files::nowhere());
+    for (made, file) in [
+        ("mkfifo", "a.toml"),
+        ("mkfifo", "a.png"),
+        ("mkfifo", "a.vox"),
+        ("mkfifo", "a.tamaire"),
+        ("mkfifo", "a"),
+        ("ln -s /dev/zero", "b.toml"),
+        ("ln -s /dev/zero", "b.png"),
+        ("ln -s /dev/zero", "b.tamaire"),
+    ] {
+        let path = folder.join(file);
+        let mut words = made.split(' ');
+        let mut command = std::process::Command::new(words.next().expect("a program"));
+        assert!(command.args(words).arg(&path).status().unwrap().success());
+        drop_file(&mut window, path);
+        let said = notices(&window);
+        assert!(said.contains(file) && said.contains("a device"), "{said}");
+    }
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn a_notice_is_cut_to_what_can_be_read() {
+    let mut window = window(Files::nowhere());
+    let game = game(&mut window);
+    game.notices.clear();
+    game.notify("ふ".repeat(1 << 20));
+    assert_eq!(game.notices[0].0.chars().count(), 601);
+    assert!(game.notices[0].1 < 60.0, "{} s", game.notices[0].1);
+}
+
 #[test]
 fn a_long_notice_stays_until_it_can_be_read() {
     let mut window = window(Files::nowhere());

@@ -3,6 +3,7 @@
 
 mod clicks;
 mod hostile;
+mod kept;
 mod models;
 mod pads;
 mod pictures;

@@ -5,7 +5,7 @@ use crate::space::{assert_near, goal, in_space, point_at};
 use crate::window::*;
 use std::path::Path;
 use tamaire::game::Screen;
-use tamaire::platform::Files;
+use tamaire::platform::{Files, Given};
 use tamaire_play::AnyRound;
 
 const MODEL: &str = "../crates/tamaire_play/levels/pudding.vox";
@@ -52,7 +52,7 @@ fn what_the_command_line_names_is_played() {
         (&model, "pudding", 1),
         (&model, "pudding", 1),
     ] {
-        window.state_mut().game.open(named);
+        window.state_mut().game.open(Given::at(named));
         frames(&mut window, 3);
         let game = &window.state().game;
         assert_eq!(screen(&window), Screen::Play, "{named:?}");

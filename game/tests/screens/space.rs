@@ -368,12 +368,13 @@ fn keys_and_a_pad_look_deeper_into_elements_and_back_and_it_is_told_how() {
 fn a_round_in_space_is_won_kept_watched_and_raced() {
     let folder = folder("space");
     let files = Files::in_folder(&folder);
-    let mut window = window(files.clone());
+    let mut window = window(Files::in_folder(&folder));
     start(&mut window, "classic-3d");
     win(&mut window);
     let (outcome, is_best) = game(&mut window).won.expect("it was won");
     assert!(is_best && outcome.route == Route::Squeeze, "{outcome:?}");
     click(&mut window, "Save replay");
+    game(&mut window).finish_writing();
     game(&mut window).notices.clear();
     assert_eq!(files.replays().len(), 1);
 

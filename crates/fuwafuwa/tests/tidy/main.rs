@@ -147,6 +147,29 @@ fn no_two_files_import_each_other() {
     assert!(count > 500, "only {count} imports were found");
 }
 
+/// A browser has neither paths nor files: what the game keeps and opens goes through `platform`, by kind and name.
+#[test]
+fn files_are_opened_in_the_platform_and_for_the_command_line_alone() {
+    let folder = root().join("game/src");
+    let mut seen = 0;
+    for path in sources(&folder) {
+        let inner = path.strip_prefix(&folder).unwrap();
+        let first = inner.iter().next().unwrap().to_str().unwrap();
+        let first = first.trim_end_matches(".rs");
+        if ["platform", "headless", "desktop", "main"].contains(&first) {
+            continue;
+        }
+        seen += 1;
+        let text = fs::read_to_string(&path).unwrap();
+        let tests = text.find("#[cfg(test)]").unwrap_or(text.len());
+        for word in ["std::fs", "std::path", "PathBuf", "Path::", "File::"] {
+            let is_named = text[..tests].contains(word);
+            assert!(!is_named, "{} names {word}", inner.display());
+        }
+    }
+    assert!(seen > 40, "only {seen} files were seen");
+}
+
 #[test]
 fn no_file_is_too_long_to_read() {
     const MOST_LINES: usize = 500;

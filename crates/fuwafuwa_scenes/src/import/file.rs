@@ -1,8 +1,8 @@
 //! The bytes of a file, no more than are taken.
 
 use super::error::{Complaint, ImportError, Place, Problem, in_file, unexpected};
-use std::fs::File;
-use std::io::Read;
+use crate::file::bytes_of;
+use std::io::{self, ErrorKind};
 use std::path::Path;
 
 /// Most bytes of a file: twice what the largest model takes when it is full.
@@ -19,29 +19,27 @@ pub fn read(path: &Path) -> Result<Vec<u8>, ImportError> {
 }
 
 fn try_read(path: &Path) -> Result<Vec<u8>, Complaint> {
-    let unreadable = |error| (Place::File, Problem::Unreadable(error));
-    if !path.metadata().map_err(unreadable)?.is_file() {
-        return Err(unexpected(
-            Place::File,
-            "a file",
-            "a folder, a pipe or a device",
-        ));
-    }
-    let mut bytes = Vec::new();
-    let file = File::open(path).map_err(unreadable)?;
-    let outcome = file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes);
-    outcome.map_err(unreadable)?;
-    check_length(&bytes)?;
-    Ok(bytes)
+    let complaint = |error: io::Error| match error.kind() {
+        ErrorKind::InvalidInput => {
+            unexpected(Place::File, "a file", "a folder, a pipe or a device")
+        }
+        ErrorKind::FileTooLarge => too_large(MAX_FILE_BYTES + 1),
+        _ => (Place::File, Problem::Unreadable(error)),
+    };
+    bytes_of(path, MAX_FILE_BYTES).map_err(complaint)
 }
 
 pub fn check_length(bytes: &[u8]) -> Result<(), Complaint> {
     let found = bytes.len() as u64;
-    let too_large = Problem::TooLarge {
+    let good = found <= MAX_FILE_BYTES;
+    good.then_some(()).ok_or_else(|| too_large(found))
+}
+
+fn too_large(found: u64) -> Complaint {
+    let problem = Problem::TooLarge {
         what: "bytes or more",
         found,
         limit: MAX_FILE_BYTES,
     };
-    let good = found <= MAX_FILE_BYTES;
-    good.then_some(()).ok_or((Place::File, too_large))
+    (Place::File, problem)
 }

@@ -3,7 +3,9 @@
 use super::colours::Colours;
 use super::error::{Complaint, ImportError, Place, Problem, in_file, no_grid, unexpected};
 use super::file::{check_length, name_of, read};
-use ::png::{Decoder, DecodingError, Limits, Transformations};
+use ::png::{
+    BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError, Limits, Transformations,
+};
 use fuwafuwa::grid::MAX_EXTENT;
 use fuwafuwa::{Dim2, VoxelGrid};
 use std::io::{Cursor, ErrorKind};
@@ -110,6 +112,30 @@ impl Picture {
         colours: &Colours,
     ) -> Result<VoxelGrid<Dim2>, ImportError> {
         in_file(&self.file, self.try_grid(across, voxel_size, colours))
+    }
+
+    /// A PNG file with a pixel for each voxel that this picture becomes, from which the same voxels come; none where
+    /// nothing comes of this one.
+    pub(crate) fn needed(&self, across: usize, colours: &Colours) -> Option<Vec<u8>> {
+        let grid = self.grid(across, 1.0, colours).ok()?;
+        let [columns, rows, _] = grid.size();
+        let colour_of = |material: u8| match material {
+            0 => Some([u8::MAX, u8::MAX, u8::MAX, 0]),
+            // Black is ink too, where no pixel is transparent.
+            _ if colours.named.is_empty() => Some([0, 0, 0, u8::MAX]),
+            _ => {
+                let mut named = colours.named.iter();
+                let (&[red, green, blue], _) = named.find(|(_, named)| **named == material)?;
+                Some([red, green, blue, u8::MAX])
+            }
+        };
+        let mut pixels = Vec::new();
+        for y in (0..rows).rev() {
+            for x in 0..columns {
+                pixels.extend(colour_of(grid.material([x, y, 0]))?);
+            }
+        }
+        encode([columns as u32, rows as u32], &pixels).ok()
     }
 
     fn try_grid(
@@ -239,6 +265,18 @@ fn decode(cursor: &mut Cursor<&[u8]>) -> Result<Result<Pixels, Complaint>, Decod
         });
     let size = [frame.width as usize, frame.height as usize];
     Ok(Ok((size, pixels.collect())))
+}
+
+/// A PNG file of red, green, blue and alpha, row by row from the top.
+fn encode([width, height]: [u32; 2], pixels: &[u8]) -> Result<Vec<u8>, EncodingError> {
+    let mut bytes = Vec::new();
+    let mut encoder = Encoder::new(&mut bytes, width, height);
+    encoder.set_color(ColorType::Rgba);
+    encoder.set_depth(BitDepth::Eight);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(pixels)?;
+    writer.finish()?;
+    Ok(bytes)
 }
 
 /// The size in voxels, the sides in proportion as closely as whole voxels allow.

@@ -103,6 +103,35 @@ impl Model {
         in_file(&self.file, self.try_grid(voxel_size, colours))
     }
 
+    /// A file with this model alone, from which the same voxels come.
+    pub(crate) fn bytes(&self) -> Vec<u8> {
+        let [width, height, depth] = self.size;
+        let chunk = |name: &[u8; 4], contents: &[u8], children: &[u8]| {
+            let lengths = [contents.len() as u32, children.len() as u32].map(u32::to_le_bytes);
+            [name, lengths.as_flattened(), contents, children].concat()
+        };
+        let size = [width, depth, height].map(|extent| (extent as u32).to_le_bytes());
+        let mut voxels = Vec::new();
+        for (at, &index) in self.voxels.iter().enumerate() {
+            let (x, y, z) = (at % width, at / width % height, at / width / height);
+            // On the axes of the file.
+            let [x, y, z] = [x, depth - 1 - z, y].map(|k| k as u8);
+            if index != 0 {
+                voxels.extend([x, y, z, index]);
+            }
+        }
+        let count = (voxels.len() as u32 / 4).to_le_bytes();
+        let mut children = chunk(b"SIZE", size.as_flattened(), &[]);
+        children.extend(chunk(b"XYZI", &[&count, &voxels[..]].concat(), &[]));
+        if let Some(palette) = &self.palette {
+            let colours = palette.iter();
+            let colours = colours.flat_map(|&[red, green, blue]| [red, green, blue, u8::MAX]);
+            children.extend(chunk(b"RGBA", &colours.collect::<Vec<_>>(), &[]));
+        }
+        let version = VERSIONS.start().to_le_bytes();
+        [b"VOX ", &version[..], &chunk(b"MAIN", &[], &children)].concat()
+    }
+
     fn try_grid(&self, voxel_size: f32, colours: &Colours) -> Result<VoxelGrid<Dim3>, Complaint> {
         let mut is_used = [false; 256];
         for &index in &self.voxels {

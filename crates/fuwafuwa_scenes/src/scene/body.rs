@@ -174,17 +174,9 @@ impl BodyText {
         }
     }
 
-    pub(super) fn embed_file(&mut self, known: &[(&str, &[u8])]) -> Result<(), Wrong> {
-        let Some(file) = &self.file else {
-            return Ok(());
-        };
-        let known = known.iter().find(|(name, _)| Path::new(name) == file);
-        let content = match known {
-            Some((_, bytes)) => BASE64.encode(bytes),
-            None => BASE64.encode(self.file_bytes(file)?),
-        };
-        self.content = Some(content);
-        Ok(())
+    /// Takes the bytes of its file along.
+    pub(super) fn embed(&mut self, bytes: &[u8]) {
+        self.content = Some(BASE64.encode(bytes));
     }
 }
 

@@ -1,6 +1,7 @@
 //! A body, from what a scene says about it.
 
 use super::body::BodyText;
+use super::budget::Budget;
 use super::error::{Wrong, require, require_vector};
 use super::grid;
 use fuwafuwa::law::Law;
@@ -8,23 +9,16 @@ use fuwafuwa::pyramid::Grading;
 use fuwafuwa::{Blade, Body, BodyError, Dim, Material, VoxelGrid};
 
 impl BodyText {
-    /// The body, where its voxels and those of the bodies before it are `most` at most.
+    /// The body, where it and those before it take no more work than the budget has.
     pub(super) fn build<D: Dim>(
         &self,
         materials: &[Material],
-        most: usize,
-        voxels: &mut usize,
+        budget: &mut Budget,
     ) -> Result<Body<D>, Wrong> {
         require_vector(D::N, "at", self.at)?;
         require_vector(D::N, "velocity", self.velocity)?;
-        let grid = grid::of::<D>(self, |count| {
-            *voxels += count;
-            let expected = format!(
-                "expected {most} voxels at most in the grids of all bodies together, found {voxels}"
-            );
-            require(*voxels <= most, "n", expected)
-        })?;
-        self.check_diced(&grid)?;
+        let grid = grid::of::<D>(self, budget)?;
+        self.check_diced(&grid, budget)?;
         let law = match self.paper_law {
             true => Law::Endo2004,
             false => Law::PatchExact,
@@ -55,7 +49,7 @@ impl BodyText {
         Ok(body.moved(self.at).thrown(self.velocity))
     }
 
-    fn check_diced<D: Dim>(&self, grid: &VoxelGrid<D>) -> Result<(), Wrong> {
+    fn check_diced<D: Dim>(&self, grid: &VoxelGrid<D>, budget: &mut Budget) -> Result<(), Wrong> {
         let Some(spacing) = self.diced else {
             return Ok(());
         };
@@ -67,16 +61,12 @@ impl BodyText {
         let blades: usize = grid.size()[..D::N].iter().map(blades).sum();
         let voxels = grid.voxels().count();
         let expected = format!("{blades} blades through {voxels} voxels are too many");
-        require(
-            blades as u64 * voxels as u64 <= MAX_CROSSINGS,
-            "diced",
-            expected,
-        )
+        let crossings = blades.saturating_mul(voxels);
+        require(crossings <= budget.crossings, "diced", expected)?;
+        budget.crossings -= crossings;
+        Ok(())
     }
 }
-
-/// Most voxels times blades of a diced body.
-const MAX_CROSSINGS: u64 = 1 << 26;
 
 /// Planes a distance apart on every axis, through the whole body.
 fn grid_of_blades<D: Dim>(body: &Body<D>, spacing: f32) -> Vec<Blade> {

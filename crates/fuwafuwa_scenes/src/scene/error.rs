@@ -210,13 +210,14 @@ impl Origin {
             "" => "scene",
             name => name,
         };
-        let (name, field) = (name.into(), in_words(&wrong.path));
+        let (name, field) = (name.into(), shortened(&in_words(&wrong.path), 100));
         match wrong.reason {
             Reason::Text(reason) => SceneError::Build {
                 name,
                 line,
                 field,
-                reason,
+                // It may quote a key or a path that is as long as the file.
+                reason: shortened(&reason, 400),
             },
             Reason::Import(error) => SceneError::Shape {
                 name,

@@ -60,6 +60,9 @@ pub enum RouteText {
     Mix,
 }
 
+/// Most wishes of a level: all of them are listed with its result.
+const MAX_WISHES: usize = 8;
+
 impl GameText {
     /// Its basket, checked, where it has one.
     pub(super) fn basket<D: Dim>(&self) -> Result<Option<Shape>, Wrong> {
@@ -91,6 +94,9 @@ impl GameText {
         require(good, "share", expected("above 0, up to 1", self.share))?;
         let good = (0.0..=60.0).contains(&self.hold);
         require(good, "hold", expected("0 to 60 s", self.hold))?;
+        let count = self.wish.len();
+        let most = format!("expected {MAX_WISHES} at most, found {count}");
+        require(count <= MAX_WISHES, "wish", most)?;
         for (index, wish) in self.wish.iter().enumerate() {
             let inside = |wrong: Wrong| wrong.inside("wish", index);
             let seconds = wish.seconds.unwrap_or(1.0);

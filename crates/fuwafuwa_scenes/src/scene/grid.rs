@@ -1,7 +1,8 @@
 //! The grid of a body, from what a scene says about its shape.
 
 use super::body::{BodyText, Form, PartText};
-use super::error::{Wrong, require};
+use super::budget::Budget;
+use super::error::{Wrong, require, shortened};
 use super::rigid::Shapes;
 use crate::import::{Colours, Model, Picture};
 use fuwafuwa::dim::points_in;
@@ -9,28 +10,22 @@ use fuwafuwa::grid::MAX_EXTENT;
 use fuwafuwa::{BuildError, Dim, Dim2, Dim3, Shape, VoxelGrid};
 use std::path::Path;
 
-/// Most distances that the parts of a body take to work out: one for each part and voxel.
-const MAX_DISTANCES: usize = 1 << 27;
+/// Most colours that a body names: as many as a palette has.
+const MAX_COLOURS: usize = 255;
 
-/// The grid of a body, if so many voxels are let through.
-pub(super) fn of<D: Dim>(
-    text: &BodyText,
-    let_through: impl FnOnce(usize) -> Result<(), Wrong>,
-) -> Result<VoxelGrid<D>, Wrong> {
+/// The grid of a body, if the budget lets it through.
+pub(super) fn of<D: Dim>(text: &BodyText, budget: &mut Budget) -> Result<VoxelGrid<D>, Wrong> {
     let good = text.width > 0.0 && text.width.is_finite();
     let expected = format!("expected a positive number of metres, found {}", text.width);
     require(good, "width", expected)?;
     let mut voxels = match (text.shape, &text.file) {
-        (Some(form), None) => of_form::<D>(text, form)?,
-        (None, Some(file)) => of_file::<D>(text, file)?,
+        (Some(form), None) => of_form::<D>(text, form, budget)?,
+        (None, Some(file)) => of_file::<D>(text, file, budget)?,
         _ => return Err(Wrong::new("shape", "expected either a shape or a file")),
     };
     let count = voxels.materials.len();
-    let_through(count)?;
-    let most = MAX_DISTANCES / count.max(1);
-    let found = text.part.len();
-    let expected = format!("expected {most} at most in a body of {count} voxels, found {found}");
-    require(found <= most, "part", expected)?;
+    budget.take_voxels(count)?;
+    budget.take_distances(text.part.len(), count)?;
     for (index, part) in text.part.iter().enumerate() {
         let part = Part::of::<D>(part).map_err(|wrong| wrong.inside("part", index))?;
         voxels.change::<D>(&part);
@@ -97,7 +92,7 @@ impl Part {
     }
 }
 
-fn of_form<D: Dim>(text: &BodyText, form: Form) -> Result<Voxels, Wrong> {
+fn of_form<D: Dim>(text: &BodyText, form: Form, budget: &Budget) -> Result<Voxels, Wrong> {
     let expected = "only a file has colours; expected material, or parts that paint";
     require(text.colours.is_empty(), "colours", expected)?;
     let missing = || Wrong::new("n", "expected the number of voxels across");
@@ -106,16 +101,21 @@ fn of_form<D: Dim>(text: &BodyText, form: Form) -> Result<Voxels, Wrong> {
     let any_form = matches!(form, Form::Box | Form::Empty);
     let good = any_form || text.proportions == [1.0; 3];
     require(good, "proportions", "only a box and an empty grid have any")?;
+    let mut extent = match any_form {
+        true => text.proportions.map(|k| (k * n as f32).round() as usize),
+        false => [n; 3],
+    };
+    extent[D::N..].fill(1);
+    // One that no grid takes is told as that.
+    if extent.iter().all(|&k| k <= MAX_EXTENT) {
+        budget.check_voxels(extent.iter().product())?;
+    }
     let grid = match form {
         Form::Ball => VoxelGrid::<D>::ball(n, text.width),
         Form::Ring => VoxelGrid::ring(n, text.width),
         Form::Heart => VoxelGrid::heart(n, text.width),
         Form::Flower => VoxelGrid::flower(n, text.width),
-        Form::Box | Form::Empty => {
-            let mut extent = text.proportions.map(|k| (k * n as f32).round() as usize);
-            extent[D::N..].fill(1);
-            VoxelGrid::from_fn(extent, text.width / n as f32, |_| 1)
-        }
+        Form::Box | Form::Empty => VoxelGrid::from_fn(extent, text.width / n as f32, |_| 1),
     };
     let grid = grid.map_err(|error| match error {
         BuildError::BadVoxelSize(_) => Wrong::new("width", error),
@@ -129,14 +129,14 @@ fn of_form<D: Dim>(text: &BodyText, form: Form) -> Result<Voxels, Wrong> {
     }))
 }
 
-fn of_file<D: Dim>(text: &BodyText, file: &Path) -> Result<Voxels, Wrong> {
+fn of_file<D: Dim>(text: &BodyText, file: &Path, budget: &mut Budget) -> Result<Voxels, Wrong> {
     let good = text.proportions == [1.0; 3];
     require(good, "proportions", "a file has its own")?;
     let ending = file.extension().and_then(|ending| ending.to_str());
     let ending = ending.map(str::to_ascii_lowercase);
     let colours = colours(text)?;
     let named = !text.colours.is_empty();
-    let (name, dim) = (file.display().to_string(), D::N);
+    let (name, dim) = (shortened(&file.display().to_string(), 200), D::N);
     match (ending.as_deref(), D::N) {
         (Some("png"), Dim2::N) => {
             let across = text.n.unwrap_or(MAX_EXTENT);
@@ -145,6 +145,8 @@ fn of_file<D: Dim>(text: &BodyText, file: &Path) -> Result<Voxels, Wrong> {
             require(!both, "material", "the colours name the materials")?;
             let bytes = text.file_bytes(file)?;
             let picture = Picture::decode(&name, &bytes).map_err(Wrong::file)?;
+            let pixels: usize = picture.size().iter().product();
+            budget.take_pixels(pixels, colours.named.len())?;
             let grid = picture.grid(across, 1.0, &colours).map_err(Wrong::file)?;
             let material = text.material.unwrap_or(1);
             Ok(Voxels::of(&grid, voxel_size(text, &grid), |solid| {
@@ -170,7 +172,7 @@ fn of_file<D: Dim>(text: &BodyText, file: &Path) -> Result<Voxels, Wrong> {
     }
 }
 
-fn check_across(n: usize) -> Result<(), Wrong> {
+pub(super) fn check_across(n: usize) -> Result<(), Wrong> {
     let expected = format!("expected 1 to {MAX_EXTENT} voxels across, found {n}");
     require((1..=MAX_EXTENT).contains(&n), "n", expected)
 }
@@ -182,7 +184,10 @@ fn voxel_size<D: Dim>(text: &BodyText, grid: &VoxelGrid<D>) -> f32 {
 }
 
 /// `"79" = 1` and `"#d04030" = 2`, read.
-fn colours(text: &BodyText) -> Result<Colours, Wrong> {
+pub(super) fn colours(text: &BodyText) -> Result<Colours, Wrong> {
+    let found = text.colours.len();
+    let expected = format!("expected {MAX_COLOURS} at most, found {found}");
+    require(found <= MAX_COLOURS, "colours", expected)?;
     let mut colours = Colours::default();
     for (key, &material) in &text.colours {
         let is_hex = |hex: &&str| hex.len() == 6 && hex.bytes().all(|k| k.is_ascii_hexdigit());

@@ -154,6 +154,9 @@ impl Shapes<'_> {
     }
 }
 
+/// Most points of the path of a hand: it is gone through in each tick.
+const MAX_POINTS: usize = 10_000;
+
 impl HandText {
     pub(super) fn add_to<D: Dim>(&self, world: &mut World<D>) -> Result<(), Wrong> {
         require(
@@ -161,6 +164,9 @@ impl HandText {
             "path",
             "expected a point [seconds, x, y, z] at least",
         )?;
+        let found = self.path.len();
+        let expected = format!("expected {MAX_POINTS} points at most, found {found}");
+        require(found <= MAX_POINTS, "path", expected)?;
         let mut before = 0.0;
         for (index, &[seconds, x, y, z]) in self.path.iter().enumerate() {
             let field = format!("path.{}", index + 1);

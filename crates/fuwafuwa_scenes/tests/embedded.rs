@@ -1,0 +1,123 @@
+//! Files that travel with a scene: no larger than its bodies need, and to the same voxels.
+
+#[allow(dead_code)]
+mod damage;
+
+use damage::Noise;
+use fuwafuwa::{Dim, Dim2, Dim3};
+use fuwafuwa_scenes::Scene;
+use png::{BitDepth, ColorType, Encoder};
+use std::path::PathBuf;
+
+/// Red, green, blue and alpha of anything.
+fn noisy_picture(width: u32, height: u32, is_opaque: bool) -> Vec<u8> {
+    let mut noise = Noise(7);
+    let samples = 4 * width * height;
+    let sample = |at: u32| match at % 4 == 3 && is_opaque {
+        true => 255,
+        false => noise.below(256) as u8,
+    };
+    let samples: Vec<u8> = (0..samples).map(sample).collect();
+    let mut bytes = Vec::new();
+    let mut encoder = Encoder::new(&mut bytes, width, height);
+    encoder.set_color(ColorType::Rgba);
+    encoder.set_depth(BitDepth::Eight);
+    let mut writer = encoder.write_header().unwrap();
+    writer.write_image_data(&samples).unwrap();
+    writer.finish().unwrap();
+    bytes
+}
+
+/// A model with a voxel in ten, and much beside that nobody asked for.
+fn cluttered_model(size: [u8; 3]) -> Vec<u8> {
+    let mut noise = Noise(7);
+    let chunk = |name: &[u8; 4], contents: &[u8], children: &[u8]| {
+        let lengths = [contents, children].map(|part| (part.len() as u32).to_le_bytes());
+        [name, lengths.as_flattened(), contents, children].concat()
+    };
+    let axes = size.map(|extent| u32::from(extent).to_le_bytes());
+    let mut voxels = Vec::new();
+    for x in 0..size[0] {
+        for y in 0..size[1] {
+            for z in 0..size[2] {
+                if noise.below(10) == 0 {
+                    voxels.push([x, y, z, 1 + noise.below(3) as u8]);
+                }
+            }
+        }
+    }
+    let count = (voxels.len() as u32).to_le_bytes();
+    let mut colours = [[200u8, 200, 200, 255]; 256];
+    colours[1] = [255, 0, 0, 255];
+    let children = [
+        chunk(b"JUNK", &vec![7; 1 << 18], &[]),
+        chunk(b"SIZE", axes.as_flattened(), &[]),
+        chunk(b"XYZI", &[&count, voxels.as_flattened()].concat(), &[]),
+        chunk(b"RGBA", colours.as_flattened(), &[]),
+    ];
+    let version = 150_u32.to_le_bytes();
+    let main = chunk(b"MAIN", &[], &children.concat());
+    [b"VOX ", &version[..], &main].concat()
+}
+
+/// That a scene made from a file is the same when the file travels with it, and how long that is.
+fn check<D: Dim>(file: &str, bytes: &[u8], fields: &str) -> usize {
+    let name = format!("fuwafuwa-embedded-{}-{file}", std::process::id());
+    let path: PathBuf = std::env::temp_dir().join(name);
+    std::fs::write(&path, bytes).unwrap();
+    let material = "[[material]]\n".repeat(3);
+    let text = format!(
+        "dim = {}\n{material}[[body]]\nfile = {:?}\n{fields}",
+        D::N,
+        path.display()
+    );
+    let scene = Scene::read("toy.toml", &text, &[]).unwrap();
+    let mut embedded = scene.clone();
+    embedded.embed_files(&[]).unwrap();
+    let built = |scene: &Scene| {
+        let world = scene.build::<D>().unwrap();
+        let grid = world.bodies().first().unwrap().grid().clone();
+        let materials: Vec<u8> = grid.voxels().map(|voxel| grid.material(voxel)).collect();
+        (grid.size(), materials)
+    };
+    let from_file = built(&scene);
+    std::fs::remove_file(path).unwrap();
+    assert!(built(&embedded) == from_file, "{file}, {fields}");
+    let again = embedded.clone();
+    embedded.embed_files(&[]).unwrap();
+    assert_eq!(embedded, again, "what is there already stays");
+    embedded.body[0].content.as_ref().unwrap().len()
+}
+
+#[test]
+fn a_large_picture_travels_as_its_voxels() {
+    let wide = noisy_picture(300, 200, false);
+    assert!(wide.len() > 200_000);
+    let colours =
+        "colours = { \"#ff0000\" = 2, \"#00ff00\" = 1, \"#0000ff\" = 0, \"#fe0000\" = 3 }";
+    for fields in ["n = 48\n", "n = 47\n", "n = 300\n", "", colours] {
+        let with_n = format!("{fields}\n");
+        assert!(
+            check::<Dim2>("a.png", &wide, &with_n) < wide.len() / 2,
+            "{fields}"
+        );
+    }
+    let small = format!("n = 40\n{colours}\n");
+    assert!(check::<Dim2>("b.png", &wide, &small) < 10_000);
+    // Ink on paper, of which much is left; and a picture that is solid everywhere.
+    let opaque = noisy_picture(200, 300, true);
+    assert!(check::<Dim2>("c.png", &opaque, "n = 64\n") < 10_000);
+    assert!(check::<Dim2>("d.png", &opaque, "n = 6\n") < 1000);
+}
+
+#[test]
+fn a_cluttered_model_travels_alone() {
+    let model = cluttered_model([7, 9, 11]);
+    for fields in ["", "colours = { \"#ff0000\" = 2, \"#ffffff\" = 1 }\n"] {
+        assert!(check::<Dim3>("a.vox", &model, fields) < 5000);
+    }
+    // A small file stays as it is.
+    let small = noisy_picture(20, 20, false);
+    let length = check::<Dim2>("e.png", &small, "n = 5\n");
+    assert_eq!(length, small.len().div_ceil(3) * 4);
+}

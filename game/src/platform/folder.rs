@@ -1,0 +1,206 @@
+//! What the game keeps, as files of a folder.
+
+use super::storage::{Change, Entry, Kind, Storage};
+use std::fs::{self, File, TryLockError};
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::{Duration, Instant};
+use tamaire_play::bytes_of;
+
+/// How long another program is waited for that changes something; it takes some milliseconds.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// How the names of files begin that take the place of others once they are whole.
+const DRAFT: &str = "draft-";
+
+/// A folder for all that the game keeps.
+pub struct Folder(pub PathBuf);
+
+impl Folder {
+    /// The folder of a kind, and the ending of its files.
+    fn of(&self, kind: Kind) -> (PathBuf, &'static str) {
+        match kind {
+            Kind::Note => (self.0.clone(), "toml"),
+            Kind::Replay => (self.0.join("replays"), "tamaire"),
+        }
+    }
+
+    fn path(&self, kind: Kind, name: &str) -> io::Result<PathBuf> {
+        let leads_away = |letter: char| letter.is_control() || "/\\:".contains(letter);
+        if name.is_empty() || name.starts_with('.') || name.contains(leads_away) {
+            let reason = "expected a name that is no path";
+            return Err(io::Error::new(ErrorKind::InvalidInput, reason));
+        }
+        let (folder, ending) = self.of(kind);
+        Ok(folder.join(format!("{name}.{ending}")))
+    }
+
+    /// Keeps other programs from changing anything until it is dropped; the system takes it back from one that dies.
+    fn lock(&self) -> io::Result<File> {
+        let mut options = File::options();
+        let options = options.write(true).create(true).truncate(false);
+        let lock = options.open(self.0.join("lock"))?;
+        let start = Instant::now();
+        loop {
+            match lock.try_lock() {
+                Ok(()) => return Ok(lock),
+                Err(TryLockError::WouldBlock) if start.elapsed() < PATIENCE => {
+                    thread::sleep(Duration::from_millis(10));
+                }
+                Err(TryLockError::WouldBlock) => {
+                    let reason = format!("{}: in use by another program", self.0.display());
+                    return Err(io::Error::new(ErrorKind::WouldBlock, reason));
+                }
+                // Not every file system has locks, and most evenings one game is played.
+                Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => {
+                    return Ok(lock);
+                }
+                Err(TryLockError::Error(error)) => return Err(error),
+            }
+        }
+    }
+}
+
+impl Storage for Folder {
+    fn list(&self, kind: Kind) -> io::Result<Vec<Entry>> {
+        let (folder, ending) = self.of(kind);
+        let files = match fs::read_dir(&folder) {
+            Err(error) if is_missing(&error) => return Ok(Vec::new()),
+            files => files?,
+        };
+        let entry = |file: fs::DirEntry| {
+            let path = file.path();
+            let is_ours = path.extension().is_some_and(|found| found == ending);
+            let data = path.metadata().ok().filter(|data| data.is_file())?;
+            let name = path.file_stem()?.to_str()?.to_string();
+            let written = data.modified().ok()?;
+            is_ours.then_some(Entry { name, written })
+        };
+        Ok(files.flatten().filter_map(entry).collect())
+    }
+
+    fn read(&self, kind: Kind, name: &str) -> io::Result<Option<Vec<u8>>> {
+        match bytes_of(&self.path(kind, name)?, kind.most_bytes()) {
+            Err(error) if is_missing(&error) => Ok(None),
+            read => read.map(Some),
+        }
+    }
+
+    fn change(&self, kind: Kind, name: &str, change: &mut Change) -> io::Result<()> {
+        let path = self.path(kind, name)?;
+        let (folder, _) = self.of(kind);
+        fs::create_dir_all(&folder)?;
+        let _lock = self.lock()?;
+        let before = self.read(kind, name)?;
+        match change(before.as_deref()) {
+            Some(after) if before.as_ref() != Some(&after) => write_whole(&folder, &path, &after),
+            _ => Ok(()),
+        }
+    }
+
+    fn remove(&self, kind: Kind, name: &str) -> io::Result<()> {
+        fs::remove_file(self.path(kind, name)?)
+    }
+
+    fn place(&self, kind: Kind, name: &str) -> String {
+        let path = self.path(kind, name);
+        path.map_or_else(|_| name.into(), |path| path.display().to_string())
+    }
+}
+
+fn is_missing(error: &io::Error) -> bool {
+    [ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&error.kind())
+}
+
+/// Writes a file so that it is never half there: as a draft that nobody else writes, which then takes its place.
+fn write_whole(folder: &Path, path: &Path, bytes: &[u8]) -> io::Result<()> {
+    // Those of a game that was killed while it wrote; nobody else writes now.
+    for file in fs::read_dir(folder)?.flatten() {
+        if file.file_name().to_string_lossy().starts_with(DRAFT) {
+            // One that cannot be removed is in nobody's way.
+            let _removed = fs::remove_file(file.path());
+        }
+    }
+    let mut draft = tempfile::Builder::new().prefix(DRAFT).tempfile_in(folder)?;
+    draft.write_all(bytes)?;
+    draft.as_file().sync_all()?;
+    draft.persist(path).map_err(|failed| failed.error)?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Arc;
+
+    #[test]
+    fn two_who_change_the_same_at_once_lose_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        // Each has a folder of its own to go through, as two programs have.
+        let counts = [0, 1].map(|_| {
+            let storage = Arc::new(Folder(folder.path().join("new")));
+            thread::spawn(move || {
+                for _ in 0..40 {
+                    let mut one_more = |found: Option<&[u8]>| {
+                        let mut bytes = found.unwrap_or_default().to_vec();
+                        bytes.push(b'.');
+                        Some(bytes)
+                    };
+                    let changed = storage.change(Kind::Note, "count", &mut one_more);
+                    changed.unwrap();
+                }
+            })
+        });
+        for count in counts {
+            count.join().unwrap();
+        }
+        let storage = Folder(folder.path().join("new"));
+        let count = storage.read(Kind::Note, "count").unwrap().unwrap();
+        assert_eq!(count.len(), 80);
+        let names = storage.list(Kind::Note).unwrap();
+        assert_eq!(names.len(), 1, "no draft is left: {names:?}");
+    }
+
+    #[test]
+    fn what_a_killed_game_left_half_written_is_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("draft-1a2b"), "half").unwrap();
+        let storage = Folder(folder.path().into());
+        let whole = |_: Option<&[u8]>| Some(b"whole".to_vec());
+        storage.change(Kind::Note, "it", &mut { whole }).unwrap();
+        let names = fs::read_dir(folder.path()).unwrap();
+        let names = names.map(|file| file.unwrap().file_name().into_string().unwrap());
+        let mut names: Vec<String> = names.collect();
+        names.sort();
+        assert_eq!(names, ["it.toml", "lock"]);
+    }
+
+    #[test]
+    fn what_is_no_name_leads_nowhere_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let storage = Folder(folder.path().join("inside"));
+        for name in ["", "..", "../out", "/etc/hosts", "a/b", "a\\b", "c:d"] {
+            let read = storage.read(Kind::Note, name).unwrap_err();
+            let changed = storage.change(Kind::Note, name, &mut |_| Some(Vec::new()));
+            for error in [read, changed.unwrap_err()] {
+                assert_eq!(error.kind(), ErrorKind::InvalidInput, "{name:?}");
+            }
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn pipes_devices_and_what_has_no_end_are_not_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let pipe = folder.path().join("settings.toml");
+        let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+        assert!(made.unwrap().success());
+        let storage = Folder(folder.path().into());
+        let error = storage.read(Kind::Note, "settings").unwrap_err();
+        assert!(error.to_string().contains("a pipe"), "{error}");
+        fs::write(folder.path().join("long.toml"), vec![b' '; 1 + (1 << 20)]).unwrap();
+        let error = storage.read(Kind::Note, "long").unwrap_err();
+        assert!(error.to_string().contains("longer than"), "{error}");
+    }
+}

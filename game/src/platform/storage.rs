@@ -1,0 +1,103 @@
+//! Where the game keeps things: bytes by kind and name. On a desktop that is a folder; a browser has a place of its own
+//! for them. Nothing else in the game knows of files.
+
+use std::io;
+use std::time::SystemTime;
+
+/// What kind of thing is kept.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// What the game itself notes down: settings, records.
+    Note,
+    /// A round as it was played.
+    Replay,
+}
+
+impl Kind {
+    /// Most bytes of one: what is longer is not ours, and not read.
+    pub fn most_bytes(self) -> u64 {
+        match self {
+            Self::Note => 1 << 20,
+            Self::Replay => tamaire_play::replay::MAX_BYTES as u64,
+        }
+    }
+}
+
+/// Something that is kept.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// By which it is read again.
+    pub name: String,
+    /// When it was written.
+    pub written: SystemTime,
+}
+
+/// Works out what is to be kept from what is kept so far; none leaves it as it is.
+pub type Change<'a> = dyn FnMut(Option<&[u8]>) -> Option<Vec<u8>> + 'a;
+
+/// A place where bytes are kept by kind and name. It is used from the thread that writes too.
+pub trait Storage: Send + Sync {
+    /// All of a kind, in any order.
+    ///
+    /// # Errors
+    /// What the system says.
+    fn list(&self, kind: Kind) -> io::Result<Vec<Entry>>;
+
+    /// What is kept under a name, if anything.
+    ///
+    /// # Errors
+    /// What the system says; also when it is longer than [`Kind::most_bytes`].
+    fn read(&self, kind: Kind, name: &str) -> io::Result<Option<Vec<u8>>>;
+
+    /// Changes what is kept under a name, whole or not at all, while nobody else does: not even another program.
+    ///
+    /// # Errors
+    /// What the system says; then it is as it was.
+    fn change(&self, kind: Kind, name: &str, change: &mut Change) -> io::Result<()>;
+
+    /// Keeps it no longer.
+    ///
+    /// # Errors
+    /// What the system says.
+    fn remove(&self, kind: Kind, name: &str) -> io::Result<()>;
+
+    /// Where that is, for people to read.
+    fn place(&self, kind: Kind, name: &str) -> String;
+}
+
+/// Keeps nothing.
+pub struct Nowhere {
+    /// Why, unless it is by choice.
+    pub reason: Option<&'static str>,
+}
+
+impl Nowhere {
+    fn answer<T>(&self, nothing: T) -> io::Result<T> {
+        match self.reason {
+            Some(reason) => Err(io::Error::new(io::ErrorKind::NotFound, reason)),
+            None => Ok(nothing),
+        }
+    }
+}
+
+impl Storage for Nowhere {
+    fn list(&self, _: Kind) -> io::Result<Vec<Entry>> {
+        Ok(Vec::new())
+    }
+
+    fn read(&self, _: Kind, _: &str) -> io::Result<Option<Vec<u8>>> {
+        self.answer(None)
+    }
+
+    fn change(&self, _: Kind, _: &str, _: &mut Change) -> io::Result<()> {
+        self.answer(())
+    }
+
+    fn remove(&self, _: Kind, _: &str) -> io::Result<()> {
+        self.answer(())
+    }
+
+    fn place(&self, _: Kind, name: &str) -> String {
+        name.into()
+    }
+}

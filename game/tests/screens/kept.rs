@@ -1,0 +1,226 @@
+//! What is kept, and what comes between.
+
+use crate::window::*;
+use egui::accesskit::Role;
+use egui::{Event, Modifiers, PointerButton};
+use egui_kittest::kittest::Queryable;
+use std::collections::BTreeMap;
+use std::io;
+use std::sync::{Arc, Mutex};
+use std::thread::{self, ThreadId};
+use std::time::SystemTime;
+use tamaire::game::{Game, Screen};
+use tamaire::platform::{Change, Entry, Files, Kind, Nowhere, Pads, Sound, Storage};
+
+/// Keeps things in memory, and notes who wrote when; or is full.
+#[derive(Clone, Default)]
+struct Memory(Arc<Mutex<Inside>>);
+
+#[derive(Default)]
+struct Inside {
+    kept: BTreeMap<(Kind, String), Vec<u8>>,
+    writers: Vec<ThreadId>,
+    is_full: bool,
+}
+
+impl Memory {
+    fn text(&self, name: &str) -> String {
+        let inside = self.0.lock().unwrap();
+        let bytes = inside.kept.get(&(Kind::Note, name.into()));
+        String::from_utf8(bytes.cloned().unwrap_or_default()).unwrap()
+    }
+
+    fn writes(&self) -> usize {
+        self.0.lock().unwrap().writers.len()
+    }
+}
+
+impl Storage for Memory {
+    fn list(&self, kind: Kind) -> io::Result<Vec<Entry>> {
+        let inside = self.0.lock().unwrap();
+        let names = inside.kept.keys().filter(|key| key.0 == kind);
+        let written = SystemTime::UNIX_EPOCH;
+        let name = |key: &(Kind, String)| key.1.clone();
+        Ok(names
+            .map(name)
+            .map(|name| Entry { name, written })
+            .collect())
+    }
+
+    fn read(&self, kind: Kind, name: &str) -> io::Result<Option<Vec<u8>>> {
+        let inside = self.0.lock().unwrap();
+        Ok(inside.kept.get(&(kind, name.into())).cloned())
+    }
+
+    fn change(&self, kind: Kind, name: &str, change: &mut Change) -> io::Result<()> {
+        let mut inside = self.0.lock().unwrap();
+        inside.writers.push(thread::current().id());
+        if inside.is_full {
+            return Err(io::ErrorKind::StorageFull.into());
+        }
+        let key = (kind, name.to_string());
+        if let Some(after) = change(inside.kept.get(&key).map(Vec::as_slice)) {
+            inside.kept.insert(key, after);
+        }
+        Ok(())
+    }
+
+    fn remove(&self, kind: Kind, name: &str) -> io::Result<()> {
+        self.0.lock().unwrap().kept.remove(&(kind, name.into()));
+        Ok(())
+    }
+
+    fn place(&self, _: Kind, name: &str) -> String {
+        name.into()
+    }
+}
+
+/// Lets frames pass until all is written.
+fn wait(window: &mut Window) {
+    while game(window).files.is_busy() {
+        frames(window, 1);
+    }
+    frames(window, 1);
+}
+
+#[test]
+fn a_slider_that_is_dragged_is_written_once_it_rests_and_not_by_who_draws() {
+    let memory = Memory::default();
+    let mut window = window(Files::on(memory.clone()));
+    click(&mut window, "Settings");
+    let slider = window.get_by_role_and_label(Role::Slider, "Volume").rect();
+    let button = |pos, pressed| Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    window.event(Event::PointerMoved(slider.center()));
+    window.event(button(slider.center(), true));
+    let mut seen = Vec::new();
+    for step in 0..90 {
+        let across = 0.2 + 0.6 * (step as f32 / 90.0);
+        let at = egui::pos2(slider.left() + across * slider.width(), slider.center().y);
+        window.event(Event::PointerMoved(at));
+        frames(&mut window, 1);
+        seen.push(game(&mut window).settings.volume);
+    }
+    window.event(button(slider.center(), false));
+    seen.dedup();
+    assert!(seen.len() > 5, "it is dragged: {seen:?}");
+    assert_eq!(memory.writes(), 0);
+    frames(&mut window, 70);
+    wait(&mut window);
+    assert_eq!(memory.writes(), 1);
+    let volume = game(&mut window).settings.volume;
+    let text = memory.text("settings");
+    assert!(text.contains(&format!("volume = {volume}")), "{text}");
+    let writers = memory.0.lock().unwrap().writers.clone();
+    assert!(!writers.contains(&thread::current().id()));
+}
+
+#[test]
+fn what_was_changed_last_is_written_at_the_end_of_the_game() {
+    let memory = Memory::default();
+    let mut game = Game::new(Files::on(memory.clone()), Sound::none(), Pads::none());
+    game.settings.speed = 0.75;
+    game.keep_settings();
+    assert_eq!(memory.writes(), 0);
+    drop(game);
+    assert!(memory.text("settings").contains("speed = 0.75"));
+}
+
+#[test]
+fn two_games_at_once_lose_no_record() {
+    let folder = folder("two-games");
+    let begin = || window(Files::in_folder(&folder));
+    let mut windows = [begin(), begin()];
+    for (window, level) in windows.iter_mut().zip(["classic", "classic-3d"]) {
+        start(window, level);
+        win(window);
+    }
+    drop(windows);
+    let (records, damage) = Files::in_folder(&folder).records();
+    assert_eq!(damage, None);
+    assert!(records.of("classic").is_some() && records.of("classic-3d").is_some());
+    std::fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn a_full_disk_is_told_once_and_the_game_goes_on() {
+    let memory = Memory::default();
+    memory.0.lock().unwrap().is_full = true;
+    let mut window = window(Files::on(memory.clone()));
+    let mut told = 0;
+    for speed in [0.6, 0.7, 0.8] {
+        game(&mut window).notices.clear();
+        game(&mut window).settings.speed = speed;
+        game(&mut window).keep_settings();
+        wait(&mut window);
+        told += notices(&window).matches("could not be written").count();
+    }
+    assert_eq!((told, memory.writes()), (1, 3));
+    // Who asks for a replay is told each time that there is none.
+    for _ in 0..2 {
+        game(&mut window).notices.clear();
+        game(&mut window).keep_replay();
+        wait(&mut window);
+        assert!(notices(&window).contains("could not be written"));
+    }
+    memory.0.lock().unwrap().is_full = false;
+    game(&mut window).keep_settings();
+    wait(&mut window);
+    assert!(memory.text("settings").contains("speed = 0.8"));
+    assert_eq!(screen(&window), Screen::Title);
+}
+
+#[test]
+fn a_folder_that_cannot_be_and_none_at_all_are_told_once() {
+    let folder = folder("no-folder");
+    let file = folder.join("file");
+    std::fs::write(&file, "in the way").unwrap();
+    let nowhere = Nowhere {
+        reason: Some("no home"),
+    };
+    for files in [Files::in_folder(file.join("inside")), Files::on(nowhere)] {
+        let mut window = window(files);
+        let mut told = notices(&window);
+        game(&mut window).notices.clear();
+        for _ in 0..3 {
+            game(&mut window).keep_settings();
+            wait(&mut window);
+            told = format!("{told}\n{}", notices(&window));
+            game(&mut window).notices.clear();
+        }
+        let count = told.matches("written").count() + told.matches("read").count();
+        assert_eq!(count, 1, "{told}");
+    }
+    std::fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn one_bad_setting_costs_that_setting_and_is_told_once_by_name() {
+    let folder = folder("bad-setting");
+    let path = folder.join("settings.toml");
+    let bad = "speed = \"fast\"\nvolume = 0.25\nhaptics = 0.5\nwarp = 9\n";
+    std::fs::write(&path, bad).unwrap();
+    let begin = || Game::new(Files::in_folder(&folder), Sound::none(), Pads::none());
+    let told = |game: &Game| {
+        let texts = game.notices.iter().map(|(text, _)| text.as_str());
+        texts.collect::<Vec<_>>().join("\n")
+    };
+    let game = begin();
+    let found = (game.settings.volume, game.settings.haptics);
+    assert_eq!((found, game.settings.speed), ((0.25, 0.5), 1.0));
+    let words = ["speed (", "warp (", "settings.broken-1.toml"];
+    let said = told(&game);
+    assert!(words.iter().all(|word| said.contains(word)), "{said}");
+    let aside = folder.join("settings.broken-1.toml");
+    assert_eq!(std::fs::read_to_string(aside).unwrap(), bad);
+    drop(game);
+    let again = begin();
+    assert_eq!(told(&again), "");
+    assert_eq!(again.settings.volume, 0.25);
+    drop(again);
+    std::fs::remove_dir_all(folder).unwrap();
+}
