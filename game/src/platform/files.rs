@@ -4,6 +4,7 @@ use super::storage::{Entry, Kind, Nowhere, Storage};
 use super::writer::Writer;
 use crate::records::Records;
 use crate::settings::Settings;
+use crate::words::Language;
 use std::io;
 use std::sync::Arc;
 use tamaire_play::{Replay, ReplayError};
@@ -18,6 +19,8 @@ const REST: f32 = 1.0;
 pub struct Files {
     storage: Arc<dyn Storage>,
     writer: Writer<Done>,
+    /// What settings are where none were kept.
+    usual: Settings,
     /// Settings that are still to be written, and in how long [s].
     resting: Option<(String, f32)>,
     /// Whether it was told that something failed, and nothing was written since.
@@ -53,12 +56,13 @@ impl Files {
     #[cfg(not(target_family = "wasm"))]
     pub fn usual() -> Self {
         let folders = directories::ProjectDirs::from("", "", "tamaire");
-        match folders {
+        let files = match folders {
             Some(folders) => Self::in_folder(folders.data_dir()),
             None => Self::on(Nowhere {
                 reason: Some("the system names no folder to keep things in"),
             }),
-        }
+        };
+        files.speaking(&sys_locale::get_locale().unwrap_or_default())
     }
 
     /// A folder of one's own.
@@ -77,9 +81,16 @@ impl Files {
         Self {
             storage: Arc::new(storage),
             writer: Writer::new(),
+            usual: Settings::default(),
             resting: None,
             is_failing: false,
         }
+    }
+
+    /// The same; who has no settings yet is spoken to as the system speaks, which is named as in `ja-JP`.
+    pub fn speaking(mut self, locale: &str) -> Self {
+        self.usual.language = Language::of_locale(locale);
+        self
     }
 
     /// The settings that were kept, the usual for what cannot be used of them.
@@ -87,26 +98,28 @@ impl Files {
         // Nobody knows how strong forces were to be.
         let lost = Settings {
             haptics: 0.0,
-            ..Settings::default()
+            ..self.usual.clone()
         };
-        self.read(SETTINGS, Settings::read, lost)
+        self.read(SETTINGS, Settings::read, self.usual.clone(), lost)
     }
 
     /// The records that were kept.
     pub fn records(&mut self) -> (Records, Option<Damage>) {
-        self.read(RECORDS, Records::read, Records::default())
+        let none = Records::default();
+        self.read(RECORDS, Records::read, none.clone(), none)
     }
 
-    /// What was kept under a name, and `lost` where that cannot be read at all.
-    fn read<T: Default>(
+    /// What was kept under a name, `usual` where nothing was, and `lost` where that cannot be read at all.
+    fn read<T>(
         &mut self,
         name: &str,
         of: fn(&str) -> (T, Vec<String>),
+        usual: T,
         lost: T,
     ) -> (T, Option<Damage>) {
         let bytes = match self.storage.read(Kind::Note, name) {
             Ok(Some(bytes)) => bytes,
-            Ok(None) => return (T::default(), None),
+            Ok(None) => return (usual, None),
             Err(error) => {
                 let place = self.storage.place(Kind::Note, name);
                 let refused = vec![format!("{place} ({error})")];
@@ -114,7 +127,7 @@ impl Files {
                 let is_told = std::mem::replace(&mut self.is_failing, true);
                 let damage = (!is_told).then_some(Damage { refused, aside });
                 let was_kept = error.kind() != io::ErrorKind::NotFound;
-                return (if was_kept { lost } else { T::default() }, damage);
+                return (if was_kept { lost } else { usual }, damage);
             }
         };
         let text = String::from_utf8_lossy(&bytes);

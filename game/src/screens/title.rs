@@ -2,7 +2,8 @@
 
 use super::kit::{Weight, button, column, veil, words};
 use crate::game::{Game, Screen};
-use egui::{Color32, Sense, Ui, vec2};
+use crate::words::Language;
+use egui::{Color32, Rect, Sense, Ui, vec2};
 use tamaire_sound::Menu;
 
 /// Where the menu is, from 0 = left to 1 = right: what plays behind is seen where it matters, at the basket.
@@ -51,8 +52,28 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
         }
         ui.add_space(10.0);
     });
+    switch_language(game, ui);
     if let Some(screen) = wanted {
         game.blip(Menu::Confirm);
         game.go(screen);
+    }
+}
+
+/// In a corner, for whoever cannot read the rest.
+fn switch_language(game: &mut Game, ui: &mut Ui) {
+    let size = vec2(128.0, 40.0);
+    let at = ui.max_rect().right_top() + vec2(-size.x - 72.0, 52.0);
+    let place = Rect::from_min_size(at, size);
+    let theme = game.theme();
+    let spoken = game.settings.language;
+    let others = Language::ALL.into_iter();
+    for (language, name) in others.filter(|&(language, _)| language != spoken) {
+        ui.scope_builder(egui::UiBuilder::new().max_rect(place), |ui| {
+            if button(ui, &theme, name, size, Weight::Other).clicked() {
+                game.settings.language = language;
+                game.keep_settings();
+                game.blip(Menu::Confirm);
+            }
+        });
     }
 }

@@ -25,6 +25,14 @@ impl Language {
     pub const ALL: [(Self, &'static str); 2] =
         [(Self::English, "English"), (Self::Japanese, "日本語")];
 
+    /// That of a locale such as `ja-JP` or `ja_JP.UTF-8`; English where the game does not speak it.
+    pub fn of_locale(locale: &str) -> Self {
+        match locale.split(['-', '_', '.']).next() {
+            Some("ja") => Self::Japanese,
+            _ => Self::English,
+        }
+    }
+
     /// What the game says in it.
     pub fn words(self) -> &'static Words {
         match self {

@@ -321,3 +321,25 @@ fn a_key_fills_the_screen_and_the_choice_is_kept() {
     assert!(again.settings.full_screen);
     fs::remove_dir_all(folder).unwrap();
 }
+
+#[test]
+fn the_game_speaks_as_the_system_does_until_somebody_chooses() {
+    let folder = folder("language");
+    let files = |locale: &str| Files::in_folder(&folder).speaking(locale);
+    for (locale, language) in [
+        ("ja_JP.UTF-8", Language::Japanese),
+        ("ja", Language::Japanese),
+        ("fr-FR", Language::English),
+        ("", Language::English),
+    ] {
+        let game = Game::new(files(locale), Sound::none(), Pads::none());
+        assert_eq!(game.settings.language, language, "{locale}");
+    }
+    let mut window = window(files("ja-JP"));
+    click(&mut window, "English");
+    assert_eq!(game(&mut window).settings.language, Language::English);
+    drop(window);
+    let game = Game::new(files("ja-JP"), Sound::none(), Pads::none());
+    assert_eq!(game.settings.language, Language::English, "it was chosen");
+    fs::remove_dir_all(folder).unwrap();
+}
