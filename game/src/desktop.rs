@@ -116,12 +116,16 @@ fn show(file: Option<PathBuf>, mute: bool, is_open: &mut bool) -> eframe::Result
     let closed = catch_unwind(AssertUnwindSafe(|| {
         open_window(file, mute, gpu.clone(), is_open)
     }));
-    let is_lost = gpu.take().is_some_and(|gpu| gpu.tried_is_lost());
+    let is_lost = gpu.take().is_some_and(|gpu| match closed {
+        Ok(_) => gpu.is_lost(),
+        Err(_) => gpu.tried_is_lost(),
+    });
     match closed {
         _ if is_lost && began.elapsed() > LEAST_LIFE => {
             eprintln!("tamaire: the GPU was lost; the game begins anew");
             Err(eframe::Error::AppCreation(Box::new(begin_anew())))
         }
+        Ok(Ok(())) if is_lost => Err(eframe::Error::AppCreation("the GPU was lost".into())),
         Ok(closed) => closed,
         Err(panic) => resume_unwind(panic),
     }

@@ -3,6 +3,7 @@
 
 mod feel;
 mod heard;
+mod keep;
 mod lesson;
 mod teach;
 mod time;
@@ -11,7 +12,7 @@ pub mod trial;
 use crate::attract::attract;
 use crate::input::{Action, Devices, Means, Players, Seat};
 use crate::look::{Camera, Effects, Opening, Theme, View};
-use crate::platform::{Clock, Damage, Entry, Files, Forces, Given, News, Pads, Sound};
+use crate::platform::{Clock, Entry, Files, Forces, Given, Pads, Sound};
 use crate::records::Records;
 use crate::session::Session;
 use crate::settings::Settings;
@@ -179,7 +180,7 @@ impl Game {
             .as_ref()
             .is_some_and(|damage| damage.aside.is_some())
         {
-            game.files.keep_records(&game.records);
+            game.files.keep_records(&game.records, &game.levels);
         }
         for damage in [settings_damage, records_damage].into_iter().flatten() {
             game.tell_of(damage);
@@ -323,58 +324,6 @@ impl Game {
         self.start(place);
     }
 
-    /// Keeps the settings, once they rest; what cannot be written is said and lost only at the end of the game.
-    pub fn keep_settings(&mut self) {
-        self.files.keep_settings(&self.settings);
-    }
-
-    /// Keeps the round as it was played so far.
-    pub fn keep_replay(&mut self) {
-        self.files.save_replay(self.session.round().replay());
-    }
-
-    /// Deletes a round that was kept.
-    pub fn delete(&mut self, saved: &Entry) {
-        if let Err(error) = self.files.delete(&saved.name) {
-            self.tell(News::Failed(error.to_string()));
-        }
-        self.replays = self.files.replays();
-    }
-
-    /// Writes what is still to be written, and waits until it is.
-    pub fn finish_writing(&mut self) {
-        for news in self.files.finish() {
-            self.tell(news);
-        }
-    }
-
-    /// Tells what became of what was to be written.
-    fn tell(&mut self, news: News) {
-        match news {
-            News::Saved(place) => {
-                self.replays = self.files.replays();
-                self.notify(format!("{} {place}", self.words().saved));
-            }
-            News::Failed(reason) => {
-                self.notify(format!("{} {reason}", self.words().not_written));
-            }
-        }
-    }
-
-    /// Names what of what was kept could not be used.
-    fn tell_of(&mut self, damage: Damage) {
-        const MOST: usize = 4;
-        let refused = damage.refused.iter().take(MOST);
-        let refused: Vec<&str> = refused.map(String::as_str).collect();
-        let more = if damage.refused.len() > MOST {
-            ", …"
-        } else {
-            ""
-        };
-        let refused = format!("{}{more}", refused.join(", "));
-        self.notify((self.words().damaged)(&refused, damage.aside.as_deref()));
-    }
-
     /// Something was asked for with a key or button.
     pub fn act(&mut self, action: Action, seat: Seat) {
         match (&self.screen, action) {
@@ -403,6 +352,7 @@ impl Game {
             (Screen::Play, Action::Slow) => self.slow = !self.slow,
             (Screen::Play, Action::Step) => {
                 self.stepping = true;
+                self.session.forget_time();
                 self.pass_ticks(TICK);
                 self.effects.pass(TICK);
             }
@@ -463,7 +413,11 @@ impl Game {
 
     /// Whether people are in the middle of a round.
     pub fn is_in_round(&self) -> bool {
-        let is_on = matches!(self.screen, Screen::Play | Screen::Paused);
+        let mut below = &self.screen;
+        while let Screen::Settings(from) | Screen::Forces(from) = below {
+            below = from;
+        }
+        let is_on = matches!(below, Screen::Play | Screen::Paused);
         is_on && self.session.is_played() && !self.session.is_over()
     }
 

@@ -1,18 +1,15 @@
 //! Playing without a window: a bot or a replay, as fast as it goes. Tells how it went, and films it.
 
-mod film;
 mod force_log;
-mod plain;
 mod played;
 mod report;
-mod studio;
 
+use crate::film::{Film, FilmError};
 use crate::platform::replay_in;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use film::{Film, FilmError};
 use force_log::ForceLog;
-use played::{Played, RATE, of_bot, of_replay};
+use played::{Played, RATE, of_bot, of_replay, progress};
 use report::{Refusal, Report};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -191,16 +188,31 @@ fn check(path: &Path, options: &Options) -> Result<String, Trouble> {
 
 fn tell(played: &Played, by: report::Player, options: &Options) -> Result<String, Trouble> {
     if let Some(path) = &options.film {
-        write(path, &Film::of(path).shoot(&played.round)?)?;
+        let is_animation = path.extension().is_some_and(|ending| ending == "gif");
+        let film = if is_animation {
+            Film::Animation
+        } else {
+            Film::Strip
+        };
+        write(path, &shoot(film, played)?)?;
     }
     if let Some(path) = &options.photo {
-        write(path, &Film::Photo.shoot(&played.round)?)?;
+        write(path, &shoot(Film::Photo, played)?)?;
     }
     let report = Report::of(played, by);
     Ok(if options.json {
         report::json(&report)
     } else {
         report.to_string()
+    })
+}
+
+/// A film of a round, with a bar for whoever waits.
+fn shoot(film: Film, played: &Played) -> Result<Vec<u8>, FilmError> {
+    let bar = progress("filming", 0);
+    film.shoot(&played.round, &|tick, ticks| {
+        bar.set_length(ticks as u64);
+        bar.set_position(tick as u64);
     })
 }
 

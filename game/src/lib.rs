@@ -3,8 +3,8 @@
 //! The way through, each module using only those above it:
 //! [`input`] devices become wishes for the hands → [`words`] what is said, in each language → [`sift`] what can be used of a text → [`settings`] what players chose → [`records`] what they reached
 //! → [`platform`] files, sound and sticks
-//! → [`session`] a round in time, played or watched → [`felt`] what there is to feel of it → [`attract`] what plays behind the title → [`look`] how it looks
-//! → [`headless`] a round without a window → [`game`] the state, and what can happen to it → [`screens`] what there is to see and to choose → [`app`] the loop → [`desktop`] the way in.
+//! → [`pace`] how many ticks a frame plays → [`session`] a round in time, played or watched → [`felt`] what there is to feel of it → [`attract`] what plays behind the title → [`look`] how it looks
+//! → [`film`] films and photos of it → [`headless`] a round without a window → [`game`] the state, and what can happen to it → [`screens`] what there is to see and to choose → [`app`] the loop → [`desktop`] the way in.
 //!
 //! The rules, levels, bots and replays are the crate `tamaire_play`, which knows no window.
 #![forbid(unsafe_code)]
@@ -16,6 +16,8 @@ pub mod attract;
 #[cfg(not(target_family = "wasm"))]
 pub mod desktop;
 pub mod felt;
+#[cfg(not(target_family = "wasm"))]
+pub mod film;
 pub mod game;
 #[cfg(not(target_family = "wasm"))]
 pub mod headless;

@@ -32,6 +32,11 @@ impl Pace {
         (self.ticks, self.spent) = (0, 0.0);
     }
 
+    /// Nothing is owed any more.
+    pub fn forget(&mut self) {
+        self.owed = 0.0;
+    }
+
     /// Whether the frame is to play one more tick, which is then to be [noted](Self::note).
     pub fn is_due(&mut self) -> bool {
         let tick = f64::from(TICK);

@@ -92,6 +92,11 @@ impl Session {
         self.complaint.take()
     }
 
+    /// What has passed and was not played yet is not made up for.
+    pub fn forget_time(&mut self) {
+        self.pace.forget();
+    }
+
     /// Lets `seconds` pass, a whole number of ticks of them, and fewer where the `clock` says that they take too
     /// long. `wish` says what people want, in the very tick in which it counts; `seen` looks at the round after each
     /// tick.

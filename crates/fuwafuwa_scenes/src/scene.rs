@@ -305,8 +305,10 @@ impl Scene {
     /// # Errors
     /// [`SceneError::Build`] names the body whose file cannot be read.
     pub fn embed_files(&mut self, known: &[(&str, &[u8])]) -> Result<(), SceneError> {
-        for (index, body) in self.body.iter_mut().enumerate() {
-            let embedded = body.embed_file(known);
+        let mut budget = Budget::of_scene(MAX_VOXELS);
+        // Those beyond are refused when the scene is built.
+        for (index, body) in self.body.iter_mut().enumerate().take(MAX_BODIES) {
+            let embedded = body.embed_file(known, &mut budget);
             embedded.map_err(|wrong| self.origin.error(wrong.inside("body", index)))?;
         }
         Ok(())

@@ -2,7 +2,7 @@
 
 use super::fingers::Fingers;
 use crate::game::{Game, Screen};
-use egui::{Context, Event, PointerButton, Pos2};
+use egui::{Context, PointerButton, Pos2};
 use fuwafuwa::Dim3;
 use tamaire_play::{AnyRound, Round};
 
@@ -68,9 +68,9 @@ fn floor(round: &Round<Dim3>) -> f32 {
 fn mouse_at(ctx: &Context) -> Option<Pos2> {
     ctx.input(|input| {
         let pointer = &input.pointer;
-        let has_moved = |event: &Event| matches!(event, Event::PointerMoved(_));
-        let points =
-            pointer.button_down(PointerButton::Primary) || input.events.iter().any(has_moved);
+        // A window that opens under a mouse hears where it rests: that is no wish.
+        let has_moved = pointer.delta() != egui::Vec2::ZERO;
+        let points = pointer.button_down(PointerButton::Primary) || has_moved;
         let turns = pointer.button_down(PointerButton::Secondary);
         pointer.latest_pos().filter(|_| points && !turns)
     })

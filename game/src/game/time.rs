@@ -151,7 +151,7 @@ impl Game {
                 tamaire_play::Route::Shave => tamaire_sound::Route::Shave,
                 tamaire_play::Route::Mix => tamaire_sound::Route::Mix,
             }));
-            self.files.keep_records(&self.records);
+            self.files.keep_records(&self.records, &self.levels);
         }
         if self.has_cheered() && self.won.is_some() {
             self.go(Screen::Result);

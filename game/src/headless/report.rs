@@ -1,6 +1,7 @@
 //! How a round went, for people and for programs.
 
 use super::played::{Played, RATE};
+use crate::film::by_route;
 use serde::Serialize;
 use std::fmt;
 use std::time::Duration;
@@ -88,15 +89,6 @@ impl Report {
             median_tick_ms: milliseconds(times.get(times.len() / 2)),
             worst_tick_ms: milliseconds(times.last()),
         }
-    }
-}
-
-/// In words, how a round was won.
-pub fn by_route(route: Route) -> &'static str {
-    match route {
-        Route::Squeeze => "squeezed in whole",
-        Route::Shave => "shaved to fit",
-        Route::Mix => "shaved and squeezed in",
     }
 }
 

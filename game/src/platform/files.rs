@@ -1,5 +1,6 @@
 //! What is kept between two evenings: settings, records, replays. All is written on a thread of its own.
 
+use super::pictures;
 use super::storage::{Entry, Kind, Nowhere, Storage};
 use super::writer::Writer;
 use crate::records::Records;
@@ -7,7 +8,11 @@ use crate::settings::Settings;
 use crate::words::Language;
 use std::io;
 use std::sync::Arc;
-use tamaire_play::{Replay, ReplayError};
+use std::sync::atomic::{AtomicU32, Ordering};
+use tamaire_play::{Level, Replay, ReplayError};
+
+/// Names that are tried for what is kept.
+const TRIES: usize = 8;
 
 const SETTINGS: &str = "settings";
 const RECORDS: &str = "records";
@@ -23,6 +28,8 @@ pub struct Files {
     usual: Settings,
     /// Settings that are still to be written, and in how long [s].
     resting: Option<(String, f32)>,
+    /// How much of the picture that is being made is done [%].
+    developed: Option<Arc<AtomicU32>>,
     /// Whether it was told that something failed, and nothing was written since.
     is_failing: bool,
 }
@@ -31,6 +38,7 @@ pub struct Files {
 enum Done {
     Note(io::Result<()>),
     Replay(Result<String, String>),
+    Picture(Result<String, String>),
 }
 
 /// What there is to tell of what was written.
@@ -83,6 +91,7 @@ impl Files {
             writer: Writer::new(),
             usual: Settings::default(),
             resting: None,
+            developed: None,
             is_failing: false,
         }
     }
@@ -144,11 +153,12 @@ impl Files {
         self.resting = Some((settings.text(), REST));
     }
 
-    /// Keeps these records, and those that another program wrote in the meantime.
-    pub fn keep_records(&mut self, records: &Records) {
+    /// Keeps these records of these levels, and those that another program wrote in the meantime.
+    pub fn keep_records(&mut self, records: &Records, levels: &[Arc<Level>]) {
         let (storage, records) = (self.storage.clone(), records.clone());
+        let levels = levels.to_vec();
         self.writer
-            .write(move || Done::Note(merge_records(&*storage, &records)));
+            .write(move || Done::Note(merge_records(&*storage, &records, &levels)));
     }
 
     /// Keeps a replay.
@@ -156,6 +166,28 @@ impl Files {
         let storage = self.storage.clone();
         self.writer
             .write(move || Done::Replay(save_replay(&*storage, &replay)));
+    }
+
+    /// Makes a photo or a clip of a round and keeps it, unless another one is being made.
+    pub fn save_picture(&mut self, kind: Kind, replay: Replay) {
+        if self.developed.is_some() {
+            return;
+        }
+        let developed = Arc::new(AtomicU32::new(0));
+        self.developed = Some(developed.clone());
+        let storage = self.storage.clone();
+        self.writer.write(move || {
+            let stem = stem_of(&replay);
+            let told = |share: f32| developed.store((100.0 * share) as u32, Ordering::Relaxed);
+            let picture = pictures::shoot(kind, replay, &told);
+            Done::Picture(picture.and_then(|bytes| save(&*storage, kind, &stem, &bytes)))
+        });
+    }
+
+    /// How much of a photo or clip is done that is being made, 0 to 1.
+    pub fn developed(&self) -> Option<f32> {
+        let developed = self.developed.as_ref()?;
+        Some(developed.load(Ordering::Relaxed) as f32 / 100.0)
     }
 
     /// Lets `seconds` pass; tells what became of what was to be written.
@@ -206,6 +238,10 @@ impl Files {
         for done in done {
             match done {
                 Done::Replay(saved) => news.push(saved.map_or_else(News::Failed, News::Saved)),
+                Done::Picture(saved) => {
+                    self.developed = None;
+                    news.push(saved.map_or_else(News::Failed, News::Saved));
+                }
                 Done::Note(Ok(())) => self.is_failing = false,
                 Done::Note(Err(error)) if !self.is_failing => {
                     self.is_failing = true;
@@ -273,33 +309,51 @@ fn put_aside(storage: &dyn Storage, name: &str, bytes: &[u8]) -> io::Result<Stri
     }
 }
 
-fn merge_records(storage: &dyn Storage, records: &Records) -> io::Result<()> {
+fn merge_records(
+    storage: &dyn Storage,
+    records: &Records,
+    levels: &[Arc<Level>],
+) -> io::Result<()> {
     storage.change(Kind::Note, RECORDS, &mut |found| {
         let text = String::from_utf8_lossy(found.unwrap_or_default());
-        let mut all = Records::read(&text).0;
+        let known = levels.iter().map(Arc::as_ref);
+        let mut all = Records::read(&text).0.by_name(known);
         all.take(records.clone());
         Some(all.text().into_bytes())
     })
 }
 
-/// Keeps a replay under a name that is free; says where, or why not.
+/// Keeps a replay; says where, or why not.
 fn save_replay(storage: &dyn Storage, replay: &Replay) -> Result<String, String> {
     // One that could not be watched is none.
     let text = replay.text_to_keep().map_err(|error| error.to_string())?;
+    save(storage, Kind::Replay, &stem_of(replay), text.as_bytes())
+}
+
+/// How the names begin of what is kept of a round.
+fn stem_of(replay: &Replay) -> String {
     let is_plain = |letter: &char| letter.is_alphanumeric() || *letter == '-';
-    let stem: String = replay.level.chars().filter(is_plain).take(60).collect();
-    let mut number = 1;
-    loop {
-        let name = format!("{stem}-{number}");
+    replay.level.chars().filter(is_plain).take(60).collect()
+}
+
+/// Keeps something under a name that is free; says where, or why not.
+fn save(storage: &dyn Storage, kind: Kind, stem: &str, bytes: &[u8]) -> Result<String, String> {
+    let names = storage.list(kind).map_err(|error| error.to_string())?;
+    let is_listed = |name: &String| names.iter().any(|entry| entry.name == *name);
+    let numbered = (1..).map(|number| format!("{stem}-{number}"));
+    let mut last = None;
+    // What stands there and is not listed is no file, or of another program that was quicker.
+    for name in numbered.filter(|name| !is_listed(name)).take(TRIES) {
         let mut is_free = false;
-        let written = storage.change(Kind::Replay, &name, &mut |found| {
+        let written = storage.change(kind, &name, &mut |found| {
             is_free = found.is_none();
-            is_free.then(|| text.clone().into_bytes())
+            is_free.then(|| bytes.to_vec())
         });
-        written.map_err(|error| error.to_string())?;
-        if is_free {
-            return Ok(storage.place(Kind::Replay, &name));
+        match written {
+            Ok(()) if is_free => return Ok(storage.place(kind, &name)),
+            Ok(()) => {}
+            Err(error) => last = Some(error.to_string()),
         }
-        number += 1;
     }
+    Err(last.unwrap_or_else(|| "no name is free".into()))
 }

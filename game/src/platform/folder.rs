@@ -11,8 +11,11 @@ use tamaire_play::bytes_of;
 /// How long another program is waited for that changes something; it takes some milliseconds.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// How the names of files begin that take the place of others once they are whole.
-const DRAFT: &str = "draft-";
+/// How the names of files begin that take the place of others once they are whole: no name of what is kept begins so.
+const DRAFT: &str = ".draft-";
+
+/// Drafts that are older were left behind.
+const FORGOTTEN: Duration = Duration::from_secs(600);
 
 /// A folder for all that the game keeps.
 pub struct Folder(pub PathBuf);
@@ -23,11 +26,14 @@ impl Folder {
         match kind {
             Kind::Note => (self.0.clone(), "toml"),
             Kind::Replay => (self.0.join("replays"), "tamaire"),
+            Kind::Photo => (self.0.join("pictures"), "png"),
+            Kind::Clip => (self.0.join("pictures"), "gif"),
         }
     }
 
     fn path(&self, kind: Kind, name: &str) -> io::Result<PathBuf> {
-        let leads_away = |letter: char| letter.is_control() || "/\\:".contains(letter);
+        let parts = if cfg!(windows) { "/\\:" } else { "/" };
+        let leads_away = |letter: char| letter.is_control() || parts.contains(letter);
         if name.is_empty() || name.starts_with('.') || name.contains(leads_away) {
             let reason = "expected a name that is no path";
             return Err(io::Error::new(ErrorKind::InvalidInput, reason));
@@ -53,10 +59,7 @@ impl Folder {
                     return Err(io::Error::new(ErrorKind::WouldBlock, reason));
                 }
                 // Not every file system has locks, and most evenings one game is played.
-                Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => {
-                    return Ok(lock);
-                }
-                Err(TryLockError::Error(error)) => return Err(error),
+                Err(TryLockError::Error(_)) => return Ok(lock),
             }
         }
     }
@@ -75,6 +78,7 @@ impl Storage for Folder {
             let data = path.metadata().ok().filter(|data| data.is_file())?;
             let name = path.file_stem()?.to_str()?.to_string();
             let written = data.modified().ok()?;
+            self.path(kind, &name).ok()?;
             is_ours.then_some(Entry { name, written })
         };
         Ok(files.flatten().filter_map(entry).collect())
@@ -115,9 +119,10 @@ fn is_missing(error: &io::Error) -> bool {
 
 /// Writes a file so that it is never half there: as a draft that nobody else writes, which then takes its place.
 fn write_whole(folder: &Path, path: &Path, bytes: &[u8]) -> io::Result<()> {
-    // Those of a game that was killed while it wrote; nobody else writes now.
+    // Those of a game that was killed while it wrote.
     for file in fs::read_dir(folder)?.flatten() {
-        if file.file_name().to_string_lossy().starts_with(DRAFT) {
+        let is_draft = file.file_name().to_string_lossy().starts_with(DRAFT);
+        if is_draft && is_forgotten(&file).unwrap_or(false) {
             // One that cannot be removed is in nobody's way.
             let _removed = fs::remove_file(file.path());
         }
@@ -127,6 +132,11 @@ fn write_whole(folder: &Path, path: &Path, bytes: &[u8]) -> io::Result<()> {
     draft.as_file().sync_all()?;
     draft.persist(path).map_err(|failed| failed.error)?;
     Ok(())
+}
+
+fn is_forgotten(file: &fs::DirEntry) -> io::Result<bool> {
+    let age = file.metadata()?.modified()?.elapsed();
+    Ok(age.is_ok_and(|age| age > FORGOTTEN))
 }
 
 #[cfg(test)]
@@ -158,14 +168,21 @@ mod tests {
         let storage = Folder(folder.path().join("new"));
         let count = storage.read(Kind::Note, "count").unwrap().unwrap();
         assert_eq!(count.len(), 80);
-        let names = storage.list(Kind::Note).unwrap();
-        assert_eq!(names.len(), 1, "no draft is left: {names:?}");
+        let names = fs::read_dir(&storage.0).unwrap().flatten();
+        let names: Vec<_> = names.map(|file| file.file_name()).collect();
+        assert_eq!(names.len(), 2, "the count and the lock: {names:?}");
     }
 
     #[test]
     fn what_a_killed_game_left_half_written_is_removed() {
         let folder = tempfile::tempdir().unwrap();
-        fs::write(folder.path().join("draft-1a2b"), "half").unwrap();
+        let (left, open) = (".draft-1a2b", ".draft-3c4d");
+        for draft in [left, open] {
+            fs::write(folder.path().join(draft), "half").unwrap();
+        }
+        let draft = File::options().write(true).open(folder.path().join(left));
+        let before = std::time::SystemTime::now() - 2 * FORGOTTEN;
+        draft.unwrap().set_modified(before).unwrap();
         let storage = Folder(folder.path().into());
         let whole = |_: Option<&[u8]>| Some(b"whole".to_vec());
         storage.change(Kind::Note, "it", &mut { whole }).unwrap();
@@ -173,14 +190,18 @@ mod tests {
         let names = names.map(|file| file.unwrap().file_name().into_string().unwrap());
         let mut names: Vec<String> = names.collect();
         names.sort();
-        assert_eq!(names, ["it.toml", "lock"]);
+        assert_eq!(
+            names,
+            [open, "it.toml", "lock"],
+            "another game may still write one"
+        );
     }
 
     #[test]
     fn what_is_no_name_leads_nowhere_else() {
         let folder = tempfile::tempdir().unwrap();
         let storage = Folder(folder.path().join("inside"));
-        for name in ["", "..", "../out", "/etc/hosts", "a/b", "a\\b", "c:d"] {
+        for name in ["", "..", "../out", "/etc/hosts", "a/b", ".draft-1"] {
             let read = storage.read(Kind::Note, name).unwrap_err();
             let changed = storage.change(Kind::Note, name, &mut |_| Some(Vec::new()));
             for error in [read, changed.unwrap_err()] {

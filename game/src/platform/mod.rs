@@ -9,6 +9,11 @@ mod forces;
 mod given;
 mod gpu;
 #[cfg(not(target_family = "wasm"))]
+mod pictures;
+#[cfg(target_family = "wasm")]
+#[path = "no_pictures.rs"]
+mod pictures;
+#[cfg(not(target_family = "wasm"))]
 mod sound;
 #[cfg(target_family = "wasm")]
 #[path = "silence.rs"]
@@ -22,6 +27,7 @@ pub use files::{Damage, Files, News};
 pub use forces::Forces;
 pub use given::{Given, replay_in};
 pub use gpu::GpuWatch;
+pub use pictures::ARE_THERE as HAS_PICTURES;
 pub use sound::Sound;
 pub use sticks::Pads;
 pub use storage::{Change, Entry, Kind, Nowhere, Storage};

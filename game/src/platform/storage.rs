@@ -11,6 +11,10 @@ pub enum Kind {
     Note,
     /// A round as it was played.
     Replay,
+    /// A picture of the end of one.
+    Photo,
+    /// Its last seconds, as an animation.
+    Clip,
 }
 
 impl Kind {
@@ -19,6 +23,7 @@ impl Kind {
         match self {
             Self::Note => 1 << 20,
             Self::Replay => tamaire_play::replay::MAX_BYTES as u64,
+            Self::Photo | Self::Clip => 1 << 26,
         }
     }
 }
@@ -89,7 +94,8 @@ impl Storage for Nowhere {
         self.answer(None)
     }
 
-    fn change(&self, _: Kind, _: &str, _: &mut Change) -> io::Result<()> {
+    fn change(&self, _: Kind, _: &str, change: &mut Change) -> io::Result<()> {
+        change(None);
         self.answer(())
     }
 

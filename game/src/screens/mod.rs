@@ -19,6 +19,9 @@ use crate::game::{Game, Screen};
 use crate::look::Stage;
 use egui::{Color32, FontId, Rect, Ui, pos2, vec2};
 
+/// The bar that fills while a photo or clip is made [points].
+const BAR: egui::Vec2 = vec2(240.0, 12.0);
+
 /// Shows the screen that is on.
 pub fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     if game.is_seen() {
@@ -67,5 +70,14 @@ fn notices(game: &Game, ui: &Ui) {
         painter.rect_filled(rect, 16.0 * scale, shade);
         painter.galley(rect.min + scale * vec2(18.0, 9.0), galley, ink);
         y += size.y + 8.0;
+    }
+    if let Some(share) = game.files.developed() {
+        let place = Rect::from_min_size(
+            pos2(screen.center().x - 0.5 * BAR.x, y),
+            scale * vec2(BAR.x, BAR.y),
+        );
+        let done = Rect::from_min_size(place.min, vec2(share * place.width(), place.height()));
+        painter.rect_filled(place.expand(3.0), BAR.y, Color32::from_black_alpha(190));
+        painter.rect_filled(done, BAR.y, game.theme().accent);
     }
 }

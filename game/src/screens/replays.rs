@@ -3,6 +3,7 @@
 use super::kit::{Weight, button, card, fitted, header, page, place_of_page, veil};
 use crate::game::{Game, Screen};
 use crate::platform::Entry;
+use crate::platform::HAS_PICTURES;
 use egui::{Id, RichText, Ui, vec2};
 use tamaire_sound::Menu;
 
@@ -14,6 +15,7 @@ const WIDE: f32 = 130.0;
 enum Wish {
     Watch,
     Race,
+    Clip,
     Delete,
 }
 
@@ -44,7 +46,8 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 card(ui, &theme, |ui| {
                     ui.horizontal(|ui| {
                         let name = name_of(game, saved);
-                        let size = vec2(ui.available_width() - 3.0 * (WIDE + 10.0), 44.0);
+                        let count = if HAS_PICTURES { 4.0 } else { 3.0 };
+                        let size = vec2(ui.available_width() - count * (WIDE + 10.0), 44.0);
                         let (room, _) = ui.allocate_exact_size(size, egui::Sense::hover());
                         let galley = fitted(ui.painter(), &name, 22.0, size.x, theme.ink);
                         let at = room.left_center() - vec2(0.0, 0.5 * galley.size().y);
@@ -52,6 +55,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                         for (text, wish) in [
                             (said.watch, Wish::Watch),
                             (said.race, Wish::Race),
+                            (said.clip, Wish::Clip),
                             (
                                 match is_doomed(ui, saved) {
                                     true => said.surely,
@@ -59,7 +63,10 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                                 },
                                 Wish::Delete,
                             ),
-                        ] {
+                        ]
+                        .into_iter()
+                        .filter(|(_, wish)| HAS_PICTURES || !matches!(wish, Wish::Clip))
+                        {
                             if button(ui, &theme, text, vec2(WIDE, 44.0), Weight::Other).clicked() {
                                 wanted = Some((place, wish));
                             }
@@ -79,6 +86,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
         match wish {
             Wish::Watch => game.open_kept(&saved.name, Game::watch),
             Wish::Race => game.open_kept(&saved.name, Game::race),
+            Wish::Clip => game.keep_clip_of(&saved.name),
             Wish::Delete if is_doomed(ui, &saved) => game.delete(&saved),
             Wish::Delete => {}
         }

@@ -4,6 +4,7 @@ use super::kit::{Act, Weight, button, card, column, fitted, veil};
 use super::marks;
 use crate::game::{Game, Screen};
 use crate::look::Theme;
+use crate::platform::HAS_PICTURES;
 use crate::words::Words;
 use egui::{Align, Layout, Role, Sense, Ui, Vec2, WidgetInfo, pos2, vec2};
 use std::sync::Arc;
@@ -133,11 +134,12 @@ fn buttons(ui: &mut Ui, theme: &Theme, said: &Words) -> Option<Act> {
     if again.clicked() {
         wanted = Some(Game::retry);
     }
-    let rows: [[(&str, Act); 2]; 2] = [
+    let rows: [[(&str, Act); 2]; 3] = [
         [(said.next, next), (said.race, race)],
         [(said.save, Game::keep_replay), (said.levels, to_levels)],
+        [(said.photo, Game::keep_photo), (said.clip, Game::keep_clip)],
     ];
-    for row in rows {
+    for row in rows.into_iter().take(if HAS_PICTURES { 3 } else { 2 }) {
         ui.add_space(GAP + 2.0);
         let place = vec2(width, SMALL);
         ui.allocate_ui_with_layout(place, Layout::left_to_right(Align::Min), |ui| {

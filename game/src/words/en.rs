@@ -124,6 +124,8 @@ pub(super) const WORDS: Words = Words {
     speed: "Game speed",
     sensitivity: "Sensitivity",
     stick_places: "Stick points at the place",
+    photo: "Photo",
+    clip: "Clip",
     full_screen: "Full screen, also by F11",
     reduced_motion: "Less motion",
     colour_safe: "Safe colours",

@@ -119,6 +119,8 @@ pub(super) const WORDS: Words = Words {
     speed: "はやさ",
     sensitivity: "うごきの大きさ",
     stick_places: "スティックで場所をさす",
+    photo: "しゃしん",
+    clip: "どうが",
     full_screen: "ぜんがめん（F11）",
     reduced_motion: "うごきをへらす",
     colour_safe: "見分けやすい色",

@@ -63,6 +63,8 @@ pub struct Words {
     pub sensitivity: &'static str,
     pub stick_places: &'static str,
     pub full_screen: &'static str,
+    pub photo: &'static str,
+    pub clip: &'static str,
     pub reduced_motion: &'static str,
     pub colour_safe: &'static str,
     pub text_size: &'static str,

@@ -343,3 +343,14 @@ fn the_game_speaks_as_the_system_does_until_somebody_chooses() {
     assert_eq!(game.settings.language, Language::English, "it was chosen");
     fs::remove_dir_all(folder).unwrap();
 }
+
+#[test]
+fn a_mouse_that_only_rests_moves_no_hand() {
+    let mut window = window(Files::nowhere());
+    start(&mut window, "classic");
+    for (at, moves) in [(egui::Pos2::ZERO, false), (egui::pos2(400.0, 300.0), true)] {
+        window.hover_at(at);
+        frames(&mut window, 2);
+        assert_eq!(game(&mut window).players.wanted(0).is_some(), moves, "{at}");
+    }
+}

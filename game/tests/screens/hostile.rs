@@ -176,7 +176,7 @@ fn every_button_fits_into_the_smallest_window_with_the_largest_letters() {
         let wishes = round.level().game().wish.len();
         assert!(wishes == 3 && game(&mut window).won.unwrap().1);
         let screens = [Screen::Result, Screen::Paused, Screen::Title];
-        for (screen, count) in screens.into_iter().zip([5, 5, 4]) {
+        for (screen, count) in screens.into_iter().zip([7, 5, 5]) {
             for (language, _) in Language::ALL {
                 game(&mut window).settings.language = language;
                 game(&mut window).screen = screen.clone();

@@ -5,6 +5,7 @@ use egui::accesskit::Role;
 use egui::{Event, Modifiers, PointerButton};
 use egui_kittest::kittest::Queryable;
 use std::collections::BTreeMap;
+use std::fs;
 use std::io;
 use std::sync::{Arc, Mutex};
 use std::thread::{self, ThreadId};
@@ -223,4 +224,51 @@ fn one_bad_setting_costs_that_setting_and_is_told_once_by_name() {
     assert_eq!(again.settings.volume, 0.25);
     drop(again);
     std::fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn a_photo_and_a_clip_of_a_win_are_kept_where_the_player_is_told() {
+    let folder = folder("pictures");
+    let mut window = window(Files::in_folder(&folder));
+    start(&mut window, "classic");
+    win(&mut window);
+    for (button, ending, magic) in [
+        ("Photo", "png", &b"\x89PNG"[..]),
+        ("Clip", "gif", b"GIF89a"),
+    ] {
+        click(&mut window, button);
+        let mut shares = Vec::new();
+        while let Some(share) = game(&mut window).files.developed() {
+            shares.push(share);
+            frames(&mut window, 1);
+        }
+        assert!(shares.is_sorted(), "{shares:?}");
+        let file = folder.join("pictures").join(format!("classic-1.{ending}"));
+        let bytes = fs::read(&file).expect("it is kept");
+        assert!(bytes.starts_with(magic), "{button}");
+        assert!(notices(&window).contains(&file.display().to_string()));
+    }
+    drop(window);
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn replays_are_kept_beside_whatever_stands_there() {
+    let folder = folder("beside");
+    let replays = folder.join("replays");
+    fs::create_dir_all(replays.join("classic-1.tamaire")).unwrap();
+    let mut window = window(Files::in_folder(&folder));
+    start(&mut window, "classic");
+    win(&mut window);
+    for name in ["classic-2", "classic-3"] {
+        click(&mut window, "Save replay");
+        game(&mut window).files.finish();
+        assert!(replays.join(format!("{name}.tamaire")).is_file(), "{name}");
+    }
+    drop(window);
+    // By choice nothing is kept, and nobody waits for it.
+    let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
+    game.keep_replay();
+    assert_eq!(game.files.finish().len(), 1);
+    fs::remove_dir_all(folder).unwrap();
 }

@@ -30,6 +30,8 @@ pub fn open(files: Files, size: egui::Vec2, pixels: f32) -> Window {
     // In its first two frames the harness takes points for those without the game's zoom.
     let zoom = window.ctx.zoom_factor();
     window.set_size(size / zoom);
+    // Where a mouse rests when a window opens is no wish of anybody's.
+    window.hover_at(egui::Pos2::ZERO);
     frames(&mut window, 2);
     window
 }

@@ -178,14 +178,15 @@ impl SpherePairs {
     fn lay<D: Dim>(&mut self, place: u32, spheres: &Spheres, bodies: &Bodies<D>) {
         let now = spheres.centres[place as usize];
         let start = &mut self.starts[place as usize];
-        let mut velocity = [0.0; 4];
+        let (mut velocity, mut laid) = ([0.0; 4], Start::UNKNOWN);
         if !spheres.list[place as usize].asleep {
             velocity = start.expected(now, self.elapsed, spheres.velocity(place, bodies));
+            laid = Start {
+                at: now,
+                time: self.elapsed,
+            };
         }
-        *start = Start {
-            at: now,
-            time: self.elapsed,
-        };
+        *start = laid;
         let from = minus(now, scaled(velocity, self.elapsed));
         self.paths[place as usize] = Path { from, velocity };
         let speed = length(velocity);

@@ -2,6 +2,7 @@
 //! of them.
 
 use super::body::BodyText;
+use super::budget::Budget;
 use super::error::Wrong;
 use super::grid::{check_across, colours};
 use crate::import::{Model, Picture};
@@ -12,7 +13,11 @@ use std::path::Path;
 const SMALL: usize = 1 << 16;
 
 impl BodyText {
-    pub(super) fn embed_file(&mut self, known: &[(&str, &[u8])]) -> Result<(), Wrong> {
+    pub(super) fn embed_file(
+        &mut self,
+        known: &[(&str, &[u8])],
+        budget: &mut Budget,
+    ) -> Result<(), Wrong> {
         let Some(file) = self.file.clone() else {
             return Ok(());
         };
@@ -21,25 +26,38 @@ impl BodyText {
         } else if self.content.is_none() {
             let bytes = self.file_bytes(&file)?;
             // What is wrong with it is told when the body is built.
-            let less = (bytes.len() > SMALL).then(|| self.needed_of(&file, &bytes));
-            self.embed(&less.flatten().unwrap_or(bytes));
+            let less = match bytes.len() > SMALL {
+                true => self.needed_of(&file, &bytes, budget)?,
+                false => None,
+            };
+            self.embed(&less.unwrap_or(bytes));
         }
         Ok(())
     }
 
     /// A file from which the same voxels come as from this one.
-    fn needed_of(&self, file: &Path, bytes: &[u8]) -> Option<Vec<u8>> {
+    fn needed_of(
+        &self,
+        file: &Path,
+        bytes: &[u8],
+        budget: &mut Budget,
+    ) -> Result<Option<Vec<u8>>, Wrong> {
         let name = file.to_string_lossy();
-        let ending = file.extension()?.to_str()?.to_ascii_lowercase();
-        match ending.as_str() {
-            "png" => {
+        let ending = file.extension().unwrap_or_default().to_ascii_lowercase();
+        budget.take_pixels(bytes.len(), 1)?;
+        Ok(match ending.to_str() {
+            Some("png") => {
                 let across = self.n.unwrap_or(MAX_EXTENT);
-                check_across(across).ok()?;
-                let picture = Picture::decode(&name, bytes).ok()?;
-                picture.needed(across, &colours(self).ok()?)
+                let known = check_across(across).and_then(|()| colours(self));
+                let picture = Picture::decode(&name, bytes);
+                let (Ok(colours), Ok(picture)) = (known, picture) else {
+                    return Ok(None);
+                };
+                budget.take_pixels(picture.size().iter().product(), colours.named.len())?;
+                picture.needed(across, &colours)
             }
-            "vox" => Some(Model::decode(&name, bytes).ok()?.bytes()),
+            Some("vox") => Model::decode(&name, bytes).ok().map(|model| model.bytes()),
             _ => None,
-        }
+        })
     }
 }

@@ -1,18 +1,17 @@
-//! A round as a strip of moments, as an animation or as a photo of its end.
+//! A round as a strip of moments, as an animation, as a clip of its last seconds or as a photo of its end.
 //!
 //! The round is played a second time: the same input gives the same world, and drawing disturbs
 //! no timing. It is drawn as in a window; where there is nothing to draw with, element by element.
 
-use super::plain;
-use super::played::progress;
-use super::report::by_route;
-use super::studio::{Moment, Studio};
+mod plain;
+mod studio;
+
 use crate::look::{Camera, Effects};
 use fuwafuwa::world::TICK;
 use fuwafuwa_painter::{PaintError, Pixmap, film, png_of};
 use fuwafuwa_render::ImageError;
-use std::path::Path;
-use tamaire_play::AnyRound;
+use studio::{Moment, Studio};
+use tamaire_play::{AnyRound, Route};
 
 /// Moments in a strip, and how many stand side by side.
 const MOMENTS: usize = 12;
@@ -22,6 +21,8 @@ const PACE: usize = 3;
 const HUNDREDTHS: u16 = 5;
 /// The last frame is shown for longer [1/100 s].
 const LAST: u16 = 200;
+/// Ticks of a clip.
+const LENGTH: usize = 240;
 /// Ticks that are shown after a win, so that the body can beam.
 const CHEER: usize = 60;
 /// A moment of a film, and a photo.
@@ -29,15 +30,25 @@ const MOMENT: Print = Print {
     size: [480, 300],
     is_captioned: true,
 };
+const CLIP: Print = Print {
+    is_captioned: false,
+    ..MOMENT
+};
 const PHOTO: Print = Print {
     size: [1280, 800],
     is_captioned: false,
 };
 
 /// What kind of film is made.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Film {
+    /// Moments side by side.
     Strip,
+    /// All of the round.
     Animation,
+    /// Its last seconds, over and over.
+    Clip,
+    /// Its end.
     Photo,
 }
 
@@ -53,23 +64,24 @@ struct Print {
 /// Why there is no film.
 #[derive(Debug, thiserror::Error)]
 pub enum FilmError {
+    /// A picture without a GPU failed.
     #[error(transparent)]
     Paint(#[from] PaintError),
+    /// A picture as in the window failed.
     #[error(transparent)]
     Draw(#[from] ImageError),
 }
 
 impl Film {
-    /// The kind that the ending of a path asks for.
-    pub fn of(path: &Path) -> Self {
-        match path.extension() {
-            Some(ending) if ending == "gif" => Self::Animation,
-            _ => Self::Strip,
-        }
-    }
-
-    /// The film of a round, as the bytes of its file.
-    pub fn shoot(&self, played: &AnyRound) -> Result<Vec<u8>, FilmError> {
+    /// The film of a round, as the bytes of its file; `told` hears how many ticks of how many are done.
+    ///
+    /// # Errors
+    /// When something cannot be drawn.
+    pub fn shoot(
+        &self,
+        played: &AnyRound,
+        told: &dyn Fn(usize, usize),
+    ) -> Result<Vec<u8>, FilmError> {
         let is_won = played.progress().outcome.is_some();
         let ticks = played.frames().len() + if is_won { CHEER } else { 0 };
         match self {
@@ -78,16 +90,21 @@ impl Film {
                 // The first is the start, the last the end.
                 let gaps = MOMENTS.min(ticks + 1) - 1;
                 let is_shown = |tick| moments_at(ticks, gaps).any(|moment| moment == tick);
-                pass(played, ticks, MOMENT, is_shown, |pixels, _| {
+                pass(played, ticks, told, MOMENT, is_shown, |pixels, _| {
                     moments.push(pixels);
                     Ok(())
                 })?;
                 Ok(film::strip(&moments, COLUMNS)?.png()?)
             }
-            Self::Animation => {
+            Self::Animation | Self::Clip => {
+                let (print, first) = match self {
+                    Self::Clip => (CLIP, ticks.saturating_sub(LENGTH)),
+                    _ => (MOMENT, 0),
+                };
                 let mut gif = film::Gif::default();
-                let is_shown = |tick| tick == ticks || tick % PACE == 0;
-                pass(played, ticks, MOMENT, is_shown, |pixels, tick| {
+                let is_shown =
+                    |tick: usize| tick >= first && (tick == ticks || tick.is_multiple_of(PACE));
+                pass(played, ticks, told, print, is_shown, |pixels, tick| {
                     gif.add(&pixels, if tick == ticks { LAST } else { HUNDREDTHS })
                 })?;
                 Ok(gif.finish()?)
@@ -95,7 +112,7 @@ impl Film {
             Self::Photo => {
                 let mut photo = Vec::new();
                 let is_last = |tick| tick == ticks;
-                pass(played, ticks, PHOTO, is_last, |pixels, _| {
+                pass(played, ticks, told, PHOTO, is_last, |pixels, _| {
                     photo = png_of(&pixels)?;
                     Ok(())
                 })?;
@@ -114,6 +131,7 @@ fn moments_at(ticks: usize, gaps: usize) -> impl Iterator<Item = usize> {
 fn pass(
     played: &AnyRound,
     ticks: usize,
+    told: &dyn Fn(usize, usize),
     print: Print,
     is_shown: impl Fn(usize) -> bool,
     mut show: impl FnMut(Pixmap, usize) -> Result<(), PaintError>,
@@ -126,9 +144,8 @@ fn pass(
     }
     let mut round = AnyRound::new(played.level().clone());
     let (mut effects, mut camera) = (Effects::default(), Camera::default());
-    let bar = progress("filming", ticks as u64);
     for tick in 0..=ticks {
-        bar.inc(u64::from(tick > 0));
+        told(tick, ticks);
         if tick > 0 {
             let frame = played.frames().get(tick - 1).copied();
             round.step(frame.unwrap_or_default());
@@ -180,5 +197,14 @@ fn caption(round: &AnyRound, is_last: bool) -> String {
         (None, _) if is_last => format!("not won in {seconds:.1} s"),
         (None, 1) => format!("{seconds:.1} s"),
         (None, pieces) => format!("{seconds:.1} s, {pieces} pieces"),
+    }
+}
+
+/// How it was won, in words.
+pub fn by_route(route: Route) -> &'static str {
+    match route {
+        Route::Squeeze => "squeezed in whole",
+        Route::Shave => "shaved to fit",
+        Route::Mix => "shaved and squeezed in",
     }
 }

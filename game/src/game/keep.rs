@@ -1,0 +1,78 @@
+//! What is kept, and what is told of it.
+
+use super::Game;
+use crate::platform::{Damage, Entry, Kind, News};
+
+impl Game {
+    /// Keeps the settings, once they rest; what cannot be written is said and lost only at the end of the game.
+    pub fn keep_settings(&mut self) {
+        self.files.keep_settings(&self.settings);
+    }
+
+    /// Keeps the round as it was played so far.
+    pub fn keep_replay(&mut self) {
+        self.files.save_replay(self.session.round().replay());
+    }
+
+    /// Takes a photo of how the round ended.
+    pub fn keep_photo(&mut self) {
+        let replay = self.session.round().replay();
+        self.files.save_picture(Kind::Photo, replay);
+    }
+
+    /// Keeps the last seconds of the round as an animation.
+    pub fn keep_clip(&mut self) {
+        let replay = self.session.round().replay();
+        self.files.save_picture(Kind::Clip, replay);
+    }
+
+    /// The same of a round that was kept.
+    pub fn keep_clip_of(&mut self, name: &str) {
+        match self.files.replay(name) {
+            Ok(replay) => self.files.save_picture(Kind::Clip, replay),
+            Err(error) => self.notify((self.words().replay_error)(&error)),
+        }
+    }
+
+    /// Deletes a round that was kept.
+    pub fn delete(&mut self, saved: &Entry) {
+        if let Err(error) = self.files.delete(&saved.name) {
+            self.tell(News::Failed(error.to_string()));
+        }
+        self.replays = self.files.replays();
+    }
+
+    /// Writes what is still to be written, and waits until it is.
+    pub fn finish_writing(&mut self) {
+        for news in self.files.finish() {
+            self.tell(news);
+        }
+    }
+
+    /// Tells what became of what was to be written.
+    pub(super) fn tell(&mut self, news: News) {
+        match news {
+            News::Saved(place) => {
+                self.replays = self.files.replays();
+                self.notify(format!("{} {place}", self.words().saved));
+            }
+            News::Failed(reason) => {
+                self.notify(format!("{} {reason}", self.words().not_written));
+            }
+        }
+    }
+
+    /// Names what of what was kept could not be used.
+    pub(super) fn tell_of(&mut self, damage: Damage) {
+        const MOST: usize = 4;
+        let refused = damage.refused.iter().take(MOST);
+        let refused: Vec<&str> = refused.map(String::as_str).collect();
+        let more = if damage.refused.len() > MOST {
+            ", …"
+        } else {
+            ""
+        };
+        let refused = format!("{}{more}", refused.join(", "));
+        self.notify((self.words().damaged)(&refused, damage.aside.as_deref()));
+    }
+}

@@ -1,0 +1,12 @@
+//! In a browser there are no photos and clips yet.
+
+use super::storage::Kind;
+use tamaire_play::Replay;
+
+/// Whether there are any.
+pub const ARE_THERE: bool = false;
+
+/// None.
+pub fn shoot(_: Kind, _: Replay, _: &dyn Fn(f32)) -> Result<Vec<u8>, String> {
+    Err("there are no pictures here".into())
+}
