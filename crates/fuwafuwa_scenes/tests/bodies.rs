@@ -1,8 +1,10 @@
 //! What scenes say about the shapes and materials of bodies.
 
+mod picture;
+
 use fuwafuwa::{Body, Dim, Dim2, Dim3};
 use fuwafuwa_scenes::{Recording, Scene, SceneError};
-use png::{BitDepth, ColorType, Encoder};
+use picture::png_of;
 use std::path::PathBuf;
 
 fn bodies<D: Dim>(text: &str) -> Vec<Body<D>> {
@@ -165,14 +167,7 @@ fn painting(rows: &[&str]) -> Vec<u8> {
         .flat_map(|row| row.bytes())
         .flat_map(colour)
         .collect();
-    let mut bytes = Vec::new();
-    let mut encoder = Encoder::new(&mut bytes, rows[0].len() as u32, rows.len() as u32);
-    encoder.set_color(ColorType::Rgba);
-    encoder.set_depth(BitDepth::Eight);
-    let mut writer = encoder.write_header().unwrap();
-    writer.write_image_data(&samples).unwrap();
-    writer.finish().unwrap();
-    bytes
+    png_of(rows[0].len() as u32, rows.len() as u32, &samples)
 }
 
 #[test]

@@ -2,11 +2,12 @@
 
 #[allow(dead_code)]
 mod damage;
+mod picture;
 
 use damage::Noise;
 use fuwafuwa::{Dim, Dim2, Dim3};
 use fuwafuwa_scenes::Scene;
-use png::{BitDepth, ColorType, Encoder};
+use picture::png_of;
 use std::path::PathBuf;
 
 /// Red, green, blue and alpha of anything.
@@ -18,14 +19,7 @@ fn noisy_picture(width: u32, height: u32, is_opaque: bool) -> Vec<u8> {
         false => noise.below(256) as u8,
     };
     let samples: Vec<u8> = (0..samples).map(sample).collect();
-    let mut bytes = Vec::new();
-    let mut encoder = Encoder::new(&mut bytes, width, height);
-    encoder.set_color(ColorType::Rgba);
-    encoder.set_depth(BitDepth::Eight);
-    let mut writer = encoder.write_header().unwrap();
-    writer.write_image_data(&samples).unwrap();
-    writer.finish().unwrap();
-    bytes
+    png_of(width, height, &samples)
 }
 
 /// A model with a voxel in ten, and much beside that nobody asked for.
