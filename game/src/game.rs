@@ -12,7 +12,7 @@ pub mod trial;
 use crate::attract::attract;
 use crate::input::{Action, Devices, Means, Players, Seat};
 use crate::look::{Camera, Effects, Opening, Theme, View};
-use crate::platform::{Clock, Entry, Files, Forces, Given, Pads, Sound};
+use crate::platform::{Clock, Damage, Entry, Files, Forces, Given, Pads, Sound};
 use crate::records::Records;
 use crate::session::Session;
 use crate::settings::Settings;
@@ -169,17 +169,14 @@ impl Game {
         if settings_damage.is_some() && game.settings.haptics == 0.0 {
             game.notify(game.words().forces_zero.to_string());
         }
-        if settings_damage
-            .as_ref()
-            .is_some_and(|damage| damage.aside.is_some())
-        {
+        let is_aside = |damage: &Option<Damage>| {
+            { damage.as_ref() }.is_some_and(|damage| damage.aside.is_some())
+        };
+        if is_aside(&settings_damage) {
             // It is told once.
             game.keep_settings();
         }
-        if records_damage
-            .as_ref()
-            .is_some_and(|damage| damage.aside.is_some())
-        {
+        if is_aside(&records_damage) {
             game.files.keep_records(&game.records, &game.levels);
         }
         for damage in [settings_damage, records_damage].into_iter().flatten() {

@@ -2,6 +2,8 @@
 
 use super::Game;
 use crate::platform::{Damage, Entry, Kind, News};
+use std::sync::Arc;
+use tamaire_play::{Replay, ReplayError};
 
 impl Game {
     /// Keeps the settings, once they rest; what cannot be written is said and lost only at the end of the game.
@@ -17,21 +19,19 @@ impl Game {
     /// Takes a photo of how the round ended.
     pub fn keep_photo(&mut self) {
         let replay = self.session.round().replay();
-        self.files.save_picture(Kind::Photo, replay);
+        self.files.save_picture(Kind::Photo, Arc::new(replay));
     }
 
     /// Keeps the last seconds of the round as an animation.
     pub fn keep_clip(&mut self) {
         let replay = self.session.round().replay();
-        self.files.save_picture(Kind::Clip, replay);
+        self.files.save_picture(Kind::Clip, Arc::new(replay));
     }
 
-    /// The same of a round that was kept.
-    pub fn keep_clip_of(&mut self, name: &str) {
-        match self.files.replay(name) {
-            Ok(replay) => self.files.save_picture(Kind::Clip, replay),
-            Err(error) => self.notify((self.words().replay_error)(&error)),
-        }
+    /// The same of a round that was kept: fit for [`Game::open_kept`].
+    pub fn keep_clip_of(&mut self, replay: Arc<Replay>) -> Result<(), ReplayError> {
+        self.files.save_picture(Kind::Clip, replay);
+        Ok(())
     }
 
     /// Deletes a round that was kept.

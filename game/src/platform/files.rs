@@ -169,7 +169,7 @@ impl Files {
     }
 
     /// Makes a photo or a clip of a round and keeps it, unless another one is being made.
-    pub fn save_picture(&mut self, kind: Kind, replay: Replay) {
+    pub fn save_picture(&mut self, kind: Kind, replay: Arc<Replay>) {
         if self.developed.is_some() {
             return;
         }

@@ -9,13 +9,13 @@ use tamaire_play::{Playback, Replay};
 pub const ARE_THERE: bool = true;
 
 /// A picture of a round, as the bytes of its file; `told` hears the share that is done.
-pub fn shoot(kind: Kind, replay: Replay, told: &dyn Fn(f32)) -> Result<Vec<u8>, String> {
+pub fn shoot(kind: Kind, replay: Arc<Replay>, told: &dyn Fn(f32)) -> Result<Vec<u8>, String> {
     let film = match kind {
         Kind::Clip => Film::Clip,
         _ => Film::Photo,
     };
     let why = |error: &dyn std::error::Error| error.to_string();
-    let mut playback = Playback::new(Arc::new(replay)).map_err(|error| why(&error))?;
+    let mut playback = Playback::new(replay).map_err(|error| why(&error))?;
     while !playback.is_over() {
         playback.step().map_err(|error| why(&error))?;
     }

@@ -86,7 +86,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
         match wish {
             Wish::Watch => game.open_kept(&saved.name, Game::watch),
             Wish::Race => game.open_kept(&saved.name, Game::race),
-            Wish::Clip => game.keep_clip_of(&saved.name),
+            Wish::Clip => game.open_kept(&saved.name, Game::keep_clip_of),
             Wish::Delete if is_doomed(ui, &saved) => game.delete(&saved),
             Wish::Delete => {}
         }
