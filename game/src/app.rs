@@ -60,7 +60,7 @@ impl App {
         dress(&context.egui_ctx);
         let state = context.wgpu_render_state.as_ref().ok_or(NoGpu)?;
         let (stage, gpu) = (Stage::new(state), GpuWatch::of(state));
-        let screen_before = game.screen.clone();
+        let screen_before = game.screen();
         let navigators = Vec::new();
         let presses = Presses::default();
         context.egui_ctx.add_plugin(presses.clone());
@@ -85,7 +85,7 @@ impl App {
             return;
         }
         // What is to get a meaning has none now.
-        let in_menu = self.game.screen != Screen::Play && self.game.rebinding.is_none();
+        let in_menu = self.game.screen() != Screen::Play && self.game.rebinding.is_none();
         for change in changes {
             let Change::Pressed { device, control } = change else {
                 continue;
@@ -204,7 +204,7 @@ impl App {
         }
         point(game, ctx, &self.fingers);
         game.devices.keys = ctx.input(|input| input.keys_down.iter().copied().collect());
-        if game.screen == Screen::Play && game.turn().is_some() && game.session.is_played() {
+        if game.screen() == Screen::Play && game.turn().is_some() && game.session.is_played() {
             look_around(game, ctx, &mut self.fingers);
         }
         let mut taken = Vec::new();
@@ -237,7 +237,7 @@ impl App {
                 game.keep_settings();
             }
             // In a menu these move about in it, whatever they mean in a round. But for what must not be looked for.
-            let is_of_menu = game.screen != Screen::Play && OF_MENUS.contains(&key);
+            let is_of_menu = game.screen() != Screen::Play && OF_MENUS.contains(&key);
             if let Some(action) =
                 action.filter(|action| !is_of_menu || *action == Action::CutForces)
             {
@@ -276,9 +276,9 @@ impl eframe::App for App {
         self.hear_sticks(&ctx, seconds);
         self.hear_window(&ctx);
         self.game.pass(seconds);
-        if self.screen_before != self.game.screen {
+        if self.screen_before != self.game.screen() {
             // What had the focus is gone.
-            self.screen_before = self.game.screen.clone();
+            self.screen_before = self.game.screen();
             ctx.memory_mut(|memory| {
                 if let Some(id) = memory.focused() {
                     memory.surrender_focus(id);
@@ -288,8 +288,8 @@ impl eframe::App for App {
         screens::show(&mut self.game, &mut self.stage, ui);
         // What stands in these is of many widths.
         let is_list = matches!(
-            self.game.screen,
-            Screen::Settings(_) | Screen::Forces(_) | Screen::Replays
+            self.game.screen(),
+            Screen::Settings | Screen::Forces | Screen::Replays
         );
         self.presses.waiting().in_order = is_list && self.game.rebinding.is_none();
         ctx.request_repaint();

@@ -5,6 +5,7 @@ mod feel;
 mod heard;
 mod keep;
 mod lesson;
+mod screen;
 mod teach;
 mod time;
 pub mod trial;
@@ -20,32 +21,12 @@ use crate::words::Words;
 use fuwafuwa::world::TICK;
 use fuwafuwa_render::frame::ElementColour;
 use lesson::Lesson;
+pub use screen::{Screen, Screens};
 use std::sync::Arc;
 use tamaire_play::level::{NAMED, NAMED_3D};
 use tamaire_play::{AnyRound, Level, Outcome, Playback, Replay, ReplayError, shortened};
 use tamaire_sound::{Cue, Menu};
 use trial::Trial;
-
-/// What there is to see.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Screen {
-    /// The name of the game, and a body that plays by itself.
-    Title,
-    /// Which level?
-    Levels,
-    /// The round.
-    Play,
-    /// The round, standing still.
-    Paused,
-    /// How it went.
-    Result,
-    /// What players choose, and from where they came.
-    Settings(Box<Screen>),
-    /// What sticks and pads can do and what they are made to do, and from where the player came.
-    Forces(Box<Screen>),
-    /// Rounds that were kept.
-    Replays,
-}
 
 /// How long a notice stays at least [s].
 const NOTICE: f32 = 6.0;
@@ -57,8 +38,8 @@ const LETTERS: usize = 600;
 
 /// The state of the game.
 pub struct Game {
-    /// What is seen.
-    pub screen: Screen,
+    /// What is seen, and what below it.
+    pub screens: Screens,
     /// What players chose.
     pub settings: Settings,
     /// What they reached.
@@ -133,7 +114,7 @@ impl Game {
             .map(|level| Arc::new(level.expect("the tests open it")));
         let levels: Vec<Arc<Level>> = levels.collect();
         let mut game = Self {
-            screen: Screen::Title,
+            screens: Screens::default(),
             records: records.by_name(levels.iter().map(Arc::as_ref)),
             settings,
             files,
@@ -217,21 +198,40 @@ impl Game {
         self.session = attract(self.attracted);
     }
 
-    /// Shows another screen.
+    /// The screen that is seen.
+    pub fn screen(&self) -> Screen {
+        self.screens.top()
+    }
+
+    /// Opens a screen, or goes back to it where it is open.
     pub fn go(&mut self, screen: Screen) {
-        if screen == Screen::Title {
-            self.slow = false;
-            if self.session.is_played() {
-                self.attract();
-            }
-        }
-        if screen == Screen::Replays {
-            self.replays = self.files.replays();
-        }
+        self.screens.go(screen);
+        self.arrive();
+    }
+
+    /// Goes back to where the screen that is seen was opened.
+    pub fn go_back(&mut self) {
+        self.screens.close(self.screen());
+        self.arrive();
+    }
+
+    /// Goes back to where the round was begun.
+    pub fn leave_round(&mut self) {
+        self.screens.close(Screen::Play);
+        self.arrive();
+    }
+
+    /// Another screen is seen than before.
+    fn arrive(&mut self) {
+        self.slow &= self.screens.has(Screen::Play);
         self.stepping = false;
         self.rebinding = None;
         self.trial = None;
-        self.screen = screen;
+        match self.screen() {
+            Screen::Title if self.session.is_played() => self.attract(),
+            Screen::Replays => self.replays = self.files.replays(),
+            _ => {}
+        }
     }
 
     /// Begins a level.
@@ -323,7 +323,7 @@ impl Game {
 
     /// Something was asked for with a key or button.
     pub fn act(&mut self, action: Action, seat: Seat) {
-        match (&self.screen, action) {
+        match (self.screen(), action) {
             (_, Action::CutForces) => {
                 self.forces.cut();
                 self.notify(self.words().cut_now.to_string());
@@ -402,25 +402,19 @@ impl Game {
 
     /// Whether the round is seen, if dimly: what is not goes on neither in time nor in sound.
     pub fn is_seen(&self) -> bool {
-        !matches!(
-            self.screen,
-            Screen::Levels | Screen::Replays | Screen::Settings(_) | Screen::Forces(_)
-        )
+        use Screen::{Forces, Levels, Replays, Settings};
+        !matches!(self.screen(), Levels | Replays | Settings | Forces)
     }
 
     /// Whether people are in the middle of a round.
     pub fn is_in_round(&self) -> bool {
-        let mut below = &self.screen;
-        while let Screen::Settings(from) | Screen::Forces(from) = below {
-            below = from;
-        }
-        let is_on = matches!(below, Screen::Play | Screen::Paused);
+        let is_on = self.screens.has(Screen::Play);
         is_on && self.session.is_played() && !self.session.is_over()
     }
 
     /// Lets a round that people play stand still.
     pub fn rest(&mut self) {
-        if self.screen == Screen::Play && self.session.is_played() {
+        if self.screen() == Screen::Play && self.session.is_played() {
             self.go(Screen::Paused);
         }
     }

@@ -264,7 +264,7 @@ fn it_ends_when_the_stick_is_unplugged_and_the_round_waits() {
     let device = table.devices.remove(0);
     table.plug_in();
     table.frame();
-    assert_eq!(table.game.screen, Screen::Paused);
+    assert_eq!(table.game.screen(), Screen::Paused);
     assert_eq!(table.game.forces.report(device.id), None);
     table.until("let go", |_| {
         let told = note.take().last().map(|played| played.output);
@@ -397,7 +397,7 @@ fn a_pad_hums_when_it_pushes_and_rattles_when_it_tears() {
 #[test]
 fn a_stick_can_be_tried_and_measured() {
     let mut table = Table::with(1);
-    table.game.go(Screen::Forces(Box::new(Screen::Title)));
+    table.game.go(Screen::Forces);
     table.lean(0, 0.5);
     table.hears_nothing(0);
     table.game.trial = Some(Trial::spring(DeviceId(0)));
@@ -407,7 +407,7 @@ fn a_stick_can_be_tried_and_measured() {
     assert!(table.game.trial.is_none());
 
     // One that is measured is let go when nothing may be sent any more.
-    table.game.go(Screen::Forces(Box::new(Screen::Title)));
+    table.game.go(Screen::Forces);
     table.game.trial = Some(Trial::measure(DeviceId(0)));
     table.frame();
     table.game.settings.haptics = 0.0;
@@ -417,7 +417,7 @@ fn a_stick_can_be_tried_and_measured() {
     table.frame();
 
     // This one is built in the wrong way round, and goes where it is pushed.
-    table.game.go(Screen::Forces(Box::new(Screen::Title)));
+    table.game.go(Screen::Forces);
     table.lean(0, 0.0);
     table.game.trial = Some(Trial::measure(DeviceId(0)));
     table.until("measured", |table| {
@@ -465,12 +465,12 @@ fn a_pad_made_of_nothing_is_played_felt_and_unplugged() {
     assert!(pad.axis(0, 1.0));
     until(&mut game, "felt", &|_| pad.rumble()[0] > 0);
     assert!(pad.pad_button(PadButton::Start, true));
-    until(&mut game, "paused", &|game| game.screen == Screen::Paused);
+    until(&mut game, "paused", &|game| game.screen() == Screen::Paused);
     until(&mut game, "let go", &|_| pad.rumble() == [0; 2]);
     game.go(Screen::Play);
     until(&mut game, "felt again", &|_| pad.rumble()[0] > 0);
     drop(pad);
     until(&mut game, "unplugged", &|game| {
-        game.screen == Screen::Paused && game.devices.sticks.devices.is_empty()
+        game.screen() == Screen::Paused && game.devices.sticks.devices.is_empty()
     });
 }

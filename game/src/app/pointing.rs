@@ -22,7 +22,7 @@ const TURN: f32 = 1.5;
 /// mean the hand, nor while it turns the camera.
 pub(super) fn point(game: &mut Game, ctx: &Context, fingers: &Fingers) {
     let is_on_button = ctx.interaction_snapshot(|seen| !seen.hovered.is_empty());
-    if game.screen != Screen::Play || is_on_button {
+    if game.screen() != Screen::Play || is_on_button {
         game.devices.pointer = None;
         return;
     }

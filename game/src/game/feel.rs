@@ -86,7 +86,7 @@ impl Game {
 
     /// Why nobody feels anything now, if so.
     pub fn silence(&self) -> Option<Stop> {
-        match self.screen {
+        match self.screen() {
             _ if self.is_away => Some(Stop::FocusLost),
             Screen::Play if !self.session.is_played() => Some(Stop::Idle),
             Screen::Play if self.stepping => Some(Stop::Paused),

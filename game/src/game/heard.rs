@@ -31,7 +31,7 @@ pub(super) fn soundscape(game: &Game) -> Soundscape {
         squash: (game.effects.pressure / 1000.0).min(1.0),
         hold: (round.progress().held / hold).min(1.0),
         music: true,
-        hush: match game.screen {
+        hush: match game.screen() {
             _ if game.is_away => Hush::Everything,
             Screen::Paused | Screen::Title => Hush::World,
             _ if !game.is_seen() => Hush::World,

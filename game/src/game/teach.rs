@@ -44,6 +44,6 @@ impl Game {
     }
 
     fn is_played_in_space(&self) -> bool {
-        self.screen == Screen::Play && self.session.is_played() && self.turn().is_some()
+        self.screen() == Screen::Play && self.session.is_played() && self.turn().is_some()
     }
 }

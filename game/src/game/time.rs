@@ -19,7 +19,7 @@ impl Game {
             notice.1 -= seconds;
         }
         self.notices.retain(|notice| notice.1 > 0.0);
-        let runs = self.is_seen() && self.screen != Screen::Paused && !self.stepping;
+        let runs = self.is_seen() && self.screen() != Screen::Paused && !self.stepping;
         let pace = if self.slow { SLOW } else { 1.0 } * self.settings.speed;
         if runs {
             self.pass_ticks(seconds * pace);
@@ -29,8 +29,8 @@ impl Game {
             self.notify((self.words().replay_error)(&complaint));
             if !self.session.is_played() {
                 self.attract();
-                if self.screen == Screen::Play {
-                    self.go(Screen::Replays);
+                if self.screen() == Screen::Play {
+                    self.leave_round();
                 }
             }
         }
@@ -47,7 +47,7 @@ impl Game {
         self.celebrate(seconds);
         self.learn(seconds);
         self.feel(seconds);
-        if self.screen == Screen::Title && self.session.is_over() {
+        if self.screen() == Screen::Title && self.session.is_over() {
             self.cheered += seconds;
             if self.cheered > 4.0 {
                 self.cheered = 0.0;
@@ -72,7 +72,7 @@ impl Game {
         let still = self.settings.reduced_motion;
         // In menus the same keys and sticks move the focus; what is won is not torn any more.
         let is_won = self.session.round().progress().outcome.is_some();
-        let in_round = self.screen == Screen::Play && !is_won;
+        let in_round = self.screen() == Screen::Play && !is_won;
         let view = self.view;
         let mut is_heard = false;
         let mut tears = [0.0f32; PLAYERS];
@@ -136,7 +136,7 @@ impl Game {
         let Some(outcome) = self.session.round().progress().outcome else {
             return;
         };
-        if self.screen != Screen::Play {
+        if self.screen() != Screen::Play {
             return;
         }
         self.cheered += seconds;
@@ -204,13 +204,13 @@ mod tests {
         for screen in [
             Screen::Levels,
             Screen::Replays,
-            Screen::Settings(Box::new(Screen::Title)),
-            Screen::Forces(Box::new(Screen::Title)),
+            Screen::Settings,
+            Screen::Forces,
             Screen::Paused,
         ] {
             game.go(Screen::Title);
             assert_eq!(ticks_in(&mut game, 0.02), 1, "what plays by itself is seen");
-            game.go(screen.clone());
+            game.go(screen);
             assert_eq!(ticks_in(&mut game, 0.05), 0, "{screen:?}");
         }
     }

@@ -1,8 +1,8 @@
 //! What sticks and pads can do, what they say, and what they are made to do, as it happens.
 
 use super::kit::{Weight, button, card, fitted, header, page, place_of_page, slider, veil};
+use crate::game::Game;
 use crate::game::trial::Trial;
-use crate::game::{Game, Screen};
 use crate::look::Theme;
 use crate::words::Words;
 use egui::{Color32, Painter, Pos2, Rect, RichText, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
@@ -19,7 +19,7 @@ const ROW: f32 = 34.0;
 const LIGHT: f32 = 6.0;
 const LIGHTS: f32 = 17.0;
 
-pub(super) fn show(game: &mut Game, ui: &mut Ui, from: Screen) {
+pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     veil(ui, 255);
     let (theme, said) = (game.theme(), game.words());
     let before = game.settings.clone();
@@ -85,7 +85,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, from: Screen) {
     }
     if back {
         game.blip(Menu::Back);
-        game.go(from);
+        game.go_back();
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::kit::{fitted, focus_ring, header, liveliness, page, place_of_page, veil, words};
 use super::marks;
-use crate::game::{Game, Screen};
+use crate::game::Game;
 use crate::look::{Maps, Stage};
 use crate::records::WishName;
 use egui::{Color32, Rect, Response, Role, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
@@ -47,7 +47,7 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     });
     if back {
         game.blip(Menu::Back);
-        game.go(Screen::Title);
+        game.go_back();
     } else if let Some(level) = wanted {
         game.blip(Menu::Confirm);
         game.start(level);

@@ -27,14 +27,14 @@ pub fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     if game.is_seen() {
         play::world(game, stage, ui);
     }
-    match game.screen.clone() {
+    match game.screen() {
         Screen::Title => title::show(game, ui),
         Screen::Levels => levels::show(game, stage, ui),
         Screen::Play => play::show(game, ui),
         Screen::Paused => paused::show(game, ui),
         Screen::Result => result::show(game, ui),
-        Screen::Settings(from) => settings::show(game, ui, *from),
-        Screen::Forces(from) => forces::show(game, ui, *from),
+        Screen::Settings => settings::show(game, ui),
+        Screen::Forces => forces::show(game, ui),
         Screen::Replays => replays::show(game, ui),
     }
     notices(game, ui);
@@ -42,10 +42,10 @@ pub fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
 
 fn notices(game: &Game, ui: &Ui) {
     let screen = ui.max_rect();
-    let above = match game.screen {
+    let above = match game.screen() {
         Screen::Play => hud::height(game, ui),
         // Below the headline and the way back.
-        Screen::Levels | Screen::Settings(_) | Screen::Forces(_) | Screen::Replays => 92.0,
+        Screen::Levels | Screen::Settings | Screen::Forces | Screen::Replays => 92.0,
         _ => 18.0,
     };
     let mut y = screen.top() + above;
@@ -54,7 +54,7 @@ fn notices(game: &Game, ui: &Ui) {
     let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("notices"));
     let painter = ui.ctx().layer_painter(layer);
     // Over a round it stands in the row of what is different from usual, and where it can be taken back there is a button.
-    let is_said = matches!(game.screen, Screen::Play | Screen::Forces(_));
+    let is_said = matches!(game.screen(), Screen::Play | Screen::Forces);
     let is_cut = game.forces.is_cut() && !is_said;
     let lasting = is_cut.then(|| (game.words().cut_now.to_string(), 1.0));
     let passing = game.notices.iter().cloned();

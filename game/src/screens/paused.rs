@@ -17,13 +17,8 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 (said.go_on, |game| game.go(Screen::Play)),
                 (said.again, Game::retry),
                 (said.save, Game::keep_replay),
-                (said.settings, |game| {
-                    game.go(Screen::Settings(Box::new(Screen::Paused)))
-                }),
-                (said.levels, |game| {
-                    game.go(Screen::Title);
-                    game.go(Screen::Levels);
-                }),
+                (said.settings, |game| game.go(Screen::Settings)),
+                (said.levels, |game| game.go(Screen::Levels)),
             ];
             for (place, (text, act)) in options.into_iter().enumerate() {
                 let weight = if place == 0 {

@@ -17,7 +17,7 @@ pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
         .levels
         .first()
         .is_some_and(|first| first.id == level.id);
-    let hint = match game.screen {
+    let hint = match game.screen() {
         Screen::Play | Screen::Paused if game.session.is_played() => {
             match is_first && game.records.of(&level.id).is_none() {
                 true => Hint::Way,
@@ -48,7 +48,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     }
     let is_seen = game.session.round().progress().outcome.is_none() || game.has_cheered();
     if !game.session.is_played() && game.session.is_over() && is_seen {
-        game.go(Screen::Replays);
+        game.leave_round();
     }
 }
 

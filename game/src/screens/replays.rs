@@ -1,7 +1,7 @@
 //! Rounds that were kept.
 
 use super::kit::{Weight, button, card, fitted, header, page, place_of_page, veil};
-use crate::game::{Game, Screen};
+use crate::game::Game;
 use crate::platform::Entry;
 use crate::platform::HAS_PICTURES;
 use egui::{Id, RichText, Ui, vec2};
@@ -79,7 +79,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     });
     if back {
         game.blip(Menu::Back);
-        game.go(Screen::Title);
+        game.go_back();
     } else if let Some((place, wish)) = wanted {
         game.blip(Menu::Confirm);
         let saved = game.replays[place].clone();

@@ -166,6 +166,5 @@ fn race(game: &mut Game) {
 }
 
 fn to_levels(game: &mut Game) {
-    game.go(Screen::Title);
     game.go(Screen::Levels);
 }

@@ -9,7 +9,7 @@ use crate::words::Language;
 use egui::{RichText, Ui, vec2};
 use tamaire_sound::Menu;
 
-pub(super) fn show(game: &mut Game, ui: &mut Ui, from: Screen) {
+pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     veil(ui, 255);
     let (theme, said) = (game.theme(), game.words());
     let before = game.settings.clone();
@@ -133,11 +133,10 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, from: Screen) {
     }
     if to_forces {
         game.blip(Menu::Confirm);
-        game.go(Screen::Forces(Box::new(Screen::Settings(Box::new(from)))));
+        game.go(Screen::Forces);
     } else if back {
-        game.rebinding = None;
         game.blip(Menu::Back);
-        game.go(from);
+        game.go_back();
     }
 }
 

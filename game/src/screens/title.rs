@@ -28,7 +28,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
         let options = [
             (said.play, Screen::Levels),
             (said.replays, Screen::Replays),
-            (said.settings, Screen::Settings(Box::new(Screen::Title))),
+            (said.settings, Screen::Settings),
         ];
         for (place, (text, screen)) in options.into_iter().enumerate() {
             let (weight, size) = match place {

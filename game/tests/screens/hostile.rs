@@ -179,7 +179,7 @@ fn every_button_fits_into_the_smallest_window_with_the_largest_letters() {
         for (screen, count) in screens.into_iter().zip([7, 5, 5]) {
             for (language, _) in Language::ALL {
                 game(&mut window).settings.language = language;
-                game(&mut window).screen = screen.clone();
+                game(&mut window).go(screen);
                 frames(&mut window, 3);
                 let room = window.ctx.content_rect();
                 let buttons: Vec<_> = window.get_all_by_role(Role::Button).collect();
@@ -242,7 +242,7 @@ fn two_thousand_frames_of_anything_are_survived() {
         match (frame % 100, random.u32(..5)) {
             (99, 0) => game.go(Screen::Title),
             (99, 1) => game.go(Screen::Replays),
-            (99, 2) => game.go(Screen::Settings(Box::new(Screen::Levels))),
+            (99, 2) => game.go(Screen::Settings),
             (99, _) => game.start(random.usize(..game.levels.len())),
             _ => {}
         }

@@ -58,10 +58,10 @@ fn every_screen() {
     let levels = game(&mut window).levels.len();
     frames(&mut window, levels);
     pictures(&mut window, "levels");
-    game(&mut window).go(Screen::Settings(Box::new(Screen::Title)));
+    game(&mut window).go(Screen::Settings);
     pictures(&mut window, "settings");
     game(&mut window).pads = sticks_and_pads();
-    game(&mut window).go(Screen::Forces(Box::new(Screen::Title)));
+    game(&mut window).go(Screen::Forces);
     // Its thread says what they can do.
     frames(&mut window, 5);
     pictures(&mut window, "forces");

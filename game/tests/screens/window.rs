@@ -54,7 +54,7 @@ pub fn game(window: &mut Window) -> &mut Game {
 }
 
 pub fn screen(window: &Window) -> Screen {
-    window.state().game.screen.clone()
+    window.state().game.screen()
 }
 
 /// Ticks that the round has lasted.
