@@ -36,13 +36,13 @@ fn round() -> Vec<Duration> {
     let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
     game.start(0);
     let mut bot = Bot::new(BotKind::Shave, 1);
-    let mut beside = Round::<Dim2>::new(game.session.round().level().clone());
+    let mut beside = Round::<Dim2>::new(game.bout.round().level().clone());
     let mut rest = Vec::new();
-    while game.won.is_none() && rest.len() < 40 * 60 {
-        game.devices.pointer = game.session.round().ask(&mut bot).goal(0);
+    while game.bout.won.is_none() && rest.len() < 40 * 60 {
+        game.controls.devices.pointer = game.bout.round().ask(&mut bot).goal(0);
         let whole = time(|| game.pass(TICK));
         // The very same tick without a game around it.
-        let played = game.session.round().frames();
+        let played = game.bout.round().frames();
         let Some(&frame) = played.get(beside.frames().len()) else {
             continue;
         };
@@ -51,7 +51,7 @@ fn round() -> Vec<Duration> {
         });
         rest.push(whole.saturating_sub(simulation));
     }
-    assert_eq!(beside.world().hash(), game.session.round().hash());
+    assert_eq!(beside.world().hash(), game.bout.round().hash());
     rest
 }
 

@@ -85,23 +85,23 @@ impl App {
             return;
         }
         // What is to get a meaning has none now.
-        let in_menu = self.game.screen() != Screen::Play && self.game.rebinding.is_none();
+        let in_menu = self.game.screen() != Screen::Play && self.game.controls.rebinding.is_none();
         for change in changes {
             let Change::Pressed { device, control } = change else {
                 continue;
             };
             screens::note_use_of_keys(ctx, true);
-            self.game.note_stick(device);
+            self.game.controls.note_stick(device);
             let is_of_menus = matches!(
                 control,
                 Control::Pad(PadButton::South | PadButton::East) | Control::Button(0 | 1)
             );
-            if let Some(action) = self.game.rebinding {
+            if let Some(action) = self.game.controls.rebinding {
                 if action == Action::CutForces && is_of_menus {
                     // Nobody could go on in a menu without cutting forces.
                     continue;
                 }
-                self.game.rebinding = None;
+                self.game.controls.rebinding = None;
                 self.game.settings.bindings.bind_button(action, control);
                 self.game.keep_settings();
                 continue;
@@ -122,7 +122,7 @@ impl App {
                 (_, None) => {}
             }
         }
-        let devices = self.game.devices.sticks.devices.clone();
+        let devices = self.game.controls.devices.sticks.devices.clone();
         self.navigators
             .retain(|(id, _)| devices.iter().any(|device| device.id == *id));
         for device in &devices {
@@ -133,7 +133,7 @@ impl App {
             });
             for direction in self.navigators[place].1.step(device, seconds) {
                 screens::note_use_of_keys(ctx, true);
-                self.game.note_stick(device.id);
+                self.game.controls.note_stick(device.id);
                 // One that is tried is pushed about for its own sake.
                 let is_tried = self
                     .game
@@ -180,17 +180,17 @@ impl App {
                 Event::Key { pressed, .. } => {
                     screens::note_use_of_keys(ctx, true);
                     if *pressed && !is_by_stick {
-                        game.means = Means::Keys;
+                        game.controls.means = Means::Keys;
                     }
                 }
                 Event::PointerMoved(_) | Event::PointerButton { .. } => {
                     screens::note_use_of_keys(ctx, false);
                     // A finger is told of as a mouse too, after it.
                     if !is_touched {
-                        game.means = Means::Mouse;
+                        game.controls.means = Means::Mouse;
                     }
                 }
-                Event::Touch { .. } => game.means = Means::Fingers,
+                Event::Touch { .. } => game.controls.means = Means::Fingers,
                 // A window may never get the focus, and be played with the mouse: only losing it counts.
                 Event::WindowFocused(focused) => {
                     game.is_away = self.had_focus && !focused;
@@ -203,8 +203,11 @@ impl App {
             }
         }
         point(game, ctx, &self.fingers);
-        game.devices.keys = ctx.input(|input| input.keys_down.iter().copied().collect());
-        if game.screen() == Screen::Play && game.turn().is_some() && game.session.is_played() {
+        game.controls.devices.keys = ctx.input(|input| input.keys_down.iter().copied().collect());
+        if game.screen() == Screen::Play
+            && game.bout.turn().is_some()
+            && game.bout.session.is_played()
+        {
             look_around(game, ctx, &mut self.fingers);
         }
         let mut taken = Vec::new();
@@ -218,12 +221,12 @@ impl App {
             else {
                 continue;
             };
-            if let Some(action) = game.rebinding {
+            if let Some(action) = game.controls.rebinding {
                 if action == Action::CutForces && OF_MENUS.contains(&key) && key != Key::Escape {
                     taken.push(key);
                     continue;
                 }
-                game.rebinding = None;
+                game.controls.rebinding = None;
                 if key != Key::Escape {
                     game.settings.bindings.bind_key(action, key);
                     game.keep_settings();
@@ -291,7 +294,7 @@ impl eframe::App for App {
             self.game.screen(),
             Screen::Settings | Screen::Forces | Screen::Replays
         );
-        self.presses.waiting().in_order = is_list && self.game.rebinding.is_none();
+        self.presses.waiting().in_order = is_list && self.game.controls.rebinding.is_none();
         ctx.request_repaint();
     }
 

@@ -1,40 +1,36 @@
 //! The state of the game between two frames, and what can happen to it. Everything that a screen
 //! shows is worked out from here.
 
+mod bout;
+mod controls;
 mod feel;
 mod heard;
 mod keep;
 mod lesson;
+mod notices;
 mod screen;
 mod teach;
 mod time;
 pub mod trial;
 
 use crate::attract::attract;
-use crate::input::{Action, Devices, Means, Players, Seat};
-use crate::look::{Camera, Effects, Opening, Theme, View};
+use crate::input::{Action, Seat};
+use crate::look::Theme;
 use crate::platform::{Clock, Damage, Entry, Files, Forces, Given, Pads, Sound};
 use crate::records::Records;
 use crate::session::Session;
 use crate::settings::Settings;
 use crate::words::Words;
+pub use bout::Bout;
+pub use controls::Controls;
 use fuwafuwa::world::TICK;
-use fuwafuwa_render::frame::ElementColour;
-use lesson::Lesson;
+pub use notices::{Notice, Notices};
 pub use screen::{Screen, Screens};
 use std::sync::Arc;
 use tamaire_play::level::{NAMED, NAMED_3D};
-use tamaire_play::{AnyRound, Level, Outcome, Playback, Replay, ReplayError, shortened};
+use tamaire_play::{Level, Playback, Replay, ReplayError};
 use tamaire_sound::{Cue, Menu};
 use trial::Trial;
-
-/// How long a notice stays at least [s].
-const NOTICE: f32 = 6.0;
-/// How fast it can be read, at leisure [letters/s].
-const READING: f32 = 15.0;
-
-/// Most letters of a notice: what it quotes may be as long as a file.
-const LETTERS: usize = 600;
 
 /// The state of the game.
 pub struct Game {
@@ -50,53 +46,27 @@ pub struct Game {
     pub levels: Vec<Arc<Level>>,
     /// Which of them is played.
     pub chosen: usize,
-    /// The round that is seen, behind whatever screen.
-    pub session: Session,
-    /// Who plays.
-    pub players: Players,
-    /// What their devices say.
-    pub devices: Devices,
-    /// With what something was done last.
-    pub means: Means,
-    /// What flies about.
-    pub effects: Effects,
-    /// From where it is seen.
-    pub camera: Camera,
-    /// What it saw in the last frame.
-    pub view: Option<View>,
-    /// What the colours of elements tell, when they are seen instead of the skin.
-    pub elements: Option<ElementColour>,
-    /// How far bodies in space are opened for that.
-    pub opening: Opening,
-    /// Whether time goes slowly.
-    pub slow: bool,
-    /// Whether time stands still, but for single steps.
-    pub stepping: bool,
-    /// The last win: how, and whether it was the best by its route.
-    pub won: Option<(Outcome, bool)>,
+    /// The round that is on the screen.
+    pub bout: Bout,
+    /// With what it is played.
+    pub controls: Controls,
     /// The rounds that were kept, as they were when their screen came up.
     pub replays: Vec<Entry>,
-    /// What the player should know, and for how long [s].
-    pub notices: Vec<(String, f32)>,
+    /// What the player should know.
+    pub notices: Notices,
     /// Seconds since the game began.
     pub time: f64,
     /// Tells how long ticks take.
     pub clock: Clock,
-    /// An action whose key or button the next one pressed becomes.
-    pub rebinding: Option<Action>,
     /// Whether the window has lost the focus.
     pub is_away: bool,
-    /// The sticks and pads that are listened to.
-    pub pads: Pads,
-    /// What they are made to do.
+    /// What sticks and pads are made to do.
     pub forces: Forces,
     /// The one that is tried or measured.
     pub trial: Option<Trial>,
-    lesson: Lesson,
     sound: Sound,
     /// Why nothing is heard, as the player was told last.
     trouble: Option<String>,
-    cheered: f32,
     /// How many recorded rounds the title has shown.
     attracted: usize,
 }
@@ -118,33 +88,19 @@ impl Game {
             records: records.by_name(levels.iter().map(Arc::as_ref)),
             settings,
             files,
-            session: attract(0),
+            bout: Bout::new(attract(0)),
+            controls: Controls::new(pads),
             levels,
             chosen: 0,
-            players: Players::default(),
-            devices: Devices::default(),
-            means: Means::default(),
-            effects: Effects::default(),
-            camera: Camera::default(),
-            view: None,
-            elements: None,
-            opening: Opening::default(),
-            slow: false,
-            stepping: false,
-            won: None,
             replays: Vec::new(),
-            notices: Vec::new(),
+            notices: Notices::default(),
             time: 0.0,
             clock: Clock::of_machine(),
-            rebinding: None,
             is_away: false,
-            lesson: Lesson::default(),
             trouble: None,
             sound,
-            pads,
             forces: Forces::default(),
             trial: None,
-            cheered: 0.0,
             attracted: 0,
         };
         if settings_damage.is_some() && game.settings.haptics == 0.0 {
@@ -163,7 +119,7 @@ impl Game {
         for damage in [settings_damage, records_damage].into_iter().flatten() {
             game.tell_of(damage);
         }
-        if game.pads.complaint().is_some() {
+        if game.controls.pads.complaint().is_some() {
             game.notify(game.words().no_sticks.to_string());
         }
         game
@@ -181,10 +137,7 @@ impl Game {
 
     /// Tells the player something; what is still to be read is not said twice.
     pub fn notify(&mut self, text: String) {
-        let text = shortened(&text, LETTERS);
-        self.notices.retain(|(known, _)| *known != text);
-        let reading = text.chars().count() as f32 / READING;
-        self.notices.push((text, reading.max(NOTICE)));
+        self.notices.tell(&text);
     }
 
     /// A sound of the menus.
@@ -195,7 +148,7 @@ impl Game {
     /// Plays the next recorded round.
     fn attract(&mut self) {
         self.attracted += 1;
-        self.session = attract(self.attracted);
+        self.bout.session = attract(self.attracted);
     }
 
     /// The screen that is seen.
@@ -223,12 +176,12 @@ impl Game {
 
     /// Another screen is seen than before.
     fn arrive(&mut self) {
-        self.slow &= self.screens.has(Screen::Play);
-        self.stepping = false;
-        self.rebinding = None;
+        self.bout.slow &= self.screens.has(Screen::Play);
+        self.bout.stepping = false;
+        self.controls.rebinding = None;
         self.trial = None;
         match self.screen() {
-            Screen::Title if self.session.is_played() => self.attract(),
+            Screen::Title if self.bout.session.is_played() => self.attract(),
             Screen::Replays => self.replays = self.files.replays(),
             _ => {}
         }
@@ -237,45 +190,35 @@ impl Game {
     /// Begins a level.
     pub fn start(&mut self, level: usize) {
         let level = level.min(self.levels.len() - 1);
-        self.session = Session::of_people(self.levels[level].clone());
-        self.camera.face_front();
-        self.begin();
+        self.bout.camera.face_front();
+        self.begin(Session::of_people(self.levels[level].clone()));
     }
 
     /// Begins the level again, against a round that somebody played in it.
     pub fn race(&mut self, replay: Arc<Replay>) -> Result<(), ReplayError> {
         let ghost = Playback::new(replay)?;
         let level = ghost.round().level().clone();
-        self.session = Session::of_people(level).against(ghost);
-        self.begin();
+        self.begin(Session::of_people(level).against(ghost));
         Ok(())
     }
 
     /// Shows a round that somebody played.
     pub fn watch(&mut self, replay: Arc<Replay>) -> Result<(), ReplayError> {
-        self.session = Session::of_replay(replay)?;
-        self.begin();
+        self.begin(Session::of_replay(replay)?);
         Ok(())
     }
 
     /// The same again from its start.
     pub fn retry(&mut self) {
-        self.session = self.session.again();
-        self.begin();
+        self.begin(self.bout.session.again());
     }
 
-    fn begin(&mut self) {
-        self.opening = Opening::begin(self.time);
-        let level = self.session.round().level();
+    fn begin(&mut self, session: Session) {
+        self.bout.begin(session, self.time);
+        self.controls.begin();
+        let level = self.bout.round().level();
         let known = self.levels.iter().position(|known| known == level);
         self.chosen = known.unwrap_or(self.chosen);
-        self.players.start();
-        self.effects = Effects::default();
-        self.lesson.begin();
-        // They mean places of the round before.
-        (self.devices.pointer, self.devices.lift, self.view) = (None, 0.0, None);
-        self.won = None;
-        self.cheered = 0.0;
         self.go(Screen::Play);
     }
 
@@ -334,70 +277,39 @@ impl Game {
                 self.blip(Menu::Back);
             }
             (Screen::Paused, Action::Pause) => self.go(Screen::Play),
-            (Screen::Play | Screen::Title, Action::Elements) => {
-                if self.elements.is_none() {
-                    self.opening = Opening::begin(self.time);
-                }
-                self.elements = match self.elements {
-                    None => Some(ElementColour::Level),
-                    Some(ElementColour::Level) => Some(ElementColour::Strain),
-                    Some(ElementColour::Strain) => None,
-                }
-            }
+            (Screen::Play | Screen::Title, Action::Elements) => self.bout.show_elements(self.time),
             // Whoever takes single steps goes on with this.
-            (Screen::Play, Action::Slow) if self.stepping => self.stepping = false,
-            (Screen::Play, Action::Slow) => self.slow = !self.slow,
+            (Screen::Play, Action::Slow) if self.bout.stepping => self.bout.stepping = false,
+            (Screen::Play, Action::Slow) => self.bout.slow = !self.bout.slow,
             (Screen::Play, Action::Step) => {
-                self.stepping = true;
-                self.session.forget_time();
+                self.bout.stepping = true;
+                self.bout.session.forget_time();
                 self.pass_ticks(TICK);
-                self.effects.pass(TICK);
+                self.bout.effects.pass(TICK);
             }
-            (Screen::Play, Action::Join) if self.takes_two() => self.players.join(seat),
+            (Screen::Play, Action::Join) if self.bout.takes_two() => {
+                self.controls.players.join(seat)
+            }
             _ => {}
         }
-    }
-
-    /// In space by how much the camera went around to the right [rad].
-    pub fn turn(&self) -> Option<f32> {
-        let is_space = matches!(self.session.round(), AnyRound::Space(_));
-        is_space.then(|| self.camera.turn())
     }
 
     /// Takes back that all forces were cut.
     pub fn restore_forces(&mut self) {
         self.forces.restore();
-        let cut = self.words().cut_now;
-        self.notices.retain(|(text, _)| text != cut);
+        self.notices.take_back(self.words().cut_now);
         self.notify(self.words().restored.to_string());
-    }
-
-    /// Whether a second player can come in.
-    fn takes_two(&self) -> bool {
-        let level = self.session.round().level();
-        self.session.is_played() && level.scene().hand.len() > 1
     }
 
     /// Takes in what sticks and pads say; gives back what was pressed since. When one is unplugged
     /// the round waits.
     pub fn hear_sticks(&mut self) -> Vec<sticks::Change> {
-        let now = self.pads.snapshot();
-        let changes = now.since(&self.devices.sticks);
-        self.devices.sticks = now;
+        let changes = self.controls.hear_sticks();
         let has_left = |change: &sticks::Change| matches!(change, sticks::Change::Disconnected(_));
         if changes.iter().any(has_left) {
             self.rest();
         }
         changes
-    }
-
-    /// Something was done with a stick or pad.
-    pub fn note_stick(&mut self, id: sticks::DeviceId) {
-        let device = self.devices.sticks.device(id);
-        self.means = match device.is_some_and(|device| device.pad.is_some()) {
-            true => Means::Pad,
-            false => Means::Stick,
-        };
     }
 
     /// Whether the round is seen, if dimly: what is not goes on neither in time nor in sound.
@@ -409,12 +321,12 @@ impl Game {
     /// Whether people are in the middle of a round.
     pub fn is_in_round(&self) -> bool {
         let is_on = self.screens.has(Screen::Play);
-        is_on && self.session.is_played() && !self.session.is_over()
+        is_on && self.bout.session.is_played() && !self.bout.session.is_over()
     }
 
     /// Lets a round that people play stand still.
     pub fn rest(&mut self) {
-        if self.screen() == Screen::Play && self.session.is_played() {
+        if self.screen() == Screen::Play && self.bout.session.is_played() {
             self.go(Screen::Paused);
         }
     }

@@ -42,7 +42,7 @@ impl Table {
         }
         let notes = devices.iter().map(|device| device.id);
         let notes = notes.zip(self.notes.iter().cloned()).collect();
-        self.game.pads = Pads::of(Snapshot { devices }).noting(notes);
+        self.game.controls.pads = Pads::of(Snapshot { devices }).noting(notes);
     }
 
     /// Pushes the first stick, or another, to the right.
@@ -176,7 +176,7 @@ fn in_space_a_stick_feels_the_floor_as_the_camera_sees_it() {
         let mut levels = table.game.levels.iter();
         let classic = levels.position(|level| level.id == "classic-3d");
         table.game.start(classic.expect("it comes along"));
-        table.game.camera.orbit(turn, 0.0);
+        table.game.bout.camera.orbit(turn, 0.0);
         let mut share = 0.0;
         table.until("pushed back", |table| {
             share += if share < 1.0 { 0.01 } else { 0.0 };
@@ -237,7 +237,7 @@ fn it_ends_with_a_win() {
     table.until("won", |table| {
         // The bot plays with the stick, that points at places.
         pushed |= table.told(0).is_some_and(|output| !output.is_zero());
-        let round = table.game.session.round();
+        let round = table.game.bout.round();
         let [low, high] = round.level().arena();
         let goal = round.ask(&mut bot).goal(0).expect("it plays");
         let [x, y] = [0, 1].map(|axis| {
@@ -249,7 +249,7 @@ fn it_ends_with_a_win() {
         let share = (0.15 + 0.8 * lean) / lean;
         table.devices[0].axes = vec![share * x, -share * y];
         table.plug_in();
-        table.game.session.round().progress().outcome.is_some()
+        table.game.bout.round().progress().outcome.is_some()
     });
     assert!(pushed);
     assert_eq!(table.silent(0), Some(Stop::Won));
@@ -305,7 +305,7 @@ fn the_emergency_key_ends_it_until_it_is_taken_back() {
     table.game.act(Action::CutForces, Seat::Keys);
     table.until_let_go(0);
     table.hears_nothing(0);
-    assert!(table.game.forces.is_cut() && !table.game.notices.is_empty());
+    assert!(table.game.forces.is_cut() && table.game.notices.iter().next().is_some());
     // In a new round as well.
     table.game.start(0);
     table.hears_nothing(0);
@@ -343,7 +343,7 @@ fn each_player_feels_the_own_hand() {
 #[test]
 fn a_stick_that_lies_on_the_table_is_left_alone() {
     let mut table = Table::pushing();
-    table.game.devices.keys.insert(egui::Key::D);
+    table.game.controls.devices.keys.insert(egui::Key::D);
     table.lean(0, 0.0);
     table.until("left alone", |table| table.silent(0) == Some(Stop::Idle));
     table.until_at_rest();
@@ -360,13 +360,13 @@ fn a_pad_that_is_put_down_hums_no_more_though_its_hand_presses() {
     let mut hummed = false;
     table.until("pushed", |table| {
         hummed |= table.told(0).is_some_and(|output| !output.is_zero());
-        table.game.session.round().ticks() > 150
+        table.game.bout.round().ticks() > 150
     });
     assert!(hummed);
     table.lean(0, 0.0);
     table.until("left alone", |table| table.silent(0) == Some(Stop::Idle));
     table.until_at_rest();
-    let hand = &table.game.session.round().hands()[0];
+    let hand = &table.game.bout.round().hands()[0];
     let [x, y, _] = tamaire::felt::contact(hand);
     assert!(x.hypot(y) > 10.0, "{x} {y}");
     table.hears_nothing(0);
@@ -381,7 +381,7 @@ fn a_pad_hums_when_it_pushes_and_rattles_when_it_tears() {
     let (mut hummed, mut rattled) = (false, false);
     table.until("torn", |table| {
         // To and fro, as hard as it goes.
-        let to_and_fro = table.game.session.round().ticks() / 20 % 3;
+        let to_and_fro = table.game.bout.round().ticks() / 20 % 3;
         table.lean(0, if to_and_fro == 2 { -1.0 } else { 1.0 });
         for played in table.notes[0].take() {
             let Output::Rumble { low, high } = played.output else {
@@ -471,6 +471,6 @@ fn a_pad_made_of_nothing_is_played_felt_and_unplugged() {
     until(&mut game, "felt again", &|_| pad.rumble()[0] > 0);
     drop(pad);
     until(&mut game, "unplugged", &|game| {
-        game.screen() == Screen::Paused && game.devices.sticks.devices.is_empty()
+        game.screen() == Screen::Paused && game.controls.devices.sticks.devices.is_empty()
     });
 }

@@ -23,27 +23,31 @@ const TURN: f32 = 1.5;
 pub(super) fn point(game: &mut Game, ctx: &Context, fingers: &Fingers) {
     let is_on_button = ctx.interaction_snapshot(|seen| !seen.hovered.is_empty());
     if game.screen() != Screen::Play || is_on_button {
-        game.devices.pointer = None;
+        game.controls.devices.pointer = None;
         return;
     }
     let at = match fingers.are_down() {
         true => fingers.first(),
         false => mouse_at(ctx),
     };
-    let (Some(view), Some(at)) = (game.view, at) else {
+    let (Some(view), Some(at)) = (game.bout.view, at) else {
         return;
     };
-    let round = game.session.round();
+    let round = game.bout.round();
     let place = match round {
         AnyRound::Plane(_) => view.in_world(at, 0.0),
         // In space it points at the floor, where the hand's shadow is: so nothing jumps when the hand has risen.
         AnyRound::Space(in_space) => {
-            let goal = game.players.wanted(0).unwrap_or(round.hands()[0].goal());
+            let goal = game
+                .controls
+                .players
+                .wanted(0)
+                .unwrap_or(round.hands()[0].goal());
             let [x, _, z] = view.in_world(at, floor(in_space));
             [x, goal[1], z]
         }
     };
-    game.devices.pointer = Some(place);
+    game.controls.devices.pointer = Some(place);
 }
 
 /// How high what the first hand begins above is [m]: the floor, or a shelf. It stays the same when the hand comes past
@@ -95,20 +99,22 @@ pub(super) fn look_around(game: &mut Game, ctx: &Context, fingers: &mut Fingers)
     });
     let fingers = fingers.take();
     // The hand rises as far as the finger does.
-    let metres = game.view.map_or(0.0, |view| 1.0 / view.scale);
-    game.devices.lift += metres * fingers.up;
-    let deeper = CUT * wheel + CUTTING * seconds * game.devices.deeper(&game.settings.bindings);
-    if game.elements.is_none() {
-        game.devices.lift += WHEEL * wheel;
+    let metres = game.bout.view.map_or(0.0, |view| 1.0 / view.scale);
+    game.controls.devices.lift += metres * fingers.up;
+    let deeper =
+        CUT * wheel + CUTTING * seconds * game.controls.devices.deeper(&game.settings.bindings);
+    if game.bout.elements.is_none() {
+        game.controls.devices.lift += WHEEL * wheel;
     } else if deeper != 0.0 {
         let still = game.settings.reduced_motion;
-        game.opening.cut(deeper, game.time, still);
+        game.bout.opening.cut(deeper, game.time, still);
     }
-    game.camera
+    game.bout
+        .camera
         .orbit(-DRAG * (mouse.x + fingers.right), DRAG * mouse.y);
-    let turn = TURN * seconds * game.devices.turn(&game.settings.bindings);
-    game.camera.orbit(turn.x, turn.y);
+    let turn = TURN * seconds * game.controls.devices.turn(&game.settings.bindings);
+    game.bout.camera.orbit(turn.x, turn.y);
     if twice {
-        game.camera.go_home();
+        game.bout.camera.go_home();
     }
 }

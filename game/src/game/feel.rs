@@ -15,18 +15,21 @@ impl Game {
     pub(super) fn feel(&mut self, seconds: f32) {
         self.pass_trial(seconds);
         let (settings, trial) = (&self.settings, &self.trial);
-        self.forces
-            .attend(&self.devices.sticks, &self.pads, |device| {
+        self.forces.attend(
+            &self.controls.devices.sticks,
+            &self.controls.pads,
+            |device| {
                 let usual = settings.force(&device.about.guid)?;
                 let tried = trial.as_ref().and_then(|trial| trial.settings(device.id));
                 Some(tried.unwrap_or(usual))
-            });
-        let sticks = self.devices.sticks.devices.iter();
+            },
+        );
+        let sticks = self.controls.devices.sticks.devices.iter();
         let pushing = sticks.map(|device| device.id).filter(|&id| {
             let report = self.forces.report(id);
             report.is_some_and(|report| report.ability == Ability::Force)
         });
-        self.devices.pushing = pushing.collect();
+        self.controls.devices.pushing = pushing.collect();
         let silence = self.silence();
         self.forces.tell(|id| match (trial, silence) {
             (Some(trial), _) => trial.state(id).ok_or(Stop::Menu),
@@ -45,12 +48,12 @@ impl Game {
         let is_held = self.forces.report(trial.device).is_some();
         let outcome = match self.is_away || !is_held || self.forces.is_cut() {
             true => Outcome::Gone,
-            false => trial.pass(&self.devices.sticks, seconds),
+            false => trial.pass(&self.controls.devices.sticks, seconds),
         };
         if outcome == Outcome::GoesOn {
             return;
         }
-        let device = self.devices.sticks.device(trial.device);
+        let device = self.controls.devices.sticks.device(trial.device);
         self.trial = None;
         match (outcome, device) {
             (Outcome::Known(Some(found)), Some(device)) => {
@@ -69,12 +72,12 @@ impl Game {
 
     /// What the player who holds a device feels.
     fn state(&self, id: DeviceId) -> Option<State> {
-        let player = (0..PLAYERS).find(|&player| self.players.held(player) == Some(id))?;
-        let hands = self.session.round().hands();
-        let contact = felt::on_stick(felt::contact(hands.get(player)?), self.turn());
-        let pushes_back = self.devices.pushing.contains(&id);
+        let player = (0..PLAYERS).find(|&player| self.controls.players.held(player) == Some(id))?;
+        let hands = self.bout.round().hands();
+        let contact = felt::on_stick(felt::contact(hands.get(player)?), self.bout.turn());
+        let pushes_back = self.controls.devices.pushing.contains(&id);
         // What was put down hums no more, though the hand still presses. A stick that pushes back may be held still.
-        if !pushes_back && self.players.rested(player) > RESTED {
+        if !pushes_back && self.controls.players.rested(player) > RESTED {
             return None;
         }
         let manner = match self.settings.stick_places || pushes_back {
@@ -88,9 +91,9 @@ impl Game {
     pub fn silence(&self) -> Option<Stop> {
         match self.screen() {
             _ if self.is_away => Some(Stop::FocusLost),
-            Screen::Play if !self.session.is_played() => Some(Stop::Idle),
-            Screen::Play if self.stepping => Some(Stop::Paused),
-            Screen::Play => felt::silence(self.session.round()),
+            Screen::Play if !self.bout.session.is_played() => Some(Stop::Idle),
+            Screen::Play if self.bout.stepping => Some(Stop::Paused),
+            Screen::Play => felt::silence(self.bout.round()),
             Screen::Paused => Some(Stop::Paused),
             _ => Some(Stop::Menu),
         }

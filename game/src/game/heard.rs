@@ -13,7 +13,7 @@ const LANDING: f32 = 0.3;
 
 /// What there is to hear now.
 pub(super) fn soundscape(game: &Game) -> Soundscape {
-    let round = game.session.round();
+    let round = game.bout.round();
     let hold = round.level().game().hold.max(0.1);
     let mut presses = [Press::default(); 2];
     for (press, hand) in presses.iter_mut().zip(round.hands()) {
@@ -23,12 +23,12 @@ pub(super) fn soundscape(game: &Game) -> Soundscape {
         *press = Press {
             force: force.sum::<f32>() / count,
             slip: length(hand.velocity()),
-            x: across(game.view, hand.position()),
+            x: across(game.bout.view, hand.position()),
         };
     }
     Soundscape {
         presses,
-        squash: (game.effects.pressure / 1000.0).min(1.0),
+        squash: (game.bout.effects.pressure / 1000.0).min(1.0),
         hold: (round.progress().held / hold).min(1.0),
         music: true,
         hush: match game.screen() {
@@ -119,9 +119,9 @@ mod tests {
             let place = levels.position(|known| known.id == level);
             game.start(place.expect("it comes along"));
             assert_eq!(soundscape(&game).presses[0].x, 0.0, "nothing is seen yet");
-            game.camera.orbit(turn, 0.0);
+            game.bout.camera.orbit(turn, 0.0);
             let screen = Rect::from_min_max(pos2(0.0, 0.0), pos2(900.0, 600.0));
-            game.view = Some(game.camera.view(screen, game.session.round().level()));
+            game.bout.view = Some(game.bout.camera.view(screen, game.bout.round().level()));
             soundscape(&game).presses[0].x
         };
         for level in ["classic", "classic-3d"] {

@@ -13,18 +13,18 @@ impl Game {
 
     /// Keeps the round as it was played so far.
     pub fn keep_replay(&mut self) {
-        self.files.save_replay(self.session.round().replay());
+        self.files.save_replay(self.bout.round().replay());
     }
 
     /// Takes a photo of how the round ended.
     pub fn keep_photo(&mut self) {
-        let replay = self.session.round().replay();
+        let replay = self.bout.round().replay();
         self.files.save_picture(Kind::Photo, Arc::new(replay));
     }
 
     /// Keeps the last seconds of the round as an animation.
     pub fn keep_clip(&mut self) {
-        let replay = self.session.round().replay();
+        let replay = self.bout.round().replay();
         self.files.save_picture(Kind::Clip, Arc::new(replay));
     }
 

@@ -9,10 +9,10 @@ impl Game {
     /// told. Nothing in the plane, where nobody plays, and to those who have won in space.
     pub fn lesson(&self) -> Vec<(String, bool)> {
         // Where elements are seen, the wheel looks deeper.
-        if !self.is_played_in_space() || self.has_won_in_space() || self.elements.is_some() {
+        if !self.is_played_in_space() || self.has_won_in_space() || self.bout.elements.is_some() {
             return Vec::new();
         }
-        let on_stick = self.means == Means::Stick;
+        let on_stick = self.controls.means == Means::Stick;
         let names = [
             &[Action::Up, Action::Left, Action::Down, Action::Right][..],
             &[Action::Raise, Action::Lower],
@@ -20,8 +20,8 @@ impl Game {
         ];
         let bindings = &self.settings.bindings;
         let names = names.map(|actions| bindings.first_names(actions, on_stick));
-        let lines = (self.words().how_in_space)(self.means, &names);
-        lines.into_iter().zip(self.lesson.missing()).collect()
+        let lines = (self.words().how_in_space)(self.controls.means, &names);
+        lines.into_iter().zip(self.bout.lesson.missing()).collect()
     }
 
     /// Notes what was tried.
@@ -29,13 +29,15 @@ impl Game {
         if !self.is_played_in_space() {
             return;
         }
-        let round = self.session.round();
-        let gone = match self.players.wanted(0) {
+        let round = self.bout.round();
+        let gone = match self.controls.players.wanted(0) {
             Some(wanted) => minus(wanted, round.start(0)),
             None => [0.0; 3],
         };
-        let [right, up] = self.camera.gone_around();
-        self.lesson.see(gone, right.abs().max(up.abs()), seconds);
+        let [right, up] = self.bout.camera.gone_around();
+        self.bout
+            .lesson
+            .see(gone, right.abs().max(up.abs()), seconds);
     }
 
     fn has_won_in_space(&self) -> bool {
@@ -44,6 +46,6 @@ impl Game {
     }
 
     fn is_played_in_space(&self) -> bool {
-        self.screen() == Screen::Play && self.session.is_played() && self.turn().is_some()
+        self.screen() == Screen::Play && self.bout.session.is_played() && self.bout.turn().is_some()
     }
 }

@@ -1,13 +1,11 @@
 //! What happens as time passes: ticks, wins, the end of what is watched.
 
-use super::{Game, Screen, heard};
+use super::{Bout, Controls, Game, Screen, heard};
 use crate::felt;
 use crate::input::Manner;
 use tamaire_play::{InputFrame, PLAYERS};
 use tamaire_sound::Cue;
 
-/// After a win the round goes on for so long before the result is shown [s].
-const CHEER: f32 = 1.4;
 /// Slow motion is this share of the usual speed.
 const SLOW: f32 = 0.2;
 
@@ -15,19 +13,16 @@ impl Game {
     /// Lets `seconds` pass.
     pub fn pass(&mut self, seconds: f32) {
         self.time += f64::from(seconds);
-        for notice in &mut self.notices {
-            notice.1 -= seconds;
-        }
-        self.notices.retain(|notice| notice.1 > 0.0);
-        let runs = self.is_seen() && self.screen() != Screen::Paused && !self.stepping;
-        let pace = if self.slow { SLOW } else { 1.0 } * self.settings.speed;
+        self.notices.pass(seconds);
+        let runs = self.is_seen() && self.screen() != Screen::Paused && !self.bout.stepping;
+        let pace = if self.bout.slow { SLOW } else { 1.0 } * self.settings.speed;
         if runs {
             self.pass_ticks(seconds * pace);
-            self.effects.pass(seconds * pace);
+            self.bout.effects.pass(seconds * pace);
         }
-        if let Some(complaint) = self.session.take_complaint() {
+        if let Some(complaint) = self.bout.session.take_complaint() {
             self.notify((self.words().replay_error)(&complaint));
-            if !self.session.is_played() {
+            if !self.bout.session.is_played() {
                 self.attract();
                 if self.screen() == Screen::Play {
                     self.leave_round();
@@ -47,16 +42,17 @@ impl Game {
         self.celebrate(seconds);
         self.learn(seconds);
         self.feel(seconds);
-        if self.screen() == Screen::Title && self.session.is_over() {
-            self.cheered += seconds;
-            if self.cheered > 4.0 {
-                self.cheered = 0.0;
+        if self.screen() == Screen::Title && self.bout.session.is_over() {
+            self.bout.cheered += seconds;
+            if self.bout.cheered > 4.0 {
+                self.bout.cheered = 0.0;
                 self.attract();
             }
         }
-        let arena = self.session.round().level().arena();
-        let hand = self.session.round().hands()[0].position();
-        self.camera
+        let arena = self.bout.round().level().arena();
+        let hand = self.bout.round().hands()[0].position();
+        self.bout
+            .camera
             .follow(hand, arena, seconds, self.settings.reduced_motion);
         self.sound
             .update(&heard::soundscape(self), &self.settings.volumes());
@@ -66,23 +62,28 @@ impl Game {
         let manner = Manner {
             sensitivity: self.settings.sensitivity,
             stick_places: self.settings.stick_places,
-            arena: self.session.round().level().arena(),
-            turn: self.turn(),
+            arena: self.bout.round().level().arena(),
+            turn: self.bout.turn(),
         };
         let still = self.settings.reduced_motion;
         // In menus the same keys and sticks move the focus; what is won is not torn any more.
-        let is_won = self.session.round().progress().outcome.is_some();
+        let is_won = self.bout.round().progress().outcome.is_some();
         let in_round = self.screen() == Screen::Play && !is_won;
-        let view = self.view;
+        let view = self.bout.view;
         let mut is_heard = false;
         let mut tears = [0.0f32; PLAYERS];
         let Self {
-            session,
-            players,
-            devices,
+            bout:
+                Bout {
+                    session,
+                    effects,
+                    camera,
+                    ..
+                },
+            controls: Controls {
+                players, devices, ..
+            },
             settings,
-            effects,
-            camera,
             sound,
             forces,
             clock,
@@ -133,19 +134,19 @@ impl Game {
 
     /// Notes a win once, lets the body beam for a moment, then shows the result.
     fn celebrate(&mut self, seconds: f32) {
-        let Some(outcome) = self.session.round().progress().outcome else {
+        let Some(outcome) = self.bout.round().progress().outcome else {
             return;
         };
         if self.screen() != Screen::Play {
             return;
         }
-        self.cheered += seconds;
-        if self.session.is_played() && self.won.is_none() {
-            let level = self.session.round().level().clone();
+        self.bout.cheered += seconds;
+        if self.bout.session.is_played() && self.bout.won.is_none() {
+            let level = self.bout.round().level().clone();
             // A round that somebody shared may have another level under a known name.
             let is_known = self.levels.contains(&level);
             let is_best = is_known && self.records.note(&level, &outcome);
-            self.won = Some((outcome, is_best));
+            self.bout.won = Some((outcome, is_best));
             self.sound.play(Cue::Won(match outcome.route {
                 tamaire_play::Route::Squeeze => tamaire_sound::Route::Squeeze,
                 tamaire_play::Route::Shave => tamaire_sound::Route::Shave,
@@ -153,14 +154,9 @@ impl Game {
             }));
             self.files.keep_records(&self.records, &self.levels);
         }
-        if self.has_cheered() && self.won.is_some() {
+        if self.bout.has_cheered() && self.bout.won.is_some() {
             self.go(Screen::Result);
         }
-    }
-
-    /// Whether a body that is in has beamed for long enough.
-    pub fn has_cheered(&self) -> bool {
-        self.cheered >= CHEER
     }
 }
 
@@ -183,9 +179,9 @@ mod tests {
     }
 
     fn ticks_in(game: &mut Game, seconds: f32) -> u64 {
-        let before = game.session.round().ticks();
+        let before = game.bout.round().ticks();
         game.pass(seconds);
-        game.session.round().ticks() - before
+        game.bout.round().ticks() - before
     }
 
     #[test]

@@ -51,7 +51,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 }
             });
             ui.add_space(12.0);
-            let devices = game.devices.sticks.devices.clone();
+            let devices = game.controls.devices.sticks.devices.clone();
             if devices.is_empty() {
                 ui.vertical_centered(|ui| {
                     ui.add_space(60.0);

@@ -56,7 +56,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
         }
         at.x += high + scale * GAP;
     }
-    let round = game.session.round();
+    let round = game.bout.round();
     let mut right = screen.right();
     if round.basket().is_some() {
         let radius = scale * (JAR + 4.0);
@@ -114,7 +114,7 @@ impl Row<'_> {
 
 /// How long it has lasted.
 fn draw_clock(row: &mut Row, theme: &Theme, game: &Game) {
-    let round = game.session.round();
+    let round = game.bout.round();
     let seconds = match round.progress().outcome {
         Some(outcome) => outcome.seconds(),
         None => round.frames().len() as f32 / 60.0,
@@ -138,28 +138,28 @@ fn draw_chips(row: &mut Row, theme: &Theme, game: &Game) {
         let at = place.center() - 0.5 * galley.size();
         row.painter.galley(at, galley, theme.ink);
     };
-    if !game.session.is_played() {
+    if !game.bout.session.is_played() {
         chip("●", said.watching);
     }
-    if game.stepping {
+    if game.bout.stepping {
         chip("▶1", (said.action)(Action::Step));
-    } else if game.slow {
+    } else if game.bout.slow {
         chip("▶…", (said.action)(Action::Slow));
     }
-    if game.players.second().is_some() {
+    if game.controls.players.second().is_some() {
         chip("●●", said.join_hint);
     }
     if game.forces.is_cut() {
         chip("×", said.forces_cut);
     }
-    if game.elements.is_some() && game.turn().is_some() && game.session.is_played() {
+    if game.bout.elements.is_some() && game.bout.turn().is_some() && game.bout.session.is_played() {
         let ways = [Action::Deeper, Action::Shallower];
         let keys = ways.map(|way| game.settings.bindings.first_names(&[way], false));
-        if let Some(how) = (said.look_inside)(game.means, &keys) {
+        if let Some(how) = (said.look_inside)(game.controls.means, &keys) {
             chip("↕", &how);
         }
     }
-    if let Some(colour) = game.elements {
+    if let Some(colour) = game.bout.elements {
         draw_legend(row, theme, colour);
     }
 }
@@ -234,7 +234,7 @@ fn draw_legend(row: &mut Row, theme: &Theme, colour: ElementColour) {
 /// what rests, then a ring that closes.
 fn draw_jar(ui: &Ui, middle: Pos2, scale: f32, game: &Game) {
     let theme = game.theme();
-    let round = game.session.round();
+    let round = game.bout.round();
     let (progress, rules) = (round.progress(), round.level().game());
     let painter = ui.painter();
     let smooth = |name: &str, share: f32| {

@@ -57,7 +57,8 @@ fn notices(game: &Game, ui: &Ui) {
     let is_said = matches!(game.screen(), Screen::Play | Screen::Forces);
     let is_cut = game.forces.is_cut() && !is_said;
     let lasting = is_cut.then(|| (game.words().cut_now.to_string(), 1.0));
-    let passing = game.notices.iter().cloned();
+    let passing = game.notices.iter();
+    let passing = passing.map(|notice| (notice.text.clone(), notice.seconds));
     let is_new = |notice: &(String, f32)| !is_cut || notice.0 != game.words().cut_now;
     for (text, left) in lasting.into_iter().chain(passing.filter(is_new)) {
         let strength = left.min(1.0);

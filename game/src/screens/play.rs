@@ -8,9 +8,9 @@ use egui::{Response, Ui};
 /// Draws the world behind whatever screen.
 pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     let screen = ui.max_rect();
-    let level = game.session.round().level();
-    let view = game.camera.view(screen, level);
-    game.view = Some(view);
+    let level = game.bout.round().level().clone();
+    let view = game.bout.camera.view(screen, &level);
+    game.bout.view = Some(view);
     let theme = game.theme();
     // The first level shows the way until it has been won once.
     let is_first = game
@@ -18,7 +18,7 @@ pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
         .first()
         .is_some_and(|first| first.id == level.id);
     let hint = match game.screen() {
-        Screen::Play | Screen::Paused if game.session.is_played() => {
+        Screen::Play | Screen::Paused if game.bout.session.is_played() => {
             match is_first && game.records.of(&level.id).is_none() {
                 true => Hint::Way,
                 false => Hint::Hand,
@@ -29,25 +29,28 @@ pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     let look = Look {
         view,
         theme: &theme,
-        elements: game.elements,
-        left: game.opening.share(game.time, game.settings.reduced_motion),
-        effects: &game.effects,
+        elements: game.bout.elements,
+        left: game
+            .bout
+            .opening
+            .share(game.time, game.settings.reduced_motion),
+        effects: &game.bout.effects,
         time: game.time,
-        ghost: game.session.ghost(),
+        ghost: game.bout.session.ghost(),
         hint,
         still: game.settings.reduced_motion,
     };
-    stage.draw(ui, game.session.round(), &look);
+    stage.draw(ui, game.bout.round(), &look);
 }
 
 /// What is shown over a round.
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     let is_on_button = hud::show(game, ui);
-    if game.session.is_played() && !is_on_button {
+    if game.bout.session.is_played() && !is_on_button {
         ui.ctx().set_cursor_icon(egui::CursorIcon::None);
     }
-    let is_seen = game.session.round().progress().outcome.is_none() || game.has_cheered();
-    if !game.session.is_played() && game.session.is_over() && is_seen {
+    let is_seen = game.bout.round().progress().outcome.is_none() || game.bout.has_cheered();
+    if !game.bout.session.is_played() && game.bout.session.is_over() && is_seen {
         game.leave_round();
     }
 }

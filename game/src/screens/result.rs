@@ -19,12 +19,12 @@ const GAP: f32 = 10.0;
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     veil(ui, 40);
-    let Some((outcome, is_best)) = game.won else {
+    let Some((outcome, is_best)) = game.bout.won else {
         game.go(Screen::Play);
         return;
     };
     let (theme, said) = (game.theme(), game.words());
-    let level = game.session.round().level().clone();
+    let level = game.bout.round().level().clone();
     // Beside the body that beams, not over it.
     let basket = level.game().basket.as_ref();
     let is_right = basket.is_some_and(|basket| basket.centre[0] > 0.0);
@@ -159,7 +159,7 @@ fn next(game: &mut Game) {
 }
 
 fn race(game: &mut Game) {
-    let last = Arc::new(game.session.round().replay());
+    let last = Arc::new(game.bout.round().replay());
     if let Err(error) = game.race(last) {
         game.notify((game.words().replay_error)(&error));
     }

@@ -14,7 +14,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     let (theme, said) = (game.theme(), game.words());
     let before = game.settings.clone();
     let mut chosen = before.clone();
-    let listens = game.rebinding.is_some();
+    let listens = game.controls.rebinding.is_some();
     let mut back = !listens && ui.input(|input| input.key_pressed(egui::Key::Escape));
     let mut to_forces = false;
     let area = place_of_page(ui);
@@ -155,7 +155,7 @@ fn controls(ui: &mut Ui, game: &mut Game, chosen: &mut Settings) {
     section(ui, &theme, said.controls, |ui| {
         for action in Action::ALL {
             let [keys, buttons] = chosen.bindings.names(action);
-            let listens = game.rebinding == Some(action);
+            let listens = game.controls.rebinding == Some(action);
             let text = match listens {
                 true => said.press_any.to_string(),
                 false => format!("{}: {keys}  ·  {buttons}", (said.action)(action)),
@@ -173,7 +173,7 @@ fn controls(ui: &mut Ui, game: &mut Game, chosen: &mut Settings) {
                 };
                 ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, all));
             } else if response.clicked() {
-                game.rebinding = Some(action);
+                game.controls.rebinding = Some(action);
             }
             ui.add_space(4.0);
         }

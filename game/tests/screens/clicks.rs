@@ -4,7 +4,7 @@ use crate::window::*;
 use egui::Key;
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::fs;
-use tamaire::game::{Game, Screen};
+use tamaire::game::{Game, Notice, Screen};
 use tamaire::input::{Action, Seat};
 use tamaire::platform::{Files, Pads, Sound};
 use tamaire::settings::Settings;
@@ -60,7 +60,7 @@ fn a_round_is_won_kept_watched_raced_and_deleted() {
     let mut window = window(Files::in_folder(&folder));
     game(&mut window).start(0);
     win(&mut window);
-    let (outcome, is_best) = game(&mut window).won.unwrap();
+    let (outcome, is_best) = game(&mut window).bout.won.unwrap();
     assert!(is_best && outcome.route == Route::Squeeze, "{outcome:?}");
     window.get_by_label("Squeezed in!");
     click(&mut window, "Save replay");
@@ -73,14 +73,17 @@ fn a_round_is_won_kept_watched_raced_and_deleted() {
     assert_eq!(screen(&window), Screen::Play);
     frames(&mut window, 5);
     let ghost = |window: &Window| {
-        let ghost = window.state().game.session.ghost();
+        let ghost = window.state().game.bout.session.ghost();
         ghost.map(|round| round.frames().len())
     };
     assert!(ghost(&window).unwrap() >= 5);
     press(&mut window, Key::R);
     assert!(ghost(&window).unwrap() <= 4, "the ghost begins again too");
     win(&mut window);
-    assert!(!game(&mut window).won.unwrap().1, "as fast is no faster");
+    assert!(
+        !game(&mut window).bout.won.unwrap().1,
+        "as fast is no faster"
+    );
     click(&mut window, "Again");
     assert_eq!(screen(&window), Screen::Play);
     win(&mut window);
@@ -91,12 +94,12 @@ fn a_round_is_won_kept_watched_raced_and_deleted() {
     click(&mut window, "Replays");
     click(&mut window, "Watch");
     assert_eq!(screen(&window), Screen::Play);
-    assert!(!game(&mut window).session.is_played());
+    assert!(!game(&mut window).bout.session.is_played());
     while screen(&window) == Screen::Play {
         let game = game(&mut window);
-        let goes_on = |game: &Game| !game.session.is_over();
+        let goes_on = |game: &Game| !game.bout.session.is_over();
         drive(game, tamaire_play::BotKind::Idle, goes_on);
-        assert_eq!(game.session.round().progress().outcome, Some(outcome));
+        assert_eq!(game.bout.round().progress().outcome, Some(outcome));
         frames(&mut window, 2);
     }
     assert_eq!(
@@ -105,7 +108,7 @@ fn a_round_is_won_kept_watched_raced_and_deleted() {
     );
     frames(&mut window, 1);
     click(&mut window, "Race it");
-    assert!(game(&mut window).session.is_played() && ghost(&window).is_some());
+    assert!(game(&mut window).bout.session.is_played() && ghost(&window).is_some());
     game(&mut window).go(Screen::Title);
     game(&mut window).go(Screen::Replays);
 
@@ -195,7 +198,7 @@ fn settings_are_kept_and_the_language_changes_at_once() {
         ..Settings::default()
     };
     assert_eq!(again.settings, usual);
-    let aside = |notice: &(String, f32)| notice.0.contains("settings.broken-1.toml");
+    let aside = |notice: &Notice| notice.text.contains("settings.broken-1.toml");
     assert!(again.notices.iter().any(aside));
     fs::remove_dir_all(folder).unwrap();
 }
@@ -227,7 +230,7 @@ fn any_key_can_mean_anything() {
     for key in [Key::Q, Key::Enter, Key::ArrowDown, Key::Tab] {
         let row = row(&window);
         click(&mut window, &row);
-        assert_eq!(game(&mut window).rebinding, Some(Action::Retry));
+        assert_eq!(game(&mut window).controls.rebinding, Some(Action::Retry));
         window.get_by_label("Press a key or button…");
         press(&mut window, key);
         let game = game(&mut window);
@@ -236,7 +239,7 @@ fn any_key_can_mean_anything() {
             Some(Action::Retry),
             "{key:?}"
         );
-        assert_eq!(game.rebinding, None, "{key:?}");
+        assert_eq!(game.controls.rebinding, None, "{key:?}");
     }
     // Escape leaves it as it is, and the screen too.
     let row = row(&window);
@@ -245,7 +248,7 @@ fn any_key_can_mean_anything() {
     assert!(matches!(screen(&window), Screen::Settings));
     let game = game(&mut window);
     assert_eq!(game.settings.bindings.of_key(Key::Tab), Some(Action::Retry));
-    assert_eq!(game.rebinding, None);
+    assert_eq!(game.controls.rebinding, None);
     game.settings = Settings::default();
     game.go(Screen::Title);
 }
@@ -256,14 +259,17 @@ fn mouse_and_keys_are_two_players() {
     game(&mut window).start(0);
     frames(&mut window, 2);
     press(&mut window, Key::J);
-    assert_eq!(game(&mut window).players.second(), Some(Seat::Keys));
+    assert_eq!(
+        game(&mut window).controls.players.second(),
+        Some(Seat::Keys)
+    );
     frames(&mut window, 2);
     let hands = |window: &Window| {
-        let hands = window.state().game.session.round().hands();
+        let hands = window.state().game.bout.round().hands();
         hands.iter().map(|hand| hand.goal()).collect::<Vec<_>>()
     };
     let before = hands(&window);
-    let start = window.state().game.session.round().level().scene().goals(0);
+    let start = window.state().game.bout.round().level().scene().goals(0);
     for (at, start) in before.iter().zip(&start) {
         let is_near = (0..2).all(|axis| (at[axis] - start[axis]).abs() < 1e-3);
         assert!(
@@ -283,7 +289,7 @@ fn mouse_and_keys_are_two_players() {
     );
     window.key_up(Key::D);
     press(&mut window, Key::J);
-    assert_eq!(game(&mut window).players.second(), None);
+    assert_eq!(game(&mut window).controls.players.second(), None);
 }
 
 #[test]
@@ -351,6 +357,10 @@ fn a_mouse_that_only_rests_moves_no_hand() {
     for (at, moves) in [(egui::Pos2::ZERO, false), (egui::pos2(400.0, 300.0), true)] {
         window.hover_at(at);
         frames(&mut window, 2);
-        assert_eq!(game(&mut window).players.wanted(0).is_some(), moves, "{at}");
+        assert_eq!(
+            game(&mut window).controls.players.wanted(0).is_some(),
+            moves,
+            "{at}"
+        );
     }
 }

@@ -49,6 +49,7 @@ fn a_picture_is_played_and_what_is_broken_is_named() {
         window
             .state()
             .game
+            .bout
             .session
             .round()
             .level()
@@ -125,8 +126,9 @@ fn a_notice_is_cut_to_what_can_be_read() {
     let game = game(&mut window);
     game.notices.clear();
     game.notify("ふ".repeat(1 << 20));
-    assert_eq!(game.notices[0].0.chars().count(), 601);
-    assert!(game.notices[0].1 < 60.0, "{} s", game.notices[0].1);
+    let notice = game.notices.iter().next().unwrap();
+    assert_eq!(notice.text.chars().count(), 601);
+    assert!(notice.seconds < 60.0, "{} s", notice.seconds);
 }
 
 #[test]
@@ -136,7 +138,7 @@ fn a_long_notice_stays_until_it_can_be_read() {
     game.notices.clear();
     game.notify("short".into());
     game.notify("a level with many words ".repeat(8));
-    let left = |game: &Game| game.notices.len();
+    let left = |game: &Game| game.notices.iter().count();
     game.pass(5.9);
     assert_eq!(left(game), 2);
     game.pass(0.2);
@@ -172,9 +174,9 @@ fn every_button_fits_into_the_smallest_window_with_the_largest_letters() {
         game(&mut window).settings.text_size = 1.6;
         game(&mut window).start(0);
         win(&mut window);
-        let round = game(&mut window).session.round();
+        let round = game(&mut window).bout.round();
         let wishes = round.level().game().wish.len();
-        assert!(wishes == 3 && game(&mut window).won.unwrap().1);
+        assert!(wishes == 3 && game(&mut window).bout.won.unwrap().1);
         let screens = [Screen::Result, Screen::Paused, Screen::Title];
         for (screen, count) in screens.into_iter().zip([7, 5, 5]) {
             for (language, _) in Language::ALL {
@@ -237,8 +239,7 @@ fn two_thousand_frames_of_anything_are_survived() {
             _ => devices.clone(),
         };
         let game = game(&mut window);
-        game.pads = Pads::of(Snapshot { devices: told });
-        game.notices.truncate(4);
+        game.controls.pads = Pads::of(Snapshot { devices: told });
         match (frame % 100, random.u32(..5)) {
             (99, 0) => game.go(Screen::Title),
             (99, 1) => game.go(Screen::Replays),
@@ -248,7 +249,7 @@ fn two_thousand_frames_of_anything_are_survived() {
         }
         if frame == 500 {
             game.start(0);
-            drive(game, BotKind::Squeeze, |game| game.won.is_none());
+            drive(game, BotKind::Squeeze, |game| game.bout.won.is_none());
             game.pass(2.0);
         }
         seen.insert(format!("{:?}", screen(&window)));
@@ -267,7 +268,7 @@ fn about() -> About {
 }
 
 fn check(game: &Game, frame: usize) {
-    let round = game.session.round();
+    let round = game.bout.round();
     let [low, high] = round.level().arena();
     for hand in round.hands() {
         let at = hand.position();

@@ -207,7 +207,7 @@ fn one_bad_setting_costs_that_setting_and_is_told_once_by_name() {
     std::fs::write(&path, bad).unwrap();
     let begin = || Game::new(Files::in_folder(&folder), Sound::none(), Pads::none());
     let told = |game: &Game| {
-        let texts = game.notices.iter().map(|(text, _)| text.as_str());
+        let texts = game.notices.iter().map(|notice| notice.text.as_str());
         texts.collect::<Vec<_>>().join("\n")
     };
     let game = begin();

@@ -23,7 +23,7 @@ fn a_model_dropped_onto_any_round_is_played_in_space() {
             (Screen::Play, ""),
             "{level}"
         );
-        let round = window.state().game.session.round();
+        let round = window.state().game.bout.round();
         assert!(matches!(round, AnyRound::Space(_)), "{level}");
         assert_eq!(round.level().game().name.en, "pudding");
         assert!(
@@ -57,7 +57,7 @@ fn what_the_command_line_names_is_played() {
         let game = &window.state().game;
         assert_eq!(screen(&window), Screen::Play, "{named:?}");
         assert_eq!(game.levels.len(), levels + more, "{named:?}");
-        let name = &game.session.round().level().game().name.en;
+        let name = &game.bout.round().level().game().name.en;
         assert_eq!(
             (name.as_str(), name),
             (expected, &game.levels[game.chosen].game().name.en)

@@ -35,7 +35,7 @@ impl Table {
             .iter()
             .map(|device| (device.id, self.rumbles.clone()));
         let notes = notes.collect();
-        game(&mut self.window).pads = Pads::of(Snapshot { devices }).noting(notes);
+        game(&mut self.window).controls.pads = Pads::of(Snapshot { devices }).noting(notes);
         frames(&mut self.window, count);
     }
 
@@ -92,7 +92,7 @@ fn a_pad_alone_goes_everywhere() {
     assert_eq!(table.screen(), Screen::Play);
 
     let hand = |table: &mut Table| {
-        let round = game(&mut table.window).session.round();
+        let round = game(&mut table.window).bout.round();
         round.hands()[0].goal()
     };
     let before = hand(&mut table);
@@ -150,7 +150,7 @@ fn a_pad_alone_goes_everywhere() {
     table.tap(Up);
     table.tap(South);
     let last = Action::ALL[Action::ALL.len() - 1];
-    assert_eq!(game(&mut table.window).rebinding, Some(last));
+    assert_eq!(game(&mut table.window).controls.rebinding, Some(last));
     table.tap(Down);
     let bindings = &game(&mut table.window).settings.bindings;
     let down = sticks::Control::Pad(Down);
@@ -196,10 +196,10 @@ fn a_second_player_joins_leaves_and_is_unplugged() {
     game(&mut table.window).start(0);
     table.frames(2);
     table.tap(PadButton::Back);
-    let second = |table: &mut Table| game(&mut table.window).players.second();
+    let second = |table: &mut Table| game(&mut table.window).controls.players.second();
     assert_eq!(second(&mut table), Some(Seat::Stick(DeviceId(2))));
     let hands = |table: &mut Table| {
-        let round = game(&mut table.window).session.round();
+        let round = game(&mut table.window).bout.round();
         let hands = round.hands();
         hands.iter().map(|hand| hand.goal()).collect::<Vec<_>>()
     };

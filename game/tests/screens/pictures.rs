@@ -60,12 +60,12 @@ fn every_screen() {
     pictures(&mut window, "levels");
     game(&mut window).go(Screen::Settings);
     pictures(&mut window, "settings");
-    game(&mut window).pads = sticks_and_pads();
+    game(&mut window).controls.pads = sticks_and_pads();
     game(&mut window).go(Screen::Forces);
     // Its thread says what they can do.
     frames(&mut window, 5);
     pictures(&mut window, "forces");
-    game(&mut window).pads = Pads::none();
+    game(&mut window).controls.pads = Pads::none();
     frames(&mut window, 1);
 
     game(&mut window).start(0);
@@ -101,7 +101,7 @@ fn a_round() {
     let mut window = open(Files::nowhere(), SMALLER, 1.0);
     game(&mut window).start(0);
     drive(game(&mut window), BotKind::Squeeze, |game| {
-        game.session.round().frames().len() < 150
+        game.bout.round().frames().len() < 150
     });
     frames(&mut window, 1);
     picture(&mut window, "play");
@@ -118,13 +118,13 @@ fn a_round_in_space() {
     game(&mut window).records.note(&level, &WON);
     game(&mut window).start(classic);
     drive(game(&mut window), BotKind::Squeeze, |game| {
-        game.session.round().frames().len() < 120
+        game.bout.round().frames().len() < 120
     });
     frames(&mut window, 1);
     picture(&mut window, "space");
-    game(&mut window).elements = Some(fuwafuwa_render::frame::ElementColour::Level);
-    game(&mut window).opening.cut(0.05, 0.0, true);
-    game(&mut window).camera.orbit(0.5, 0.1);
+    game(&mut window).bout.elements = Some(fuwafuwa_render::frame::ElementColour::Level);
+    game(&mut window).bout.opening.cut(0.05, 0.0, true);
+    game(&mut window).bout.camera.orbit(0.5, 0.1);
     frames(&mut window, 1);
     picture(&mut window, "space_elements");
 }
@@ -134,7 +134,7 @@ fn a_tear() {
     let mut window = open(Files::nowhere(), SMALLER, 1.0);
     game(&mut window).start(0);
     drive(game(&mut window), BotKind::Shave, |game| {
-        game.session.round().progress().pieces < 8
+        game.bout.round().progress().pieces < 8
     });
     frames(&mut window, 1);
     picture(&mut window, "tear");

@@ -21,11 +21,11 @@ pub fn in_space() -> Window {
 
 /// Where a player's hand is to go next [m].
 pub fn goal(window: &Window, player: usize) -> Vector {
-    window.state().game.session.round().hands()[player].goal()
+    window.state().game.bout.round().hands()[player].goal()
 }
 
 fn turned(window: &Window) -> [f32; 2] {
-    window.state().game.camera.gone_around()
+    window.state().game.bout.camera.gone_around()
 }
 
 /// Lets ticks pass that nobody looks at: in software a picture of space takes longer than a tick.
@@ -36,7 +36,7 @@ pub fn wait(window: &mut Window, ticks: usize) {
 
 /// Points with the mouse at a place of the floor, and waits until the hand is above it.
 pub fn point_at(window: &mut Window, x: f32, z: f32) {
-    let view = window.state().game.view.expect("it is seen");
+    let view = window.state().game.bout.view.expect("it is seen");
     window.hover_at(view.on_screen([x, 0.0, z]));
     frames(window, 1);
     wait(window, 60);
@@ -74,14 +74,14 @@ fn the_mouse_points_at_the_floor_and_the_wheel_raises_the_hand() {
     // A long way, on which the hand stays behind, takes none of the height; nor does another camera.
     point_at(&mut window, 1.2, 0.75);
     assert_near(goal(&window, 0), [1.2, height + 0.5, 0.75]);
-    game(&mut window).camera.orbit(1.2, 0.3);
+    game(&mut window).bout.camera.orbit(1.2, 0.3);
     frames(&mut window, 1);
     assert_near(goal(&window, 0), [1.2, height + 0.5, 0.75]);
     point_at(&mut window, 0.8, 0.75);
     assert_near(goal(&window, 0), [0.8, height + 0.5, 0.75]);
     wheel(&mut window, -250.0);
     assert_near(goal(&window, 0), [0.8, height, 0.75]);
-    assert_eq!(window.state().game.means, Means::Mouse);
+    assert_eq!(window.state().game.controls.means, Means::Mouse);
 }
 
 #[test]
@@ -91,7 +91,7 @@ fn on_a_shelf_the_mouse_points_at_the_shelf() {
     let height = goal(&window, 0)[1];
     // On the shelf, over the hole in it, and on the shelf behind the hole.
     for [x, z] in [[-1.3, 0.3], [0.7, 0.1], [0.7, -0.7]] {
-        let view = window.state().game.view.expect("it is seen");
+        let view = window.state().game.bout.view.expect("it is seen");
         window.hover_at(view.on_screen([x, 0.55, z]));
         frames(&mut window, 1);
         wait(&mut window, 90);
@@ -110,7 +110,7 @@ fn the_right_mouse_button_turns_the_camera_and_leaves_the_hand_alone() {
         pressed,
         modifiers: Modifiers::NONE,
     };
-    let view = window.state().game.view.expect("it is seen");
+    let view = window.state().game.bout.view.expect("it is seen");
     let at = view.on_screen([-1.2, 0.0, 0.6]);
     window.event(button(true, at));
     frames(&mut window, 1);
@@ -214,14 +214,11 @@ fn two_players_in_space_have_a_hand_each_and_one_camera() {
     let mut table = Table::with(vec![pad(1), pad(2)]);
     start(&mut table.window, "classic-3d");
     table.tap(PadButton::Back);
-    let second = table.window.state().game.players.second();
+    let second = table.window.state().game.controls.players.second();
     assert_eq!(second, Some(Seat::Stick(DeviceId(2))));
     table.frames(2);
     let before = [0, 1].map(|player| goal(&table.window, player));
-    assert_near(
-        before[1],
-        table.window.state().game.session.round().start(1),
-    );
+    assert_near(before[1], table.window.state().game.bout.round().start(1));
     let hold = |table: &mut Table, held: [([f32; 2], [f32; 2]); 2], count| {
         for (device, (left, triggers)) in table.devices.iter_mut().zip(held) {
             let pad = device.pad.as_mut().expect("a pad");
@@ -277,7 +274,7 @@ fn touch(window: &mut Window, finger: u64, phase: TouchPhase, pos: Pos2) {
 fn one_finger_moves_the_hand_and_a_second_one_raises_it_or_turns_the_camera() {
     let mut window = in_space();
     let height = goal(&window, 0)[1];
-    let view = window.state().game.view.expect("it is seen");
+    let view = window.state().game.bout.view.expect("it is seen");
     touch(
         &mut window,
         0,
@@ -309,13 +306,13 @@ fn one_finger_moves_the_hand_and_a_second_one_raises_it_or_turns_the_camera() {
     let [right, up] = turned(&window);
     assert!((right - 0.6).abs() < 0.05 && up == 0.0, "{right} {up}");
     assert!((goal(&window, 0)[1] - raised[1]).abs() < 0.01);
-    assert_eq!(window.state().game.means, Means::Fingers);
+    assert_eq!(window.state().game.controls.means, Means::Fingers);
 }
 
 #[test]
 fn the_finger_that_is_left_when_the_first_one_lifts_does_not_move_the_hand() {
     let mut window = in_space();
-    let view = window.state().game.view.expect("it is seen");
+    let view = window.state().game.bout.view.expect("it is seen");
     let [here, there] = [-0.9, 0.3].map(|x| view.on_screen([x, 0.0, 0.6]));
     touch(&mut window, 0, TouchPhase::Start, here);
     touch(&mut window, 1, TouchPhase::Start, there);
@@ -335,10 +332,10 @@ fn keys_and_a_pad_look_deeper_into_elements_and_back_and_it_is_told_how() {
     start(&mut table.window, "classic-3d");
     let share = |table: &mut Table| {
         let game = game(&mut table.window);
-        game.opening.share(game.time, true)
+        game.bout.opening.share(game.time, true)
     };
     press(&mut table.window, Key::E);
-    game(&mut table.window).opening.cut(0.0, 0.0, true);
+    game(&mut table.window).bout.opening.cut(0.0, 0.0, true);
     let before = share(&mut table);
     let hold = |table: &mut Table, key| {
         table.window.key_down(key);
@@ -371,7 +368,7 @@ fn a_round_in_space_is_won_kept_watched_and_raced() {
     let mut window = window(Files::in_folder(&folder));
     start(&mut window, "classic-3d");
     win(&mut window);
-    let (outcome, is_best) = game(&mut window).won.expect("it was won");
+    let (outcome, is_best) = game(&mut window).bout.won.expect("it was won");
     assert!(is_best && outcome.route == Route::Squeeze, "{outcome:?}");
     click(&mut window, "Save replay");
     game(&mut window).finish_writing();
@@ -382,12 +379,12 @@ fn a_round_in_space_is_won_kept_watched_and_raced() {
     frames(&mut window, 30);
     let is_space = |round: &AnyRound| matches!(round, AnyRound::Space(_));
     let ghost = |window: &Window| {
-        let ghost = window.state().game.session.ghost().expect("a ghost");
+        let ghost = window.state().game.bout.session.ghost().expect("a ghost");
         assert!(is_space(ghost));
         (ghost.frames().len(), ghost.hands()[0].position())
     };
     let (ticks, at) = ghost(&window);
-    let mine = window.state().game.session.round().hands()[0].position();
+    let mine = window.state().game.bout.round().hands()[0].position();
     assert!(
         ticks >= 28 && length(minus(at, mine)) > 0.1,
         "{ticks} {at:?} {mine:?}"
@@ -397,18 +394,18 @@ fn a_round_in_space_is_won_kept_watched_and_raced() {
     game(&mut window).go(Screen::Replays);
     frames(&mut window, 2);
     click(&mut window, "Watch");
-    assert!(!game(&mut window).session.is_played());
+    assert!(!game(&mut window).bout.session.is_played());
     let before = goal(&window, 0);
     // Who watches looks on: the hand belongs to the replay.
     window.key_down(Key::Q);
     frames(&mut window, 5);
     window.key_up(Key::Q);
     assert!(!tells(&window, "Up and down"));
-    let goes_on = |game: &Game| !game.session.is_over();
+    let goes_on = |game: &Game| !game.bout.session.is_over();
     drive(game(&mut window), tamaire_play::BotKind::Idle, goes_on);
     let game = game(&mut window);
-    assert_eq!(game.session.round().progress().outcome, Some(outcome));
-    assert!(game.notices.is_empty(), "{:?}", game.notices);
+    assert_eq!(game.bout.round().progress().outcome, Some(outcome));
+    assert!(game.notices.iter().next().is_none(), "{:?}", game.notices);
     assert!(length(minus(goal(&window, 0), before)) > 0.1);
     std::fs::remove_dir_all(folder).expect("it is ours");
 }

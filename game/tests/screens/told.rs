@@ -128,7 +128,7 @@ fn what_is_told_fits_into_the_smallest_window() {
             Means::Stick,
         ] {
             for (language, _) in Language::ALL {
-                game(&mut window).means = means;
+                game(&mut window).controls.means = means;
                 game(&mut window).settings.language = language;
                 frames(&mut window, 1);
                 let lines = window.state().game.lesson();

@@ -59,14 +59,14 @@ pub fn screen(window: &Window) -> Screen {
 
 /// Ticks that the round has lasted.
 pub fn ticks(window: &Window) -> usize {
-    window.state().game.session.round().frames().len()
+    window.state().game.bout.round().frames().len()
 }
 
 /// What the player is told.
 pub fn notices(window: &Window) -> String {
     let notices = window.state().game.notices.iter();
     notices
-        .map(|(text, _)| text.as_str())
+        .map(|notice| notice.text.as_str())
         .collect::<Vec<_>>()
         .join("\n")
 }
@@ -102,18 +102,20 @@ pub fn drive(game: &mut Game, kind: BotKind, goes_on: impl Fn(&Game) -> bool) {
     let mut bot = Bot::new(kind, 1);
     while goes_on(game) {
         assert!(
-            game.session.round().frames().len() < 60 * 60,
+            game.bout.round().frames().len() < 60 * 60,
             "a minute, and no end"
         );
-        game.devices.pointer = game.session.round().ask(&mut bot).goal(0);
+        game.controls.devices.pointer = game.bout.round().ask(&mut bot).goal(0);
         game.pass(TICK);
     }
-    game.devices.pointer = None;
+    game.controls.devices.pointer = None;
 }
 
 /// Wins the round that is on, and waits for the result.
 pub fn win(window: &mut Window) {
-    drive(game(window), BotKind::Squeeze, |game| game.won.is_none());
+    drive(game(window), BotKind::Squeeze, |game| {
+        game.bout.won.is_none()
+    });
     game(window).pass(2.0);
     frames(window, 2);
     assert_eq!(screen(window), Screen::Result);
