@@ -196,7 +196,7 @@ impl App {
                     game.is_away = self.had_focus && !focused;
                     self.had_focus |= focused;
                     if game.is_away {
-                        game.rest();
+                        game.pause_round();
                     }
                 }
                 _ => {}

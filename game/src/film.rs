@@ -6,7 +6,7 @@
 mod plain;
 mod studio;
 
-use crate::look::{Camera, Effects};
+use crate::look::{CameraRig, Effects};
 use fuwafuwa::world::TICK;
 use fuwafuwa_painter::{PaintError, Pixmap, film, png_of};
 use fuwafuwa_render::ImageError;
@@ -143,7 +143,7 @@ fn pass(
         );
     }
     let mut round = AnyRound::new(played.level().clone());
-    let (mut effects, mut camera) = (Effects::default(), Camera::default());
+    let (mut effects, mut camera) = (Effects::default(), CameraRig::default());
     for tick in 0..=ticks {
         told(tick, ticks);
         if tick > 0 {

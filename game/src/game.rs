@@ -3,7 +3,7 @@
 
 mod bout;
 mod controls;
-mod feel;
+mod haptics;
 mod heard;
 mod keep;
 mod lesson;
@@ -307,7 +307,7 @@ impl Game {
         let changes = self.controls.hear_sticks();
         let has_left = |change: &sticks::Change| matches!(change, sticks::Change::Disconnected(_));
         if changes.iter().any(has_left) {
-            self.rest();
+            self.pause_round();
         }
         changes
     }
@@ -325,7 +325,7 @@ impl Game {
     }
 
     /// Lets a round that people play stand still.
-    pub fn rest(&mut self) {
+    pub fn pause_round(&mut self) {
         if self.screen() == Screen::Play && self.bout.session.is_played() {
             self.go(Screen::Paused);
         }

@@ -367,7 +367,7 @@ fn a_pad_that_is_put_down_hums_no_more_though_its_hand_presses() {
     table.until("left alone", |table| table.silent(0) == Some(Stop::Idle));
     table.until_at_rest();
     let hand = &table.game.bout.round().hands()[0];
-    let [x, y, _] = tamaire::felt::contact(hand);
+    let [x, y, _] = tamaire::haptics::contact(hand);
     assert!(x.hypot(y) > 10.0, "{x} {y}");
     table.hears_nothing(0);
 }

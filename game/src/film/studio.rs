@@ -1,6 +1,6 @@
 //! The window's own pictures without a window: egui, the stage and both renderers, drawn into images.
 
-use crate::look::{Camera, Effects, Hint, Look, Stage, Theme, dress};
+use crate::look::{CameraRig, Effects, Hint, Look, Stage, Theme, dress};
 use eframe::egui_wgpu::{
     RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguration, WgpuSetup,
     WgpuSetupCreateNew,
@@ -31,7 +31,7 @@ pub struct Moment<'a> {
     /// What flies about, and how bodies feel.
     pub effects: &'a Effects,
     /// From where.
-    pub camera: &'a Camera,
+    pub camera: &'a CameraRig,
     /// Seconds since the film began.
     pub time: f64,
     /// What stands below it, if anything does.
@@ -204,7 +204,7 @@ mod tests {
             let moment = Moment {
                 round: &round,
                 effects: &Effects::default(),
-                camera: &Camera::default(),
+                camera: &CameraRig::default(),
                 time: 1.0,
                 caption: Some("hello"),
             };

@@ -1,7 +1,7 @@
 //! The round that is on the screen, behind whatever menu: who plays it, and how it is seen.
 
 use super::lesson::Lesson;
-use crate::look::{Camera, Effects, Opening, View};
+use crate::look::{CameraRig, Effects, Opening, View};
 use crate::session::Session;
 use fuwafuwa_render::frame::ElementColour;
 use tamaire_play::{AnyRound, Outcome};
@@ -16,7 +16,7 @@ pub struct Bout {
     /// What flies about.
     pub effects: Effects,
     /// From where it is seen.
-    pub camera: Camera,
+    pub camera: CameraRig,
     /// What that saw in the last frame.
     pub view: Option<View>,
     /// What the colours of elements tell, when they are seen instead of the skin.
@@ -40,7 +40,7 @@ impl Bout {
         Self {
             session,
             effects: Effects::default(),
-            camera: Camera::default(),
+            camera: CameraRig::default(),
             view: None,
             elements: None,
             opening: Opening::default(),

@@ -1,7 +1,7 @@
 //! What happens as time passes: ticks, wins, the end of what is watched.
 
 use super::{Bout, Controls, Game, Screen, heard};
-use crate::felt;
+use crate::haptics;
 use crate::input::Manner;
 use tamaire_play::{InputFrame, PLAYERS};
 use tamaire_sound::Cue;
@@ -41,7 +41,7 @@ impl Game {
         }
         self.celebrate(seconds);
         self.learn(seconds);
-        self.feel(seconds);
+        self.drive_forces(seconds);
         if self.screen() == Screen::Title && self.bout.session.is_over() {
             self.bout.cheered += seconds;
             if self.bout.cheered > 4.0 {
@@ -110,7 +110,7 @@ impl Game {
             },
             |round| {
                 effects.see(round, camera, still);
-                for (player, size) in felt::tears(round).into_iter().enumerate() {
+                for (player, size) in haptics::tears(round).into_iter().enumerate() {
                     tears[player] = size.max(tears[player]);
                 }
                 for cue in heard::cues(round, view) {

@@ -1,7 +1,7 @@
 //! What a round would be felt like: the forces on each hand in every substep, and what a stick and a pad would be told.
 //! `docs/force-log.md` tells what the columns are.
 
-use crate::felt;
+use crate::haptics;
 use crate::settings::Settings;
 use force_feedback::{Ability, Feel, Mail, Manner, Output, State, Watchdog};
 use fuwafuwa::Vector;
@@ -92,7 +92,7 @@ impl ForceLog {
                 )?;
             }
         }
-        let tears = felt::tears(round);
+        let tears = haptics::tears(round);
         for (feels, size) in self.feels.iter_mut().zip(tears) {
             feels.iter_mut().for_each(|feel| feel.tear(size));
         }
@@ -130,13 +130,13 @@ impl ForceLog {
         end: f64,
     ) -> io::Result<()> {
         let hand = &round.hands()[player];
-        let contact = felt::contact(hand);
+        let contact = haptics::contact(hand);
         let state = State {
-            contact: felt::on_stick(contact, turn(round)),
+            contact: haptics::on_stick(contact, turn(round)),
             manner: Manner::Places,
         };
         let mail = Mail {
-            wish: felt::silence(round).map_or(Ok(state), Err),
+            wish: haptics::silence(round).map_or(Ok(state), Err),
             at: Duration::from_secs_f64(end),
         };
         let watchdog = Watchdog::default();
@@ -186,7 +186,7 @@ fn aim_at(place: Vector, round: &AnyRound) -> [f32; 2] {
         let half = 0.5 * (high[axis] - low[axis]);
         (place[axis] - middle) / half.max(1e-3)
     });
-    felt::on_stick(share, turn(round))
+    haptics::on_stick(share, turn(round))
 }
 
 #[cfg(test)]

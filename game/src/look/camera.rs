@@ -31,7 +31,7 @@ const SWING: f32 = 60.0;
 
 /// Looks at the arena, leans towards the hand, and shakes when something tears.
 #[derive(Clone, Debug, Default)]
-pub struct Camera {
+pub struct CameraRig {
     lean: Vec2,
     /// How far it swings [m], and where in the swing it is [rad].
     shake: f32,
@@ -55,7 +55,7 @@ pub struct View {
     pub space: Option<space::Camera>,
 }
 
-impl Camera {
+impl CameraRig {
     /// Lets `seconds` pass while the hand is at a place [m]; `still` = with reduced motion.
     pub fn follow(&mut self, hand: Vector, arena: [Vector; 2], seconds: f32, still: bool) {
         if self.goes_home {
@@ -235,7 +235,7 @@ mod tests {
     #[test]
     fn a_place_is_found_again_from_where_it_is_seen() {
         let arena = [[-1.6, -1.0, 0.0], [1.6, 1.0, 0.0]];
-        let mut camera = Camera::default();
+        let mut camera = CameraRig::default();
         camera.shake(0.01);
         camera.follow([1.0, 0.5, 0.0], arena, 0.05, false);
         let view = camera.view_of_plane(
@@ -250,8 +250,8 @@ mod tests {
 
     #[test]
     fn it_goes_home_the_shorter_way_unless_it_is_turned_again() {
-        let mut camera = Camera::default();
-        let follow = |camera: &mut Camera, ticks: usize| {
+        let mut camera = CameraRig::default();
+        let follow = |camera: &mut CameraRig, ticks: usize| {
             (0..ticks).for_each(|_| camera.follow([0.0; 3], [[0.0; 3]; 2], 0.02, false));
         };
         camera.orbit(TAU + 1.0, 0.3);
@@ -271,7 +271,7 @@ mod tests {
     #[test]
     fn in_space_a_place_is_found_again_at_its_height() {
         let arena = [[-1.6, 0.0, -1.0], [1.6, 1.6, 1.0]];
-        let mut camera = Camera::default();
+        let mut camera = CameraRig::default();
         camera.orbit(0.7, 9.0);
         let rect = Rect::from_min_size(pos2(10.0, 20.0), vec2(800.0, 600.0));
         for rise in [0.0, -0.6, -9.0] {

@@ -1,6 +1,6 @@
 //! What flies about, and what was felt lately.
 
-use super::Camera;
+use super::CameraRig;
 use super::confetti::Confetti;
 use super::feelings::{Fate, Feeling};
 use fuwafuwa::vector::{length, minus, plus, scaled};
@@ -105,14 +105,14 @@ impl Default for Effects {
 
 impl Effects {
     /// Looks at what happened in a tick; `still` = with reduced motion.
-    pub fn see(&mut self, round: &AnyRound, camera: &mut Camera, still: bool) {
+    pub fn see(&mut self, round: &AnyRound, camera: &mut CameraRig, still: bool) {
         match round {
             AnyRound::Plane(round) => self.look_at(round, camera, still),
             AnyRound::Space(round) => self.look_at(round, camera, still),
         }
     }
 
-    fn look_at<D: Dim>(&mut self, round: &Round<D>, camera: &mut Camera, still: bool) {
+    fn look_at<D: Dim>(&mut self, round: &Round<D>, camera: &mut CameraRig, still: bool) {
         let world = round.world();
         if world.ticks() <= self.tick || self.feelings.len() != world.bodies().len() {
             // Another round.
@@ -275,7 +275,7 @@ mod tests {
 
     #[test]
     fn the_hint_fades_when_the_hand_moves_and_comes_back_in_a_new_round() {
-        let (mut effects, mut camera) = (Effects::default(), Camera::default());
+        let (mut effects, mut camera) = (Effects::default(), CameraRig::default());
         let mut play = |round: &mut AnyRound, effects: &mut Effects, frame, ticks: usize| {
             for _ in 0..ticks {
                 round.step(frame);

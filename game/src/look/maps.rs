@@ -2,7 +2,7 @@
 
 use super::calm::{camera, face_of, frame};
 use super::feelings::Feeling;
-use super::{Camera, Face, Theme, View};
+use super::{CameraRig, Face, Theme, View};
 use eframe::egui_wgpu::RenderState;
 use egui::{Color32, Painter, Rect, TextureId, pos2};
 use fuwafuwa::{Dim, Vector};
@@ -127,5 +127,5 @@ fn faces<D: Dim>(round: &Round<D>, eye: Option<Vector>) -> Vec<Face> {
 }
 
 fn view(rect: Rect, level: &Level) -> View {
-    Camera::default().view(rect, level)
+    CameraRig::default().view(rect, level)
 }

@@ -16,7 +16,7 @@ mod showing;
 mod stage;
 mod theme;
 
-pub use camera::{Camera, View};
+pub use camera::{CameraRig, View};
 pub use confetti::Confetti;
 pub use dress::dress;
 pub use effects::Effects;

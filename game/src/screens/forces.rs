@@ -1,6 +1,6 @@
 //! What sticks and pads can do, what they say, and what they are made to do, as it happens.
 
-use super::kit::{Weight, button, card, fitted, header, page, place_of_page, slider, veil};
+use super::widgets::{Weight, button, card, fitted, header, page, place_of_page, slider, veil};
 use crate::game::Game;
 use crate::game::trial::Trial;
 use crate::look::Theme;

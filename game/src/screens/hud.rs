@@ -1,7 +1,7 @@
 //! The little that is shown over a round: time, how full the basket is, what is different from usual.
 
-use super::kit::fitted;
-use super::marks;
+use super::icons;
+use super::widgets::fitted;
 use crate::game::Game;
 use crate::input::{Action, Seat};
 use crate::look::Theme;
@@ -275,12 +275,12 @@ fn draw_jar(ui: &Ui, middle: Pos2, scale: f32, game: &Game) {
     let held = round.held();
     if held > 0.0 {
         let ring = Stroke::new(7.0 * scale, theme.good);
-        marks::arc(painter, middle, scale * JAR, held, ring);
+        icons::arc(painter, middle, scale * JAR, held, ring);
     }
     if progress.outcome.is_some() {
         for (width, ink) in [(7.0, theme.card), (5.0, theme.good)] {
             let stroke = Stroke::new(width * scale, ink);
-            marks::tick(painter, middle, 0.55 * scale * JAR, stroke);
+            icons::tick(painter, middle, 0.55 * scale * JAR, stroke);
         }
     }
 }
@@ -299,7 +299,7 @@ fn draw_pause(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
 /// An arrow that comes back to where it began.
 fn draw_again(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
     let stroke = Stroke::new(3.5 * scale, ink);
-    marks::arc(painter, at, 9.0 * scale, 0.8, stroke);
+    icons::arc(painter, at, 9.0 * scale, 0.8, stroke);
     let corners = [[-7.0, 0.0], [2.0, -6.0], [2.0, 6.0]];
     let corners = corners.map(|[x, y]| at + scale * vec2(x, y - 9.0));
     painter.add(Shape::convex_polygon(corners.to_vec(), ink, Stroke::NONE));

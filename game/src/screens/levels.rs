@@ -1,7 +1,7 @@
 //! Which level?
 
-use super::kit::{fitted, focus_ring, header, liveliness, page, place_of_page, veil, words};
-use super::marks;
+use super::icons;
+use super::widgets::{fitted, focus_ring, header, liveliness, page, place_of_page, veil, words};
 use crate::game::Game;
 use crate::look::{Maps, Stage};
 use crate::records::WishName;
@@ -75,7 +75,7 @@ fn tile(ui: &mut Ui, game: &Game, maps: &Maps, place: usize, size: Vec2) -> Resp
     let frame = Stroke::new(6.0, theme.card);
     painter.rect_stroke(map.expand(3.0), 17.0, frame, egui::StrokeKind::Middle);
     if level.scene().dim == 3 {
-        marks::space(ui, map.min + vec2(8.0, 8.0), &theme);
+        icons::space(ui, map.min + vec2(8.0, 8.0), &theme);
     }
     let galley = fitted(painter, name, 21.0, rect.width() - 24.0, theme.ink);
     let at = pos2(rect.center().x, map.bottom() + 23.0) - 0.5 * galley.size();
@@ -102,13 +102,13 @@ fn tile(ui: &mut Ui, game: &Game, maps: &Maps, place: usize, size: Vec2) -> Resp
         let is_done = record.is_some_and(|record| {
             record.best.contains_key(&route) || record.best.contains_key(&Route::Mix)
         });
-        marks::route(painter, &theme, pos2(x + 16.0, base), 10.0, route, is_done);
+        icons::route(painter, &theme, pos2(x + 16.0, base), 10.0, route, is_done);
         x += 32.0;
     }
     if record.is_some() {
         let at = map.right_top() + vec2(-14.0, 14.0);
         painter.circle(at, 14.0, theme.good, Stroke::new(3.0, theme.card));
-        marks::tick(painter, at, 7.0, Stroke::new(3.0, theme.card));
+        icons::tick(painter, at, 7.0, Stroke::new(3.0, theme.card));
     }
     focus_ring(ui, &response, rect, 22.0, &theme);
     response

@@ -3,17 +3,17 @@
 
 mod forces;
 mod hud;
-mod kit;
+mod icons;
 mod levels;
-mod marks;
 mod paused;
 mod play;
 mod replays;
 mod result;
 mod settings;
 mod title;
+mod widgets;
 
-pub use kit::note_use_of_keys;
+pub use widgets::note_use_of_keys;
 
 use crate::game::{Game, Screen};
 use crate::look::Stage;

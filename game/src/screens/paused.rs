@@ -1,6 +1,6 @@
 //! The round, standing still.
 
-use super::kit::{Act, Weight, button, card, column, title, veil};
+use super::widgets::{Act, Weight, button, card, column, title, veil};
 use crate::game::{Game, Screen};
 use egui::{Ui, vec2};
 use tamaire_sound::Menu;

@@ -1,6 +1,6 @@
 //! Rounds that were kept.
 
-use super::kit::{Weight, button, card, fitted, header, page, place_of_page, veil};
+use super::widgets::{Weight, button, card, fitted, header, page, place_of_page, veil};
 use crate::game::Game;
 use crate::platform::Entry;
 use crate::platform::HAS_PICTURES;

@@ -1,7 +1,7 @@
 //! How it went, and a dare to try the other way.
 
-use super::kit::{Act, Weight, button, card, column, fitted, veil};
-use super::marks;
+use super::icons;
+use super::widgets::{Act, Weight, button, card, column, fitted, veil};
 use crate::game::{Game, Screen};
 use crate::look::Theme;
 use crate::platform::HAS_PICTURES;
@@ -77,7 +77,7 @@ fn headline(ui: &mut Ui, theme: &Theme, said: &Words, route: Route) {
     let galley = fitted(ui.painter(), name, 44.0, room.x - SIGN, theme.accent);
     let left = place.center().x - 0.5 * (SIGN + galley.size().x);
     let middle = pos2(left + 0.4 * SIGN, place.center().y);
-    marks::route(ui.painter(), theme, middle, 22.0, route, true);
+    icons::route(ui.painter(), theme, middle, 22.0, route, true);
     let at = pos2(left + SIGN, middle.y - 0.5 * galley.size().y);
     ui.painter().galley(at, galley, theme.accent);
 }

@@ -1,6 +1,6 @@
 //! What players choose.
 
-use super::kit::{Weight, button, card, choice, header, page, place_of_page, slider, veil};
+use super::widgets::{Weight, button, card, choice, header, page, place_of_page, slider, veil};
 use crate::game::{Game, Screen};
 use crate::input::Action;
 use crate::look::Theme;

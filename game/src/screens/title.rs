@@ -1,6 +1,6 @@
 //! The name of the game over a body that plays by itself.
 
-use super::kit::{Weight, button, column, veil, words};
+use super::widgets::{Weight, button, column, veil, words};
 use crate::game::{Game, Screen};
 use crate::words::Language;
 use egui::{Color32, Rect, Sense, Ui, vec2};

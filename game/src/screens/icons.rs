@@ -1,6 +1,6 @@
 //! Signs that say something without a word.
 
-use super::kit::words;
+use super::widgets::words;
 use crate::look::Theme;
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Ui, pos2, vec2};
 use tamaire_play::Route;

@@ -2,7 +2,7 @@
 
 use super::trial::{Outcome, Trial};
 use super::{Game, Screen};
-use crate::felt;
+use crate::haptics;
 use force_feedback::{Ability, Calibration, Manner, State, Stop};
 use sticks::DeviceId;
 use tamaire_play::PLAYERS;
@@ -12,7 +12,7 @@ const RESTED: f32 = 1.5;
 
 impl Game {
     /// Tells devices what there is to feel, and those that feel nothing why.
-    pub(super) fn feel(&mut self, seconds: f32) {
+    pub(super) fn drive_forces(&mut self, seconds: f32) {
         self.pass_trial(seconds);
         let (settings, trial) = (&self.settings, &self.trial);
         self.forces.attend(
@@ -74,7 +74,7 @@ impl Game {
     fn state(&self, id: DeviceId) -> Option<State> {
         let player = (0..PLAYERS).find(|&player| self.controls.players.held(player) == Some(id))?;
         let hands = self.bout.round().hands();
-        let contact = felt::on_stick(felt::contact(hands.get(player)?), self.bout.turn());
+        let contact = haptics::on_stick(haptics::contact(hands.get(player)?), self.bout.turn());
         let pushes_back = self.controls.devices.pushing.contains(&id);
         // What was put down hums no more, though the hand still presses. A stick that pushes back may be held still.
         if !pushes_back && self.controls.players.rested(player) > RESTED {
@@ -93,7 +93,7 @@ impl Game {
             _ if self.is_away => Some(Stop::FocusLost),
             Screen::Play if !self.bout.session.is_played() => Some(Stop::Idle),
             Screen::Play if self.bout.stepping => Some(Stop::Paused),
-            Screen::Play => felt::silence(self.bout.round()),
+            Screen::Play => haptics::silence(self.bout.round()),
             Screen::Paused => Some(Stop::Paused),
             _ => Some(Stop::Menu),
         }
