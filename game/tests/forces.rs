@@ -138,6 +138,7 @@ fn stick(id: u32) -> Device {
     let about = About {
         name: "Stick".into(),
         guid: format!("{id:032}"),
+        labels: sticks::Labels::default(),
     };
     Device::at_rest(DeviceId(id), about, 2, 12, 1)
 }

@@ -36,6 +36,22 @@ pub struct About {
     /// Names the model, not the single device, as 32 hexadecimal digits: what to store a mapping or a calibration under.
     /// Differs from platform to platform.
     pub guid: String,
+    /// What its maker printed on its buttons, if it is a pad.
+    pub labels: Labels,
+}
+
+/// What the maker of a pad printed on its buttons.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Labels {
+    /// Nobody knows.
+    #[default]
+    Unknown,
+    /// A lowest, as on pads for Xbox and most others.
+    Letters,
+    /// B lowest, as on pads for Nintendo's consoles.
+    Mirrored,
+    /// A cross lowest, as on pads for PlayStation.
+    Shapes,
 }
 
 /// A button, or anything else that is pressed.
@@ -275,6 +291,28 @@ impl Pad {
 }
 
 impl PadButton {
+    /// What stands on it, where that is known and is a word or a sign.
+    pub fn label(self, labels: Labels) -> Option<&'static str> {
+        let place = match self {
+            PadButton::South => 0,
+            PadButton::East => 1,
+            PadButton::West => 2,
+            PadButton::North => 3,
+            PadButton::LeftShoulder => 4,
+            PadButton::RightShoulder => 5,
+            PadButton::Back => 6,
+            PadButton::Start => 7,
+            _ => return None,
+        };
+        let all = match labels {
+            Labels::Unknown => return None,
+            Labels::Letters => ["A", "B", "X", "Y", "LB", "RB", "View", "Menu"],
+            Labels::Mirrored => ["B", "A", "Y", "X", "L", "R", "−", "+"],
+            Labels::Shapes => ["×", "○", "□", "△", "L1", "R1", "Share", "Options"],
+        };
+        Some(all[place])
+    }
+
     /// All of them, in the order of SDL.
     pub const ALL: [PadButton; 21] = [
         PadButton::South,

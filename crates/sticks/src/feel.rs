@@ -258,6 +258,7 @@ mod tests {
         let about = About {
             name: "Stick".into(),
             guid: String::new(),
+            labels: crate::Labels::default(),
         };
         Device::at_rest(DeviceId(id), about, 2, 0, 1)
     }

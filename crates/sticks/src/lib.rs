@@ -60,7 +60,8 @@ use latest::Latest;
 use std::sync::Arc;
 
 pub use device::{
-    About, Button, Change, Control, Device, DeviceId, Direction, Hat, Pad, PadButton, Snapshot,
+    About, Button, Change, Control, Device, DeviceId, Direction, Hat, Labels, Pad, PadButton,
+    Snapshot,
 };
 pub use feel::{Navigator, Repeat, radial_dead_zone};
 #[cfg(all(feature = "haptic", not(target_family = "wasm")))]

@@ -31,8 +31,10 @@ use sdl3_sys::events::{
     SDL_PumpEvents,
 };
 use sdl3_sys::gamepad::{
-    SDL_CloseGamepad, SDL_Gamepad, SDL_GamepadAxis, SDL_GamepadButton, SDL_GetGamepadAxis,
-    SDL_GetGamepadButton, SDL_IsGamepad, SDL_OpenGamepad,
+    SDL_CloseGamepad, SDL_GAMEPAD_BUTTON_LABEL_A, SDL_GAMEPAD_BUTTON_LABEL_B,
+    SDL_GAMEPAD_BUTTON_LABEL_CROSS, SDL_GAMEPAD_BUTTON_SOUTH, SDL_Gamepad, SDL_GamepadAxis,
+    SDL_GamepadButton, SDL_GetGamepadAxis, SDL_GetGamepadButton, SDL_GetGamepadButtonLabel,
+    SDL_IsGamepad, SDL_OpenGamepad,
 };
 use sdl3_sys::guid::SDL_GUIDToString;
 use sdl3_sys::hints::{
@@ -48,7 +50,7 @@ use sdl3_sys::joystick::{
     SDL_JoystickID, SDL_OpenJoystick,
 };
 
-use crate::{About, DeviceId, Direction, PadButton};
+use crate::{About, DeviceId, Direction, Labels, PadButton};
 
 /// The right to run SDL, of which a process has one.
 pub struct Turn(());
@@ -224,7 +226,24 @@ impl Open<'_> {
             About {
                 name: text(SDL_GetJoystickName(self.joystick.as_ptr())),
                 guid: text(guid.as_ptr()),
+                labels: self.labels(),
             }
+        }
+    }
+
+    /// By what stands on the lowest of the four buttons under the right thumb.
+    fn labels(&self) -> Labels {
+        let Some(gamepad) = self.gamepad else {
+            return Labels::Unknown;
+        };
+        // SAFETY: see the module.
+        let lowest =
+            unsafe { SDL_GetGamepadButtonLabel(gamepad.as_ptr(), SDL_GAMEPAD_BUTTON_SOUTH) };
+        match lowest {
+            SDL_GAMEPAD_BUTTON_LABEL_A => Labels::Letters,
+            SDL_GAMEPAD_BUTTON_LABEL_B => Labels::Mirrored,
+            SDL_GAMEPAD_BUTTON_LABEL_CROSS => Labels::Shapes,
+            _ => Labels::Unknown,
         }
     }
 

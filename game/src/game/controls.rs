@@ -2,7 +2,7 @@
 
 use crate::input::{Action, Devices, Means, Players};
 use crate::platform::Pads;
-use sticks::{Change, DeviceId};
+use sticks::{Change, DeviceId, Labels};
 
 /// With what the game is played.
 pub struct Controls {
@@ -14,6 +14,8 @@ pub struct Controls {
     pub players: Players,
     /// With what something was done last.
     pub means: Means,
+    /// The stick or pad with which something was done last.
+    in_hand: Option<DeviceId>,
     /// An action whose key or button the next one pressed becomes.
     pub rebinding: Option<Action>,
 }
@@ -26,6 +28,7 @@ impl Controls {
             devices: Devices::default(),
             players: Players::default(),
             means: Means::default(),
+            in_hand: None,
             rebinding: None,
         }
     }
@@ -46,10 +49,20 @@ impl Controls {
 
     /// Something was done with a stick or pad.
     pub fn note_stick(&mut self, id: DeviceId) {
+        self.in_hand = Some(id);
         let device = self.devices.sticks.device(id);
         self.means = match device.is_some_and(|device| device.pad.is_some()) {
             true => Means::Pad,
             false => Means::Stick,
         };
+    }
+
+    /// What is printed on the pad in hand, or on whichever there is.
+    pub fn labels(&self) -> Labels {
+        let sticks = &self.devices.sticks;
+        let in_hand = self.in_hand.and_then(|id| sticks.device(id)).into_iter();
+        let mut pads = in_hand.chain(&sticks.devices);
+        let pad = pads.find(|device| device.pad.is_some());
+        pad.map_or(Labels::Unknown, |pad| pad.about.labels)
     }
 }

@@ -4,7 +4,7 @@ use super::Action;
 use egui::Key;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use sticks::{Control, Direction, PadButton};
+use sticks::{Control, Direction, Labels, PadButton};
 
 /// Keys and buttons by action. No key and no button means two actions at once.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -31,8 +31,13 @@ impl PadKey {
         })
     }
 
-    /// The same for people to read: `left shoulder` for `leftshoulder`.
-    fn in_words(&self) -> String {
+    /// The same for people to read: as it is printed on a pad with such labels, else `left shoulder` for `leftshoulder`.
+    fn in_words(&self, labels: Labels) -> String {
+        let mut all = PadButton::ALL.into_iter();
+        let button = all.find(|&button| *self == Self::of(Control::Pad(button)));
+        if let Some(label) = button.and_then(|button| button.label(labels)) {
+            return label.into();
+        }
         let mut sides = ["left", "right"].into_iter();
         let part = sides.find_map(|side| Some((side, self.0.strip_prefix(side)?)));
         match part {
@@ -113,8 +118,8 @@ impl Bindings {
         find(&self.buttons, &PadKey::of(control))
     }
 
-    /// The keys and buttons of an action as they are written, those of the keyboard first.
-    pub fn names(&self, action: Action) -> [String; 2] {
+    /// The keys and buttons of an action as they are printed, those of the keyboard first; pads have such labels.
+    pub fn names(&self, action: Action, labels: Labels) -> [String; 2] {
         let keys = self.keys.get(&action).into_iter().flatten();
         let buttons = self.buttons.get(&action).into_iter().flatten();
         [
@@ -122,7 +127,7 @@ impl Bindings {
                 .collect::<Vec<_>>()
                 .join(" / "),
             buttons
-                .map(PadKey::in_words)
+                .map(|button| button.in_words(labels))
                 .collect::<Vec<_>>()
                 .join(" / "),
         ]
@@ -252,9 +257,20 @@ mod tests {
     #[test]
     fn names_of_buttons_can_be_read() {
         let bindings = Bindings::default();
-        assert_eq!(bindings.names(Action::Slow)[1], "right shoulder / 6");
-        assert_eq!(bindings.names(Action::Shallower)[1], "left stick");
-        assert_eq!(bindings.names(Action::Left)[1], "left / hat left");
+        let name = |action, labels| bindings.names(action, labels)[1].clone();
+        let nobody_knows = Labels::Unknown;
+        assert_eq!(name(Action::Slow, nobody_knows), "right shoulder / 6");
+        assert_eq!(name(Action::Shallower, nobody_knows), "left stick");
+        assert_eq!(name(Action::Left, nobody_knows), "left / hat left");
+        for (labels, retry, slow) in [
+            (Labels::Letters, "Y / 4", "RB / 6"),
+            (Labels::Mirrored, "X / 4", "R / 6"),
+            (Labels::Shapes, "△ / 4", "R1 / 6"),
+        ] {
+            assert_eq!(name(Action::Retry, labels), retry);
+            assert_eq!(name(Action::Slow, labels), slow);
+            assert_eq!(name(Action::Left, labels), "left / hat left");
+        }
     }
 
     #[test]

@@ -114,6 +114,7 @@ mod tests {
         let about = About {
             name: String::new(),
             guid: String::new(),
+            labels: sticks::Labels::default(),
         };
         let mut device = Device::at_rest(DeviceId(id), about, 6, 12, 0);
         let mut held = Pad::default();

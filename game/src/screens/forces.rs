@@ -45,7 +45,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                     let keys = game
                         .settings
                         .bindings
-                        .names(crate::input::Action::CutForces);
+                        .names(crate::input::Action::CutForces, game.controls.labels());
                     let hint = (said.cut_hint)(&keys);
                     ui.label(RichText::new(hint).size(18.0).color(theme.faint));
                 }

@@ -154,7 +154,7 @@ fn controls(ui: &mut Ui, game: &mut Game, chosen: &mut Settings) {
     let (theme, said) = (game.theme(), game.words());
     section(ui, &theme, said.controls, |ui| {
         for action in Action::ALL {
-            let [keys, buttons] = chosen.bindings.names(action);
+            let [keys, buttons] = chosen.bindings.names(action, game.controls.labels());
             let listens = game.controls.rebinding == Some(action);
             let text = match listens {
                 true => said.press_any.to_string(),

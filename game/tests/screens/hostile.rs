@@ -264,6 +264,7 @@ fn about() -> About {
     About {
         name: String::new(),
         guid: String::new(),
+        labels: sticks::Labels::default(),
     }
 }
 

@@ -68,6 +68,7 @@ pub fn about(name: &str) -> About {
     About {
         name: name.into(),
         guid: String::new(),
+        labels: sticks::Labels::default(),
     }
 }
 

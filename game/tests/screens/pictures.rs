@@ -83,6 +83,7 @@ fn sticks_and_pads() -> Pads {
     let about = |name: &str| About {
         name: name.into(),
         guid: name.into(),
+        labels: sticks::Labels::default(),
     };
     let mut stick = Device::at_rest(DeviceId(1), about("Force Stick 3D"), 4, 12, 1);
     stick.axes = vec![0.6, -0.4, 0.2, -1.0];

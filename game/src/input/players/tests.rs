@@ -30,6 +30,7 @@ fn stick(id: u32, lean: [f32; 2]) -> Device {
     let about = About {
         name: String::new(),
         guid: String::new(),
+        labels: sticks::Labels::default(),
     };
     let mut stick = Device::at_rest(DeviceId(id), about, 2, 4, 1);
     stick.axes = vec![lean[0], -lean[1]];
