@@ -169,7 +169,11 @@ impl App {
     fn hear_window(&mut self, ctx: &egui::Context) {
         let game = &mut self.game;
         let events = ctx.input(|input| input.events.clone());
-        self.fingers.hear(&events);
+        if game.screen() != Screen::Play {
+            game.controls.buttons.clear();
+        }
+        let pressed = self.fingers.hear(&events, &game.controls.buttons);
+        game.controls.devices.held = self.fingers.held().collect();
         let is_by_stick = self.presses.waiting().is_by_stick;
         let is_touched = ctx.input(|input| input.any_touches())
             || events
@@ -201,6 +205,9 @@ impl App {
                 }
                 _ => {}
             }
+        }
+        for button in pressed {
+            game.act(button.action, button.seat());
         }
         point(game, ctx, &self.fingers);
         game.controls.devices.keys = ctx.input(|input| input.keys_down.iter().copied().collect());

@@ -16,13 +16,13 @@ pub mod trial;
 use crate::attract::attract;
 use crate::input::{Action, Seat};
 use crate::look::Theme;
-use crate::platform::{Clock, Damage, Entry, Files, Forces, Given, Pads, Sound};
+use crate::platform::{Clock, Damage, Dialog, Entry, Files, Forces, Given, Pads, Picked, Sound};
 use crate::records::Records;
 use crate::session::Session;
 use crate::settings::Settings;
 use crate::words::Words;
 pub use bout::Bout;
-pub use controls::Controls;
+pub use controls::{Controls, ScreenButton};
 use fuwafuwa::world::TICK;
 pub use notices::{Notice, Notices};
 pub use screen::{Screen, Screens};
@@ -50,6 +50,8 @@ pub struct Game {
     pub bout: Bout,
     /// With what it is played.
     pub controls: Controls,
+    /// What the player is asked to pick a file with.
+    pub dialog: Dialog,
     /// The rounds that were kept, as they were when their screen came up.
     pub replays: Vec<Entry>,
     /// What the player should know.
@@ -92,6 +94,7 @@ impl Game {
             controls: Controls::new(pads),
             levels,
             chosen: 0,
+            dialog: Dialog::default(),
             replays: Vec::new(),
             notices: Notices::default(),
             time: 0.0,
@@ -233,6 +236,20 @@ impl Game {
                     self.tell_of_replay(&place, &error);
                 }
             }
+        }
+    }
+
+    /// Lets the player pick a file, which is played as if it had been dropped onto the window.
+    pub fn ask_for_file(&mut self) {
+        self.dialog.ask(self.words().what_opens);
+    }
+
+    /// Plays what was picked.
+    fn open_picked(&mut self) {
+        match self.dialog.take() {
+            Some(Picked::File(given)) => self.open(given),
+            Some(Picked::NoDialog) => self.notify(self.words().no_dialog.to_string()),
+            Some(Picked::Nothing) | None => {}
         }
     }
 

@@ -1,5 +1,7 @@
-//! What is done with a second finger, while the first one points.
+//! What is done with fingers: the first one points, others raise and turn, and any can press a button on the screen.
 
+use crate::game::ScreenButton;
+use crate::input::Action;
 use egui::{Event, Pos2, TouchDeviceId, TouchId, TouchPhase};
 use std::collections::BTreeMap;
 
@@ -13,6 +15,8 @@ pub(super) struct Fingers {
     /// The one that points, and where.
     first: Option<(Finger, Pos2)>,
     others: BTreeMap<Finger, Drag>,
+    /// Those that hold a button.
+    holding: BTreeMap<Finger, Action>,
     drawn: Drawn,
 }
 
@@ -20,6 +24,8 @@ type Finger = (TouchDeviceId, TouchId);
 
 #[derive(Debug)]
 struct Drag {
+    /// Where it is, and up to where it was drawn.
+    now: Pos2,
     at: Pos2,
     way: Option<Way>,
 }
@@ -40,9 +46,11 @@ pub(super) struct Drawn {
 }
 
 impl Fingers {
-    /// Takes in what happened.
-    pub(super) fn hear(&mut self, events: &[Event]) {
+    /// Takes in what happened, where these buttons are on the screen; gives back which
+    /// were pressed by a further finger.
+    pub(super) fn hear(&mut self, events: &[Event], buttons: &[ScreenButton]) -> Vec<ScreenButton> {
         self.drawn = Drawn::default();
+        let mut pressed: Vec<ScreenButton> = Vec::new();
         for event in events {
             // What ends while the window is away is not heard of.
             if let Event::WindowFocused(false) = event {
@@ -56,20 +64,42 @@ impl Fingers {
                 ..
             } = *event
             {
-                self.touch((device_id, id), phase, pos);
+                let finger = (device_id, id);
+                let button = buttons.iter().find(|button| button.place.contains(pos));
+                match button.filter(|_| phase == TouchPhase::Start) {
+                    Some(&button) => {
+                        // The first one clicks like a mouse, as it lifts.
+                        if self.are_down() {
+                            pressed.push(button);
+                        }
+                        self.holding.insert(finger, button.action);
+                    }
+                    None => self.touch(finger, phase, pos),
+                }
             }
         }
+        pressed
+    }
+
+    /// What the buttons mean that are held.
+    pub(super) fn held(&self) -> impl Iterator<Item = Action> {
+        self.holding.values().copied()
     }
 
     /// Whether there is a finger. Then no mouse counts: of the fingers that are left when the first one lifts, a browser
     /// takes one for the mouse.
     pub(super) fn are_down(&self) -> bool {
-        self.first.is_some() || !self.others.is_empty()
+        self.first.is_some() || !self.others.is_empty() || !self.holding.is_empty()
     }
 
     /// Where the first one points.
     pub(super) fn first(&self) -> Option<Pos2> {
         self.first.map(|(_, at)| at)
+    }
+
+    /// Where the one after it is.
+    pub(super) fn second(&self) -> Option<Pos2> {
+        self.others.values().next().map(|drag| drag.now)
     }
 
     /// How far they went since this was asked last.
@@ -83,12 +113,14 @@ impl Fingers {
                 self.first = Some((finger, at));
             }
             TouchPhase::Start => {
-                self.others.insert(finger, Drag { at, way: None });
+                let (now, way) = (at, None);
+                self.others.insert(finger, Drag { now, at, way });
             }
             TouchPhase::Move if self.is_first(finger) => self.first = Some((finger, at)),
             TouchPhase::Move => self.draw(finger, at),
             TouchPhase::End | TouchPhase::Cancel => {
                 self.others.remove(&finger);
+                self.holding.remove(&finger);
                 self.first = self.first.filter(|(first, _)| *first != finger);
             }
         }
@@ -102,6 +134,7 @@ impl Fingers {
         let Some(drag) = self.others.get_mut(&finger) else {
             return;
         };
+        drag.now = at;
         let by = at - drag.at;
         if drag.way.is_none() && by.length() > DECIDED {
             drag.way = Some(match by.y.abs() > by.x.abs() {
@@ -132,7 +165,7 @@ mod tests {
             pos: pos2(x, y),
             force: None,
         });
-        fingers.hear(&events.collect::<Vec<_>>());
+        fingers.hear(&events.collect::<Vec<_>>(), &[]);
         let Drawn { up, right } = fingers.take();
         [up, right]
     }

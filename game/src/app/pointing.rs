@@ -22,15 +22,20 @@ const TURN: f32 = 1.5;
 /// mean the hand, nor while it turns the camera.
 pub(super) fn point(game: &mut Game, ctx: &Context, fingers: &Fingers) {
     let is_on_button = ctx.interaction_snapshot(|seen| !seen.hovered.is_empty());
-    if game.screen() != Screen::Play || is_on_button {
-        game.controls.devices.pointer = None;
+    let is_on = game.screen() == Screen::Play;
+    let devices = &mut game.controls.devices;
+    if !is_on || is_on_button {
+        (devices.pointer, devices.second) = (None, None);
         return;
     }
+    let view = game.bout.view;
+    let second = view.zip(fingers.second());
+    devices.second = second.map(|(view, at)| view.in_world(at, 0.0));
     let at = match fingers.are_down() {
         true => fingers.first(),
         false => mouse_at(ctx),
     };
-    let (Some(view), Some(at)) = (game.bout.view, at) else {
+    let (Some(view), Some(at)) = (view, at) else {
         return;
     };
     let round = game.bout.round();

@@ -1,8 +1,29 @@
 //! With what the game is played: what devices say, and who holds which.
 
-use crate::input::{Action, Devices, Means, Players};
+use crate::input::{Action, Devices, Means, Players, Seat};
 use crate::platform::Pads;
+use egui::Rect;
 use sticks::{Change, DeviceId, Labels};
+
+/// A button that is on the screen over a round.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct ScreenButton {
+    /// What it asks for.
+    pub action: Action,
+    /// Where fingers press it [points].
+    pub place: Rect,
+}
+
+impl ScreenButton {
+    /// Who presses it.
+    pub fn seat(&self) -> Seat {
+        match self.action {
+            // The first finger has a hand already.
+            Action::Join => Seat::Finger,
+            _ => Seat::Pointer,
+        }
+    }
+}
 
 /// With what the game is played.
 pub struct Controls {
@@ -16,6 +37,8 @@ pub struct Controls {
     pub means: Means,
     /// The stick or pad with which something was done last.
     in_hand: Option<DeviceId>,
+    /// What fingers can press, as it was seen last.
+    pub buttons: Vec<ScreenButton>,
     /// An action whose key or button the next one pressed becomes.
     pub rebinding: Option<Action>,
 }
@@ -29,6 +52,7 @@ impl Controls {
             players: Players::default(),
             means: Means::default(),
             in_hand: None,
+            buttons: Vec::new(),
             rebinding: None,
         }
     }
@@ -36,7 +60,8 @@ impl Controls {
     /// Another round begins: what pointed at places of the last one counts no more.
     pub(super) fn begin(&mut self) {
         self.players.start();
-        (self.devices.pointer, self.devices.lift) = (None, 0.0);
+        (self.devices.pointer, self.devices.second) = (None, None);
+        self.devices.lift = 0.0;
     }
 
     /// Takes in what sticks and pads say; gives back what was pressed since.

@@ -39,6 +39,7 @@ impl Game {
         for news in self.files.pass(seconds) {
             self.tell(news);
         }
+        self.open_picked();
         self.celebrate(seconds);
         self.learn(seconds);
         self.drive_forces(seconds);

@@ -15,6 +15,8 @@ pub(super) const RIM: f32 = 0.95;
 pub enum Seat {
     /// Mouse or touch.
     Pointer,
+    /// A second finger.
+    Finger,
     /// Keys.
     Keys,
     /// A stick or pad.
@@ -26,6 +28,10 @@ pub enum Seat {
 pub struct Devices {
     /// Where the mouse or a finger points in the world [m], when it moved or is down.
     pub pointer: Option<Vector>,
+    /// Where a second finger points, likewise: it is the hand of a second player who joined with it.
+    pub second: Option<Vector>,
+    /// What the buttons on the screen mean that fingers hold.
+    pub held: BTreeSet<Action>,
     /// Keys that are held.
     pub keys: BTreeSet<Key>,
     /// How far the wheel or a second finger was turned or drawn, for the hand to rise in space [m].
@@ -71,10 +77,10 @@ impl Devices {
         (keys + sticks.sum::<f32>()).clamp(-1.0, 1.0)
     }
 
-    /// Whether a key that means this is held.
+    /// Whether a key that means this, or a button on the screen, is held.
     pub(super) fn holds(&self, bindings: &Bindings, action: Action) -> bool {
         let means = |&key| bindings.of_key(key) == Some(action);
-        self.keys.iter().any(means)
+        self.held.contains(&action) || self.keys.iter().any(means)
     }
 }
 

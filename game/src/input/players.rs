@@ -215,6 +215,10 @@ impl Players {
             asked.wheel = wheel;
             self.used[player] = Some(Seat::Pointer);
         }
+        if player == 1 && self.second == Some(Seat::Finger) && devices.second.is_some() {
+            asked.place = devices.second;
+            self.used[1] = Some(Seat::Finger);
+        }
         asked
     }
 }

@@ -2,6 +2,11 @@
 //! sticks can be read and felt. Nothing else in the game knows on which it runs.
 
 mod clock;
+#[cfg(not(target_family = "wasm"))]
+mod dialog;
+#[cfg(target_family = "wasm")]
+#[path = "no_dialog.rs"]
+mod dialog;
 mod files;
 #[cfg(not(target_family = "wasm"))]
 mod folder;
@@ -23,6 +28,7 @@ mod storage;
 mod writer;
 
 pub use clock::Clock;
+pub use dialog::{Dialog, IS_THERE as HAS_DIALOG, Picked};
 pub use files::{Damage, Files, News};
 pub use forces::Forces;
 pub use given::{Given, replay_in};

@@ -1,23 +1,17 @@
 //! The little that is shown over a round: time, how full the basket is, what is different from usual.
 
-use super::icons;
 use super::widgets::fitted;
+use super::{buttons, icons};
 use crate::game::Game;
-use crate::input::{Action, Seat};
+use crate::input::Action;
 use crate::look::Theme;
-use egui::{
-    Align2, Color32, FontId, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2,
-    vec2,
-};
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
 use fuwafuwa_render::frame::ElementColour;
 
-/// Draws what stands for an action, so many times as large as usual.
-type Mark = fn(&Painter, Pos2, f32, Color32);
-
 /// Height of what stands in the upper row, between two of these, and from the edge of the window.
-const HIGH: f32 = 44.0;
-const GAP: f32 = 8.0;
-const EDGE: f32 = 15.0;
+pub(super) const HIGH: f32 = 44.0;
+pub(super) const GAP: f32 = 8.0;
+pub(super) const EDGE: f32 = 15.0;
 /// Height of a line of the lesson.
 const LINE: f32 = 34.0;
 /// Radius of the jar.
@@ -29,33 +23,11 @@ const MOST: f32 = 1.4;
 /// Shows it; gives back whether the mouse is on a button.
 pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
     let scale = scale(game, ui);
-    let (theme, said) = (game.theme(), game.words());
-    let high = scale * HIGH;
+    let theme = game.theme();
     let screen = ui.max_rect().shrink(scale * EDGE);
     let mut at = screen.left_top();
-    let mut is_on_button = false;
-    let buttons: [(Action, &str, Mark); 2] = [
-        (Action::Pause, said.paused, draw_pause),
-        (Action::Retry, said.again, draw_again),
-    ];
-    for (action, name, draw) in buttons {
-        let rect = Rect::from_min_size(at, vec2(high, high));
-        // Not for the keyboard, which has its own keys for it.
-        let response = ui.interact(rect, egui::Id::unique(name), Sense::CLICK);
-        response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
-        is_on_button |= response.hovered();
-        let fill = if response.hovered() {
-            theme.card
-        } else {
-            pale(&theme)
-        };
-        ui.painter().circle_filled(rect.center(), 0.5 * high, fill);
-        draw(ui.painter(), rect.center(), scale, theme.ink);
-        if response.clicked() {
-            game.act(action, Seat::Pointer);
-        }
-        at.x += high + scale * GAP;
-    }
+    let (end, is_on_button) = buttons::show(game, ui, at, scale);
+    at.x = end;
     let round = game.bout.round();
     let mut right = screen.right();
     if round.basket().is_some() {
@@ -285,22 +257,6 @@ fn draw_jar(ui: &Ui, middle: Pos2, scale: f32, game: &Game) {
     }
 }
 
-fn pale(theme: &Theme) -> Color32 {
+pub(super) fn pale(theme: &Theme) -> Color32 {
     theme.card.gamma_multiply(0.72)
-}
-
-fn draw_pause(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
-    for x in [-5.0, 5.0] {
-        let bar = Rect::from_center_size(at + scale * vec2(x, 0.0), scale * vec2(5.0, 17.0));
-        painter.rect_filled(bar, 2.0 * scale, ink);
-    }
-}
-
-/// An arrow that comes back to where it began.
-fn draw_again(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
-    let stroke = Stroke::new(3.5 * scale, ink);
-    icons::arc(painter, at, 9.0 * scale, 0.8, stroke);
-    let corners = [[-7.0, 0.0], [2.0, -6.0], [2.0, 6.0]];
-    let corners = corners.map(|[x, y]| at + scale * vec2(x, y - 9.0));
-    painter.add(Shape::convex_polygon(corners.to_vec(), ink, Stroke::NONE));
 }

@@ -73,3 +73,88 @@ pub(super) fn route(
         }
     }
 }
+
+/// A rest.
+pub(super) fn pause(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
+    for x in [-5.0, 5.0] {
+        let bar = Rect::from_center_size(at + scale * vec2(x, 0.0), scale * vec2(5.0, 17.0));
+        painter.rect_filled(bar, 2.0 * scale, ink);
+    }
+}
+
+/// An arrow that comes back to where it began.
+pub(super) fn again(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
+    let stroke = Stroke::new(3.5 * scale, ink);
+    arc(painter, at, 9.0 * scale, 0.8, stroke);
+    polygon(
+        painter,
+        at - scale * vec2(0.0, 9.0),
+        scale,
+        ink,
+        &[[-7.0, 0.0], [2.0, -6.0], [2.0, 6.0]],
+    );
+}
+
+/// A large element and small ones.
+pub(super) fn elements(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
+    for (x, y, side) in [(-4.5, 0.0, 9.0), (5.0, -4.75, 7.0), (5.0, 4.75, 7.0)] {
+        let square = Rect::from_center_size(
+            at + scale * vec2(x, y),
+            scale * vec2(side, if x < 0.0 { 17.0 } else { side }),
+        );
+        painter.rect_stroke(
+            square,
+            1.0,
+            Stroke::new(2.0 * scale, ink),
+            StrokeKind::Inside,
+        );
+    }
+}
+
+/// Time that goes slowly.
+pub(super) fn slow(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
+    polygon(
+        painter,
+        at - scale * vec2(4.0, 0.0),
+        scale,
+        ink,
+        &[[-6.0, -7.0], [6.0, 0.0], [-6.0, 7.0]],
+    );
+    for x in [5.0, 11.0] {
+        painter.circle_filled(at + scale * vec2(x, 5.5), 1.8 * scale, ink);
+    }
+}
+
+/// Two players.
+pub(super) fn two(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
+    for x in [-6.0, 6.0] {
+        painter.circle_filled(at + scale * vec2(x, 0.0), 5.0 * scale, ink);
+    }
+}
+
+/// Upwards.
+pub(super) fn up(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
+    polygon(
+        painter,
+        at,
+        scale,
+        ink,
+        &[[-8.0, 5.0], [0.0, -8.0], [8.0, 5.0]],
+    );
+}
+
+/// Downwards.
+pub(super) fn down(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
+    polygon(
+        painter,
+        at,
+        scale,
+        ink,
+        &[[-8.0, -5.0], [0.0, 8.0], [8.0, -5.0]],
+    );
+}
+
+fn polygon(painter: &Painter, at: Pos2, scale: f32, ink: Color32, corners: &[[f32; 2]]) {
+    let corners = corners.iter().map(|&[x, y]| at + scale * vec2(x, y));
+    painter.add(Shape::convex_polygon(corners.collect(), ink, Stroke::NONE));
+}

@@ -1,12 +1,19 @@
 //! Which level?
 
 use super::icons;
-use super::widgets::{fitted, focus_ring, header, liveliness, page, place_of_page, veil, words};
+use super::widgets::{
+    Weight, button, fitted, focus_ring, header_with, is_on, liveliness, page, place_of_page, veil,
+    words,
+};
 use crate::game::Game;
 use crate::look::{Maps, Stage};
-use crate::records::WishName;
-use egui::{Color32, Rect, Response, Role, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
-use tamaire_play::Route;
+use crate::platform::HAS_DIALOG;
+use crate::records::{Record, WishName};
+use egui::{
+    Color32, Rect, Response, RichText, Role, Sense, Stroke, Tooltip, Ui, Vec2, WidgetInfo, pos2,
+    vec2,
+};
+use tamaire_play::{Level, Route};
 use tamaire_sound::Menu;
 
 /// Between two tiles.
@@ -22,7 +29,13 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     let area = place_of_page(ui);
     let mut back = ui.input(|input| input.key_pressed(egui::Key::Escape));
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
-        back |= header(ui, &theme, said.back, said.levels).clicked();
+        let (response, opens) = header_with(ui, &theme, said.back, said.levels, |ui| {
+            HAS_DIALOG && button(ui, &theme, said.open, vec2(150.0, 48.0), Weight::Other).clicked()
+        });
+        back |= response.clicked();
+        if opens {
+            game.ask_for_file();
+        }
         page(ui, "levels", f32::INFINITY, |ui| {
             ui.spacing_mut().item_spacing = vec2(GAP, GAP);
             let width = ui.available_width();
@@ -43,6 +56,7 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
                     }
                 });
             }
+            legend(ui, game);
         });
     });
     if back {
@@ -111,5 +125,62 @@ fn tile(ui: &mut Ui, game: &Game, maps: &Maps, place: usize, size: Vec2) -> Resp
         icons::tick(painter, at, 7.0, Stroke::new(3.0, theme.card));
     }
     focus_ring(ui, &response, rect, 22.0, &theme);
+    if response.hovered() || is_on(ui, &response) {
+        explain(ui, game, &response, level, record);
+    }
     response
+}
+
+/// What the stars and routes on a tile stand for, beside it.
+fn explain(ui: &Ui, game: &Game, tile: &Response, level: &Level, record: Option<&Record>) {
+    let (theme, said) = (game.theme(), game.words());
+    let wishes = level.game().wish.iter().map(|wish| {
+        let reached = record.is_some_and(|record| record.wishes.contains(&WishName::of(wish)));
+        let star = if reached { "★" } else { "☆" };
+        format!("{star} {}", (said.wish)(wish))
+    });
+    let times = record.into_iter().flat_map(|record| &record.best);
+    let times = times.map(|(&route, &ticks)| {
+        let seconds = ticks as f32 * fuwafuwa::world::TICK;
+        format!("{} {seconds:.1} s", (said.route)(route))
+    });
+    let lines: Vec<String> = wishes.chain(times).collect();
+    if lines.is_empty() {
+        return;
+    }
+    let tooltip = Tooltip::always_open(ui.ctx().clone(), ui.layer_id(), tile.id, tile);
+    tooltip.gap(6.0).show(|ui| {
+        for line in lines {
+            ui.label(RichText::new(line).size(17.0).color(theme.ink));
+        }
+    });
+}
+
+/// What the signs on all tiles stand for.
+fn legend(ui: &mut Ui, game: &Game) {
+    let (theme, said) = (game.theme(), game.words());
+    let [won, wish, squeezed, shaved, space] = said.legend;
+    ui.add_space(10.0);
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        let sign = |ui: &mut Ui, name: &str, draw: &dyn Fn(&Ui, egui::Pos2)| {
+            let (place, _) = ui.allocate_exact_size(vec2(40.0, 30.0), Sense::hover());
+            draw(ui, place.center());
+            ui.label(RichText::new(name).size(17.0).color(theme.faint));
+            ui.add_space(16.0);
+        };
+        sign(ui, won, &|ui, at| {
+            ui.painter().circle_filled(at, 12.0, theme.good);
+            icons::tick(ui.painter(), at, 6.0, Stroke::new(3.0, theme.card));
+        });
+        sign(ui, wish, &|ui, at| words(ui, at, "★", 20.0, theme.accent));
+        for (name, route) in [(squeezed, Route::Squeeze), (shaved, Route::Shave)] {
+            sign(ui, name, &|ui, at| {
+                icons::route(ui.painter(), &theme, at, 10.0, route, true)
+            });
+        }
+        sign(ui, space, &|ui, at| {
+            icons::space(ui, at - vec2(19.0, 12.0), &theme)
+        });
+    });
 }

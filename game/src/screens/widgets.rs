@@ -111,7 +111,7 @@ pub fn note_use_of_keys(ctx: &Context, by_keys: bool) {
 }
 
 /// Whether keys or a pad are on this.
-fn is_on(ui: &Ui, response: &Response) -> bool {
+pub fn is_on(ui: &Ui, response: &Response) -> bool {
     let by_keys = ui.data(|data| data.get_temp(Id::unique("by keys")));
     response.has_focus() && by_keys == Some(true)
 }
@@ -286,6 +286,17 @@ pub fn title(ui: &mut Ui, theme: &Theme, text: &str) {
 
 /// The upper edge of a screen: a way back and a headline; gives back the button.
 pub fn header(ui: &mut Ui, theme: &Theme, back: &str, text: &str) -> Response {
+    header_with(ui, theme, back, text, |_| ()).0
+}
+
+/// The same with something at the right end, and what that gives back.
+pub fn header_with<R>(
+    ui: &mut Ui,
+    theme: &Theme,
+    back: &str,
+    text: &str,
+    right: impl FnOnce(&mut Ui) -> R,
+) -> (Response, R) {
     let room = vec2(ui.available_width(), 56.0);
     let layout = Layout::left_to_right(Align::Center);
     let inner = ui.allocate_ui_with_layout(room, layout, |ui| {
@@ -297,7 +308,8 @@ pub fn header(ui: &mut Ui, theme: &Theme, back: &str, text: &str) -> Response {
         let response = button(ui, theme, back, vec2(140.0, 48.0), Weight::Other);
         ui.add_space(16.0);
         title(ui, theme, text);
-        response
+        let right = ui.with_layout(Layout::right_to_left(Align::Center), right);
+        (response, right.inner)
     });
     ui.add_space(6.0);
     inner.inner

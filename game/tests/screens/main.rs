@@ -2,6 +2,7 @@
 //! pressed and read, how it looks, and what it puts up with.
 
 mod clicks;
+mod fingers;
 mod hostile;
 mod kept;
 mod models;

@@ -78,6 +78,19 @@ fn every_screen() {
     pictures(&mut window, "result");
 }
 
+#[test]
+fn what_fingers_press() {
+    let mut window = open(Files::nowhere(), vec2(704.0, 440.0), 1.0);
+    for level in ["twins", "classic-3d"] {
+        start(&mut window, level);
+        let at = pos2(500.0, 300.0);
+        touch(&mut window, 0, egui::TouchPhase::Start, at);
+        frames(&mut window, 3);
+        picture(&mut window, &format!("fingers_{level}"));
+        touch(&mut window, 0, egui::TouchPhase::End, at);
+    }
+}
+
 /// A stick that pushes back and a pad that rumbles, of which nobody plays with either.
 fn sticks_and_pads() -> Pads {
     let about = |name: &str| About {

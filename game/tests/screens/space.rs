@@ -3,7 +3,7 @@
 use crate::pads::{Table, pad};
 use crate::told::tells;
 use crate::window::*;
-use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, TouchPhase, pos2, vec2};
+use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, TouchPhase, pos2, vec2};
 use fuwafuwa::Vector;
 use fuwafuwa::vector::{length, minus};
 use fuwafuwa::world::TICK;
@@ -245,29 +245,6 @@ fn two_players_in_space_have_a_hand_each_and_one_camera() {
     let moved = [0, 1].map(|player| goal(&table.window, player));
     assert!(moved[0][2] > after[0][2] + 0.2, "{after:?} {moved:?}");
     assert_near(moved[1], after[1]);
-}
-
-/// What a finger does, as eframe tells it: the first is a mouse as well.
-fn touch(window: &mut Window, finger: u64, phase: TouchPhase, pos: Pos2) {
-    window.event(Event::Touch {
-        device_id: egui::TouchDeviceId(1),
-        id: egui::TouchId(finger),
-        phase,
-        pos,
-        force: None,
-    });
-    if finger == 0 {
-        window.event(Event::PointerMoved(pos));
-        if phase != TouchPhase::Move {
-            window.event(Event::PointerButton {
-                pos,
-                button: PointerButton::Primary,
-                pressed: phase == TouchPhase::Start,
-                modifiers: Modifiers::NONE,
-            });
-        }
-    }
-    frames(window, 1);
 }
 
 #[test]

@@ -120,3 +120,26 @@ pub fn win(window: &mut Window) {
     frames(window, 2);
     assert_eq!(screen(window), Screen::Result);
 }
+
+/// What a finger does, as eframe tells it: the first is a mouse as well.
+pub fn touch(window: &mut Window, finger: u64, phase: egui::TouchPhase, pos: egui::Pos2) {
+    window.event(egui::Event::Touch {
+        device_id: egui::TouchDeviceId(1),
+        id: egui::TouchId(finger),
+        phase,
+        pos,
+        force: None,
+    });
+    if finger == 0 {
+        window.event(egui::Event::PointerMoved(pos));
+        if phase != egui::TouchPhase::Move {
+            window.event(egui::Event::PointerButton {
+                pos,
+                button: egui::PointerButton::Primary,
+                pressed: phase == egui::TouchPhase::Start,
+                modifiers: egui::Modifiers::NONE,
+            });
+        }
+    }
+    frames(window, 1);
+}

@@ -1,0 +1,30 @@
+//! Where no file can be picked.
+
+use super::Given;
+
+/// Whether there is a dialog here.
+pub const IS_THERE: bool = false;
+
+/// The dialog that there is not.
+#[derive(Default)]
+pub struct Dialog;
+
+/// What came of a dialog.
+pub enum Picked {
+    /// This was picked.
+    File(Given),
+    /// Nothing was.
+    Nothing,
+    /// The system has no such dialog.
+    NoDialog,
+}
+
+impl Dialog {
+    /// Asks for a file: in vain.
+    pub fn ask(&mut self, _: &str) {}
+
+    /// Nothing was picked.
+    pub fn take(&mut self) -> Option<Picked> {
+        None
+    }
+}

@@ -1,0 +1,89 @@
+//! The round buttons over a round: two for everybody, and for fingers all that keys and pads have.
+
+use super::hud::{EDGE, GAP, HIGH, pale};
+use super::icons;
+use crate::game::{Game, ScreenButton};
+use crate::input::{Action, Means};
+use egui::{Color32, Painter, Pos2, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
+use tamaire_play::AnyRound;
+
+/// Draws what stands for an action, so many times as large as usual.
+type Icon = fn(&Painter, Pos2, f32, Color32);
+
+/// Side of those that a thumb holds [points].
+const THUMB: f32 = 68.0;
+
+/// Shows them from a corner to the right, and those for a thumb in the lower right corner; gives back where the row ends
+/// and whether the mouse is on one.
+pub(super) fn show(game: &mut Game, ui: &Ui, corner: Pos2, scale: f32) -> (f32, bool) {
+    let said = game.words();
+    let mut row: Vec<(Action, &str, Icon)> = vec![
+        (Action::Pause, said.paused, icons::pause),
+        (Action::Retry, said.again, icons::again),
+    ];
+    let mut thumb: Vec<(Action, &str, Icon)> = Vec::new();
+    if game.controls.means == Means::Fingers && game.bout.session.is_played() {
+        let name = |action| (said.action)(action);
+        row.push((Action::Elements, name(Action::Elements), icons::elements));
+        row.push((Action::Slow, name(Action::Slow), icons::slow));
+        match game.bout.round() {
+            // In space a second finger raises the hand.
+            AnyRound::Plane(_) if game.bout.takes_two() => {
+                row.push((Action::Join, name(Action::Join), icons::two));
+            }
+            AnyRound::Plane(_) => {}
+            AnyRound::Space(_) => {
+                let ways = match game.bout.elements {
+                    None => [Action::Raise, Action::Lower],
+                    Some(_) => [Action::Deeper, Action::Shallower],
+                };
+                thumb.push((ways[0], name(ways[0]), icons::up));
+                thumb.push((ways[1], name(ways[1]), icons::down));
+            }
+        }
+    }
+    let side = scale * HIGH;
+    let step = vec2(side + scale * GAP, 0.0);
+    let in_row = |place: usize| Rect::from_min_size(corner + place as f32 * step, vec2(side, side));
+    let end = in_row(row.len()).left();
+    let last = ui.max_rect().right_bottom() - scale * vec2(EDGE + THUMB, EDGE + THUMB);
+    let count = thumb.len();
+    let in_corner = |place: usize| {
+        let up = scale * (THUMB + 2.0 * GAP) * (count - 1 - place) as f32;
+        Rect::from_min_size(pos2(last.x, last.y - up), scale * vec2(THUMB, THUMB))
+    };
+    let row = row.into_iter().enumerate();
+    let thumb = thumb.into_iter().enumerate();
+    let all: Vec<_> = row
+        .map(|(place, button)| (in_row(place), button))
+        .chain(thumb.map(|(place, button)| (in_corner(place), button)))
+        .collect();
+    let mut is_on_button = false;
+    game.controls.buttons.clear();
+    for (place, (action, name, icon)) in all {
+        let button = ScreenButton { action, place };
+        game.controls.buttons.push(button);
+        is_on_button |= one(game, ui, button, name, icon);
+    }
+    (end, is_on_button)
+}
+
+/// Shows a button; gives back whether the mouse is on it.
+fn one(game: &mut Game, ui: &Ui, button: ScreenButton, name: &str, icon: Icon) -> bool {
+    let (theme, place) = (game.theme(), button.place);
+    // Not for the keyboard, which has its own keys for it.
+    let response = ui.interact(place, egui::Id::unique(name), Sense::CLICK);
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
+    let is_held = game.controls.devices.held.contains(&button.action);
+    let fill = match is_held || response.hovered() {
+        true => theme.card,
+        false => pale(&theme),
+    };
+    let (middle, radius) = (place.center(), 0.5 * place.width());
+    ui.painter().circle_filled(middle, radius, fill);
+    icon(ui.painter(), middle, place.width() / HIGH, theme.ink);
+    if response.clicked() {
+        game.act(button.action, button.seat());
+    }
+    response.hovered()
+}

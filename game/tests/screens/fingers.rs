@@ -1,0 +1,117 @@
+//! What fingers do that keys and pads have buttons for.
+
+use crate::window::*;
+use egui::TouchPhase::{End, Move, Start};
+use egui::{Pos2, Rect, vec2};
+use tamaire::input::{Action, Means, Seat};
+use tamaire::platform::Files;
+
+fn goal(window: &Window, player: usize) -> [f32; 3] {
+    let game = &window.state().game;
+    let wanted = game.controls.players.wanted(player);
+    wanted.unwrap_or_else(|| game.bout.round().hands()[player].goal())
+}
+
+/// Where a button is that fingers can press.
+fn place(window: &Window, action: Action) -> Option<Rect> {
+    let buttons = &window.state().game.controls.buttons;
+    let button = buttons.iter().find(|button| button.action == action);
+    button.map(|button| button.place)
+}
+
+/// A round in which a finger holds the hand at a place in the world [m].
+fn held(level: &str, at: [f32; 3]) -> Window {
+    let mut window = window(Files::nowhere());
+    start(&mut window, level);
+    let on_screen = on_screen(&window, at);
+    touch(&mut window, 0, Start, on_screen);
+    touch(&mut window, 0, Move, on_screen + vec2(1.0, 0.0));
+    frames(&mut window, 2);
+    assert_eq!(window.state().game.controls.means, Means::Fingers);
+    window
+}
+
+fn on_screen(window: &Window, at: [f32; 3]) -> Pos2 {
+    let view = window.state().game.bout.view;
+    view.expect("it is seen").on_screen(at)
+}
+
+fn tap(window: &mut Window, action: Action) {
+    let at = place(window, action).expect("it is there").center();
+    touch(window, 1, Start, at);
+    touch(window, 1, End, at);
+    frames(window, 1);
+}
+
+#[test]
+fn a_second_finger_presses_what_the_first_one_has_no_time_for() {
+    let mut window = held("twins", [-0.9, 0.3, 0.0]);
+    let game = |window: &Window| {
+        let bout = &window.state().game.bout;
+        (bout.slow, bout.elements.is_some())
+    };
+    tap(&mut window, Action::Slow);
+    assert_eq!(game(&window), (true, false));
+    tap(&mut window, Action::Slow);
+    tap(&mut window, Action::Elements);
+    assert_eq!(game(&window), (false, true));
+    tap(&mut window, Action::Pause);
+    assert_eq!(screen(&window), tamaire::game::Screen::Paused);
+    frames(&mut window, 2);
+    assert_eq!(place(&window, Action::Pause), None, "menus have their own");
+}
+
+#[test]
+fn two_fingers_are_two_players() {
+    let mut window = held("twins", [-0.9, 0.3, 0.0]);
+    tap(&mut window, Action::Join);
+    let second = window.state().game.controls.players.second();
+    assert_eq!(second, Some(Seat::Finger));
+    let first = goal(&window, 0);
+    for step in 0..60 {
+        let at = on_screen(&window, [0.2 + 0.005 * step as f32, -0.6, 0.0]);
+        touch(&mut window, 1, if step == 0 { Start } else { Move }, at);
+    }
+    let [x, y, _] = goal(&window, 1);
+    assert!((x - 0.5).abs() < 0.05 && (y + 0.6).abs() < 0.05, "{x} {y}");
+    let still = goal(&window, 0);
+    assert!((still[0] - first[0]).abs() < 0.05, "{first:?} {still:?}");
+}
+
+#[test]
+fn in_space_a_thumb_raises_the_hand_and_looks_deeper() {
+    let mut window = held("classic-3d", [-0.9, 0.0, 0.6]);
+    let before = goal(&window, 0)[1];
+    let up = place(&window, Action::Raise).expect("it is there").center();
+    touch(&mut window, 1, Start, up);
+    frames(&mut window, 20);
+    let high = goal(&window, 0)[1];
+    assert!(high > before + 0.2, "{before} {high}");
+    touch(&mut window, 1, End, up);
+    frames(&mut window, 20);
+    assert!((goal(&window, 0)[1] - high).abs() < 0.05);
+    tap(&mut window, Action::Elements);
+    assert!(place(&window, Action::Raise).is_none());
+    let share = |window: &Window| {
+        let game = &window.state().game;
+        game.bout.opening.share(game.time, false)
+    };
+    // They open by themselves at first.
+    frames(&mut window, 120);
+    let whole = share(&window);
+    let deeper = place(&window, Action::Deeper).expect("it is there");
+    touch(&mut window, 1, Start, deeper.center());
+    frames(&mut window, 20);
+    assert!(share(&window) < whole - 0.1, "{whole}");
+}
+
+#[test]
+fn a_mouse_sees_only_the_buttons_that_it_needs() {
+    let mut window = window(Files::nowhere());
+    start(&mut window, "classic-3d");
+    window.hover_at(egui::pos2(500.0, 300.0));
+    frames(&mut window, 2);
+    let buttons = &window.state().game.controls.buttons;
+    let actions = buttons.iter().map(|button| button.action);
+    assert_eq!(actions.collect::<Vec<_>>(), [Action::Pause, Action::Retry]);
+}
