@@ -1,4 +1,4 @@
-//! Where an element takes the places of a body at rest, and back: its motion, taken for affine.
+//! Where an element takes the points of a body at rest, and back: its motion, taken for affine.
 
 use crate::body::Body;
 use crate::dim::Dim;
@@ -34,7 +34,7 @@ impl<D: Dim> Body<D> {
         (centre, gradient)
     }
 
-    /// Where an element takes a place of the undeformed body, given in voxels: its affine motion [m].
+    /// Where an element takes a point of the undeformed body, given in voxels: its affine motion [m].
     pub(crate) fn carry(&self, element: &Element) -> impl Fn(Vector) -> Vector + use<D> {
         let (centre, gradient) = self.deformation(element);
         let stencil = self.truth.mesh.stencil(element);
@@ -44,10 +44,10 @@ impl<D: Dim> Body<D> {
         let steps = slot_at(stencil.slots[0] as usize).map(|k| k as f32 * half);
         let origin = minus(scaled(stencil.offsets[0].map(|k| k as f32), half), steps);
         let low = element.cell.first_voxel().map(|k| k as f32);
-        move |place| {
+        move |point| {
             let mut rest = origin;
             for axis in 0..D::N {
-                rest[axis] += (place[axis] - low[axis]) * size;
+                rest[axis] += (point[axis] - low[axis]) * size;
             }
             let mut carried = [0.0; 3];
             for axis in 0..D::N {
@@ -57,14 +57,14 @@ impl<D: Dim> Body<D> {
         }
     }
 
-    /// The child of an element's cell that a place [m] lies in.
+    /// The child of an element's cell that a position [m] lies in.
     pub(crate) fn child_at(&self, element: &Element, at: Vector) -> Option<usize> {
         let (centre, [x, y, z]) = self.deformation(element);
         let volume = dot(x, cross(y, z));
         if volume.abs() < FLAT {
             return None;
         }
-        // Cramer's rule: where the place was at rest, as seen from the centroid.
+        // Cramer's rule: where the position was at rest, as seen from the centroid.
         let by = scaled(minus(at, centre), 1.0 / volume);
         let columns = [cross(y, z), cross(z, x), cross(x, y)];
         let child_width = 0.5 * self.truth.grid.voxel_size() * element.cell.width() as f32;

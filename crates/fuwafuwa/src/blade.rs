@@ -83,8 +83,8 @@ impl<D: Dim> Body<D> {
         for &at in &points {
             releases.extend(self.sides(at, &opened).into_iter().map(|side| (at, side)));
         }
-        let places = releases.iter().filter_map(|&(at, _)| self.place_of(at));
-        let released = places.collect();
+        let positions = releases.iter().filter_map(|&(at, _)| self.position_of(at));
+        let released = positions.collect();
         let parted = self.release(&releases)?;
         Ok(CutReport { released, parted })
     }
@@ -132,7 +132,7 @@ impl<D: Dim> Body<D> {
     }
 
     /// Where a lattice point is now [m], as one of the elements around it carries it.
-    fn place_of(&self, at: Point) -> Option<Vector> {
+    fn position_of(&self, at: Point) -> Option<Vector> {
         let voxels = (0..D::CORNERS).map(|octant| voxel_around::<D>(at, octant));
         let owner = { voxels }.find_map(|voxel| self.truth.mesh.owner(voxel))?;
         Some(self.carry(self.truth.mesh.element(owner)?)(
@@ -156,9 +156,9 @@ impl<D: Dim> Body<D> {
                 continue;
             }
             let (a, b) = (1u8 << octant, 1u8 << (octant ^ 1 << axis));
-            let (joined, rest): (Vec<u8>, Vec<u8>) =
+            let (joined, others): (Vec<u8>, Vec<u8>) =
                 sides.into_iter().partition(|side| side & (a | b) != 0);
-            sides = rest;
+            sides = others;
             sides.push(joined.into_iter().fold(0, |all, side| all | side));
         }
         sides.sort_unstable();

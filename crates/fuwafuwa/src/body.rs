@@ -142,7 +142,7 @@ impl<D: Dim> Body<D> {
         self.cache.history.end()
     }
 
-    /// The same body, moved `by` [m]. What is then no place is quarantined in its first tick.
+    /// The same body, moved `by` [m]. What is then not finite is quarantined in its first tick.
     #[inline(never)]
     pub fn moved(mut self, by: [f32; 3]) -> Self {
         let State {

@@ -27,9 +27,11 @@ use sides::{HandContact, NodeContact, SphereContact};
 /// A crumb is behind a sphere when the way to it goes this far inwards (cosine).
 const BEHIND: f32 = 0.3;
 /// A sleeper wakes when what touches it moves at this speed [m/s]: what it did move, since deep in
-/// a heap the forces of a substep alone would give as much to what rests.
+/// a heap the forces of a substep alone would give as much to what rests. Five times as fast as what falls
+/// asleep: less, and a heap would keep itself awake.
 const WAKE_SPEED: f32 = 0.15;
-/// A contact matters when the gap closes to so many voxels within so many substeps.
+/// A contact matters when the gap closes to so many voxels within so many substeps: one, and half of another, for
+/// other contacts may make it close faster.
 const CLOSE: f32 = 0.05;
 const AHEAD: f32 = 1.5;
 

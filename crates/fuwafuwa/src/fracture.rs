@@ -41,9 +41,15 @@ pub struct Failure {
 /// How long a node has to be overstrained by half before it gives way [s]. Shorter: knocks shatter
 /// the surface. Longer: fast hands push through without cutting.
 const DAMAGE_TIME: f32 = 0.004;
+/// How long one heals that was about to give way and is strained no more [s]: longer than it takes to fail, so that
+/// what swings to and fro can fail too.
+const HEALING_TIME: f32 = 4.0 * DAMAGE_TIME;
+/// What is overstrained by more than this counts as that much: a knock of a moment is no pull.
+const MOST_OVER: f32 = 3.0;
 /// How much more it takes to set a single voxel free: else a crack leaves a trail of crumbs.
 const CRUMB_FACTOR: f32 = 1.3;
-/// How many voxels a wave travels before the surroundings of a release are judged again.
+/// How many voxels a wave travels before the surroundings of a release are judged again: across
+/// them and back.
 const COOLDOWN_VOXELS: f64 = 4.0;
 
 /// Looks at all breakable nodes after a time of `duration` [s]: adds up their damage, and picks those
@@ -66,11 +72,11 @@ pub fn failures<D: Dim>(body: &mut Body<D>, duration: f32) -> Vec<Failure> {
                 continue;
             }
             let Some(failure) = worst_cut(body, id, node) else {
-                let healed = *damage - duration / (4.0 * DAMAGE_TIME);
+                let healed = *damage - duration / HEALING_TIME;
                 *damage = healed.max(0.0);
                 continue;
             };
-            let over = (failure.excess - 1.0).min(3.0);
+            let over = (failure.excess - 1.0).min(MOST_OVER);
             *damage += duration / DAMAGE_TIME * 2.0 * over;
             if *damage >= 1.0 && !body.state.cooldowns.covers(failure.at) {
                 found.push(failure);

@@ -12,7 +12,7 @@ mod form;
 pub const MAX_EXTENT: usize = 1024;
 /// Most voxels in the box of a grid, solid or not.
 pub const MAX_VOXELS: usize = 1 << 26;
-/// Edge lengths that a voxel can have [m]: with others, volumes and places leave single precision.
+/// Edge lengths that a voxel can have [m]: with others, volumes and positions leave single precision.
 pub const VOXEL_SIZES: RangeInclusive<f32> = 1e-6..=1e3;
 
 /// Why a body or a grid could not be made.
@@ -119,7 +119,7 @@ impl<D: Dim> VoxelGrid<D> {
         Self::checked(size, voxel_size, materials)
     }
 
-    /// As [`VoxelGrid::from_fn`], from the place of a voxel's centre: its distance [m] from the
+    /// As [`VoxelGrid::from_fn`], from the position of a voxel's centre: its distance [m] from the
     /// grid's low corner, in 2D with 0 for the third coordinate. Signed distances become voxels here:
     ///
     /// ```

@@ -60,7 +60,8 @@ impl fmt::Display for BadElasticity {
 
 impl std::error::Error for BadElasticity {}
 
-/// Below this volume ratio J an element resists being squashed flat, whatever its material.
+/// Below this volume ratio J an element resists being squashed flat, whatever its material. Higher, and it
+/// would stiffen what hands squeeze; lower, and hands would turn elements inside out before it holds against them.
 pub const SQUASH_LIMIT: f64 = 0.4;
 
 impl Elasticity {

@@ -214,11 +214,11 @@ impl<D: Dim> Body<D> {
 
     /// Adds the rigid motion that gives the nodes the momentum `before` about `centre` again.
     /// Interpolation keeps linear momentum, but the spin inside an element is lost when new nodes
-    /// stand between its corners, and their masses move to new places.
+    /// stand between its corners, and their masses move.
     fn restore_momentum(&mut self, nodes: &[NodeId], before: Momentum, centre: [f64; 3]) {
         let missing = before.less(Momentum::of(self.states(nodes), centre));
-        let places = self.states(nodes).map(|(x, _, mass)| (x, mass));
-        let motion = RigidMotion::with_momentum(places, centre, missing);
+        let masses = self.states(nodes).map(|(x, _, mass)| (x, mass));
+        let motion = RigidMotion::with_momentum(masses, centre, missing);
         for &id in nodes {
             let change = motion.at(self.state.position[id]);
             for axis in 0..D::N {

@@ -14,7 +14,7 @@ use std::fmt;
 pub type Rigids = Arena<RigidId, Rigid>;
 
 /// Hands and goals further from the origin than this on an axis [m] are refused, like those that
-/// are no place at all: single precision has no millimetres out there, and no such speeds.
+/// are not finite: single precision has no millimetres out there, and no such speeds.
 pub const FARTHEST: f32 = 1e6;
 
 /// What moves a rigid thing.
@@ -152,9 +152,9 @@ impl Rigid {
     /// As a world of `D` sees it: in the plane third coordinates do not count.
     pub(crate) fn seen_in<D: Dim>(mut self) -> Self {
         self.form = self.form.seen_in::<D>();
-        let places = [&mut self.position, &mut self.goal, &mut self.goal_before];
+        let positions = [&mut self.position, &mut self.goal, &mut self.goal_before];
         let others = [&mut self.position_before, &mut self.velocity];
-        for vector in places.into_iter().chain(others) {
+        for vector in positions.into_iter().chain(others) {
             vector[D::N..].fill(0.0);
         }
         if !self.is_driven() {
@@ -175,14 +175,18 @@ impl Rigid {
             require(k >= low && k <= high, field, expected)
         };
         let (tiny, huge) = (f32::MIN_POSITIVE, f32::MAX);
-        let places = [
+        let positions = [
             ("position", self.position),
             ("goal", self.goal),
             ("goal", self.goal_before),
             ("position", self.position_before),
         ];
-        for (field, place) in places {
-            require(is_place(place), field, "within 1e6 m of the origin")?;
+        for (field, position) in positions {
+            require(
+                is_within_reach(position),
+                field,
+                "within 1e6 m of the origin",
+            )?;
         }
         let is_finite = self.velocity.iter().all(|k| k.is_finite());
         require(is_finite, "velocity", "finite")?;
@@ -198,7 +202,7 @@ impl Rigid {
             "0 or more, and finite",
         )?;
         if self.is_driven() {
-            let ends = self.form.bounds().into_iter().all(is_place);
+            let ends = self.form.bounds().into_iter().all(is_within_reach);
             require(ends, "shape", "one that ends within 1e6 m of its middle")?;
         }
         match self.drive {
@@ -255,7 +259,7 @@ impl Rigid {
     /// Sends it to a goal [m]; the third coordinate does not count in the plane.
     pub(crate) fn send<D: Dim>(&mut self, goal: Vector) -> Result<(), BadRigid> {
         require(self.is_driven(), "drive", "one that follows a goal")?;
-        require(is_place(goal), "goal", "within 1e6 m of the origin")?;
+        require(is_within_reach(goal), "goal", "within 1e6 m of the origin")?;
         self.goal[..D::N].copy_from_slice(&goal[..D::N]);
         Ok(())
     }
@@ -280,7 +284,7 @@ impl Rigid {
     pub(crate) fn end_tick(&mut self) {
         self.goal_before = self.goal;
         let is_finite = self.velocity.iter().all(|k| k.is_finite());
-        if !is_finite || !is_place(self.position) {
+        if !is_finite || !is_within_reach(self.position) {
             self.stand_at(self.position_before);
             self.velocity = [0.0; 3];
             self.reactions.fill(Reaction::default());
@@ -353,6 +357,6 @@ fn require(good: bool, field: &'static str, expected: &'static str) -> Result<()
 }
 
 /// Whether something rigid or its goal may be there.
-fn is_place(at: Vector) -> bool {
+fn is_within_reach(at: Vector) -> bool {
     at.iter().all(|k| k.abs() <= FARTHEST)
 }

@@ -228,9 +228,9 @@ impl<D: Dim> Sharing<D> {
         let is_inner = (0..D::N).all(|axis| at[axis] > 0 && at[axis] + 1 < self.size[axis]);
         if is_inner {
             // What lies along the first axis lies side by side in memory.
+            let below = D::depth(3) as i32 / 2;
             for (row, three) in groups[..D::SLOTS].chunks_exact_mut(3).enumerate() {
-                let (y, z) = (row as i32 % 3 - 1, row as i32 / 3 - 1);
-                let z = if D::N == 3 { z } else { 0 };
+                let (y, z) = (row as i32 % 3 - 1, row as i32 / 3 - below);
                 let first = self.index(add(at, [-1, y, z]));
                 three.copy_from_slice(&self.groups[first..first + 3]);
             }

@@ -10,9 +10,10 @@ use crate::damping::PieceMotion;
 use crate::dim::Dim;
 use crate::ids::{PieceId, Table};
 
-/// Pieces slower than this [m/s], on the average over their nodes, are on their way to sleep.
+/// Pieces slower than this [m/s], on the average over their nodes, are on their way to sleep: what falls is
+/// faster after 3 ms.
 const SLOW: f64 = 0.03;
-/// How long they must have been [s].
+/// How long they must have been [s]: what turns back at the top of its flight, or of a swing, is not for so long.
 const STILL_TIME: f32 = 0.5;
 
 /// Counts for how long each piece has been slow, and puts to sleep those that have been long

@@ -160,14 +160,14 @@ impl<D: Dim> Blocks<D> {
         self.blocks.chunks_mut(GROUP).map(move |blocks| {
             // Blocks stand in the order of their forces.
             let end = blocks.last().map_or(first, Block::end);
-            let (own, rest) = std::mem::take(&mut forces).split_at_mut((end - first) * D::N);
+            let (own, others) = std::mem::take(&mut forces).split_at_mut((end - first) * D::N);
             let group = Group {
                 blocks,
                 forces: own,
                 first,
                 shared,
             };
-            (forces, first) = (rest, end);
+            (forces, first) = (others, end);
             group
         })
     }
@@ -201,6 +201,7 @@ impl<D: Dim> Blocks<D> {
     /// The rotation of an element as of the last evaluation, by rows.
     pub fn rotation(&self, id: ElementId) -> [[f32; 3]; 3] {
         let turned = self.rotation_of(id);
+        // Kept as cosine and sine in the plane, as a quaternion in space.
         if D::N == 2 {
             let [cosine, sine, ..] = turned;
             return [[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]];
@@ -268,6 +269,7 @@ impl<D: Dim> Blocks<D> {
             Some(&(block, lane)) if block != VACANT => self.blocks[block as usize]
                 .rotation
                 .map(|part| part[lane as usize]),
+            // None, as a cosine and a sine or as a quaternion.
             _ if D::N == 2 => [1.0, 0.0, 0.0, 0.0],
             _ => [0.0, 0.0, 0.0, 1.0],
         }

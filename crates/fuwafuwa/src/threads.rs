@@ -55,8 +55,8 @@ pub fn rows<'a, T, const N: usize>(
     nodes.chunks(SHARE).map(move |nodes| {
         let end = nodes[nodes.len() - 1].index() + 1;
         let lists = lists.each_mut().map(|list| {
-            let (own, rest) = std::mem::take(list).split_at_mut(end - first);
-            *list = rest;
+            let (own, others) = std::mem::take(list).split_at_mut(end - first);
+            *list = others;
             own
         });
         let share = Rows {

@@ -128,7 +128,7 @@ impl<D: Dim> Body<D> {
         self.mass_where(|at| region.distance(at).0 < 0.0)
     }
 
-    /// The mass of all nodes at places [m] that satisfy a condition [kg].
+    /// The mass of all nodes at positions [m] that satisfy a condition [kg].
     pub fn mass_where(&self, is_inside: impl Fn(Vector) -> bool) -> f32 {
         let states = self.truth.mesh.nodes().map(|(id, _)| self.node_state(id));
         states
@@ -256,17 +256,17 @@ impl<D: Dim> Body<D> {
     /// Where the slots of an element are: at its nodes, or between the nodes that stand for them.
     fn slot_positions(&self, element: &Element) -> [Vector; 27] {
         let centre = self.deformation(element).0;
-        let mut places: [Option<Vector>; 27] = [None; 27];
+        let mut positions: [Option<Vector>; 27] = [None; 27];
         let slots = &self.truth.mesh.stencil(element).slots;
         for (&slot, &node) in slots.iter().zip(&element.nodes) {
-            places[slot as usize] = Some(three(self.state.position[node]));
+            positions[slot as usize] = Some(three(self.state.position[node]));
         }
         // From edge middles up to the centre: the mean of what a slot lies between.
         for order in 1..=D::N {
             for slot in 0..D::SLOTS {
                 let at = slot_at(slot);
                 let middles = at.iter().filter(|&&k| k == 1).count();
-                if places[slot].is_some() || middles != order {
+                if positions[slot].is_some() || middles != order {
                     continue;
                 }
                 let mut sum = [0.0; 3];
@@ -275,18 +275,18 @@ impl<D: Dim> Body<D> {
                     for end in [0, 2] {
                         let mut near = at;
                         near[axis] = end;
-                        if let Some(place) = places[slot_index(near)] {
-                            sum = plus(sum, place);
+                        if let Some(position) = positions[slot_index(near)] {
+                            sum = plus(sum, position);
                             count += 1.0;
                         }
                     }
                 }
                 if count == 2.0 * order as f32 {
-                    places[slot] = Some(scaled(sum, 1.0 / count));
+                    positions[slot] = Some(scaled(sum, 1.0 / count));
                 }
             }
         }
-        places.map(|place| place.unwrap_or(centre))
+        positions.map(|position| position.unwrap_or(centre))
     }
 
     #[inline(never)]
@@ -327,8 +327,8 @@ impl ElementView {
             0 => corner(vertex).map(|k| 2 * k),
             _ => add(corner(child), corner(vertex)),
         };
-        let place = |vertex: usize| self.slots[slot_index(at(vertex))];
-        (0..D::CORNERS).map(place).collect()
+        let position = |vertex: usize| self.slots[slot_index(at(vertex))];
+        (0..D::CORNERS).map(position).collect()
     }
 }
 

@@ -37,12 +37,12 @@ impl<D: Dim> Body<D> {
     }
 
     /// The lattice point and the position [m] of every node, by id; no position where there is none.
-    pub(crate) fn places(&self) -> Vec<(Point, Row)> {
-        let place = |(id, &row): (NodeId, &Row)| match self.truth.mesh.is_alive(id) {
+    pub(crate) fn points_and_positions(&self) -> Vec<(Point, Row)> {
+        let both = |(id, &row): (NodeId, &Row)| match self.truth.mesh.is_alive(id) {
             true => (self.truth.mesh.node(id).at, row),
             false => ([0; 3], [f32::NAN; 4]),
         };
-        self.state.position.entries().map(place).collect()
+        self.state.position.entries().map(both).collect()
     }
 
     /// Puts pieces with a node that is not finite, or faster than `top_speed` [m/s], back to where
@@ -61,7 +61,7 @@ impl<D: Dim> Body<D> {
         let nodes: Vec<(NodeId, Node)> = self.truth.mesh.nodes().collect();
         let nodes = nodes.into_iter();
         for (id, node) in nodes.filter(|&(id, _)| marked[self.truth.pieces.of_node(id)]) {
-            self.state.position[id] = self.place_before(id, node.at, before);
+            self.state.position[id] = self.position_before(id, node.at, before);
         }
         self.set_asleep(&marked, true);
         let numbers: Vec<PieceId> = marked.ids().filter(|&piece| marked[piece]).collect();
@@ -72,9 +72,9 @@ impl<D: Dim> Body<D> {
     }
 
     /// Where a node was. One that is new, or whose id was another's, is put beside the nearest of its
-    /// elements that was anywhere, and to its place at rest when none was: across a crack, what is
+    /// elements that was anywhere, and to where it was built when none was: across a crack, what is
     /// near in the lattice may be far away.
-    fn place_before(&self, id: NodeId, at: Point, before: &[(Point, Row)]) -> Row {
+    fn position_before(&self, id: NodeId, at: Point, before: &[(Point, Row)]) -> Row {
         let was = |id: NodeId, at: Point| {
             let known = before.get(id.index());
             known.filter(|(point, row)| *point == at && is_finite(*row))

@@ -33,7 +33,7 @@ impl<D: Dim> Body<D> {
         for (id, node) in self.truth.mesh.nodes() {
             let defect = |what: &str| Err(Defect::of(format!("the node at {:?} {what}", node.at)));
             if !self.is_somewhere(id) {
-                return defect("is no place, or moves to none");
+                return defect("is not finite, or off the plane, or moves so");
             }
             if !self.weighs_right(id) {
                 return defect("has the mass of another one");

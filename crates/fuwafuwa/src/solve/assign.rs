@@ -104,7 +104,7 @@ impl<D: Dim> Blocks<D> {
         };
         let count = stencil.slots.len() as u32;
         let numbers = numbers_of(self.law, stencil);
-        while let Some((newcomer, rest)) = newcomers.split_first() {
+        while let Some((newcomer, others)) = newcomers.split_first() {
             let open = self.open.get(&home).and_then(|open| open.first().copied());
             let index = match open {
                 Some(index) => index,
@@ -120,7 +120,7 @@ impl<D: Dim> Blocks<D> {
                 }
             };
             self.assign(index, newcomer, &numbers);
-            newcomers = rest;
+            newcomers = others;
         }
     }
 

@@ -137,6 +137,7 @@ pub fn plain_gradient<D: Dim, S: Simd>(
         let (d0, s0) = (x[1][i], x[1][i]);
         let (d1, s1) = (x[3][i] - x[2][i], x[3][i] + x[2][i]);
         let f = &mut scratch.f[i];
+        // Pairs along the first axis, then pairs of those: in space there is one axis more to add along.
         if D::N == 2 {
             (scale * (d0 + d1)).store_array(&mut f[0]);
             (scale * (s1 - s0)).store_array(&mut f[1]);
@@ -252,6 +253,7 @@ pub fn plain_forces<D: Dim, S: Simd>(
         for j in 0..D::N {
             m[j] = bend * load(simd, &scratch.f[i][j]) - area * load(simd, &scratch.stress[i][j]);
         }
+        // ± of each axis at each corner, in as few sums as there are corners.
         if D::N == 2 {
             let (sum, difference) = (m[0] + m[1], m[0] - m[1]);
             force[0][i] -= sum;
@@ -313,8 +315,9 @@ pub fn forces<D: Dim, S: Simd>(
             }
         }
     } else {
-        let rest = if D::N == 2 { splat(simd, 1.0) } else { half };
-        stiffness = splat(simd, moduli.young) * own_stiffness * rest;
+        // Young's modulus times a length, h^(d−2).
+        let length = if D::N == 2 { splat(simd, 1.0) } else { half };
+        stiffness = splat(simd, moduli.young) * own_stiffness * length;
         for i in 0..D::N {
             for j in 0..D::N {
                 pull[i][j] = stiffness * half * load(simd, &scratch.stress[i][j]);
@@ -371,6 +374,7 @@ fn stress_of<D: Dim, S: Simd>(
     let twice_shear = splat(simd, moduli.twice_shear);
     let pressure = splat(simd, moduli.lame) * stretch - twice_shear;
     let mut cofactor = [[zero; 3]; 3];
+    // The minors of a 2 × 2 matrix are its entries.
     if D::N == 2 {
         cofactor[0] = [f[1][1], zero - f[1][0], zero];
         cofactor[1] = [zero - f[0][1], f[0][0], zero];

@@ -124,8 +124,8 @@ impl Bins {
             for place in own.clone() {
                 let at = self.point(place);
                 near.clear();
-                let rest = std::iter::once(place + 1..own.end);
-                for range in rest.chain(others.iter().cloned()) {
+                let later = std::iter::once(place + 1..own.end);
+                for range in later.chain(others.iter().cloned()) {
                     self.look(
                         simd,
                         range,
@@ -167,8 +167,7 @@ impl Bins {
             self.look(simd, 0..self.numbers.len(), at, reach, is_out, near);
             return;
         }
-        let layers = if D::N == 3 { count(2) } else { 1 };
-        for z in 0..layers {
+        for z in 0..count(2) {
             for y in 0..count(1) {
                 let first = [low[0], low[1].wrapping_add(y), low[2].wrapping_add(z)];
                 for range in self.row(first, count(0)) {

@@ -18,7 +18,7 @@ use crate::solve::Row;
 use crate::vector::{dot, minus, plus, scaled, three};
 use std::collections::BTreeMap;
 
-/// Exits are looked for so many voxels around first.
+/// Exits are looked for so many voxels around first: few captives are deeper, and for those all are looked at.
 const EXIT_REACH: f32 = 2.0;
 
 /// A sphere whose middle is inside another piece.
@@ -107,8 +107,7 @@ impl Captives {
         let centres = near.iter().map(|&place| spheres.centres[place as usize]);
         let centres: Vec<Row> = centres.collect();
         for same in inner_elements(bodies, &pieces).chunk_by(|a, b| a.level == b.level) {
-            let widest = same.iter().map(|inner| inner.radius).fold(0.0, f32::max);
-            let bins = Bins::new::<D>(&centres, widest);
+            let bins = Bins::new::<D>(&centres, usual_radius(same));
             let mut inside = Vec::new();
             for inner in same {
                 let (at, reach) = (inner.centre, inner.radius);
@@ -185,7 +184,7 @@ impl Exits {
         }
     }
 
-    /// The one that is nearest to a place [m], of equals the first.
+    /// The one that is nearest to a position [m], of equals the first.
     fn nearest<D: Dim>(&self, at: Row) -> Option<u32> {
         let nearer = |nearest: (f32, u32), number: u32| {
             let apart = minus(self.centres[number as usize], at);
@@ -245,6 +244,13 @@ fn inner_elements<D: Dim>(bodies: &Bodies<D>, pieces: &[Vec<Extent>]) -> Vec<Inn
     found
 }
 
+/// The median radius [m]: a few that are stretched across the room make no bins as wide as it.
+fn usual_radius(elements: &[Inner]) -> f32 {
+    let mut radii: Vec<f32> = elements.iter().map(|inner| inner.radius).collect();
+    let middle = radii.len() / 2;
+    *radii.select_nth_unstable_by(middle, f32::total_cmp).1
+}
+
 /// How large a piece is.
 #[derive(Copy, Clone, Debug)]
 struct Extent {
@@ -284,7 +290,7 @@ fn extents<D: Dim>(body: Option<&Body<D>>) -> Vec<Extent> {
 }
 
 impl<D: Dim> Body<D> {
-    /// Whether a place [m] lies in an element, taken for evenly deformed.
+    /// Whether a position [m] lies in an element, taken for evenly deformed.
     fn holds(&self, id: ElementId, at: Vector) -> bool {
         let Some(element) = self.truth.mesh.element(id) else {
             return false;
@@ -330,5 +336,23 @@ mod tests {
             (near, far) = (near + u32::from(is_near), far + u32::from(!is_near));
         }
         assert!(near > 100 && far > 100, "{near} near, {far} far");
+    }
+
+    /// Bins were as wide as the widest element, so one that was stretched across the room had every other one look at
+    /// all crumbs.
+    #[test]
+    fn the_bins_of_captives_do_not_grow_with_the_widest_element() {
+        let inner = |radius| Inner {
+            level: 1,
+            element: ElementId(0),
+            captor: (0, PieceId(0)),
+            count: 9,
+            centre: [0.0; 4],
+            radius,
+        };
+        for stretched in [100.0, f32::INFINITY, f32::NAN] {
+            let elements = [0.1, 0.2, stretched, 0.3, 0.2].map(inner);
+            assert_eq!(usual_radius(&elements), 0.2, "{stretched}");
+        }
     }
 }

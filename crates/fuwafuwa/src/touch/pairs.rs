@@ -227,7 +227,7 @@ impl SpherePairs {
 
     /// Sorts all into bins, by the middle of what is left of their paths.
     fn bin<D: Dim>(&mut self, spheres: &Spheres) -> Bins {
-        self.binned_at = self.rest().middle;
+        self.binned_at = self.remaining().middle;
         let middles = self.paths.iter().map(|path| path.at(self.binned_at));
         let middles: Vec<Row> = middles.collect();
         let bins = Bins::new::<D>(&middles, self.reach + 2.0 * self.short);
@@ -391,7 +391,7 @@ impl SpherePairs {
                 .iter()
                 .for_each(|&place| self.loosen(place, spheres));
         }
-        let span = self.rest();
+        let span = self.remaining();
         let bins = self.bins.as_ref().expect("all were looked for before");
         let this = &*self;
         let found = threads::map(changed.chunks(LOOKS), |places| {
@@ -442,7 +442,7 @@ impl SpherePairs {
     }
 
     /// From now to the end of all paths.
-    fn rest(&self) -> Span {
+    fn remaining(&self) -> Span {
         Span {
             middle: 0.5 * (self.elapsed + self.duration),
             half: 0.5 * (self.duration - self.elapsed).max(0.0),

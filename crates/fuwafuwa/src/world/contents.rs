@@ -44,7 +44,7 @@ impl<D: Dim> World<D> {
     /// Sends a hand to a goal [m], where it is to be at the end of the next tick.
     ///
     /// # Errors
-    /// [`Refused`], and the goal stays as it was, when that is no place or one beyond
+    /// [`Refused`], and the goal stays as it was, when that is not finite or beyond
     /// [`FARTHEST`](crate::rigid::FARTHEST), or when there is no such hand.
     pub fn set_goal(&mut self, hand: RigidId, goal: Vector) -> Result<(), Refused> {
         Ok(self.rigids.get_mut(hand)?.send::<D>(goal)?)
@@ -62,8 +62,8 @@ impl<D: Dim> World<D> {
         let cut = self.bodies.get_mut(body)?.cut(blade);
         let CutReport { released, parted } = cut.expect("a release leaves the mesh whole");
         let energy = 0.0;
-        let places = released.iter();
-        let releases = places.map(|&at| Event::Released { body, at, energy });
+        let positions = released.iter();
+        let releases = positions.map(|&at| Event::Released { body, at, energy });
         self.events.extend(releases);
         let parts = parted.iter().map(|&piece| Event::Parted { body, piece });
         self.events.extend(parts);
