@@ -1,14 +1,13 @@
 //! Elements as coloured quads with lines around them.
 
 use crate::frame::ElementColour;
-use crate::plane::{Flat, flat, unit};
 use crate::theme::{Colour, Theme, bytes, mix};
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::dim::{add, corner, scale};
 use fuwafuwa::stencil::slot_index;
-use fuwafuwa::vector::{minus, plus, scaled};
-use fuwafuwa::{Body, Dim2, ElementView};
-use std::collections::BTreeSet;
+use fuwafuwa::view::{ElementFace, blocks, faces};
+use fuwafuwa::{Body, Dim2, ElementView, Vector};
+use glam::{Vec2, Vec3};
 
 /// For how long an element flashes after it was remodelled [s].
 const FLASH: f32 = 0.4;
@@ -18,17 +17,14 @@ const FLASH: f32 = 0.4;
 #[derive(Copy, Clone, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct ElementVertex {
     /// Where [m].
-    pub at: Flat,
+    pub at: Vec2,
     /// How far it is moved, for the thickness of a line [px].
-    pub across: Flat,
+    pub across: Vec2,
     /// Distance from the middle of the line and half its width [px].
     pub line: [f32; 2],
     /// Colour and opacity.
     pub colour: [u8; 4],
 }
-
-/// A side of a child of an element, between two slots.
-type Edge = (usize, usize);
 
 /// Triangles of the element view.
 #[derive(Clone, Debug)]
@@ -37,10 +33,10 @@ pub struct ElementMesh {
     pub vertices: Vec<ElementVertex>,
     /// Three to a triangle.
     pub indices: Vec<u32>,
-    /// By the mask of its children: the sides of an element that have nothing of it beyond.
-    edges: [Vec<Edge>; 16],
+    /// By the mask of its children: the faces of an element.
+    faces: [Vec<ElementFace>; 16],
     /// Of an element without children.
-    whole: Vec<Edge>,
+    whole: Vec<ElementFace>,
 }
 
 impl Default for ElementMesh {
@@ -48,8 +44,8 @@ impl Default for ElementMesh {
         Self {
             vertices: Vec::new(),
             indices: Vec::new(),
-            edges: std::array::from_fn(|mask| edges(1, mask as u8)),
-            whole: edges(0, 15),
+            faces: std::array::from_fn(|mask| faces::<Dim2>(1, mask as u8)),
+            whole: faces::<Dim2>(0, 15),
         }
     }
 }
@@ -98,7 +94,7 @@ impl ElementMesh {
             let first = self.vertices.len() as u32;
             self.vertices.extend(round.map(|at| ElementVertex {
                 at,
-                across: [0.0; 2],
+                across: Vec2::ZERO,
                 line: [0.0, 1e6],
                 colour,
             }));
@@ -107,25 +103,23 @@ impl ElementMesh {
     }
 
     fn add_edges(&mut self, view: &ElementView, half: f32, colour: [u8; 4]) {
-        let count = match view.level {
-            0 => self.whole.len(),
-            _ => self.edges[usize::from(view.children & 15)].len(),
-        };
+        let count = self.faces_of(view).len();
         for k in 0..count {
-            let (from, to) = match view.level {
-                0 => self.whole[k],
-                _ => self.edges[usize::from(view.children & 15)][k],
-            };
+            let [from, to, ..] = self.faces_of(view)[k].slots;
             self.add_line(flat(view.slots[from]), flat(view.slots[to]), half, colour);
         }
     }
 
+    fn faces_of(&self, view: &ElementView) -> &[ElementFace] {
+        match view.level {
+            0 => &self.whole,
+            _ => &self.faces[usize::from(view.children & 15)],
+        }
+    }
+
     /// A line with square ends; between equal places a square.
-    fn add_line(&mut self, from: Flat, to: Flat, half: f32, colour: [u8; 4]) {
-        let along = match from == to {
-            true => [1.0, 0.0],
-            false => unit(minus(to, from)),
-        };
+    fn add_line(&mut self, from: Vec2, to: Vec2, half: f32, colour: [u8; 4]) {
+        let along = (to - from).try_normalize().unwrap_or(Vec2::X);
         let first = self.vertices.len() as u32;
         let reach = half + 0.7;
         for (at, end, side) in [
@@ -134,10 +128,9 @@ impl ElementMesh {
             (to, 1.0, 1.0),
             (from, -1.0, 1.0),
         ] {
-            let across = scaled([-along[1], along[0]], side * reach);
             self.vertices.push(ElementVertex {
                 at,
-                across: plus(across, scaled(along, end * half)),
+                across: side * reach * along.perp() + end * half * along,
                 line: [side * reach, half],
                 colour,
             });
@@ -157,56 +150,25 @@ pub fn colour_of(view: &ElementView, theme: &Theme, colour: ElementColour, ages:
     mix(plain, [1.0; 3], flash)
 }
 
+/// A place in the plane.
+pub fn flat(at: Vector) -> Vec2 {
+    Vec3::from(at).truncate()
+}
+
 /// The quads that an element fills [m], anticlockwise.
-pub fn fills(view: &ElementView) -> impl Iterator<Item = [Flat; 4]> + '_ {
-    let blocks = blocks(view.level, view.children);
-    blocks.map(|(low, width)| round(low, width).map(|slot| flat(view.slots[slot])))
-}
-
-/// The slots at the corners of a block, anticlockwise.
-fn round(low: [i32; 3], width: i32) -> [usize; 4] {
-    [0, 1, 3, 2].map(|index| slot_index(add(low, scale(corner(index), width))))
-}
-
-/// The blocks of slots that an element fills: their low corners and their width in slots.
-fn blocks(level: u8, children: u8) -> impl Iterator<Item = ([i32; 3], i32)> {
-    let whole = (level == 0).then_some(([0; 3], 2));
-    let filled = (0..4).filter(move |child| level > 0 && children >> child & 1 == 1);
-    whole
-        .into_iter()
-        .chain(filled.map(|child| (corner(child), 1)))
-}
-
-/// The sides of the blocks of an element that have no block of it beyond.
-///
-/// Blocks run round anticlockwise; a side that another block runs the other way is inside.
-fn edges(level: u8, children: u8) -> Vec<Edge> {
-    let mut edges = BTreeSet::new();
-    for (low, width) in blocks(level, children) {
-        let round = round(low, width);
-        for k in 0..4 {
-            let (from, to) = (round[k], round[(k + 1) % 4]);
-            if !edges.remove(&(to, from)) {
-                edges.insert((from, to));
-            }
-        }
-    }
-    edges.into_iter().collect()
+pub fn fills(view: &ElementView) -> impl Iterator<Item = [Vec2; 4]> + '_ {
+    blocks::<Dim2>(view.level, view.children).map(|(low, width)| {
+        [0, 1, 3, 2].map(|vertex| {
+            let at = add(low, scale(corner(vertex), width));
+            flat(view.slots[slot_index(at)])
+        })
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use fuwafuwa::{Material, VoxelGrid};
-
-    #[test]
-    fn inner_sides_are_no_edges() {
-        assert_eq!(edges(0, 15).len(), 4);
-        assert_eq!(edges(1, 0b0001).len(), 4);
-        assert_eq!(edges(1, 0b0111).len(), 8, "an L");
-        assert_eq!(edges(1, 0b1001).len(), 8, "two that meet in a corner");
-        assert_eq!(edges(1, 0b1111).len(), 8);
-    }
 
     #[test]
     fn the_fills_of_a_disc_have_its_area() {
@@ -218,10 +180,10 @@ mod tests {
             mesh.add_fill(&view, [0; 4]);
         }
         let at = |index: u32| mesh.vertices[index as usize].at;
-        let areas = mesh.indices.chunks(3).map(|t| {
-            let (a, b) = (minus(at(t[1]), at(t[0])), minus(at(t[2]), at(t[0])));
-            0.5 * crate::plane::cross(a, b)
-        });
+        let areas = mesh
+            .indices
+            .chunks(3)
+            .map(|t| 0.5 * (at(t[1]) - at(t[0])).perp_dot(at(t[2]) - at(t[0])));
         assert!((areas.sum::<f32>() - voxels / 1024.0).abs() < 1e-4);
     }
 
