@@ -1,12 +1,12 @@
 //! What the game keeps, as files of a folder.
 
 use super::storage::{Change, Entry, Kind, Storage};
+use fuwafuwa_scenes::disk::bytes_of;
 use std::fs::{self, File, TryLockError};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::{Duration, Instant};
-use tamaire_play::bytes_of;
 
 /// How long another program is waited for that changes something; it takes some milliseconds.
 const PATIENCE: Duration = Duration::from_secs(5);

@@ -25,7 +25,9 @@ mod writer;
 pub use clock::Clock;
 pub use files::{Damage, Files, News};
 pub use forces::Forces;
-pub use given::{Given, replay_in};
+pub use given::{Given, dropped};
+#[cfg(not(target_family = "wasm"))]
+pub use given::{level_at, replay_in};
 pub use gpu::GpuWatch;
 pub use pictures::ARE_THERE as HAS_PICTURES;
 pub use sound::Sound;
