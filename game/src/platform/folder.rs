@@ -25,6 +25,7 @@ impl Folder {
     fn of(&self, kind: Kind) -> (PathBuf, &'static str) {
         match kind {
             Kind::Note => (self.0.clone(), "toml"),
+            Kind::Level => (self.0.join("levels"), "toml"),
             Kind::Replay => (self.0.join("replays"), "tamaire"),
             Kind::Photo => (self.0.join("pictures"), "png"),
             Kind::Clip => (self.0.join("pictures"), "gif"),

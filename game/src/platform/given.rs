@@ -63,10 +63,20 @@ mod on_disk {
         let unreadable = |reason: String| LevelError::Unreadable(place.into(), reason);
         let bytes =
             bytes_of(path, MAX_FILE_BYTES).map_err(|error| unreadable(error.to_string()))?;
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        // Its records stay when its folder is moved. One without an ending is not taken for one that comes along.
-        let id = if name.contains('.') { &name } else { place };
-        Level::read(id, &bytes, &beside(path.parent().unwrap_or(Path::new(""))))
+        // Its records stay when its folder is moved.
+        let id = id_of(&path.file_name().unwrap_or_default().to_string_lossy());
+        Level::read(&id, &bytes, &beside(path.parent().unwrap_or(Path::new(""))))
+    }
+
+    /// The id of a level in a file of this name: a name that can be kept. One without an ending is not taken for one
+    /// that comes along.
+    fn id_of(name: &str) -> String {
+        let name = name.trim_start_matches('.');
+        let name: String = name.chars().filter(|letter| !letter.is_control()).collect();
+        match name.contains('.') {
+            true => name,
+            false => name + ".toml",
+        }
     }
 
     /// The replay in a file.

@@ -1,6 +1,7 @@
 //! What there is to see and to choose. Each screen is a function of the game and asks it for what
 //! should happen.
 
+mod doomed;
 mod forces;
 mod hud;
 mod kit;

@@ -57,6 +57,7 @@ pub(super) const WORDS: Words = Words {
     save: "リプレイをのこす",
     delete: "けす",
     surely: "ほんとに？",
+    take_out: "はずす",
     saved: "のこしました",
     no_replays: "まだありません。かったあとにのこすか、ファイルをここへ。",
     language: "ことば",

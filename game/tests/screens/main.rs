@@ -5,6 +5,7 @@ mod clicks;
 mod hostile;
 mod kept;
 mod models;
+mod own;
 mod pads;
 mod pictures;
 mod space;
