@@ -7,7 +7,7 @@ mod presses;
 use crate::game::{Game, Screen};
 use crate::input::{Action, Means, Seat};
 use crate::look::{Stage, dress};
-use crate::platform::{Given, GpuWatch};
+use crate::platform::{GpuWatch, dropped};
 use crate::screens;
 use egui::{Event, Key};
 use fingers::Fingers;
@@ -261,9 +261,8 @@ impl App {
             _ => false,
         };
         ctx.input_mut(|input| input.events.retain(|event| !is_taken(event)));
-        let dropped = ctx.input(|input| input.raw.dropped_files.clone());
-        for file in dropped {
-            game.open(Given::at(file.path()));
+        for given in dropped(ctx) {
+            game.open(given);
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::app::App;
 use crate::game::Game;
 use crate::headless;
-use crate::platform::{Files, Given, GpuWatch, Pads, Sound};
+use crate::platform::{Files, Given, GpuWatch, Pads, Sound, level_at};
 use clap::Parser;
 use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -11,7 +11,6 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::rc::Rc;
 use std::time::{Duration, Instant};
-use tamaire_play::Level;
 
 /// Push a soft body into a basket that is too small for it.
 #[derive(Parser)]
@@ -57,7 +56,7 @@ pub fn main() -> ExitCode {
     };
     // A file that was clicked on gets a window; a level that was typed gets an answer where it was typed.
     if let (None, Some(level)) = (&arguments.file, &options.level)
-        && let Err(mistake) = Level::open(level)
+        && let Err(mistake) = level_at(level)
     {
         eprintln!("tamaire: {mistake}");
         return ExitCode::from(headless::BAD_USAGE);

@@ -122,6 +122,7 @@ impl Game {
         for damage in [settings_damage, records_damage].into_iter().flatten() {
             game.tell_of(damage);
         }
+        game.files.read_levels();
         if game.controls.pads.complaint().is_some() {
             game.notify(game.words().no_sticks.to_string());
         }
@@ -278,7 +279,15 @@ impl Game {
             self.levels.push(Arc::new(level));
             self.levels.len() - 1
         });
+        if self.is_own(place) {
+            self.files.keep_level(self.levels[place].clone());
+        }
         self.start(place);
+    }
+
+    /// Whether a level does not come along.
+    pub fn is_own(&self, place: usize) -> bool {
+        place >= NAMED.len() + NAMED_3D.len()
     }
 
     /// Something was asked for with a key or button.

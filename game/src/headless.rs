@@ -5,7 +5,7 @@ mod played;
 mod report;
 
 use crate::film::{Film, FilmError};
-use crate::platform::replay_in;
+use crate::platform::{level_at, replay_in};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use force_log::ForceLog;
@@ -133,7 +133,7 @@ pub fn list() {
 /// Lets a bot play.
 fn try_bot(options: &Options) -> Result<String, Trouble> {
     let level = options.level.as_deref().unwrap_or(NAMED[0].0);
-    let level = Arc::new(Level::open(level)?);
+    let level = Arc::new(level_at(level)?);
     for path in pictures(options).chain(&options.save) {
         can_be_written(path)?;
     }

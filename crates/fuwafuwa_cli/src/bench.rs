@@ -10,6 +10,7 @@ use fuwafuwa::law::Law;
 use fuwafuwa::pyramid::Grading;
 use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, Rigid, Settings, Shape, VoxelGrid, World};
 use fuwafuwa_scenes::Scene;
+use fuwafuwa_scenes::disk::scene_at;
 use serde::Serialize;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -187,7 +188,7 @@ fn release_time<D: Dim>(n: usize) -> Result<Measure> {
 
 /// The ticks of a scene; if it tears, those before and those after the first tear.
 fn scene(name: &str, changes: &[String], progress: &Progress) -> Result<Vec<Measure>> {
-    let scene = Scene::open(name, changes)?;
+    let scene = scene_at(name, changes)?;
     let name = [&[name.to_string()], changes].concat().join(" ");
     match scene.dim {
         2 => scene_in::<Dim2>(&name, &scene, progress),

@@ -1,8 +1,9 @@
 //! Runs a recording again and compares the hashes.
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use fuwafuwa::{Dim2, Dim3};
-use fuwafuwa_scenes::Recording;
+use fuwafuwa_scenes::disk::text_of;
+use fuwafuwa_scenes::recording::{MAX_BYTES, Recording};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -19,7 +20,8 @@ pub struct Arguments {
 /// Runs the recording.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     let name = arguments.file.display().to_string();
-    let recording = Recording::open(&arguments.file)?;
+    let text = text_of(&arguments.file, MAX_BYTES).with_context(|| name.clone())?;
+    let recording = Recording::read(&name, &text)?;
     let comparison = match recording.scene.dim {
         2 => recording.replay::<Dim2>(|_| {})?,
         _ => recording.replay::<Dim3>(|_| {})?,

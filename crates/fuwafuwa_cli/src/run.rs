@@ -6,6 +6,7 @@ use fuwafuwa::{Dim, Dim2, Dim3, World};
 use fuwafuwa_painter::solid::{Camera, Solid};
 use fuwafuwa_painter::stage;
 use fuwafuwa_painter::{Painter, Pixmap, film};
+use fuwafuwa_scenes::disk::scene_at;
 use fuwafuwa_scenes::{Recording, Scene};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -110,7 +111,7 @@ impl Filmed for Dim3 {
 
 /// Runs the scene.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
-    let scene = Scene::open(&arguments.scene, &arguments.changes)?;
+    let scene = scene_at(&arguments.scene, &arguments.changes)?;
     match scene.dim {
         2 => run_in::<Dim2>(&scene, arguments),
         _ => run_in::<Dim3>(&scene, arguments),

@@ -3,13 +3,14 @@
 //! `cargo run --release -p fuwafuwa_scenes --example from_vox -- model.vox`
 
 use fuwafuwa::{Body, Dim3, Material, Rigid, Settings, Shape, World};
+use fuwafuwa_scenes::disk::bytes_of;
 use fuwafuwa_scenes::import;
-use std::path::Path;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let file = std::env::args().nth(1);
     let file = file.ok_or("name a .vox file")?;
-    let grid = import::vox(Path::new(&file), 1.0 / 32.0);
+    let bytes = bytes_of(file.as_ref(), import::MAX_FILE_BYTES)?;
+    let grid = import::vox(&file, &bytes, 1.0 / 32.0);
     let grid = grid.map_err(|error| error.to_string())?;
     println!(
         "{} solid voxels in a grid of {:?}",

@@ -13,6 +13,5 @@ mod vox;
 pub use self::colours::Colours;
 pub use self::error::{ImportError, Place, Problem};
 pub use self::file::MAX_FILE_BYTES;
-pub(crate) use self::file::read;
-pub use self::png::{MAX_PIXELS, Picture, png, png_bytes};
-pub use self::vox::{MAX_VOXELS_ACROSS, Model, vox, vox_bytes};
+pub use self::png::{MAX_PIXELS, Picture, png};
+pub use self::vox::{MAX_VOXELS_ACROSS, Model, vox};

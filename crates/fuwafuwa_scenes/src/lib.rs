@@ -5,11 +5,11 @@
 #![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
 #![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
 
-mod file;
+#[cfg(not(target_family = "wasm"))]
+pub mod disk;
 pub mod import;
 pub mod recording;
 pub mod scene;
 
-pub use file::bytes_of;
 pub use recording::Recording;
 pub use scene::{Scene, SceneError};

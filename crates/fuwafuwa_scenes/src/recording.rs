@@ -1,12 +1,9 @@
 //! What hands did in a scene, tick by tick, so that it can be run again and compared.
 
-use crate::file::text_of;
 use crate::scene::send;
-use crate::scene::{MAX_SECONDS, Scene, SceneError, shortened};
+use crate::scene::{BodyText, MAX_SECONDS, Scene, SceneError, shortened};
 use fuwafuwa::{Dim, World};
 use serde::{Deserialize, Serialize};
-use std::io;
-use std::path::Path;
 
 /// Number of the format; it changes when an older recording would run differently.
 pub const VERSION: u32 = 1;
@@ -34,14 +31,6 @@ pub struct Recording {
 /// Why a recording could not be read.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
-    /// The file cannot be read.
-    #[error("{name}: {reason}")]
-    File {
-        /// The file.
-        name: String,
-        /// Why.
-        reason: io::Error,
-    },
     /// The text is not that of a recording.
     #[error("{name}: {reason}")]
     Text {
@@ -70,17 +59,13 @@ pub struct Comparison {
 }
 
 impl Recording {
-    /// The recording in a file.
+    /// The recording in a text; `name` names it in errors.
     ///
     /// # Errors
-    /// [`RecordingError`] when the file cannot be read, holds no recording, or one of another format.
-    pub fn open(path: &Path) -> Result<Self, RecordingError> {
-        let name = path.display().to_string();
-        let text = match text_of(path, MAX_BYTES) {
-            Ok(text) => text,
-            Err(reason) => return Err(RecordingError::File { name, reason }),
-        };
-        let recording: Self = match toml::from_str(&text) {
+    /// [`RecordingError`] when it is none, or one of another format.
+    pub fn read(name: &str, text: &str) -> Result<Self, RecordingError> {
+        let name = name.to_string();
+        let recording: Self = match toml::from_str(text) {
             Ok(recording) => recording,
             Err(error) => {
                 // Without the line itself, in which the goals of hours may stand.
@@ -117,7 +102,7 @@ impl Recording {
             return Err(format!("expected {MAX_TICKS} ticks at most, found {ticks}"));
         }
         let mut bodies = self.scene.body.iter();
-        if bodies.any(|body| body.file.is_some() && body.content.is_none()) {
+        if bodies.any(BodyText::lacks_content) {
             // Whose recording it is does not say which files are opened.
             return Err("expected the content of every body that has a file".into());
         }
@@ -134,8 +119,6 @@ impl Recording {
         ticks: u64,
         mut watch: impl FnMut(&World<D>),
     ) -> Result<Self, SceneError> {
-        let mut scene = scene.clone();
-        scene.embed_files(&[])?;
         let mut world = scene.build::<D>()?;
         let (mut goals, mut hashes) = (Vec::new(), Vec::new());
         for tick in 0..ticks {
@@ -151,7 +134,7 @@ impl Recording {
         Ok(Self {
             version: VERSION,
             engine: env!("CARGO_PKG_VERSION").into(),
-            scene,
+            scene: scene.clone(),
             goals,
             hashes,
         })
@@ -231,9 +214,7 @@ mod tests {
 
     #[test]
     fn what_is_no_recording_is_refused_with_its_name() {
-        let refused = |name: &str| Recording::open(Path::new(name)).unwrap_err().to_string();
-        assert!(refused("nowhere").starts_with("nowhere: "));
-        let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
-        assert!(refused(manifest).starts_with(&format!("{manifest}: ")));
+        let error = Recording::read("mine", "[package]").unwrap_err();
+        assert!(error.to_string().starts_with("mine: "), "{error}");
     }
 }

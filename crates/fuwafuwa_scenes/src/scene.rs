@@ -55,19 +55,18 @@ mod game;
 mod grid;
 mod rigid;
 
-pub use body::{BodyText, Form, MaterialText, PartText};
+pub use body::{BodyText, Form, MaterialText, PartText, ending_of};
+pub use embed::Fetch;
 pub use error::{SceneError, shortened};
 pub use game::{GameText, RouteText, WishText, Words};
 pub(crate) use rigid::send;
 pub use rigid::{BallText, BoxText, CapsuleText, HalfSpaceText, HandText, ObstacleText};
 
-use crate::file::text_of;
 use budget::Budget;
 use error::{Origin, Wrong, require, require_vector};
 use fuwafuwa::world::Refused;
 use fuwafuwa::{Dim, Material, Settings, Shape, World};
 use serde::{Deserialize, Serialize};
-use std::path::Path;
 
 /// Most bytes of a scene's file.
 pub const MAX_TEXT_BYTES: u64 = 1 << 20;
@@ -143,7 +142,7 @@ pub const NAMED: [(&str, &str); 11] = [
 ];
 
 impl Scene {
-    /// The scene of a name, or in a file; `changes` replace values in it, e.g. `material.young=9000`.
+    /// The scene of a name, of those that come along; `changes` replace values in it, e.g. `material.young=9000`.
     ///
     /// # Errors
     /// [`SceneError`] says what is wrong and where.
@@ -151,24 +150,11 @@ impl Scene {
         if let Some((_, text)) = NAMED.iter().find(|(known, _)| *known == name) {
             return Self::read(name, text, changes);
         }
-        let path = Path::new(name);
-        if !path.exists() {
-            let known: Vec<&str> = NAMED.iter().map(|(known, _)| *known).collect();
-            return Err(SceneError::Unknown {
-                name: name.into(),
-                known: known.join(", "),
-            });
-        }
-        let text = text_of(path, MAX_TEXT_BYTES).map_err(|source| SceneError::File {
-            path: name.into(),
-            source,
-        })?;
-        let mut scene = Self::read(name, &text, changes)?;
-        let folder = path.parent().unwrap_or(Path::new(""));
-        for file in scene.body.iter_mut().filter_map(|body| body.file.as_mut()) {
-            *file = folder.join(&file);
-        }
-        Ok(scene)
+        let known: Vec<&str> = NAMED.iter().map(|(known, _)| *known).collect();
+        Err(SceneError::Unknown {
+            name: name.into(),
+            known: known.join(", "),
+        })
     }
 
     /// The scene that a text describes.
@@ -299,16 +285,16 @@ impl Scene {
         basket.map_err(|wrong| self.origin.error(wrong.under("game")))
     }
 
-    /// Takes the files that its bodies are made from into the scene, so that it can travel alone: from
-    /// those that are known by name, else from disk.
+    /// Takes the files that its bodies are made from into the scene, so that it can travel alone. Without them it is
+    /// not built.
     ///
     /// # Errors
-    /// [`SceneError::Build`] names the body whose file cannot be read.
-    pub fn embed_files(&mut self, known: &[(&str, &[u8])]) -> Result<(), SceneError> {
+    /// [`SceneError::Shape`] names the body whose file cannot be had.
+    pub fn embed_files(&mut self, fetch: Fetch) -> Result<(), SceneError> {
         let mut budget = Budget::of_scene(MAX_VOXELS);
         // Those beyond are refused when the scene is built.
         for (index, body) in self.body.iter_mut().enumerate().take(MAX_BODIES) {
-            let embedded = body.embed_file(known, &mut budget);
+            let embedded = body.embed_file(fetch, &mut budget);
             embedded.map_err(|wrong| self.origin.error(wrong.inside("body", index)))?;
         }
         Ok(())

@@ -3,6 +3,7 @@
 mod picture;
 
 use fuwafuwa::{Body, Dim, Dim2, Dim3};
+use fuwafuwa_scenes::disk::scene_at;
 use fuwafuwa_scenes::{Recording, Scene, SceneError};
 use picture::png_of;
 use std::path::PathBuf;
@@ -152,7 +153,7 @@ fn folder(name: &str, scene: &str) -> PathBuf {
 }
 
 fn open(folder: &std::path::Path) -> Result<Scene, SceneError> {
-    Scene::open(folder.join("scene.toml").to_str().unwrap(), &[])
+    scene_at(folder.join("scene.toml").to_str().unwrap(), &[])
 }
 
 /// Red, blue and clear pixels, `r`, `b` and anything else.
@@ -200,6 +201,7 @@ at = [0.0, 3.0, 0.0]
     assert_eq!(read.replay::<Dim2>(|_| {}).unwrap().differs_at, None);
 
     std::fs::write(folder.join("painting.png"), b"\x89PNG no more").unwrap();
+    let scene = open(&folder).unwrap();
     let error = scene.build::<Dim2>().unwrap_err().to_string();
     assert!(
         error.contains("scene.toml, line 16: body 1, file: "),

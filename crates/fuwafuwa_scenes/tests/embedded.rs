@@ -4,11 +4,12 @@
 mod damage;
 mod picture;
 
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD as BASE64;
 use damage::Noise;
 use fuwafuwa::{Dim, Dim2, Dim3};
 use fuwafuwa_scenes::Scene;
 use picture::png_of;
-use std::path::PathBuf;
 
 /// Red, green, blue and alpha of anything.
 fn noisy_picture(width: u32, height: u32, is_opaque: bool) -> Vec<u8> {
@@ -54,31 +55,38 @@ fn cluttered_model(size: [u8; 3]) -> Vec<u8> {
     [b"VOX ", &version[..], &main].concat()
 }
 
-/// That a scene made from a file is the same when the file travels with it, and how long that is.
+/// That a scene is made of the same voxels whether all of its file travels with it or what is needed, and how long
+/// that is.
 fn check<D: Dim>(file: &str, bytes: &[u8], fields: &str) -> usize {
-    let name = format!("fuwafuwa-embedded-{}-{file}", std::process::id());
-    let path: PathBuf = std::env::temp_dir().join(name);
-    std::fs::write(&path, bytes).unwrap();
     let material = "[[material]]\n".repeat(3);
     let text = format!(
-        "dim = {}\n{material}[[body]]\nfile = {:?}\n{fields}",
-        D::N,
-        path.display()
+        "dim = {}\n{material}[[body]]\nfile = {file:?}\n{fields}",
+        D::N
     );
     let scene = Scene::read("toy.toml", &text, &[]).unwrap();
     let mut embedded = scene.clone();
-    embedded.embed_files(&[]).unwrap();
+    let fetch = |name: &str| {
+        assert_eq!(name, file);
+        Ok(bytes.to_vec())
+    };
+    embedded.embed_files(&fetch).unwrap();
     let built = |scene: &Scene| {
         let world = scene.build::<D>().unwrap();
         let grid = world.bodies().first().unwrap().grid().clone();
         let materials: Vec<u8> = grid.voxels().map(|voxel| grid.material(voxel)).collect();
         (grid.size(), materials)
     };
-    let from_file = built(&scene);
-    std::fs::remove_file(path).unwrap();
-    assert!(built(&embedded) == from_file, "{file}, {fields}");
+    let refused = scene.build::<D>().unwrap_err().to_string();
+    assert!(
+        refused.contains("expected the content of the file"),
+        "{refused}"
+    );
+    let mut whole = scene;
+    whole.body[0].content = Some(BASE64.encode(bytes));
+    assert!(built(&embedded) == built(&whole), "{file}, {fields}");
     let again = embedded.clone();
-    embedded.embed_files(&[]).unwrap();
+    let nothing = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+    embedded.embed_files(&nothing).unwrap();
     assert_eq!(embedded, again, "what is there already stays");
     embedded.body[0].content.as_ref().unwrap().len()
 }

@@ -4,8 +4,7 @@ mod damage;
 
 use damage::Noise;
 use fuwafuwa::{BuildError, Dim3, VoxelGrid};
-use fuwafuwa_scenes::import::{Colours, ImportError, Model, Place, Problem, vox, vox_bytes};
-use std::path::Path;
+use fuwafuwa_scenes::import::{Colours, ImportError, Model, Place, Problem, vox};
 
 fn chunk(name: &[u8; 4], contents: &[u8], children: &[u8]) -> Vec<u8> {
     let mut bytes = name.to_vec();
@@ -62,7 +61,7 @@ fn full() -> Vec<u8> {
 }
 
 fn import(bytes: &[u8]) -> Result<VoxelGrid<Dim3>, ImportError> {
-    vox_bytes("test.vox", bytes, 0.25)
+    vox("test.vox", bytes, 0.25)
 }
 
 #[test]
@@ -237,26 +236,13 @@ fn each_fault_is_told_with_its_place() {
 
 #[test]
 fn the_voxel_size_is_checked() {
-    let error = vox_bytes("test.vox", &full(), 0.0).unwrap_err();
+    let error = vox("test.vox", &full(), 0.0).unwrap_err();
     assert_eq!(error.place, Place::File);
     let problem = error.problem;
     assert!(matches!(
         problem,
         Problem::Grid(BuildError::BadVoxelSize(_))
     ));
-}
-
-#[test]
-fn a_file_is_read_and_a_missing_one_named() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
-    let path = folder.join("model.vox");
-    std::fs::write(&path, full()).unwrap();
-    assert_eq!(vox(&path, 1.0).unwrap().solid_count(), 4);
-    let missing = folder.join("no such model.vox");
-    let error = vox(&missing, 1.0).unwrap_err();
-    assert!(matches!(error.problem, Problem::Unreadable(_)));
-    let name = missing.display().to_string();
-    assert!(error.to_string().starts_with(&name), "{error}");
 }
 
 #[test]

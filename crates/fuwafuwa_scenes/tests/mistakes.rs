@@ -2,6 +2,7 @@
 
 use fuwafuwa::{Dim2, Dim3};
 use fuwafuwa_scenes::Scene;
+use fuwafuwa_scenes::disk::scene_at;
 use std::time::{Duration, Instant};
 
 const GOOD: &str = "dim = 2
@@ -355,16 +356,16 @@ fn texts_that_are_no_scenes_are_refused_briefly() {
     }
     let files = [("Cargo.toml", "unknown field"), ("src", "a folder")];
     for (file, expected) in files {
-        let error = Scene::open(file, &[]).unwrap_err().to_string();
+        let error = scene_at(file, &[]).unwrap_err().to_string();
         assert!(
             error.starts_with(file) && error.contains(expected),
             "{error}"
         );
     }
-    let unknown = Scene::open("nowhere", &[]).unwrap_err().to_string();
+    let unknown = scene_at("nowhere", &[]).unwrap_err().to_string();
     assert!(unknown.contains("the scenes are drop, "), "{unknown}");
     if cfg!(unix) {
-        let endless = Scene::open("/dev/zero", &[]).unwrap_err().to_string();
+        let endless = scene_at("/dev/zero", &[]).unwrap_err().to_string();
         assert!(endless.contains("a device"), "{endless}");
     }
 }

@@ -2,15 +2,17 @@
 
 use fuwafuwa::hash::Hash;
 use fuwafuwa::{Dim, Shape, World};
-use fuwafuwa_scenes::scene::{BodyText, GameText, Scene, SceneError};
+use fuwafuwa_scenes::scene::{
+    BodyText, Fetch, GameText, MAX_TEXT_BYTES, Scene, SceneError, ending_of,
+};
 use std::any::Any;
-use std::path::Path;
+use std::io;
 use std::sync::{Arc, OnceLock};
 
 /// A level, checked: its world can be built.
 #[derive(Clone, Debug)]
 pub struct Level {
-    /// The name by which it is called up, or its file.
+    /// The name by which it is called up, or that of its file.
     pub id: String,
     scene: Scene,
     game: GameText,
@@ -49,6 +51,14 @@ pub enum LevelError {
         /// What was expected.
         reason: String,
     },
+    /// It cannot be read, or is no text.
+    #[error("{0}: {1}")]
+    Unreadable(
+        /// The file.
+        String,
+        /// Why.
+        String,
+    ),
     /// There is no level and no file of this name.
     #[error("there is no level or file {id:?}; the levels are {known}")]
     Unknown {
@@ -66,6 +76,9 @@ pub const MAX_VOXELS: usize = 1 << 15;
 /// The same in space where all bodies begin whole, and with large elements inside: a ball of 64. Of
 /// eight times as many voxels it has five times as many elements.
 pub const MAX_WHOLE_VOXELS: usize = 1 << 18;
+
+/// Most bytes of a level that is kept, with all that it is made from.
+pub const MAX_KEPT_BYTES: u64 = 1 << 23;
 
 /// The levels in the plane that come along, in the order in which they are offered.
 pub const NAMED: [(&str, &str); 10] = [
@@ -99,58 +112,81 @@ const FILES: [(&str, &[u8]); 2] = [
 const FRAMES: [(&str, &str); 2] = [("png", "classic"), ("vox", "classic-3d")];
 
 impl Level {
-    /// The level of a name, or in a file: a scene with a table `[game]` (.toml), a picture (.png) whose
-    /// silhouette becomes the body, or a model of MagicaVoxel (.vox) that becomes one.
+    /// The level of a name, of those that come along.
     ///
     /// # Errors
-    /// [`LevelError`] says what is wrong, and in which line.
+    /// [`LevelError::Unknown`] when there is none.
     pub fn open(id: &str) -> Result<Self, LevelError> {
         let mut named = NAMED.iter().chain(&NAMED_3D);
-        if let Some((_, text)) = named.find(|(known, _)| *known == id) {
-            let mut scene = Scene::read(id, text, &[])?;
-            scene.embed_files(&FILES)?;
-            // The tests build it.
-            return Self::unbuilt(id, scene);
-        }
-        let path = Path::new(id);
-        if !path.exists() {
+        let Some((_, text)) = named.find(|(known, _)| *known == id) else {
             let named = NAMED.iter().chain(&NAMED_3D);
             let known: Vec<&str> = named.map(|(known, _)| *known).collect();
             let (id, known) = (id.into(), known.join(", "));
             return Err(LevelError::Unknown { id, known });
+        };
+        let mut scene = Scene::read(id, text, &[])?;
+        let fetch = |file: &str| {
+            let known = FILES.iter().find(|(name, _)| *name == file);
+            known.map_or_else(nothing, |(_, bytes)| Ok(bytes.to_vec()))
+        };
+        scene.embed_files(&fetch)?;
+        // The tests build it.
+        Self::unbuilt(id, scene)
+    }
+
+    /// The level in the bytes of a file of this name: a scene with a table `[game]` (.toml), a picture (.png) whose
+    /// silhouette becomes the body, or a model of MagicaVoxel (.vox) that becomes one. What a scene names is fetched.
+    ///
+    /// # Errors
+    /// [`LevelError`] says what is wrong, and in which line.
+    pub fn read(id: &str, bytes: &[u8], fetch: Fetch) -> Result<Self, LevelError> {
+        let ending = ending_of(id);
+        if let Some((_, frame)) = FRAMES.iter().find(|(made_from, _)| *made_from == ending) {
+            return Self::framed(frame, id, bytes).map_err(|error| blame(id, error));
         }
-        let ending = path.extension().and_then(|ending| ending.to_str());
-        let ending = ending.unwrap_or_default().to_ascii_lowercase();
-        match FRAMES.iter().find(|(made_from, _)| *made_from == ending) {
-            Some((_, frame)) => Self::framed(frame, path).map_err(|error| blame(id, error)),
-            None => {
-                let mut scene = Scene::open(id, &[])?;
-                scene.embed_files(&[])?;
-                forget_folders(&mut scene);
-                Self::of(id, scene)
-            }
-        }
+        let mut scene = Scene::read(id, text_in(id, bytes, MAX_TEXT_BYTES)?, &[])?;
+        scene.embed_files(fetch)?;
+        forget_folders(&mut scene);
+        Self::of(id, scene)
+    }
+
+    /// The level that was kept with [`Level::text_to_keep`].
+    ///
+    /// # Errors
+    /// As [`Level::read`].
+    pub fn read_kept(id: &str, bytes: &[u8]) -> Result<Self, LevelError> {
+        let text = text_in(id, bytes, MAX_KEPT_BYTES)?;
+        Self::of(id, Scene::read(id, text, &[])?)
+    }
+
+    /// It as a text that needs no file, if that can be read again.
+    ///
+    /// # Errors
+    /// [`LevelError::Unreadable`] when it is too long.
+    pub fn text_to_keep(&self) -> Result<String, LevelError> {
+        let text = self.text();
+        text_in(&self.id, text.as_bytes(), MAX_KEPT_BYTES)?;
+        Ok(text)
     }
 
     /// A usual level with a body that is made from a file.
-    fn framed(frame: &str, path: &Path) -> Result<Self, LevelError> {
+    fn framed(frame: &str, id: &str, bytes: &[u8]) -> Result<Self, LevelError> {
         let mut level = Self::open(frame)?;
-        level.id = path.display().to_string();
+        level.id = id.into();
+        let name = file_name(id);
         if let Some(body) = level.scene.body.first_mut() {
-            (body.shape, body.file) = (None, Some(path.into()));
+            (body.shape, body.file) = (None, Some(name.into()));
             if level.scene.dim == 3 {
                 // A model has voxels of its own; whatever their colours are, it is soft.
                 let all = (1..=u8::MAX).map(|index| (index.to_string(), 1));
                 (body.n, body.colours) = (None, all.collect());
             }
         }
-        let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        level.game.name.en = name.chars().take(60).collect();
+        level.game.name.en = stem(name).chars().take(60).collect();
         level.game.name.ja = None;
         level.scene.game = Some(level.game);
-        level.scene.embed_files(&[])?;
-        forget_folders(&mut level.scene);
-        Self::of(&level.id, level.scene)
+        level.scene.embed_files(&|_| Ok(bytes.to_vec()))?;
+        Self::of(id, level.scene)
     }
 
     /// The level that a scene is.
@@ -178,9 +214,7 @@ impl Level {
     }
 
     /// The same, without a look at what takes a world to be seen.
-    fn unbuilt(id: &str, mut scene: Scene) -> Result<Self, LevelError> {
-        // From here on it needs no file.
-        scene.embed_files(&[])?;
+    fn unbuilt(id: &str, scene: Scene) -> Result<Self, LevelError> {
         let missing = |field, reason: &str| LevelError::NoGame {
             id: id.into(),
             field,
@@ -227,8 +261,11 @@ impl Level {
 
     /// A number that two levels share only if they are the same.
     pub fn hash(&self) -> u64 {
-        let text = toml::to_string(&self.scene).expect("a scene that was read can be written");
-        Hash::of(text.as_bytes())
+        Hash::of(self.text().as_bytes())
+    }
+
+    fn text(&self) -> String {
+        toml::to_string(&self.scene).expect("a scene that was read can be written")
     }
 
     /// Its world at the start, and its basket.
@@ -258,8 +295,37 @@ impl Level {
 /// Whoever gets a replay has no business in the folders of who made it.
 fn forget_folders(scene: &mut Scene) {
     for file in scene.body.iter_mut().filter_map(|body| body.file.as_mut()) {
-        *file = file.file_name().unwrap_or_default().into();
+        *file = file_name(file).into();
     }
+}
+
+/// A name without its folders.
+fn file_name(path: &str) -> &str {
+    path.rsplit(['/', '\\']).next().unwrap_or(path)
+}
+
+/// The name of a level without its folders and its ending.
+pub(crate) fn stem(id: &str) -> &str {
+    let name = file_name(id);
+    let stem = name.rsplit_once('.').map(|(stem, _)| stem);
+    stem.filter(|stem| !stem.is_empty()).unwrap_or(name)
+}
+
+fn nothing() -> io::Result<Vec<u8>> {
+    Err(io::ErrorKind::NotFound.into())
+}
+
+/// The text in the bytes of a file, of so many at most.
+fn text_in<'a>(id: &str, bytes: &'a [u8], most: u64) -> Result<&'a str, LevelError> {
+    let wrong = |reason: String| LevelError::Unreadable(id.into(), reason);
+    let found = bytes.len() as u64;
+    if found > most {
+        return Err(wrong(format!(
+            "expected {most} bytes at most, found {found}"
+        )));
+    }
+    let text = std::str::from_utf8(bytes);
+    text.map_err(|error| wrong(format!("expected a text in UTF-8: {error}")))
 }
 
 /// How wide the widest hand is on any axis [m].

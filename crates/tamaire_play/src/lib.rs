@@ -41,7 +41,6 @@ pub mod rules;
 
 pub use any::AnyRound;
 pub use bot::{Bot, BotKind};
-pub use fuwafuwa_scenes::bytes_of;
 pub use fuwafuwa_scenes::scene::{RouteText as Route, WishText as Wish, Words, shortened};
 pub use input::{InputFrame, PLAYERS};
 pub use level::Level;

@@ -1,13 +1,12 @@
 //! A round on file, to be watched, raced and shared.
 
-use crate::level::LevelError;
+use crate::level::{LevelError, stem};
 use crate::round::MAX_TICKS;
 use crate::{AnyRound, InputFrame, Level, Outcome, Round};
 use fuwafuwa::Dim;
 use fuwafuwa_scenes::Scene;
-use fuwafuwa_scenes::scene::shortened;
+use fuwafuwa_scenes::scene::{BodyText, shortened};
 use serde::{Deserialize, Serialize};
-use std::path::Path;
 use std::str::Utf8Error;
 use std::sync::Arc;
 
@@ -86,7 +85,7 @@ impl Replay {
             version: VERSION,
             game: env!("CARGO_PKG_VERSION").into(),
             // Of a file not its folders, which are nobody else's business.
-            level: stem(&level.id),
+            level: stem(&level.id).chars().take(MAX_NAME).collect(),
             level_hash: format!("{:016x}", level.hash()),
             outcome: outcome.filter(|outcome| outcome.ticks == round.frames().len() as u64),
             hashes: hashes.iter().map(|hash| format!("{hash:016x}")).collect(),
@@ -146,7 +145,7 @@ impl Replay {
             return Err(ReplayError::Text(reason));
         }
         let mut bodies = replay.scene.body.iter();
-        if bodies.any(|body| body.file.is_some() && body.content.is_none()) {
+        if bodies.any(BodyText::lacks_content) {
             // Whose replay it is does not say which files are opened.
             let reason = "expected the content of every body that has a file".into();
             return Err(ReplayError::Text(reason));
@@ -204,12 +203,6 @@ impl AnyRound {
 /// How many hashes there are of so many ticks.
 fn marks(ticks: usize) -> usize {
     ticks.div_ceil(60)
-}
-
-/// The name of a level without its folders and its ending.
-fn stem(id: &str) -> String {
-    let stem = Path::new(id).file_stem().unwrap_or_default();
-    stem.to_string_lossy().chars().take(MAX_NAME).collect()
 }
 
 fn check_length(found: usize) -> Result<(), ReplayError> {

@@ -147,15 +147,11 @@ fn a_minute_of_two_hands_is_a_small_file() {
 
 #[test]
 fn what_is_wrong_with_a_level_is_said_with_its_line() {
-    let folder = std::env::temp_dir().join(format!("tamaire-levels-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
-    let path = folder.join("mine.toml");
     let (_, classic) = NAMED[0];
+    let nothing = |_: &str| Err(std::io::ErrorKind::NotFound.into());
     let refused = |text: &str| {
-        std::fs::write(&path, text).unwrap();
-        Level::open(&path.to_string_lossy())
-            .unwrap_err()
-            .to_string()
+        let level = Level::read("mine.toml", text.as_bytes(), &nothing);
+        level.unwrap_err().to_string()
     };
     let share = refused(&classic.replace("share = 0.6", "share = 1.6"));
     assert!(
@@ -175,10 +171,12 @@ fn what_is_wrong_with_a_level_is_said_with_its_line() {
     assert!(no_game.contains("[game]"), "{no_game}");
     let unknown = Level::open("clasic").unwrap_err().to_string();
     assert!(unknown.contains("classic"), "{unknown}");
-    std::fs::write(folder.join("mine.png"), b"not a picture").unwrap();
-    let picture = Level::open(&folder.join("mine.png").to_string_lossy())
-        .unwrap_err()
-        .to_string();
+    let picture = Level::read("mine.png", b"not a picture", &nothing);
+    let picture = picture.unwrap_err().to_string();
     assert!(picture.contains("mine.png"), "{picture}");
-    std::fs::remove_dir_all(folder).unwrap();
+    let other = Level::read("mine.toml", b"\xff", &nothing).unwrap_err();
+    assert!(
+        other.to_string().contains("expected a text in UTF-8"),
+        "{other}"
+    );
 }

@@ -53,6 +53,11 @@ fn chunk(name: &[u8; 4], contents: &[u8], children: &[u8]) -> Vec<u8> {
     [name, lengths.as_flattened(), contents, children].concat()
 }
 
+/// None of them names a file.
+fn nothing(_: &str) -> std::io::Result<Vec<u8>> {
+    Err(std::io::ErrorKind::NotFound.into())
+}
+
 fn place() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("levels/pudding.vox")
 }
@@ -74,50 +79,50 @@ fn write_the_pudding() {
 
 #[test]
 fn a_model_of_any_colours_becomes_the_body_of_a_level() {
-    let level = Level::open(&place().to_string_lossy()).unwrap();
+    let level = Level::read("pudding.vox", &pudding(), &nothing).unwrap();
     assert_eq!(level.game().name.en, "pudding");
     assert_eq!(level.scene().dim, 3);
     let level = level.scene().build::<fuwafuwa::Dim3>().unwrap();
     assert!(level.bodies().first().unwrap().grid().solid_count() > 5000);
 
-    let folder = std::env::temp_dir().join(format!("tamaire-models-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
-    let path = folder.join("wide.VOX");
     let refused = |bytes: &[u8]| {
-        std::fs::write(&path, bytes).unwrap();
-        let error = Level::open(&path.to_string_lossy()).unwrap_err();
+        let error = Level::read("wide.VOX", bytes, &nothing).unwrap_err();
         error.to_string()
     };
     let wide = refused(&model([65, 64, 64], &[[0, 0, 0, 79]], &[[0; 4]; 256]));
     assert!(wide.contains("expected 262144 voxels at most"), "{wide}");
     let torn = refused(&pudding()[..1000]);
-    let file = path.display();
     for (said, place) in [(&wide, ": "), (&torn, ", byte 20: expected ")] {
-        let begin = format!("no body can be made of {file}{place}");
+        let begin = format!("no body can be made of wide.VOX{place}");
         assert!(said.starts_with(&begin), "{said}");
         assert!(!said.contains("classic"), "nobody asked for it: {said}");
     }
-    std::fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
 fn a_replay_does_not_tell_the_folders_of_who_made_it() {
-    let name = format!("tamaire-secret-{}", std::process::id());
-    let folder = std::env::temp_dir().join(&name);
-    std::fs::create_dir_all(&folder).unwrap();
     let shape = "shape = \"ball\"\nn = 24";
     let (_, classic) = tamaire_play::level::NAMED_3D[0];
     assert!(classic.contains(shape), "{classic}");
-    let body = "file = \"mine.vox\"\ncolours = { \"1\" = 1, \"2\" = 1 }";
-    std::fs::write(folder.join("own.toml"), classic.replace(shape, body)).unwrap();
-    std::fs::write(folder.join("mine.vox"), pudding()).unwrap();
-    for file in ["mine.vox", "own.toml"] {
-        let level = Level::open(&folder.join(file).to_string_lossy()).unwrap();
+    let body = "file = \"/home/secret/mine.vox\"\ncolours = { \"1\" = 1, \"2\" = 1 }";
+    let own = classic.replace(shape, body).into_bytes();
+    let fetch = |name: &str| {
+        assert_eq!(name, "/home/secret/mine.vox");
+        Ok(pudding())
+    };
+    for (file, bytes) in [("mine.vox", pudding()), ("own.toml", own)] {
+        let level = Level::read(&format!("/home/secret/{file}"), &bytes, &fetch).unwrap();
+        assert_eq!(
+            Level::read_kept(&level.id, level.text_to_keep().unwrap().as_bytes()).unwrap(),
+            level
+        );
         let round = Round::<fuwafuwa::Dim3>::new(std::sync::Arc::new(level));
         let text = Replay::of(&round).text_to_keep().unwrap();
-        assert!(text.contains("mine.vox") && !text.contains(&name), "{file}");
+        assert!(
+            text.contains("mine.vox") && !text.contains("secret"),
+            "{file}"
+        );
     }
-    std::fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
@@ -125,10 +130,8 @@ fn a_model_in_two_parts_is_kept_as_it_began() {
     let cubes = (0..24u8).filter(|x| !(10..14).contains(x));
     let voxels = cubes.flat_map(|x| (0..100).map(move |k| [x, k % 10, k / 10, 1]));
     let voxels: Vec<_> = voxels.collect();
-    let path = std::env::temp_dir().join(format!("tamaire-two-{}.vox", std::process::id()));
-    std::fs::write(&path, model([24, 10, 10], &voxels, &[[200; 4]; 256])).unwrap();
-    let level = Level::open(&path.to_string_lossy()).unwrap();
-    std::fs::remove_file(path).unwrap();
+    let bytes = model([24, 10, 10], &voxels, &[[200; 4]; 256]);
+    let level = Level::read("two.vox", &bytes, &nothing).unwrap();
     let mut round = Round::<fuwafuwa::Dim3>::new(std::sync::Arc::new(level));
     round.step(InputFrame::default());
     assert_eq!(round.progress().pieces, 2);

@@ -34,6 +34,15 @@ impl Game {
         Ok(())
     }
 
+    /// Takes a level that does not come along out of the list. What was reached in it stays.
+    pub fn take_out(&mut self, place: usize) {
+        let level = self.levels.remove(place);
+        self.files.remove_level(&level.id);
+        if self.chosen >= place {
+            self.chosen = self.chosen.saturating_sub(1);
+        }
+    }
+
     /// Deletes a round that was kept.
     pub fn delete(&mut self, saved: &Entry) {
         if let Err(error) = self.files.delete(&saved.name) {
@@ -52,6 +61,10 @@ impl Game {
     /// Tells what became of what was to be written.
     pub(super) fn tell(&mut self, news: News) {
         match news {
+            // One that was opened in the meantime is newer.
+            News::Level(level) if self.levels.iter().any(|known| known.id == level.id) => {}
+            News::Level(level) => self.levels.push(level),
+            News::Damaged(damage) => self.tell_of(damage),
             News::Saved(place) => {
                 self.replays = self.files.replays();
                 self.notify(format!("{} {place}", self.words().saved));

@@ -9,7 +9,16 @@ use crate::words::Language;
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
-use tamaire_play::{Level, Replay, ReplayError};
+use tamaire_play::{Level, Replay, ReplayError, shortened};
+
+/// Most levels that are read at the start: those that were kept last.
+const MOST_LEVELS: usize = 100;
+
+/// Most letters of why a level could not be read.
+const LETTERS: usize = 200;
+
+/// Between the name of what could not be used and the number of its copy.
+const ASIDE: &str = ".broken-";
 
 /// Names that are tried for what is kept.
 const TRIES: usize = 8;
@@ -37,13 +46,18 @@ pub struct Files {
 /// What became of something that was to be written.
 enum Done {
     Note(io::Result<()>),
+    Level(Result<Arc<Level>, Damage>),
     Replay(Result<String, String>),
     Picture(Result<String, String>),
 }
 
 /// What there is to tell of what was written.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum News {
+    /// A level was kept, and here it is.
+    Level(Arc<Level>),
+    /// Of what was kept something cannot be used.
+    Damaged(Damage),
     /// A replay is kept, here.
     Saved(String),
     /// What was to be kept could not be written. Of settings and records this is told once.
@@ -144,7 +158,7 @@ impl Files {
         if refused.is_empty() {
             return (value, None);
         }
-        let aside = put_aside(&*self.storage, name, &bytes).ok();
+        let aside = put_aside(&*self.storage, Kind::Note, name, &bytes).ok();
         (value, Some(Damage { refused, aside }))
     }
 
@@ -159,6 +173,42 @@ impl Files {
         let levels = levels.to_vec();
         self.writer
             .write(move || Done::Note(merge_records(&*storage, &records, &levels)));
+    }
+
+    /// Reads the levels that were kept. They come one by one as [`News::Level`], those that were kept first first.
+    pub fn read_levels(&mut self) {
+        let mut found = self.storage.list(Kind::Level).unwrap_or_default();
+        found.retain(|entry| !is_aside(&entry.name));
+        found.sort_by(|a, b| a.written.cmp(&b.written).then(a.name.cmp(&b.name)));
+        let older = found.len().saturating_sub(MOST_LEVELS);
+        for Entry { name, .. } in found.split_off(older) {
+            let storage = self.storage.clone();
+            self.writer
+                .write(move || Done::Level(read_level(&*storage, &name)));
+        }
+    }
+
+    /// Keeps a level, in place of one with the same name.
+    pub fn keep_level(&mut self, level: Arc<Level>) {
+        let storage = self.storage.clone();
+        self.writer.write(move || {
+            let text = level.text_to_keep().map_err(io::Error::other);
+            Done::Note(text.and_then(|text| {
+                let mut change = |_: Option<&[u8]>| Some(text.clone().into_bytes());
+                storage.change(Kind::Level, &level.id, &mut change)
+            }))
+        });
+    }
+
+    /// Keeps a level no longer. What was reached in it stays.
+    pub fn remove_level(&mut self, name: &str) {
+        let (storage, name) = (self.storage.clone(), name.to_string());
+        self.writer.write(move || {
+            Done::Note(match storage.remove(Kind::Level, &name) {
+                Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+                removed => removed,
+            })
+        });
     }
 
     /// Keeps a replay.
@@ -237,6 +287,8 @@ impl Files {
         let mut news = Vec::new();
         for done in done {
             match done {
+                Done::Level(Ok(level)) => news.push(News::Level(level)),
+                Done::Level(Err(damage)) => news.push(News::Damaged(damage)),
                 Done::Replay(saved) => news.push(saved.map_or_else(News::Failed, News::Saved)),
                 Done::Picture(saved) => {
                     self.developed = None;
@@ -293,20 +345,48 @@ impl Drop for Files {
 }
 
 /// Keeps bytes that cannot be used for whoever wrote them; says where.
-fn put_aside(storage: &dyn Storage, name: &str, bytes: &[u8]) -> io::Result<String> {
+fn put_aside(storage: &dyn Storage, kind: Kind, name: &str, bytes: &[u8]) -> io::Result<String> {
     let mut number = 1;
     loop {
-        let aside = format!("{name}.broken-{number}");
+        let aside = format!("{name}{ASIDE}{number}");
         let mut is_there = false;
-        storage.change(Kind::Note, &aside, &mut |found| {
+        storage.change(kind, &aside, &mut |found| {
             is_there = found.is_none_or(|found| found == bytes);
             found.is_none().then(|| bytes.to_vec())
         })?;
         if is_there {
-            return Ok(storage.place(Kind::Note, &aside));
+            return Ok(storage.place(kind, &aside));
         }
         number += 1;
     }
+}
+
+fn is_aside(name: &str) -> bool {
+    let number = name.rsplit_once(ASIDE).map(|(_, number)| number);
+    number.is_some_and(|number| number.parse::<u32>().is_ok())
+}
+
+/// The level of a name; one that cannot be used is put aside.
+fn read_level(storage: &dyn Storage, name: &str) -> Result<Arc<Level>, Damage> {
+    let place = storage.place(Kind::Level, name);
+    let refused = |reason: &str, aside| {
+        let reason = shortened(reason, LETTERS);
+        let refused = vec![format!("{place} ({reason})")];
+        Damage { refused, aside }
+    };
+    let unreadable = |error: io::Error| refused(&error.to_string(), None);
+    let bytes = storage.read(Kind::Level, name).map_err(unreadable)?;
+    let bytes = bytes.ok_or_else(|| unreadable(io::ErrorKind::NotFound.into()))?;
+    let level = match Level::open(name) {
+        Ok(_) => Err("a level of this name comes along".to_string()),
+        Err(_) => Level::read_kept(name, &bytes).map_err(|error| error.to_string()),
+    };
+    level.map(Arc::new).map_err(|reason| {
+        let aside = put_aside(storage, Kind::Level, name, &bytes);
+        // What cannot be removed is told again the next time.
+        let aside = aside.and_then(|aside| storage.remove(Kind::Level, name).map(|()| aside));
+        refused(&reason, aside.ok())
+    })
 }
 
 fn merge_records(

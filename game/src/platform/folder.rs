@@ -1,12 +1,12 @@
 //! What the game keeps, as files of a folder.
 
 use super::storage::{Change, Entry, Kind, Storage};
+use fuwafuwa_scenes::disk::bytes_of;
 use std::fs::{self, File, TryLockError};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::{Duration, Instant};
-use tamaire_play::bytes_of;
 
 /// How long another program is waited for that changes something; it takes some milliseconds.
 const PATIENCE: Duration = Duration::from_secs(5);
@@ -25,6 +25,7 @@ impl Folder {
     fn of(&self, kind: Kind) -> (PathBuf, &'static str) {
         match kind {
             Kind::Note => (self.0.clone(), "toml"),
+            Kind::Level => (self.0.join("levels"), "toml"),
             Kind::Replay => (self.0.join("replays"), "tamaire"),
             Kind::Photo => (self.0.join("pictures"), "png"),
             Kind::Clip => (self.0.join("pictures"), "gif"),

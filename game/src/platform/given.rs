@@ -1,10 +1,8 @@
 //! What somebody named on the command line or dropped onto the window.
 
-use super::storage::Kind;
-use std::io;
-use std::path::Path;
+use fuwafuwa_scenes::scene::{Fetch, ending_of};
 use tamaire_play::level::LevelError;
-use tamaire_play::{Level, Replay, ReplayError, bytes_of};
+use tamaire_play::{Level, Replay, ReplayError};
 
 /// Something to play or to watch, or why it is none. From here on nobody knows where it came from.
 pub enum Given {
@@ -15,31 +13,91 @@ pub enum Given {
 }
 
 impl Given {
-    /// A replay, a level, a picture or a model in a file, or a level that comes along, by its name.
-    pub fn at(path: &Path) -> Self {
-        let place = path.to_string_lossy();
-        let ending = path.extension().unwrap_or_default();
-        if ending.eq_ignore_ascii_case("tamaire") {
-            return Self::Replay(place.into(), replay_in(path).map(Box::new));
+    /// The replay, level, picture or model in the bytes of a file of this name. What a level names is fetched.
+    pub fn read(name: &str, bytes: &[u8], fetch: Fetch) -> Self {
+        match is_replay(name) {
+            true => Self::Replay(name.into(), Replay::of_bytes(bytes).map(Box::new)),
+            false => Self::Level(Level::read(name, bytes, fetch).map(Box::new)),
         }
-        let named = |mut level: Level| {
-            // Its records stay when its folder is moved. One without an ending is not taken for one that comes along.
-            let name = path.file_name().unwrap_or_default().to_string_lossy();
-            if name.contains('.') {
-                level.id = name.into();
-            }
-            Box::new(level)
-        };
-        Self::Level(Level::open(&place).map(named))
     }
 }
 
-/// The replay in a file.
-///
-/// # Errors
-/// [`ReplayError`] when it cannot be read or is none.
-pub fn replay_in(path: &Path) -> Result<Replay, ReplayError> {
-    let bytes = bytes_of(path, Kind::Replay.most_bytes());
-    let unreadable = |error: io::Error| ReplayError::Unreadable(error.to_string());
-    Replay::of_bytes(&bytes.map_err(unreadable)?)
+fn is_replay(name: &str) -> bool {
+    ending_of(name) == "tamaire"
+}
+
+#[cfg(not(target_family = "wasm"))]
+pub use on_disk::{dropped, level_at, replay_in};
+
+#[cfg(not(target_family = "wasm"))]
+mod on_disk {
+    use super::{Given, is_replay};
+    use crate::platform::storage::Kind;
+    use fuwafuwa_scenes::disk::{beside, bytes_of};
+    use fuwafuwa_scenes::import::MAX_FILE_BYTES;
+    use std::path::Path;
+    use tamaire_play::level::LevelError;
+    use tamaire_play::{Level, Replay, ReplayError};
+
+    impl Given {
+        /// A replay, a level, a picture or a model in a file, or a level that comes along, by its name.
+        pub fn at(path: &Path) -> Self {
+            let place = path.to_string_lossy();
+            match is_replay(&place) {
+                true => Self::Replay(place.into(), replay_in(path).map(Box::new)),
+                false => Self::Level(level_at(&place).map(Box::new)),
+            }
+        }
+    }
+
+    /// The level of a name, or in a file.
+    ///
+    /// # Errors
+    /// [`LevelError`] says what is wrong with it.
+    pub fn level_at(place: &str) -> Result<Level, LevelError> {
+        let path = Path::new(place);
+        let known = Level::open(place);
+        if known.is_ok() || !path.exists() {
+            return known;
+        }
+        let unreadable = |reason: String| LevelError::Unreadable(place.into(), reason);
+        let bytes =
+            bytes_of(path, MAX_FILE_BYTES).map_err(|error| unreadable(error.to_string()))?;
+        // Its records stay when its folder is moved.
+        let id = id_of(&path.file_name().unwrap_or_default().to_string_lossy());
+        Level::read(&id, &bytes, &beside(path.parent().unwrap_or(Path::new(""))))
+    }
+
+    /// The id of a level in a file of this name: a name that can be kept. One without an ending is not taken for one
+    /// that comes along.
+    fn id_of(name: &str) -> String {
+        let name = name.trim_start_matches('.');
+        let name: String = name.chars().filter(|letter| !letter.is_control()).collect();
+        match name.contains('.') {
+            true => name,
+            false => name + ".toml",
+        }
+    }
+
+    /// The replay in a file.
+    ///
+    /// # Errors
+    /// [`ReplayError`] when it cannot be read or is none.
+    pub fn replay_in(path: &Path) -> Result<Replay, ReplayError> {
+        let bytes = bytes_of(path, Kind::Replay.most_bytes());
+        let unreadable = |error: std::io::Error| ReplayError::Unreadable(error.to_string());
+        Replay::of_bytes(&bytes.map_err(unreadable)?)
+    }
+
+    /// What was dropped onto the window.
+    pub fn dropped(ctx: &egui::Context) -> Vec<Given> {
+        let files = ctx.input(|input| input.raw.dropped_files.clone());
+        files.iter().map(|file| Given::at(file.path())).collect()
+    }
+}
+
+/// What was dropped onto the window: a browser hands it over later, and nobody waits for that yet.
+#[cfg(target_family = "wasm")]
+pub fn dropped(_: &egui::Context) -> Vec<Given> {
+    Vec::new()
 }

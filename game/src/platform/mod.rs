@@ -31,7 +31,9 @@ pub use clock::Clock;
 pub use dialog::{Dialog, IS_THERE as HAS_DIALOG, Picked};
 pub use files::{Damage, Files, News};
 pub use forces::Forces;
-pub use given::{Given, replay_in};
+pub use given::{Given, dropped};
+#[cfg(not(target_family = "wasm"))]
+pub use given::{level_at, replay_in};
 pub use gpu::GpuWatch;
 pub use pictures::ARE_THERE as HAS_PICTURES;
 pub use sound::Sound;

@@ -9,6 +9,8 @@ use std::time::SystemTime;
 pub enum Kind {
     /// What the game itself notes down: settings, records.
     Note,
+    /// A level that does not come along, with all that it is made from.
+    Level,
     /// A round as it was played.
     Replay,
     /// A picture of the end of one.
@@ -22,6 +24,7 @@ impl Kind {
     pub fn most_bytes(self) -> u64 {
         match self {
             Self::Note => 1 << 20,
+            Self::Level => tamaire_play::level::MAX_KEPT_BYTES,
             Self::Replay => tamaire_play::replay::MAX_BYTES as u64,
             Self::Photo | Self::Clip => 1 << 26,
         }

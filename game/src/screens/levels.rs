@@ -1,9 +1,10 @@
 //! Which level?
 
+use super::doomed::{doom, is_doomed};
 use super::icons;
 use super::widgets::{
-    Weight, button, fitted, focus_ring, header_with, is_on, liveliness, page, place_of_page, veil,
-    words,
+    Weight, button, fitted, focus_ring, header_with, is_on, liveliness, page, place_of_page,
+    plain_button, veil, words,
 };
 use crate::game::Game;
 use crate::look::{Maps, Stage};
@@ -20,6 +21,14 @@ use tamaire_sound::Menu;
 const GAP: f32 = 20.0;
 /// About how wide a tile is.
 const WIDE: f32 = 236.0;
+/// Height of the button below a level that does not come along.
+const SLIM: f32 = 36.0;
+
+/// What to do with a level.
+enum Wish {
+    Play(usize),
+    TakeOut(usize),
+}
 
 pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     veil(ui, 255);
@@ -44,15 +53,20 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
             let size = vec2(wide, 0.62 * (wide - 20.0) + 92.0);
             let places: Vec<usize> = (0..game.levels.len()).collect();
             for row in places.chunks(columns as usize) {
-                ui.horizontal(|ui| {
+                ui.horizontal_top(|ui| {
                     for &place in row {
-                        let response = tile(ui, game, maps, place, size);
-                        if place == game.chosen {
-                            super::play::focus_first(ui, &response);
-                        }
-                        if response.clicked() {
-                            wanted = Some(place);
-                        }
+                        ui.vertical(|ui| {
+                            let response = tile(ui, game, maps, place, size);
+                            if place == game.chosen {
+                                super::play::focus_first(ui, &response);
+                            }
+                            if response.clicked() {
+                                wanted = Some(Wish::Play(place));
+                            }
+                            if game.is_own(place) && way_out(ui, game, place, wide).clicked() {
+                                wanted = Some(Wish::TakeOut(place));
+                            }
+                        });
                     }
                 });
             }
@@ -62,10 +76,33 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     if back {
         game.blip(Menu::Back);
         game.go_back();
-    } else if let Some(level) = wanted {
-        game.blip(Menu::Confirm);
-        game.start(level);
+        doom(ui, None);
     }
+    let Some(wish) = wanted.filter(|_| !back) else {
+        return;
+    };
+    game.blip(Menu::Confirm);
+    match wish {
+        Wish::Play(place) => {
+            doom(ui, None);
+            game.start(place);
+        }
+        Wish::TakeOut(place) if is_doomed(ui, &game.levels[place].id) => game.take_out(place),
+        Wish::TakeOut(place) => doom(ui, Some(&game.levels[place].id)),
+    }
+}
+
+/// The button that takes a level out of the list, when it is pressed again.
+fn way_out(ui: &mut Ui, game: &Game, place: usize, wide: f32) -> Response {
+    let (level, said) = (&game.levels[place], game.words());
+    let text = match is_doomed(ui, &level.id) {
+        true => said.surely,
+        false => said.take_out,
+    };
+    let response = plain_button(ui, &game.theme(), text, vec2(wide, SLIM), Weight::Other);
+    let name = game.settings.language.of(&level.game().name);
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("{text}: {name}")));
+    response
 }
 
 /// A level as a card: a little map, its name, what was reached.

@@ -2,6 +2,7 @@
 //! should happen.
 
 mod buttons;
+mod doomed;
 mod forces;
 mod hud;
 mod icons;

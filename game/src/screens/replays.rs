@@ -1,10 +1,11 @@
 //! Rounds that were kept.
 
+use super::doomed::{doom, is_doomed};
 use super::widgets::{Weight, button, card, fitted, header, page, place_of_page, veil};
 use crate::game::Game;
 use crate::platform::Entry;
 use crate::platform::HAS_PICTURES;
-use egui::{Id, RichText, Ui, vec2};
+use egui::{RichText, Ui, vec2};
 use tamaire_sound::Menu;
 
 /// Width of a button.
@@ -23,12 +24,6 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     veil(ui, 255);
     let (theme, said) = (game.theme(), game.words());
     let mut wanted: Option<(usize, Wish)> = None;
-    // What was asked to be deleted is deleted when it is asked for again.
-    let doomed = Id::unique("doomed");
-    let is_doomed = |ui: &Ui, saved: &Entry| {
-        let asked = ui.data(|data| data.get_temp::<Option<String>>(doomed));
-        asked.flatten().as_ref() == Some(&saved.name)
-    };
     let mut back = ui.input(|input| input.key_pressed(egui::Key::Escape));
     let area = place_of_page(ui);
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
@@ -57,7 +52,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                             (said.race, Wish::Race),
                             (said.clip, Wish::Clip),
                             (
-                                match is_doomed(ui, saved) {
+                                match is_doomed(ui, &saved.name) {
                                     true => said.surely,
                                     false => said.delete,
                                 },
@@ -87,11 +82,10 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
             Wish::Watch => game.open_kept(&saved.name, Game::watch),
             Wish::Race => game.open_kept(&saved.name, Game::race),
             Wish::Clip => game.open_kept(&saved.name, Game::keep_clip_of),
-            Wish::Delete if is_doomed(ui, &saved) => game.delete(&saved),
+            Wish::Delete if is_doomed(ui, &saved.name) => game.delete(&saved),
             Wish::Delete => {}
         }
-        let asked = matches!(wish, Wish::Delete).then_some(saved.name);
-        ui.data_mut(|data| data.insert_temp(doomed, asked));
+        doom(ui, matches!(wish, Wish::Delete).then_some(&saved.name));
     }
 }
 

@@ -59,7 +59,13 @@ pub fn button(ui: &mut Ui, theme: &Theme, text: &str, size: Vec2, weight: Weight
 }
 
 /// One that does not tell its name.
-fn plain_button(ui: &mut Ui, theme: &Theme, text: &str, size: Vec2, weight: Weight) -> Response {
+pub fn plain_button(
+    ui: &mut Ui,
+    theme: &Theme,
+    text: &str,
+    size: Vec2,
+    weight: Weight,
+) -> Response {
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let lively = liveliness(ui, &response);
     let (fill, ink) = match weight {

@@ -56,6 +56,7 @@ pub(super) const WORDS: Words = Words {
     save: "Save replay",
     delete: "Delete",
     surely: "Really?",
+    take_out: "Take out",
     saved: "Saved",
     no_replays: "No replays yet. Save one while you pause or after a win, or drop a file here.",
     open: "Open…",

@@ -57,6 +57,7 @@ pub(super) const WORDS: Words = Words {
     save: "リプレイをのこす",
     delete: "けす",
     surely: "ほんとに？",
+    take_out: "はずす",
     saved: "のこしました",
     no_replays: "まだありません。かったあとにのこすか、ファイルをここへ。",
     open: "ひらく…",
@@ -213,6 +214,7 @@ pub(super) const WORDS: Words = Words {
 /// What went wrong; details, which name fields and lines of files, stay as they are.
 fn level_error(error: &LevelError) -> String {
     match error {
+        LevelError::Unreadable(file, reason) => format!("読めませんでした。{file}: {reason}"),
         LevelError::Scene(scene) => format!("このステージは読めませんでした。{scene}"),
         LevelError::NoBody(reason) => {
             format!("このファイルからは からだを作れませんでした。{reason}")
@@ -253,17 +255,14 @@ mod tests {
     fn what_is_wrong_is_said_in_japanese_and_where_it_stands_is_kept() {
         let unknown = level_error(&Level::open("nowhere").unwrap_err());
         assert!(unknown.contains("nowhere") && unknown.contains("ありません"));
-        let path = std::env::temp_dir().join(format!("tamaire-ja-{}.toml", std::process::id()));
-        std::fs::write(&path, "dim = 2\ngravity = \"down\"\n").unwrap();
-        let broken = level_error(&Level::open(&path.to_string_lossy()).unwrap_err());
-        std::fs::remove_file(path).unwrap();
+        let refused = |name: &str, bytes: &str| {
+            let nothing = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+            level_error(&Level::read(name, bytes.as_bytes(), &nothing).unwrap_err())
+        };
+        let broken = refused("a.toml", "dim = 2\ngravity = \"down\"\n");
         assert!(broken.contains("読めません") && broken.contains("line 2"));
-        let path = std::env::temp_dir().join(format!("tamaire-ja-{}.vox", std::process::id()));
-        std::fs::write(&path, "VOX").unwrap();
-        let model = level_error(&Level::open(&path.to_string_lossy()).unwrap_err());
-        std::fs::remove_file(&path).unwrap();
-        let begin = format!("からだを作れませんでした。{}", path.display());
-        assert!(model.contains(&begin), "{model}");
+        let model = refused("a.vox", "VOX");
+        assert!(model.contains("からだを作れませんでした。a.vox"), "{model}");
         let old = replay_error(&ReplayError::Version { found: 7 });
         assert!(old.contains("バージョン（7）"), "{old}");
     }

@@ -28,6 +28,7 @@ pub struct Words {
     pub save: &'static str,
     pub delete: &'static str,
     pub surely: &'static str,
+    pub take_out: &'static str,
     pub saved: &'static str,
     pub no_replays: &'static str,
     pub open: &'static str,

@@ -6,6 +6,7 @@ mod fingers;
 mod hostile;
 mod kept;
 mod models;
+mod own;
 mod pads;
 mod pictures;
 mod space;

@@ -1,9 +1,11 @@
 //! How it looks: pictures, compared with those in `tests/snapshots`.
 
+use crate::hostile::drop_file;
 use crate::window::*;
 use egui::{Key, Vec2, pos2, vec2};
 use egui_kittest::SnapshotOptions;
 use force_feedback::{Ability, Recording};
+use std::path::Path;
 use sticks::{About, Device, DeviceId, Pad, Snapshot};
 use tamaire::game::Screen;
 use tamaire::input::{Action, Seat};
@@ -76,6 +78,19 @@ fn every_screen() {
     window.hover_at(pos2(10.0, 10.0));
     win(&mut window);
     pictures(&mut window, "result");
+    own_level(&mut window);
+}
+
+/// One that was dropped stands at the end of the list.
+fn own_level(window: &mut Window) {
+    let cat = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/tamaire_play/levels/cat.png");
+    drop_file(window, cat);
+    game(window).go(Screen::Levels);
+    frames(window, 3);
+    press(window, Key::ArrowDown);
+    press(window, Key::Enter);
+    frames(window, 30);
+    pictures(window, "own");
 }
 
 #[test]

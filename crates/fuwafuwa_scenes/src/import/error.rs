@@ -7,7 +7,7 @@ use std::{fmt, io};
 #[derive(Debug, thiserror::Error)]
 #[error("{file}{place}: {problem}")]
 pub struct ImportError {
-    /// The file's path, or the name that the caller gave its bytes.
+    /// The name that the caller gave its bytes.
     pub file: String,
     /// Where in the file.
     pub place: Place,

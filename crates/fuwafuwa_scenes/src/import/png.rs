@@ -2,14 +2,13 @@
 
 use super::colours::Colours;
 use super::error::{Complaint, ImportError, Place, Problem, in_file, no_grid, unexpected};
-use super::file::{check_length, name_of, read};
+use super::file::check_length;
 use ::png::{
     BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError, Limits, Transformations,
 };
 use fuwafuwa::grid::MAX_EXTENT;
 use fuwafuwa::{Dim2, VoxelGrid};
 use std::io::{Cursor, ErrorKind};
-use std::path::Path;
 
 /// Most pixels on a side of a picture; decoded, the largest takes 64 MiB.
 pub const MAX_PIXELS: u32 = 4096;
@@ -29,20 +28,12 @@ pub struct Picture {
     pixels: Vec<[u8; 4]>,
 }
 
-/// The silhouette in a PNG file, with voxels of edge length `voxel_size` [m], at most `across` of
-/// them on its longer side; see [`Picture::grid`].
+/// The silhouette in the bytes of a PNG file, with voxels of edge length `voxel_size` [m], at most `across` of
+/// them on its longer side; see [`Picture::grid`]. `file` names it in errors.
 ///
 /// # Errors
 /// [`ImportError`] names the file, the place in it, and what was expected there.
-pub fn png(path: &Path, across: usize, voxel_size: f32) -> Result<VoxelGrid<Dim2>, ImportError> {
-    Picture::open(path)?.grid(across, voxel_size, &Colours::default())
-}
-
-/// As [`png()`], from the bytes of a file; `file` names them in errors.
-///
-/// # Errors
-/// As [`png()`].
-pub fn png_bytes(
+pub fn png(
     file: &str,
     bytes: &[u8],
     across: usize,
@@ -52,19 +43,12 @@ pub fn png_bytes(
 }
 
 impl Picture {
-    /// The picture in a PNG file, of any kind; of an animated one the image that still viewers show.
+    /// The picture in the bytes of a PNG file, of any kind; of an animated one the image that still viewers show.
+    /// `file` names it in errors.
     ///
     /// # Errors
-    /// [`ImportError`] when the file cannot be read or is longer than [`super::MAX_FILE_BYTES`], when
-    /// it is damaged or cut short, or has more than [`MAX_PIXELS`] on a side.
-    pub fn open(path: &Path) -> Result<Self, ImportError> {
-        Self::decode(&name_of(path), &read(path)?)
-    }
-
-    /// As [`Picture::open`], from the bytes of a file; `file` names them in errors.
-    ///
-    /// # Errors
-    /// As [`Picture::open`].
+    /// [`ImportError`] when the file is longer than [`super::MAX_FILE_BYTES`], when it is damaged or cut short, or has
+    /// more than [`MAX_PIXELS`] on a side.
     pub fn decode(file: &str, bytes: &[u8]) -> Result<Self, ImportError> {
         in_file(file, check_length(bytes))?;
         let mut cursor = Cursor::new(bytes);

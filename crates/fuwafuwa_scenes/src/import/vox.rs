@@ -14,9 +14,8 @@
 
 use super::colours::Colours;
 use super::error::{Complaint, ImportError, Place, Problem, in_file, no_grid, unexpected};
-use super::file::{check_length, name_of, read};
+use super::file::check_length;
 use fuwafuwa::{Dim3, VoxelGrid};
-use std::path::Path;
 
 /// Most voxels on an axis of a model: the format gives each coordinate a byte.
 pub const MAX_VOXELS_ACROSS: u32 = 256;
@@ -35,29 +34,18 @@ pub struct Model {
     palette: Option<Vec<[u8; 3]>>,
 }
 
-/// The first model in a MagicaVoxel file, with voxels of edge length `voxel_size` [m], the palette
-/// index of each as its material; see [`Model::grid`].
+/// The first model in the bytes of a MagicaVoxel file, with voxels of edge length `voxel_size` [m], the palette
+/// index of each as its material; see [`Model::grid`]. `file` names it in errors.
 ///
 /// # Errors
 /// [`ImportError`] names the file, the place in it, and what was expected there.
-pub fn vox(path: &Path, voxel_size: f32) -> Result<VoxelGrid<Dim3>, ImportError> {
-    Model::open(path)?.grid(voxel_size, &Colours::default())
-}
-
-/// As [`vox()`], from the bytes of a file; `file` names them in errors.
-///
-/// # Errors
-/// As [`vox()`].
-pub fn vox_bytes(
-    file: &str,
-    bytes: &[u8],
-    voxel_size: f32,
-) -> Result<VoxelGrid<Dim3>, ImportError> {
+pub fn vox(file: &str, bytes: &[u8], voxel_size: f32) -> Result<VoxelGrid<Dim3>, ImportError> {
     Model::decode(file, bytes)?.grid(voxel_size, &Colours::default())
 }
 
 impl Model {
-    /// The first model in a MagicaVoxel file. Where the scene in the file puts it is passed over.
+    /// The first model in the bytes of a MagicaVoxel file, which `file` names in errors. Where the scene in it puts the
+    /// model is passed over.
     ///
     /// MagicaVoxel's z points upwards, and ours is y, so that a model is turned and not mirrored:
     ///
@@ -71,16 +59,8 @@ impl Model {
     /// ```
     ///
     /// # Errors
-    /// [`ImportError`] when the file cannot be read or is longer than [`super::MAX_FILE_BYTES`], or when
-    /// it is damaged, cut short, or has more than [`MAX_VOXELS_ACROSS`].
-    pub fn open(path: &Path) -> Result<Self, ImportError> {
-        Self::decode(&name_of(path), &read(path)?)
-    }
-
-    /// As [`Model::open`], from the bytes of a file; `file` names them in errors.
-    ///
-    /// # Errors
-    /// As [`Model::open`].
+    /// [`ImportError`] when the file is longer than [`super::MAX_FILE_BYTES`], or when it is damaged, cut short, or has
+    /// more than [`MAX_VOXELS_ACROSS`].
     pub fn decode(file: &str, bytes: &[u8]) -> Result<Self, ImportError> {
         let model = check_length(bytes).and_then(|()| Self::try_decode(file, bytes));
         in_file(file, model)

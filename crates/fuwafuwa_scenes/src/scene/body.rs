@@ -2,14 +2,12 @@
 
 use super::error::{Wrong, require};
 use super::rigid::{BallText, BoxText, CapsuleText, HalfSpaceText};
-use crate::import;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD as BASE64;
 use fuwafuwa::law::Elasticity;
 use fuwafuwa::{BodyError, Material};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
 
 /// A material as it is written down: what is not named is that of [`Material::default`].
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -42,8 +40,8 @@ pub struct BodyText {
     pub shape: Option<Form>,
     /// In place of a shape: a silhouette (.png, in 2D) or a model of MagicaVoxel (.vox, in 3D). A path
     /// is taken from the folder of the scene.
-    pub file: Option<PathBuf>,
-    /// The bytes of that file in base64, where they travel with the scene; then no disk is asked.
+    pub file: Option<String>,
+    /// The bytes of that file in base64, once they travel with the scene.
     pub content: Option<String>,
     /// Voxels across; of a silhouette at most so many, of a model it is not asked.
     pub n: Option<usize>,
@@ -120,6 +118,13 @@ pub struct PartText {
     pub ball: Option<BallText>,
 }
 
+/// What the name of a file ends in, as in `png`: in small letters, and empty where it has no ending.
+pub fn ending_of(name: &str) -> String {
+    let name = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    let ending = name.rsplit_once('.').map(|(_, ending)| ending);
+    ending.unwrap_or_default().to_ascii_lowercase()
+}
+
 impl MaterialText {
     pub(super) fn material(&self) -> Material {
         let usual = Material::default();
@@ -164,14 +169,17 @@ impl MaterialText {
 
 impl BodyText {
     /// The bytes of its file.
-    pub(super) fn file_bytes(&self, file: &Path) -> Result<Vec<u8>, Wrong> {
+    pub(super) fn file_bytes(&self) -> Result<Vec<u8>, Wrong> {
         let wrong = |reason: String| Wrong::new("content", reason);
-        match &self.content {
-            Some(text) => BASE64
-                .decode(text)
-                .map_err(|error| wrong(format!("expected base64: {error}"))),
-            None => import::read(file).map_err(Wrong::file),
-        }
+        let missing = || wrong("expected the content of the file".into());
+        let text = self.content.as_ref().ok_or_else(missing)?;
+        let bytes = BASE64.decode(text);
+        bytes.map_err(|error| wrong(format!("expected base64: {error}")))
+    }
+
+    /// Whether the file that it is made from is not there.
+    pub fn lacks_content(&self) -> bool {
+        self.file.is_some() && self.content.is_none()
     }
 
     /// Takes the bytes of its file along.

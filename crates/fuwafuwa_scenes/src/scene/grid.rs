@@ -1,6 +1,6 @@
 //! The grid of a body, from what a scene says about its shape.
 
-use super::body::{BodyText, Form, PartText};
+use super::body::{BodyText, Form, PartText, ending_of};
 use super::budget::Budget;
 use super::error::{Wrong, require, shortened};
 use super::rigid::Shapes;
@@ -8,7 +8,6 @@ use crate::import::{Colours, Model, Picture};
 use fuwafuwa::dim::points_in;
 use fuwafuwa::grid::MAX_EXTENT;
 use fuwafuwa::{BuildError, Dim, Dim2, Dim3, Shape, VoxelGrid};
-use std::path::Path;
 
 /// Most colours that a body names: as many as a palette has.
 const MAX_COLOURS: usize = 255;
@@ -129,21 +128,19 @@ fn of_form<D: Dim>(text: &BodyText, form: Form, budget: &Budget) -> Result<Voxel
     }))
 }
 
-fn of_file<D: Dim>(text: &BodyText, file: &Path, budget: &mut Budget) -> Result<Voxels, Wrong> {
+fn of_file<D: Dim>(text: &BodyText, file: &str, budget: &mut Budget) -> Result<Voxels, Wrong> {
     let good = text.proportions == [1.0; 3];
     require(good, "proportions", "a file has its own")?;
-    let ending = file.extension().and_then(|ending| ending.to_str());
-    let ending = ending.map(str::to_ascii_lowercase);
     let colours = colours(text)?;
     let named = !text.colours.is_empty();
-    let (name, dim) = (shortened(&file.display().to_string(), 200), D::N);
-    match (ending.as_deref(), D::N) {
-        (Some("png"), Dim2::N) => {
+    let (name, dim) = (shortened(file, 200), D::N);
+    match (ending_of(file).as_str(), D::N) {
+        ("png", Dim2::N) => {
             let across = text.n.unwrap_or(MAX_EXTENT);
             check_across(across)?;
             let both = named && text.material.is_some();
             require(!both, "material", "the colours name the materials")?;
-            let bytes = text.file_bytes(file)?;
+            let bytes = text.file_bytes()?;
             let picture = Picture::decode(&name, &bytes).map_err(Wrong::file)?;
             let pixels: usize = picture.size().iter().product();
             budget.take_pixels(pixels, colours.named.len())?;
@@ -153,12 +150,12 @@ fn of_file<D: Dim>(text: &BodyText, file: &Path, budget: &mut Budget) -> Result<
                 if named { solid } else { solid * material }
             }))
         }
-        (Some("vox"), Dim3::N) => {
+        ("vox", Dim3::N) => {
             let expected = "a model has as many voxels as it has; expected only its width";
             require(text.n.is_none(), "n", expected)?;
             let expected = "the palette indices of a model are its materials, see colours";
             require(text.material.is_none(), "material", expected)?;
-            let bytes = text.file_bytes(file)?;
+            let bytes = text.file_bytes()?;
             let model = Model::decode(&name, &bytes).map_err(Wrong::file)?;
             let grid = model.grid(1.0, &colours).map_err(Wrong::file)?;
             Ok(Voxels::of(&grid, voxel_size(text, &grid), |solid| solid))

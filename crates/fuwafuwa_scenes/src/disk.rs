@@ -1,5 +1,7 @@
-//! The bytes of files that somebody named.
+//! Files, for programs that have a disk. Nothing else here knows of paths, and a browser does without this.
 
+use crate::import::MAX_FILE_BYTES;
+use crate::scene::{MAX_TEXT_BYTES, NAMED, Scene, SceneError};
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
@@ -24,9 +26,35 @@ pub fn bytes_of(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 }
 
 /// The text of a file, refused as [`bytes_of`] does.
-pub(crate) fn text_of(path: &Path, most: u64) -> io::Result<String> {
+///
+/// # Errors
+/// As [`bytes_of`], and when it is no UTF-8 ([`ErrorKind::InvalidData`]).
+pub fn text_of(path: &Path, most: u64) -> io::Result<String> {
     let text = String::from_utf8(bytes_of(path, most)?);
     text.map_err(|_| io::Error::new(ErrorKind::InvalidData, "expected a text in UTF-8"))
+}
+
+/// Hands out the pictures and models that lie in a folder, for [`Scene::embed_files`].
+pub fn beside(folder: &Path) -> impl Fn(&str) -> io::Result<Vec<u8>> {
+    move |name| bytes_of(&folder.join(name), MAX_FILE_BYTES)
+}
+
+/// The scene of a name, as [`Scene::open`], or in a file, with the files that it names.
+///
+/// # Errors
+/// [`SceneError`] says what is wrong and where.
+pub fn scene_at(place: &str, changes: &[String]) -> Result<Scene, SceneError> {
+    let path = Path::new(place);
+    if NAMED.iter().any(|(name, _)| *name == place) || !path.exists() {
+        return Scene::open(place, changes);
+    }
+    let text = text_of(path, MAX_TEXT_BYTES).map_err(|source| SceneError::File {
+        path: place.into(),
+        source,
+    })?;
+    let mut scene = Scene::read(place, &text, changes)?;
+    scene.embed_files(&beside(path.parent().unwrap_or(Path::new(""))))?;
+    Ok(scene)
 }
 
 #[cfg(test)]
