@@ -9,6 +9,7 @@ mod keep;
 mod lesson;
 mod notices;
 mod screen;
+mod shelf;
 mod teach;
 mod time;
 pub mod trial;
@@ -16,7 +17,7 @@ pub mod trial;
 use crate::attract::attract;
 use crate::input::{Action, Seat};
 use crate::look::Theme;
-use crate::platform::{Clock, Damage, Dialog, Entry, Files, Forces, Given, Pads, Picked, Sound};
+use crate::platform::{Clock, Damage, Dialog, Files, Forces, Given, Pads, Picked, Sound};
 use crate::records::Records;
 use crate::session::Session;
 use crate::settings::Settings;
@@ -26,6 +27,7 @@ pub use controls::{Controls, ScreenButton};
 use fuwafuwa::world::TICK;
 pub use notices::{Notice, Notices};
 pub use screen::{Screen, Screens};
+pub use shelf::{Found, Kept, Shelf};
 use std::sync::Arc;
 use tamaire_play::level::{NAMED, NAMED_3D};
 use tamaire_play::{Level, Playback, Replay, ReplayError};
@@ -52,8 +54,8 @@ pub struct Game {
     pub controls: Controls,
     /// What the player is asked to pick a file with.
     pub dialog: Dialog,
-    /// The rounds that were kept, as they were when their screen came up.
-    pub replays: Vec<Entry>,
+    /// The rounds that were kept.
+    pub shelf: Shelf,
     /// What the player should know.
     pub notices: Notices,
     /// Seconds since the game began.
@@ -95,7 +97,7 @@ impl Game {
             levels,
             chosen: 0,
             dialog: Dialog::default(),
-            replays: Vec::new(),
+            shelf: Shelf::default(),
             notices: Notices::default(),
             time: 0.0,
             clock: Clock::of_machine(),
@@ -186,7 +188,7 @@ impl Game {
         self.trial = None;
         match self.screen() {
             Screen::Title if self.bout.session.is_played() => self.attract(),
-            Screen::Replays => self.replays = self.files.replays(),
+            Screen::Replays => self.shelf.look(&self.files),
             _ => {}
         }
     }
@@ -195,7 +197,8 @@ impl Game {
     pub fn start(&mut self, level: usize) {
         let level = level.min(self.levels.len() - 1);
         self.bout.camera.face_front();
-        self.begin(Session::of_people(self.levels[level].clone()));
+        let session = Session::of_people(self.levels[level].clone());
+        self.begin(self.with_best(session));
     }
 
     /// Begins the level again, against a round that somebody played in it.
@@ -214,7 +217,28 @@ impl Game {
 
     /// The same again from its start.
     pub fn retry(&mut self) {
-        self.begin(self.bout.session.again());
+        let again = self.bout.session.again();
+        let is_beaten = self.bout.won.is_some_and(|(_, is_best)| is_best);
+        self.begin(if is_beaten {
+            self.with_best(again)
+        } else {
+            again
+        });
+    }
+
+    /// A round, beside the fastest one that was won in its level where that is wished.
+    fn with_best(&self, session: Session) -> Session {
+        if !self.settings.race_best || !session.is_played() {
+            return session;
+        }
+        let level = session.round().level();
+        // What was won by other rules, or in another level of this name, is raced no more.
+        let best = self.files.best(level).map(Arc::new);
+        let ghost = best.and_then(|best| Playback::new(best).ok());
+        match ghost.filter(|ghost| ghost.round().level().hash() == level.hash()) {
+            Some(ghost) => session.against(ghost),
+            None => session,
+        }
     }
 
     fn begin(&mut self, session: Session) {
@@ -283,6 +307,15 @@ impl Game {
             self.files.keep_level(self.levels[place].clone());
         }
         self.start(place);
+    }
+
+    /// The levels that a little picture is made of: those that are seen in lists.
+    pub fn pictured(&self) -> Vec<Arc<Level>> {
+        self.levels
+            .iter()
+            .cloned()
+            .chain(self.shelf.levels())
+            .collect()
     }
 
     /// Whether a level does not come along.

@@ -36,6 +36,8 @@ pub struct Settings {
     pub sensitivity: f32,
     /// Whether a stick points at a place in the arena, instead of saying how fast to go.
     pub stick_places: bool,
+    /// Whether one's fastest round is raced by itself.
+    pub race_best: bool,
     /// Whether the window fills the screen.
     pub full_screen: bool,
     /// No shaking, no leaning, fewer particles.
@@ -67,6 +69,7 @@ impl Default for Settings {
             speed: 1.0,
             sensitivity: 1.0,
             stick_places: false,
+            race_best: false,
             full_screen: false,
             reduced_motion: false,
             colour_safe: false,

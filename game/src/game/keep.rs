@@ -48,7 +48,7 @@ impl Game {
         if let Err(error) = self.files.delete(&saved.name) {
             self.tell(News::Failed(error.to_string()));
         }
-        self.replays = self.files.replays();
+        self.shelf.look(&self.files);
     }
 
     /// Writes what is still to be written, and waits until it is.
@@ -66,7 +66,7 @@ impl Game {
             News::Level(level) => self.levels.push(level),
             News::Damaged(damage) => self.tell_of(damage),
             News::Saved(place) => {
-                self.replays = self.files.replays();
+                self.shelf.look(&self.files);
                 self.notify(format!("{} {place}", self.words().saved));
             }
             News::Failed(reason) => {

@@ -40,6 +40,9 @@ impl Game {
             self.tell(news);
         }
         self.open_picked();
+        if self.screen() == Screen::Replays {
+            self.shelf.look_into_one(&self.files, &self.levels);
+        }
         self.celebrate(seconds);
         self.learn(seconds);
         self.drive_forces(seconds);
@@ -154,6 +157,9 @@ impl Game {
                 tamaire_play::Route::Mix => tamaire_sound::Route::Mix,
             }));
             self.files.keep_records(&self.records, &self.levels);
+            if is_known {
+                self.files.keep_best(&level, self.bout.round().replay());
+            }
         }
         if self.bout.has_cheered() && self.bout.won.is_some() {
             self.go(Screen::Result);

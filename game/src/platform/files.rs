@@ -305,6 +305,20 @@ impl Files {
         news
     }
 
+    /// Keeps a win as the round to race in its level, unless one that was won faster is kept.
+    pub fn keep_best(&mut self, level: &Level, replay: Replay) {
+        let (storage, name) = (self.storage.clone(), plain(&level.id));
+        self.writer
+            .write(move || Done::Note(keep_best(&*storage, &name, &replay)));
+    }
+
+    /// The fastest win that was kept of a level.
+    pub fn best(&self, level: &Level) -> Option<Replay> {
+        let name = plain(&level.id);
+        let bytes = self.storage.read(Kind::Best, &name).ok()??;
+        Replay::of_bytes(&bytes).ok()
+    }
+
     /// The replays that are kept, the newest first.
     pub fn replays(&self) -> Vec<Entry> {
         let mut found = self.storage.list(Kind::Replay).unwrap_or_default();
@@ -412,8 +426,28 @@ fn save_replay(storage: &dyn Storage, replay: &Replay) -> Result<String, String>
 
 /// How the names begin of what is kept of a round.
 fn stem_of(replay: &Replay) -> String {
+    plain(&replay.level)
+}
+
+/// A name that any system takes.
+fn plain(name: &str) -> String {
     let is_plain = |letter: &char| letter.is_alphanumeric() || *letter == '-';
-    replay.level.chars().filter(is_plain).take(60).collect()
+    name.chars().filter(is_plain).take(60).collect()
+}
+
+/// Keeps a win, unless one in the same level that took no longer is kept.
+fn keep_best(storage: &dyn Storage, name: &str, replay: &Replay) -> io::Result<()> {
+    let Ok(text) = replay.text_to_keep() else {
+        // One that could not be watched is none.
+        return Ok(());
+    };
+    storage.change(Kind::Best, name, &mut |found| {
+        let known = found.and_then(|found| Replay::of_bytes(found).ok());
+        let stays = known.is_some_and(|known| {
+            known.level_hash == replay.level_hash && known.ticks() <= replay.ticks()
+        });
+        (!stays).then(|| text.clone().into_bytes())
+    })
 }
 
 /// Keeps something under a name that is free; says where, or why not.

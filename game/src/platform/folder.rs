@@ -27,6 +27,7 @@ impl Folder {
             Kind::Note => (self.0.clone(), "toml"),
             Kind::Level => (self.0.join("levels"), "toml"),
             Kind::Replay => (self.0.join("replays"), "tamaire"),
+            Kind::Best => (self.0.join("best"), "tamaire"),
             Kind::Photo => (self.0.join("pictures"), "png"),
             Kind::Clip => (self.0.join("pictures"), "gif"),
         }

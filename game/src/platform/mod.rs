@@ -2,6 +2,7 @@
 //! sticks can be read and felt. Nothing else in the game knows on which it runs.
 
 mod clock;
+mod date;
 #[cfg(not(target_family = "wasm"))]
 mod dialog;
 #[cfg(target_family = "wasm")]
@@ -28,6 +29,7 @@ mod storage;
 mod writer;
 
 pub use clock::Clock;
+pub use date::local as local_date;
 pub use dialog::{Dialog, IS_THERE as HAS_DIALOG, Picked};
 pub use files::{Damage, Files, News};
 pub use forces::Forces;

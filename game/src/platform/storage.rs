@@ -13,6 +13,8 @@ pub enum Kind {
     Level,
     /// A round as it was played.
     Replay,
+    /// The fastest one of a level.
+    Best,
     /// A picture of the end of one.
     Photo,
     /// Its last seconds, as an animation.
@@ -25,7 +27,7 @@ impl Kind {
         match self {
             Self::Note => 1 << 20,
             Self::Level => tamaire_play::level::MAX_KEPT_BYTES,
-            Self::Replay => tamaire_play::replay::MAX_BYTES as u64,
+            Self::Replay | Self::Best => tamaire_play::replay::MAX_BYTES as u64,
             Self::Photo | Self::Clip => 1 << 26,
         }
     }

@@ -33,7 +33,7 @@ enum Wish {
 pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     veil(ui, 255);
     let (theme, said) = (game.theme(), game.words());
-    let maps = stage.maps(&game.levels, &theme);
+    let maps = stage.maps(&game.pictured(), &theme);
     let mut wanted = None;
     let area = place_of_page(ui);
     let mut back = ui.input(|input| input.key_pressed(egui::Key::Escape));

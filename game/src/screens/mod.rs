@@ -37,7 +37,7 @@ pub fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
         Screen::Result => result::show(game, ui),
         Screen::Settings => settings::show(game, ui),
         Screen::Forces => forces::show(game, ui),
-        Screen::Replays => replays::show(game, ui),
+        Screen::Replays => replays::show(game, stage, ui),
     }
     notices(game, ui);
 }

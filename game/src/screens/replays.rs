@@ -1,15 +1,19 @@
 //! Rounds that were kept.
 
 use super::doomed::{doom, is_doomed};
-use super::widgets::{Weight, button, card, fitted, header, page, place_of_page, veil};
-use crate::game::Game;
-use crate::platform::Entry;
-use crate::platform::HAS_PICTURES;
-use egui::{RichText, Ui, vec2};
+use super::icons;
+use super::widgets::{Weight, button, card, fitted, header_with, page, place_of_page, veil};
+use crate::game::{Found, Game, Kept};
+use crate::look::{Maps, Stage};
+use crate::platform::{Entry, HAS_DIALOG, HAS_PICTURES, local_date};
+use egui::{Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, vec2};
 use tamaire_sound::Menu;
 
-/// Width of a button.
-const WIDE: f32 = 130.0;
+/// Size of a button, and of the little picture.
+const BUTTON: Vec2 = vec2(118.0, 44.0);
+const PICTURE: Vec2 = vec2(111.0, 74.0);
+/// Between two things in a row.
+const GAP: f32 = 10.0;
 
 /// What to do with a replay.
 #[derive(Copy, Clone)]
@@ -20,51 +24,35 @@ enum Wish {
     Delete,
 }
 
-pub(super) fn show(game: &mut Game, ui: &mut Ui) {
+pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     veil(ui, 255);
     let (theme, said) = (game.theme(), game.words());
-    let mut wanted: Option<(usize, Wish)> = None;
+    let maps = stage.maps(&game.pictured(), &theme);
+    let mut wanted: Option<(Entry, Wish)> = None;
     let mut back = ui.input(|input| input.key_pressed(egui::Key::Escape));
     let area = place_of_page(ui);
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
-        let response = header(ui, &theme, said.back, said.replays);
+        let (response, opens) = header_with(ui, &theme, said.back, said.replays, |ui| {
+            HAS_DIALOG && button(ui, &theme, said.open, vec2(150.0, 48.0), Weight::Other).clicked()
+        });
         super::play::focus_first(ui, &response);
         back |= response.clicked();
+        if opens {
+            game.ask_for_file();
+        }
         page(ui, "replays", 960.0, |ui| {
-            if game.replays.is_empty() {
+            if game.shelf.is_empty() {
                 ui.vertical_centered(|ui| {
                     ui.add_space(60.0);
                     ui.label(RichText::new(said.no_replays).size(22.0).color(theme.faint));
                 });
             }
-            for (place, saved) in game.replays.iter().enumerate() {
+            for kept in game.shelf.iter() {
                 card(ui, &theme, |ui| {
                     ui.horizontal(|ui| {
-                        let name = name_of(game, saved);
-                        let count = if HAS_PICTURES { 4.0 } else { 3.0 };
-                        let size = vec2(ui.available_width() - count * (WIDE + 10.0), 44.0);
-                        let (room, _) = ui.allocate_exact_size(size, egui::Sense::hover());
-                        let galley = fitted(ui.painter(), &name, 22.0, size.x, theme.ink);
-                        let at = room.left_center() - vec2(0.0, 0.5 * galley.size().y);
-                        ui.painter().galley(at, galley, theme.ink);
-                        for (text, wish) in [
-                            (said.watch, Wish::Watch),
-                            (said.race, Wish::Race),
-                            (said.clip, Wish::Clip),
-                            (
-                                match is_doomed(ui, &saved.name) {
-                                    true => said.surely,
-                                    false => said.delete,
-                                },
-                                Wish::Delete,
-                            ),
-                        ]
-                        .into_iter()
-                        .filter(|(_, wish)| HAS_PICTURES || !matches!(wish, Wish::Clip))
-                        {
-                            if button(ui, &theme, text, vec2(WIDE, 44.0), Weight::Other).clicked() {
-                                wanted = Some((place, wish));
-                            }
+                        ui.spacing_mut().item_spacing.x = GAP;
+                        if let Some(wish) = show_one(ui, game, maps, kept) {
+                            wanted = Some((kept.entry.clone(), wish));
                         }
                     });
                 });
@@ -75,26 +63,114 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     if back {
         game.blip(Menu::Back);
         game.go_back();
-    } else if let Some((place, wish)) = wanted {
+    } else if let Some((entry, wish)) = wanted {
         game.blip(Menu::Confirm);
-        let saved = game.replays[place].clone();
+        let name = &entry.name;
         match wish {
-            Wish::Watch => game.open_kept(&saved.name, Game::watch),
-            Wish::Race => game.open_kept(&saved.name, Game::race),
-            Wish::Clip => game.open_kept(&saved.name, Game::keep_clip_of),
-            Wish::Delete if is_doomed(ui, &saved.name) => game.delete(&saved),
+            Wish::Watch => game.open_kept(name, Game::watch),
+            Wish::Race => game.open_kept(name, Game::race),
+            Wish::Clip => game.open_kept(name, Game::keep_clip_of),
+            Wish::Delete if is_doomed(ui, name) => game.delete(&entry),
             Wish::Delete => {}
         }
-        doom(ui, matches!(wish, Wish::Delete).then_some(&saved.name));
+        doom(ui, matches!(wish, Wish::Delete).then_some(name));
     }
 }
 
+/// A replay in a row: what it is, and what can be done with it.
+fn show_one(ui: &mut Ui, game: &Game, maps: &Maps, kept: &Kept) -> Option<Wish> {
+    let (theme, said) = (game.theme(), game.words());
+    let found = kept.found.as_ref().and_then(Option::as_ref);
+    let count = if HAS_PICTURES { 4.0 } else { 3.0 };
+    let room = ui.available_width() - PICTURE.x - count * (BUTTON.x + GAP) - GAP;
+    let (place, _) = ui.allocate_exact_size(PICTURE, Sense::hover());
+    ui.painter().rect_filled(place, 12.0, theme.paper);
+    if let Some(found) = found {
+        maps.draw(ui.painter(), place, &found.level);
+    }
+    let frame = Stroke::new(4.0, theme.card);
+    ui.painter()
+        .rect_stroke(place.expand(2.0), 13.0, frame, StrokeKind::Middle);
+    let (place, response) = ui.allocate_exact_size(vec2(room, PICTURE.y), Sense::hover());
+    tell(ui, game, kept, found, place, &response);
+    let delete = match is_doomed(ui, &kept.entry.name) {
+        true => said.surely,
+        false => said.delete,
+    };
+    let all = [
+        (said.watch, Wish::Watch),
+        (said.race, Wish::Race),
+        (said.clip, Wish::Clip),
+        (delete, Wish::Delete),
+    ];
+    let here = all
+        .into_iter()
+        .filter(|(_, wish)| HAS_PICTURES || !matches!(wish, Wish::Clip));
+    let mut wanted = None;
+    for (text, wish) in here {
+        if button(ui, &theme, text, BUTTON, Weight::Other).clicked() {
+            wanted = Some(wish);
+        }
+    }
+    wanted
+}
+
+/// Where it was played, when, and how it was won.
+fn tell(
+    ui: &Ui,
+    game: &Game,
+    kept: &Kept,
+    found: Option<&Found>,
+    place: Rect,
+    response: &Response,
+) {
+    let (theme, said, painter) = (game.theme(), game.words(), ui.painter());
+    let name = name_of(game, kept, found);
+    let date = local_date(kept.entry.written);
+    let (route, end) = match found {
+        Some(found) => {
+            let seconds = format!("{:.1} s", found.seconds);
+            match found.outcome {
+                Some(outcome) => (
+                    Some(outcome.route),
+                    format!("{} {seconds}", (said.route)(outcome.route)),
+                ),
+                None => (None, seconds),
+            }
+        }
+        None => (None, String::new()),
+    };
+    response
+        .widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("{name}, {date}, {end}")));
+    let mut top = place.top();
+    for (text, size, ink) in [(&name, 22.0, theme.ink), (&date, 17.0, theme.faint)] {
+        let galley = fitted(painter, text, size, place.width(), ink);
+        painter.galley(egui::pos2(place.left(), top), galley, ink);
+        top += size + 4.0;
+    }
+    let mut left = place.left();
+    if let Some(route) = route {
+        let at = egui::pos2(left + 14.0, top + 11.0);
+        icons::route(painter, &theme, at, 9.0, route, true);
+        left += 32.0;
+    }
+    let galley = fitted(painter, &end, 17.0, place.right() - left, theme.faint);
+    painter.galley(egui::pos2(left, top), galley, theme.faint);
+}
+
 /// By its level, where that is known, and its number.
-fn name_of(game: &Game, saved: &Entry) -> String {
-    let known = saved.name.rsplit_once('-').and_then(|(id, number)| {
-        let level = game.levels.iter().find(|level| level.id == id)?;
-        let name = game.settings.language.of(&level.game().name);
-        Some(format!("{name} {number}"))
-    });
-    known.unwrap_or_else(|| saved.name.clone())
+fn name_of(game: &Game, kept: &Kept, found: Option<&Found>) -> String {
+    let name = &kept.entry.name;
+    let Some((id, number)) = name.rsplit_once('-') else {
+        return name.clone();
+    };
+    let known = game.levels.iter().find(|level| level.id == id);
+    let level = found.map(|found| &found.level).or(known);
+    level.map_or_else(
+        || name.clone(),
+        |level| {
+            let name = game.settings.language.of(&level.game().name);
+            format!("{name} {number}")
+        },
+    )
 }

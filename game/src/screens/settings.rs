@@ -74,6 +74,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                     &mut chosen.stick_places,
                     &options,
                 );
+                choice(ui, &theme, said.race_best, &mut chosen.race_best, &options);
                 let strength = &mut chosen.haptics;
                 slider(ui, &theme, said.haptics, strength, 0.0, 1.0, 0.05);
                 let size = vec2(ui.available_width(), 44.0);

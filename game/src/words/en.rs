@@ -62,6 +62,7 @@ pub(super) const WORDS: Words = Words {
     open: "Open…",
     what_opens: "Levels, pictures, models, replays",
     no_dialog: "This system has no window to pick a file with. Drop the file onto the game instead.",
+    race_best: "Race my best round",
     legend: [
         "won",
         "a wish came true",

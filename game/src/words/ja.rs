@@ -63,6 +63,7 @@ pub(super) const WORDS: Words = Words {
     open: "ひらく…",
     what_opens: "レベル・絵・モデル・リプレイ",
     no_dialog: "このパソコンには ファイルをえらぶ まどがありません。ファイルを ここに おとしてね。",
+    race_best: "じぶんの きろくと きょうそう",
     legend: [
         "クリア",
         "ねがいが かなった",

@@ -34,6 +34,7 @@ pub struct Words {
     pub open: &'static str,
     pub what_opens: &'static str,
     pub no_dialog: &'static str,
+    pub race_best: &'static str,
     pub legend: [&'static str; 5],
     pub language: &'static str,
     pub volume: &'static str,
