@@ -1,14 +1,16 @@
 //! The loop: devices → actions and wishes → time → picture and sound.
 
+mod dwell;
 mod fingers;
 mod pointing;
 mod presses;
 
 use crate::game::{Game, Screen};
-use crate::input::{Action, Means, Seat};
+use crate::input::{Action, Latch, Means, Seat};
 use crate::look::{Stage, dress};
 use crate::platform::{GpuWatch, dropped};
 use crate::screens;
+use dwell::Dwell;
 use egui::{Event, Key};
 use fingers::Fingers;
 use pointing::{look_around, point};
@@ -40,6 +42,8 @@ pub struct App {
     navigators: Vec<(sticks::DeviceId, Navigator)>,
     presses: Presses,
     fingers: Fingers,
+    latch: Latch,
+    dwell: Dwell,
     screen_before: Screen,
     /// Whether the window ever had the focus, and whether it was asked to fill the screen.
     had_focus: bool,
@@ -71,6 +75,8 @@ impl App {
             navigators,
             presses,
             fingers: Fingers::default(),
+            latch: Latch::default(),
+            dwell: Dwell::default(),
             screen_before,
             had_focus: false,
             is_full: false,
@@ -160,6 +166,18 @@ impl App {
         }
     }
 
+    /// Presses what the mouse rests on, for whoever wants it so.
+    fn press_by_resting(&mut self, ctx: &egui::Context, seconds: f32) {
+        let on = screens::take_hovered(ctx).filter(|_| self.game.settings.dwell);
+        let Some(at) = ctx.input(|input| input.pointer.latest_pos()) else {
+            return;
+        };
+        if self.dwell.pass(on, seconds) {
+            self.presses.waiting().click = Some(at);
+        }
+        self.dwell.draw(ctx, at, &self.game.theme());
+    }
+
     /// As if a key were pressed and let go in the next frame.
     fn press(&self, key: Key) {
         self.presses.waiting().keys.push(key);
@@ -210,7 +228,13 @@ impl App {
             game.act(button.action, button.seat());
         }
         point(game, ctx, &self.fingers);
-        game.controls.devices.keys = ctx.input(|input| input.keys_down.iter().copied().collect());
+        if game.screen() != Screen::Play {
+            self.latch.release();
+        }
+        game.controls.devices.keys = match game.settings.toggle_keys {
+            true => self.latch.keys(),
+            false => ctx.input(|input| input.keys_down.iter().copied().collect()),
+        };
         if game.screen() == Screen::Play
             && game.bout.turn().is_some()
             && game.bout.session.is_played()
@@ -242,6 +266,7 @@ impl App {
                 continue;
             }
             let action = game.settings.bindings.of_key(key);
+            self.latch.press(key, &game.settings.bindings);
             if key == Key::F11 && action.is_none() {
                 game.settings.full_screen ^= true;
                 game.keep_settings();
@@ -295,6 +320,7 @@ impl eframe::App for App {
             });
         }
         screens::show(&mut self.game, &mut self.stage, ui);
+        self.press_by_resting(&ctx, seconds);
         // What stands in these is of many widths.
         let is_list = matches!(
             self.game.screen(),

@@ -36,6 +36,10 @@ pub struct Settings {
     pub sensitivity: f32,
     /// Whether a stick points at a place in the arena, instead of saying how fast to go.
     pub stick_places: bool,
+    /// Whether keys that move something stay down until they are pressed again.
+    pub toggle_keys: bool,
+    /// Whether a mouse that rests on a button presses it.
+    pub dwell: bool,
     /// Whether one's fastest round is raced by itself.
     pub race_best: bool,
     /// Whether the window fills the screen.
@@ -69,6 +73,8 @@ impl Default for Settings {
             speed: 1.0,
             sensitivity: 1.0,
             stick_places: false,
+            toggle_keys: false,
+            dwell: false,
             race_best: false,
             full_screen: false,
             reduced_motion: false,

@@ -1,6 +1,6 @@
 //! Keys on their way into egui: those that sticks and pads press in menus, and those that are held.
 
-use egui::{Event, Key, Modifiers, RawInput};
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, RawInput};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Keys that count once however long they are held: what they lead to must not be left at once.
@@ -15,6 +15,8 @@ pub(super) struct Presses(Arc<Mutex<Waiting>>);
 pub(super) struct Waiting {
     /// What sticks and pads press in menus.
     pub(super) keys: Vec<Key>,
+    /// Where a mouse that rests presses.
+    pub(super) click: Option<Pos2>,
     /// Whether there are such keys in this frame.
     pub(super) is_by_stick: bool,
     /// Whether up and down lead through everything in its order, and not to what lies above or below.
@@ -52,6 +54,16 @@ impl egui::Plugin for Presses {
             }
             _ => true,
         });
+        if let Some(pos) = waiting.click.take() {
+            input
+                .events
+                .extend([true, false].map(|pressed| Event::PointerButton {
+                    pos,
+                    button: PointerButton::Primary,
+                    pressed,
+                    modifiers: Modifiers::NONE,
+                }));
+        }
         waiting.is_by_stick = !waiting.keys.is_empty();
         for key in std::mem::take(&mut waiting.keys) {
             input.events.extend(stroke(key, Modifiers::NONE));

@@ -2,11 +2,13 @@
 
 mod bindings;
 mod devices;
+mod latch;
 mod manner;
 mod players;
 
 pub use bindings::{Bindings, PadKey};
 pub use devices::{Devices, Seat};
+pub use latch::Latch;
 pub use manner::Manner;
 pub use players::Players;
 

@@ -2,6 +2,7 @@
 
 use super::hud::{EDGE, GAP, HIGH, pale};
 use super::icons;
+use super::widgets::note_hovered;
 use crate::game::{Game, ScreenButton};
 use crate::input::{Action, Means};
 use egui::{Color32, Painter, Pos2, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
@@ -74,6 +75,7 @@ fn one(game: &mut Game, ui: &Ui, button: ScreenButton, name: &str, icon: Icon) -
     // Not for the keyboard, which has its own keys for it.
     let response = ui.interact(place, egui::Id::unique(name), Sense::CLICK);
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
+    note_hovered(ui, &response);
     let is_held = game.controls.devices.held.contains(&button.action);
     let fill = match is_held || response.hovered() {
         true => theme.card,

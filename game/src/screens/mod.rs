@@ -15,7 +15,7 @@ mod settings;
 mod title;
 mod widgets;
 
-pub use widgets::note_use_of_keys;
+pub use widgets::{note_use_of_keys, take_hovered};
 
 use crate::game::{Game, Screen};
 use crate::look::Stage;

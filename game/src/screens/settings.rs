@@ -80,6 +80,11 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 let size = vec2(ui.available_width(), 44.0);
                 to_forces = button(ui, &theme, said.try_forces, size, Weight::Other).clicked();
             });
+            section(ui, &theme, said.hands_section, |ui| {
+                let toggles = &mut chosen.toggle_keys;
+                choice(ui, &theme, said.toggle_keys, toggles, &options);
+                choice(ui, &theme, said.dwell, &mut chosen.dwell, &options);
+            });
             section(ui, &theme, said.look_section, |ui| {
                 if !cfg!(target_family = "wasm") {
                     choice(

@@ -122,9 +122,22 @@ pub fn is_on(ui: &Ui, response: &Response) -> bool {
     response.has_focus() && by_keys == Some(true)
 }
 
+/// Notes what the mouse is on, of all that can be pressed.
+pub fn note_hovered(ui: &Ui, response: &Response) {
+    if response.hovered() {
+        ui.data_mut(|data| data.insert_temp(Id::unique("hovered"), Some(response.id)));
+    }
+}
+
+/// What of all that can be pressed the mouse is on, since this was asked last.
+pub fn take_hovered(ctx: &Context) -> Option<Id> {
+    ctx.data_mut(|data| data.remove_temp(Id::unique("hovered")).flatten())
+}
+
 /// From 0 to 1 while the mouse, keys or a pad are on something.
 pub fn liveliness(ui: &Ui, response: &Response) -> f32 {
     let is_lively = response.hovered() || is_on(ui, response);
+    note_hovered(ui, response);
     ui.ctx().animate_bool(response.id, is_lively)
 }
 

@@ -63,6 +63,9 @@ pub(super) const WORDS: Words = Words {
     what_opens: "Levels, pictures, models, replays",
     no_dialog: "This system has no window to pick a file with. Drop the file onto the game instead.",
     race_best: "Race my best round",
+    hands_section: "Hands",
+    toggle_keys: "Keys stay down until pressed again",
+    dwell: "Resting the mouse presses a button",
     legend: [
         "won",
         "a wish came true",

@@ -64,6 +64,9 @@ pub(super) const WORDS: Words = Words {
     what_opens: "レベル・絵・モデル・リプレイ",
     no_dialog: "このパソコンには ファイルをえらぶ まどがありません。ファイルを ここに おとしてね。",
     race_best: "じぶんの きろくと きょうそう",
+    hands_section: "手",
+    toggle_keys: "キーは もういちど おすまで おしたまま",
+    dwell: "マウスを とめると ボタンを おす",
     legend: [
         "クリア",
         "ねがいが かなった",

@@ -364,3 +364,40 @@ fn a_mouse_that_only_rests_moves_no_hand() {
         );
     }
 }
+
+#[test]
+fn a_mouse_that_rests_presses_a_button_for_whoever_wants_it_so() {
+    let mut window = window(Files::nowhere());
+    let at = button(&window, "Play").rect().center();
+    window.hover_at(at);
+    frames(&mut window, 90);
+    assert_eq!(screen(&window), Screen::Title, "nobody asked for it");
+    window.hover_at(egui::Pos2::ZERO);
+    frames(&mut window, 2);
+    game(&mut window).settings.dwell = true;
+    window.hover_at(at);
+    frames(&mut window, 30);
+    assert_eq!(screen(&window), Screen::Title);
+    frames(&mut window, 60);
+    assert_eq!(screen(&window), Screen::Levels);
+}
+
+#[test]
+fn keys_stay_down_until_they_are_pressed_again_for_whoever_wants_it_so() {
+    let mut window = window(Files::nowhere());
+    start(&mut window, "classic");
+    game(&mut window).settings.toggle_keys = true;
+    let x = |window: &Window| {
+        let players = &window.state().game.controls.players;
+        players.wanted(0).map_or(-1.4, |wanted| wanted[0])
+    };
+    press(&mut window, Key::ArrowRight);
+    frames(&mut window, 30);
+    let first = x(&window);
+    assert!(first > -1.2, "{first}");
+    press(&mut window, Key::ArrowRight);
+    frames(&mut window, 10);
+    let second = x(&window);
+    frames(&mut window, 10);
+    assert_eq!(x(&window), second);
+}

@@ -9,6 +9,7 @@ mod models;
 mod own;
 mod pads;
 mod pictures;
+mod shelf;
 mod space;
 mod told;
 mod window;

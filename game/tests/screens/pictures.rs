@@ -4,6 +4,7 @@ use crate::hostile::drop_file;
 use crate::window::*;
 use egui::{Key, Vec2, pos2, vec2};
 use egui_kittest::SnapshotOptions;
+use egui_kittest::kittest::Queryable;
 use force_feedback::{Ability, Recording};
 use std::path::Path;
 use sticks::{About, Device, DeviceId, Pad, Snapshot};
@@ -91,6 +92,22 @@ fn own_level(window: &mut Window) {
     press(window, Key::Enter);
     frames(window, 30);
     pictures(window, "own");
+}
+
+#[test]
+fn rounds_that_were_kept() {
+    let folder = folder("kept-pictures");
+    let mut window = open(Files::in_folder(&folder), vec2(704.0, 440.0), 1.0);
+    game(&mut window).start(0);
+    win(&mut window);
+    game(&mut window).keep_replay();
+    game(&mut window).finish_writing();
+    game(&mut window).notices.clear();
+    game(&mut window).go(Screen::Replays);
+    frames(&mut window, 20);
+    std::fs::remove_dir_all(folder).unwrap();
+    window.get_by_label_contains("Squeezed in!");
+    window.render().unwrap().save("/tmp/shelf.png").unwrap();
 }
 
 #[test]

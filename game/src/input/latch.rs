@@ -1,0 +1,70 @@
+//! Keys that stay down until they are pressed again: for hands that cannot hold them.
+
+use super::{Action, Bindings};
+use egui::Key;
+use std::collections::BTreeSet;
+
+/// Keys that stay down.
+#[derive(Clone, Debug, Default)]
+pub struct Latch(BTreeSet<Key>);
+
+impl Latch {
+    /// A key is pressed: it stays down, or comes up again where it was down. What means the opposite comes up.
+    pub fn press(&mut self, key: Key, bindings: &Bindings) {
+        let Some(opposite) = bindings.of_key(key).and_then(opposite) else {
+            // What it means happens once.
+            return;
+        };
+        self.0
+            .retain(|&other| bindings.of_key(other) != Some(opposite));
+        if !self.0.remove(&key) {
+            self.0.insert(key);
+        }
+    }
+
+    /// All come up.
+    pub fn release(&mut self) {
+        self.0.clear();
+    }
+
+    /// Those that are down.
+    pub fn keys(&self) -> BTreeSet<Key> {
+        self.0.clone()
+    }
+}
+
+/// What ends an action that lasts, if it is one.
+fn opposite(action: Action) -> Option<Action> {
+    let pairs = [
+        (Action::Up, Action::Down),
+        (Action::Left, Action::Right),
+        (Action::Raise, Action::Lower),
+        (Action::TurnLeft, Action::TurnRight),
+        (Action::Deeper, Action::Shallower),
+    ];
+    pairs.into_iter().find_map(|(one, other)| match action {
+        _ if action == one => Some(other),
+        _ if action == other => Some(one),
+        _ => None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_key_stays_down_until_it_or_its_opposite_is_pressed() {
+        let (mut latch, bindings) = (Latch::default(), Bindings::default());
+        let mut press = |key| {
+            latch.press(key, &bindings);
+            latch.keys().into_iter().collect::<Vec<_>>()
+        };
+        assert_eq!(press(Key::ArrowRight), [Key::ArrowRight]);
+        assert_eq!(press(Key::ArrowUp).len(), 2);
+        assert_eq!(press(Key::R).len(), 2, "it happens once");
+        assert_eq!(press(Key::A), [Key::ArrowUp, Key::A]);
+        assert_eq!(press(Key::ArrowUp), [Key::A]);
+        assert_eq!(press(Key::A), []);
+    }
+}

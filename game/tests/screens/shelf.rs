@@ -1,0 +1,73 @@
+//! The list of rounds that were kept, and the fastest one, which is raced by itself where that is wished.
+
+use crate::window::*;
+use egui_kittest::kittest::Queryable;
+use tamaire::game::Screen;
+use tamaire::platform::{Files, Kind};
+use tamaire_play::Route;
+
+#[test]
+fn a_kept_round_tells_where_when_and_how_it_was_won() {
+    let folder = folder("shelf");
+    let mut window = window(Files::in_folder(&folder));
+    game(&mut window).start(0);
+    win(&mut window);
+    game(&mut window).keep_replay();
+    game(&mut window).finish_writing();
+    // One that is none stays in the list, by its name.
+    std::fs::write(folder.join("replays/other-1.tamaire"), "version = 999\n").unwrap();
+    game(&mut window).go(Screen::Replays);
+    frames(&mut window, 6);
+    let shelf = &window.state().game.shelf;
+    let found = |name: &str| {
+        let kept = shelf.iter().find(|kept| kept.entry.name == name).unwrap();
+        kept.found.clone().expect("it was looked into")
+    };
+    assert!(found("other-1").is_none());
+    let classic = found("classic-1").expect("it can be played");
+    assert_eq!(classic.outcome.unwrap().route, Route::Squeeze);
+    let level = &window.state().game.levels[0];
+    assert!(std::sync::Arc::ptr_eq(&classic.level, level));
+    let line = window.get_by_label_contains("Classic 1, 20");
+    let text = line.accesskit_node().label().unwrap();
+    let time = format!("{:.1} s", classic.seconds);
+    assert!(
+        text.contains("Squeezed in!") && text.ends_with(&time),
+        "{text}"
+    );
+    std::fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn the_fastest_round_is_raced_by_itself_where_that_is_wished() {
+    let folder = folder("best");
+    let files = Files::in_folder(&folder);
+    let mut window = window(Files::in_folder(&folder));
+    game(&mut window).start(0);
+    win(&mut window);
+    game(&mut window).finish_writing();
+    let level = game(&mut window).levels[0].clone();
+    let first = files.best(&level).expect("it is kept").ticks();
+    game(&mut window).start(0);
+    let has_ghost = |window: &Window| window.state().game.bout.session.ghost().is_some();
+    assert!(!has_ghost(&window), "nobody wished it");
+    game(&mut window).settings.race_best = true;
+    game(&mut window).start(0);
+    assert!(has_ghost(&window));
+    game(&mut window).start(1);
+    assert!(!has_ghost(&window), "nothing was won there");
+
+    // A slower win is not kept instead; one that is faster would be.
+    game(&mut window).start(0);
+    frames(&mut window, 60);
+    win(&mut window);
+    game(&mut window).finish_writing();
+    assert_eq!(files.best(&level).unwrap().ticks(), first);
+    // What is no replay any more is no ghost.
+    let path = folder.join("best/classic.tamaire");
+    assert!(path.is_file() && Kind::Best.most_bytes() > 0);
+    std::fs::write(path, "version = 1\n").unwrap();
+    game(&mut window).start(0);
+    assert!(!has_ghost(&window));
+    std::fs::remove_dir_all(folder).unwrap();
+}
