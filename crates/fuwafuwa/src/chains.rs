@@ -91,20 +91,22 @@ impl<I: Id> Chains<I> {
 }
 
 /// Ids below a bound in ascending order, each once. What is touched by a release has most of its ids
-/// several times: a bit for every id there could be is cheaper than sorting them.
+/// several times, and close together: a bit for every id there could be is cheaper than sorting them, as long as only
+/// those between the lowest and the highest are looked through.
 pub fn ascending<I: Id>(ids: impl Iterator<Item = I>, bound: usize) -> Vec<I> {
     let mut words = vec![0u64; bound.div_ceil(64)];
-    let mut count = 0;
+    let (mut first, mut end, mut count) = (words.len(), 0, 0);
     for id in ids {
-        let (word, bit) = (&mut words[id.index() / 64], 1 << (id.index() % 64));
-        count += usize::from(*word & bit == 0);
-        *word |= bit;
+        let (place, bit) = (id.index() / 64, 1 << (id.index() % 64));
+        count += usize::from(words[place] & bit == 0);
+        words[place] |= bit;
+        (first, end) = (first.min(place), end.max(place + 1));
     }
     let mut found = Vec::with_capacity(count);
-    for (word, first) in words.into_iter().zip((0..).step_by(64)) {
-        let mut left = word;
+    for place in first..end {
+        let mut left = words[place];
         while left != 0 {
-            found.push(I::of(first + left.trailing_zeros() as usize));
+            found.push(I::of(64 * place + left.trailing_zeros() as usize));
             left &= left - 1;
         }
     }
