@@ -1,7 +1,7 @@
 //! What can be asked of a body: its pieces, its skin, its elements, the mass in a region.
 
 use crate::body::Body;
-use crate::dim::{Dim, add, corner, face_corners};
+use crate::dim::{Dim, Dim2, Point, add, corner, face_corners, scale};
 use crate::ids::{ElementId, NodeId, PieceId, Table};
 use crate::mesh::Element;
 use crate::shape::{Shape, Vector};
@@ -81,6 +81,79 @@ pub struct ElementView {
     pub strain: f32,
     /// Where the slots of its 3 × 3 (× 3) lattice are [m]; those it does not reach hold its centre.
     pub slots: [Vector; 27],
+}
+
+/// A face of what an element fills, with nothing of that element beyond it.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct ElementFace {
+    /// The slots at its corners: two in 2D, four in 3D, in the order of [`face_corners`].
+    pub slots: [usize; 4],
+    /// In 3D, from each corner to the next: whether no other face goes on flat from there.
+    pub is_edge: [bool; 4],
+}
+
+/// The blocks of slots that an element fills: their low corners, and their width in slots.
+pub fn blocks<D: Dim>(level: u8, children: u8) -> impl Iterator<Item = (Point, i32)> {
+    let whole = (level == 0).then_some(([0; 3], 2));
+    let filled = (0..D::CORNERS).filter(move |child| level > 0 && children >> child & 1 == 1);
+    let filled = filled.map(|child| (corner(child), 1));
+    whole.into_iter().chain(filled)
+}
+
+/// The faces around what an element fills, block by block.
+///
+/// ```text
+///     o──o──o        2D: the element fills three of its children. Where two of them meet there is no face;
+///     │     │        [`ring`] goes around the rest, the element to its left.
+///     o  o──o
+///     │  │
+///     o──o
+/// ```
+pub fn faces<D: Dim>(level: u8, children: u8) -> Vec<ElementFace> {
+    let is_filled = |block: Point| blocks::<D>(level, children).any(|(low, _)| low == block);
+    let mut faces = Vec::new();
+    for (low, width) in blocks::<D>(level, children) {
+        for face in 0..2 * D::N {
+            if is_filled(beyond(low, face)) {
+                continue;
+            }
+            let ring = face_corners::<D>(face);
+            let is_edge = [0, 1, 2, 3].map(|k| {
+                // Both its ends are on the same end of the axis that leads across it.
+                let (a, b) = (ring[k], ring[(k + 1) % 4]);
+                let mut axes = (0..D::N).filter(|&axis| axis != face / 2);
+                let across = axes.find(|axis| (a ^ b) >> axis & 1 == 0);
+                across.is_none_or(|axis| {
+                    let beside = beyond(low, 2 * axis + (a >> axis & 1));
+                    !is_filled(beside) || is_filled(beyond(beside, face))
+                })
+            });
+            let slot = |vertex| slot_index(add(low, scale(corner(vertex), width)));
+            let slots = ring.map(slot);
+            faces.push(ElementFace { slots, is_edge });
+        }
+    }
+    faces
+}
+
+/// The slots around what an element in 2D fills, in one round; twice through a slot where children meet in a corner.
+pub fn ring(level: u8, children: u8) -> Vec<usize> {
+    let mut faces = faces::<Dim2>(level, children);
+    let mut at = faces.first().map(|face| face.slots[0]);
+    let mut ring = Vec::new();
+    // The last face of those that go on there belongs to another child, if there is one.
+    while let Some(next) = faces.iter().rposition(|face| Some(face.slots[0]) == at) {
+        let [from, to, ..] = faces.remove(next).slots;
+        ring.push(from);
+        at = Some(to);
+    }
+    ring
+}
+
+/// The block beyond a face of a block.
+fn beyond(mut block: Point, face: usize) -> Point {
+    block[face / 2] += 2 * (face % 2) as i32 - 1;
+    block
 }
 
 impl<D: Dim> Body<D> {
@@ -306,15 +379,13 @@ impl<D: Dim> Body<D> {
             }
             _ => cross(minus(corners[2], corners[0]), minus(corners[3], corners[1])),
         };
-        let mut beyond = element.cell.at;
-        beyond[face / 2] += 2 * (face % 2) as i32 - 1;
         Facet {
             nodes,
             corners,
             normal: unit(normal),
             element: id,
             piece: self.truth.pieces.of_element(id),
-            is_fresh: self.truth.grid.is_solid(beyond),
+            is_fresh: self.truth.grid.is_solid(beyond(element.cell.at, face)),
         }
     }
 }
@@ -324,7 +395,7 @@ impl ElementView {
     /// whole cell at level 0, which has no children.
     pub fn child_corners<D: Dim>(&self, child: usize) -> Vec<Vector> {
         let at = |vertex: usize| match self.level {
-            0 => corner(vertex).map(|k| 2 * k),
+            0 => scale(corner(vertex), 2),
             _ => add(corner(child), corner(vertex)),
         };
         let place = |vertex: usize| self.slots[slot_index(at(vertex))];
@@ -334,4 +405,73 @@ impl ElementView {
 
 fn unit(v: Vector) -> Vector {
     scaled(v, 1.0 / length(v).max(1e-12))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dim::Dim3;
+
+    #[test]
+    fn faces_close_around_what_is_filled() {
+        let count = |faces: &[ElementFace]| {
+            let edges = faces.iter().flat_map(|face| face.is_edge);
+            (faces.len(), edges.filter(|&is| is).count())
+        };
+        let check = |level, children, expect| {
+            let faces = faces::<Dim3>(level, children);
+            assert_eq!(count(&faces), expect, "{children:#b} of level {level}");
+        };
+        check(0, 255, (6, 24));
+        check(1, 255, (24, 48));
+        check(1, 0b0001, (6, 24));
+        check(1, 0b0011, (10, 32));
+        check(1, 0b1001, (12, 48));
+    }
+
+    #[test]
+    fn rings_go_once_around_all_that_is_filled() {
+        let check = |level, children, expect: &[[i32; 2]]| {
+            let ring = ring(level, children);
+            let low = ring
+                .iter()
+                .position(|&slot| slot == 0)
+                .expect("it fills the low corner");
+            let around = ring.iter().cycle().skip(low).take(ring.len());
+            let around: Vec<[i32; 2]> = around
+                .map(|&slot| [slot_at(slot)[0], slot_at(slot)[1]])
+                .collect();
+            assert_eq!(around, expect, "{children:#b} of level {level}");
+        };
+        check(0, 15, &[[0, 0], [2, 0], [2, 2], [0, 2]]);
+        check(1, 0b0001, &[[0, 0], [1, 0], [1, 1], [0, 1]]);
+        check(
+            1,
+            0b0111,
+            &[
+                [0, 0],
+                [1, 0],
+                [2, 0],
+                [2, 1],
+                [1, 1],
+                [1, 2],
+                [0, 2],
+                [0, 1],
+            ],
+        );
+        check(
+            1,
+            0b1001,
+            &[
+                [0, 0],
+                [1, 0],
+                [1, 1],
+                [2, 1],
+                [2, 2],
+                [1, 2],
+                [1, 1],
+                [0, 1],
+            ],
+        );
+    }
 }

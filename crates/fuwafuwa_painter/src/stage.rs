@@ -2,11 +2,9 @@
 
 use crate::solid::Solid;
 use crate::{Frame, Painter, Role, Spot};
-use fuwafuwa::dim::{add, corner, scale};
 use fuwafuwa::shape::{Shape, Vector};
-use fuwafuwa::stencil::slot_index;
 use fuwafuwa::vector::{cross, minus, plus, scaled};
-use fuwafuwa::view::{ElementView, Facet, Outline};
+use fuwafuwa::view::{ElementView, Facet, Outline, faces, ring};
 use fuwafuwa::{Body, Dim, Dim2, Dim3, ElementId, NodeId, PieceId, World};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -106,49 +104,8 @@ pub fn plane_element(painter: &mut Painter, frame: Frame, view: &ElementView, wi
 
 /// The outline of an element on the paper.
 pub fn outline(frame: Frame, view: &ElementView) -> Vec<Spot> {
-    let ring = ring(view.level, view.children);
-    ring.iter()
-        .map(|&slot| frame.spot(view.slots[slot]))
-        .collect()
-}
-
-/// The slots around the children that an element of the plane fills, in one round.
-///
-/// Sides of the children run anticlockwise; one that another child runs the other way is inside.
-pub fn ring(level: u8, children: u8) -> Vec<usize> {
-    let mut sides = BTreeSet::new();
-    for (low, width) in blocks::<Dim2>(level, children) {
-        let round = [0, 1, 3, 2].map(|index| slot_index(add(low, scale(corner(index), width))));
-        for k in 0..4 {
-            let (from, to) = (round[k], round[(k + 1) % 4]);
-            if !sides.remove(&(to, from)) {
-                sides.insert((from, to));
-            }
-        }
-    }
-    let next: BTreeMap<usize, usize> = sides.into_iter().collect();
-    let mut round = Vec::new();
-    let Some((&start, _)) = next.iter().next() else {
-        return round;
-    };
-    let mut at = start;
-    while let Some(&to) = next.get(&at) {
-        round.push(at);
-        at = to;
-        if at == start {
-            break;
-        }
-    }
-    round
-}
-
-/// The slots that the children of an element of the plane reach.
-pub fn slots(level: u8, children: u8) -> BTreeSet<usize> {
-    let blocks = blocks::<Dim2>(level, children).into_iter();
-    let corners = |(low, width)| {
-        (0..Dim2::CORNERS).map(move |index| slot_index(add(low, scale(corner(index), width))))
-    };
-    blocks.flat_map(corners).collect()
+    let ring = ring(view.level, view.children).into_iter();
+    ring.map(|slot| frame.spot(view.slots[slot])).collect()
 }
 
 /// Paints a world of space, each body as `draw` does.
@@ -252,49 +209,18 @@ fn smoothed(facets: &[Facet]) -> BTreeMap<NodeId, Vector> {
 
 /// Paints the faces of an element, and the edges where faces of different direction meet.
 fn space_element(solid: &mut Solid, view: &ElementView) {
-    let blocks = blocks::<Dim3>(view.level, view.children);
-    let mut meetings: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
-    for &(low, width) in &blocks {
-        for (axis, side) in (0..3).flat_map(|axis| (0..2).map(move |side| (axis, side))) {
-            let mut beyond = low;
-            beyond[axis] += 2 * side - 1;
-            if blocks.iter().any(|&(other, _)| other == beyond) {
-                continue;
-            }
-            let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-            let round = if side == 1 {
-                [[0, 0], [1, 0], [1, 1], [0, 1]]
-            } else {
-                [[0, 0], [0, 1], [1, 1], [1, 0]]
-            };
-            let slots = round.map(|[i, j]| {
-                let mut at = low;
-                at[axis] += side * width;
-                at[u] += i * width;
-                at[v] += j * width;
-                slot_index(at)
-            });
-            solid.quad(slots.map(|slot| view.slots[slot]), Role::Level(view.level));
-            for k in 0..4 {
-                let (a, b) = (slots[k], slots[(k + 1) % 4]);
-                meetings.entry((a.min(b), a.max(b))).or_default().push(axis);
-            }
+    let mut edges = BTreeSet::new();
+    for face in faces::<Dim3>(view.level, view.children) {
+        let corners = face.slots.map(|slot| view.slots[slot]);
+        solid.quad(corners, Role::Level(view.level));
+        for k in (0..4).filter(|&k| face.is_edge[k]) {
+            let (a, b) = (face.slots[k], face.slots[(k + 1) % 4]);
+            edges.insert((a.min(b), a.max(b)));
         }
     }
-    for ((a, b), axes) in meetings {
-        if axes.iter().any(|&axis| axis != axes[0]) {
-            solid.segment([view.slots[a], view.slots[b]], 1.1, Role::Edge);
-        }
+    for (a, b) in edges {
+        solid.segment([view.slots[a], view.slots[b]], 1.1, Role::Edge);
     }
-}
-
-/// The blocks of slots that an element fills: their low corners and their width in slots.
-fn blocks<D: Dim>(level: u8, children: u8) -> Vec<([i32; 3], i32)> {
-    if level == 0 {
-        return vec![([0; 3], 2)];
-    }
-    let filled = (0..D::CORNERS).filter(|child| children >> child & 1 == 1);
-    filled.map(|child| (corner(child), 1)).collect()
 }
 
 /// The pieces of a single voxel.
@@ -337,17 +263,4 @@ fn rigid(painter: &mut Painter, frame: Frame, shape: Shape, role: Role) {
         }
     };
     painter.area(rim.into_iter().map(|at| frame.spot(at)).collect(), role);
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_l_has_its_six_corners_in_the_outline() {
-        let round = ring(1, 0b0111);
-        assert!(round.contains(&slot_index([1, 1, 0])) && !round.contains(&slot_index([2, 2, 0])));
-        assert_eq!(round.len(), 8, "two of them in the middle of a side");
-        assert_eq!(ring(0, 0b1111).len(), 4);
-    }
 }

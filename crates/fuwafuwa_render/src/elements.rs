@@ -7,8 +7,8 @@ use bytemuck::{Pod, Zeroable};
 use fuwafuwa::dim::{add, corner, scale};
 use fuwafuwa::stencil::slot_index;
 use fuwafuwa::vector::{minus, plus, scaled};
+use fuwafuwa::view::{ElementFace, blocks, faces};
 use fuwafuwa::{Body, Dim2, ElementView};
-use std::collections::BTreeSet;
 
 /// For how long an element flashes after it was remodelled [s].
 const FLASH: f32 = 0.4;
@@ -27,9 +27,6 @@ pub struct ElementVertex {
     pub colour: [u8; 4],
 }
 
-/// A side of a child of an element, between two slots.
-type Edge = (usize, usize);
-
 /// Triangles of the element view.
 #[derive(Clone, Debug)]
 pub struct ElementMesh {
@@ -37,10 +34,10 @@ pub struct ElementMesh {
     pub vertices: Vec<ElementVertex>,
     /// Three to a triangle.
     pub indices: Vec<u32>,
-    /// By the mask of its children: the sides of an element that have nothing of it beyond.
-    edges: [Vec<Edge>; 16],
+    /// By the mask of its children: the faces of an element.
+    faces: [Vec<ElementFace>; 16],
     /// Of an element without children.
-    whole: Vec<Edge>,
+    whole: Vec<ElementFace>,
 }
 
 impl Default for ElementMesh {
@@ -48,8 +45,8 @@ impl Default for ElementMesh {
         Self {
             vertices: Vec::new(),
             indices: Vec::new(),
-            edges: std::array::from_fn(|mask| edges(1, mask as u8)),
-            whole: edges(0, 15),
+            faces: std::array::from_fn(|mask| faces::<Dim2>(1, mask as u8)),
+            whole: faces::<Dim2>(0, 15),
         }
     }
 }
@@ -107,16 +104,17 @@ impl ElementMesh {
     }
 
     fn add_edges(&mut self, view: &ElementView, half: f32, colour: [u8; 4]) {
-        let count = match view.level {
-            0 => self.whole.len(),
-            _ => self.edges[usize::from(view.children & 15)].len(),
-        };
+        let count = self.faces_of(view).len();
         for k in 0..count {
-            let (from, to) = match view.level {
-                0 => self.whole[k],
-                _ => self.edges[usize::from(view.children & 15)][k],
-            };
+            let [from, to, ..] = self.faces_of(view)[k].slots;
             self.add_line(flat(view.slots[from]), flat(view.slots[to]), half, colour);
+        }
+    }
+
+    fn faces_of(&self, view: &ElementView) -> &[ElementFace] {
+        match view.level {
+            0 => &self.whole,
+            _ => &self.faces[usize::from(view.children & 15)],
         }
     }
 
@@ -159,54 +157,18 @@ pub fn colour_of(view: &ElementView, theme: &Theme, colour: ElementColour, ages:
 
 /// The quads that an element fills [m], anticlockwise.
 pub fn fills(view: &ElementView) -> impl Iterator<Item = [Flat; 4]> + '_ {
-    let blocks = blocks(view.level, view.children);
-    blocks.map(|(low, width)| round(low, width).map(|slot| flat(view.slots[slot])))
-}
-
-/// The slots at the corners of a block, anticlockwise.
-fn round(low: [i32; 3], width: i32) -> [usize; 4] {
-    [0, 1, 3, 2].map(|index| slot_index(add(low, scale(corner(index), width))))
-}
-
-/// The blocks of slots that an element fills: their low corners and their width in slots.
-fn blocks(level: u8, children: u8) -> impl Iterator<Item = ([i32; 3], i32)> {
-    let whole = (level == 0).then_some(([0; 3], 2));
-    let filled = (0..4).filter(move |child| level > 0 && children >> child & 1 == 1);
-    whole
-        .into_iter()
-        .chain(filled.map(|child| (corner(child), 1)))
-}
-
-/// The sides of the blocks of an element that have no block of it beyond.
-///
-/// Blocks run round anticlockwise; a side that another block runs the other way is inside.
-fn edges(level: u8, children: u8) -> Vec<Edge> {
-    let mut edges = BTreeSet::new();
-    for (low, width) in blocks(level, children) {
-        let round = round(low, width);
-        for k in 0..4 {
-            let (from, to) = (round[k], round[(k + 1) % 4]);
-            if !edges.remove(&(to, from)) {
-                edges.insert((from, to));
-            }
-        }
-    }
-    edges.into_iter().collect()
+    blocks::<Dim2>(view.level, view.children).map(|(low, width)| {
+        [0, 1, 3, 2].map(|vertex| {
+            let at = add(low, scale(corner(vertex), width));
+            flat(view.slots[slot_index(at)])
+        })
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use fuwafuwa::{Material, VoxelGrid};
-
-    #[test]
-    fn inner_sides_are_no_edges() {
-        assert_eq!(edges(0, 15).len(), 4);
-        assert_eq!(edges(1, 0b0001).len(), 4);
-        assert_eq!(edges(1, 0b0111).len(), 8, "an L");
-        assert_eq!(edges(1, 0b1001).len(), 8, "two that meet in a corner");
-        assert_eq!(edges(1, 0b1111).len(), 8);
-    }
 
     #[test]
     fn the_fills_of_a_disc_have_its_area() {

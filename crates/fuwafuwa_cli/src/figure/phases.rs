@@ -2,11 +2,11 @@
 
 use super::square::{ACROSS, MIDDLE, Release, draw, draw_nodes, mark, points, views};
 use anyhow::Result;
-use fuwafuwa::Point;
 use fuwafuwa::dim::{add, scale};
 use fuwafuwa::mesh::Element;
-use fuwafuwa::stencil::slot_at;
+use fuwafuwa::stencil::{closure, slot_at};
 use fuwafuwa::view::ElementView;
+use fuwafuwa::{Dim, Dim2, Point};
 use fuwafuwa_painter::stage;
 use fuwafuwa_painter::{Frame, Painter, Role, Sample};
 use std::collections::{BTreeMap, BTreeSet};
@@ -125,8 +125,7 @@ pub fn phases() -> Result<Painter> {
 fn slots_of(element: &Element, view: &ElementView) -> Vec<(Point, [f32; 3])> {
     let (low, half) = (element.cell.first_voxel(), element.cell.width() / 2);
     let place = |slot: usize| (add(low, scale(slot_at(slot), half)), view.slots[slot]);
-    stage::slots(view.level, view.children)
-        .into_iter()
-        .map(place)
-        .collect()
+    let filled = closure::<Dim2>(view.children);
+    let slots = (0..Dim2::SLOTS).filter(|slot| filled >> slot & 1 == 1);
+    slots.map(place).collect()
 }

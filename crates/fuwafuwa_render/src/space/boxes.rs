@@ -6,10 +6,11 @@ use crate::elements::colour_of;
 use crate::frame::ElementColour;
 use crate::theme::{Theme, bytes};
 use bytemuck::{Pod, Zeroable};
-use fuwafuwa::dim::{add, corner, face_corners, scale};
+use fuwafuwa::dim::{corner, scale};
 use fuwafuwa::mesh::Element;
 use fuwafuwa::stencil::slot_index;
 use fuwafuwa::vector::{minus, plus, scaled, three};
+use fuwafuwa::view::{ElementFace, faces};
 use fuwafuwa::{Body, Dim3, ElementId, ElementView, Vector};
 
 /// How far a box stays inside its element [voxels]: so neighbours are told apart.
@@ -42,9 +43,6 @@ pub struct Boxes {
     sides: Vec<Vec<(usize, f32)>>,
 }
 
-/// The faces of a block of an element: slots at their corners, and which sides are edges.
-type Quads = Vec<([usize; 4], [bool; 4])>;
-
 impl Boxes {
     /// Forgets all boxes.
     pub fn clear(&mut self) {
@@ -72,7 +70,7 @@ impl Boxes {
             .iter()
             .map(|plane| (plane.axis, plane.side))
             .collect();
-        let mut quads: Vec<(u8, u8, Quads)> = Vec::new();
+        let mut forms: Vec<(u8, u8, Vec<ElementFace>)> = Vec::new();
         for (id, element) in body.mesh().elements() {
             let bare = body.bare_faces(id);
             let width = element.cell.width() as f32;
@@ -90,37 +88,33 @@ impl Boxes {
                 _ => body.element_view(id).expect("it is one of the mesh"),
             };
             let form = (element.cell.level.min(1), element.children);
-            let known = quads.iter().position(|known| (known.0, known.1) == form);
+            let known = forms.iter().position(|known| (known.0, known.1) == form);
             let place = known.unwrap_or_else(|| {
-                quads.push((form.0, form.1, quads_of(form.0, form.1)));
-                quads.len() - 1
+                forms.push((form.0, form.1, faces::<Dim3>(form.0, form.1)));
+                forms.len() - 1
             });
             let shown = bytes(colour_of(&view, theme, colour, ages), 1.0);
             let (centre, share) = (view.slots[13], 1.0 - GAP / width);
             let shrunk = view
                 .slots
                 .map(|at| plus(centre, scaled(minus(at, centre), share)));
-            for (face, quad) in quads[place].2.iter().enumerate() {
-                // At level 0 quads go by faces.
-                if is_at_cut || bare >> face & 1 == 1 {
-                    self.add_quad(&shrunk, quad, shown);
+            for (number, face) in forms[place].2.iter().enumerate() {
+                // At level 0 they are the faces of a voxel.
+                if is_at_cut || bare >> number & 1 == 1 {
+                    self.add_quad(&shrunk, face, shown);
                 }
             }
         }
     }
 
-    fn add_quad(
-        &mut self,
-        places: &[Vector; 27],
-        (slots, edges): &([usize; 4], [bool; 4]),
-        colour: [u8; 4],
-    ) {
+    fn add_quad(&mut self, places: &[Vector; 27], face: &ElementFace, colour: [u8; 4]) {
         let first = self.vertices.len() as u32;
-        for (k, &slot) in slots.iter().enumerate() {
+        for (k, &slot) in face.slots.iter().enumerate() {
             let at = places[slot];
             // Side k leads from corner k to the next one.
             let is_on = |side: usize| side == k || (side + 1) % 4 == k;
-            let sides = [0, 1, 2, 3].map(|side| if edges[side] && is_on(side) { 0 } else { 255 });
+            let is_line = |side: usize| face.is_edge[side] && is_on(side);
+            let sides = [0, 1, 2, 3].map(|side| if is_line(side) { 0 } else { 255 });
             self.vertices.push(BoxVertex { at, sides, colour });
         }
         self.indices.extend([0, 1, 2, 0, 2, 3].map(|k| first + k));
@@ -158,65 +152,11 @@ fn small_view(
     }
 }
 
-/// The quads around what an element fills, those of a block in the order of its faces.
-fn quads_of(level: u8, children: u8) -> Quads {
-    let mut quads = Vec::new();
-    let fills = |block: usize| level == 0 || children >> block & 1 == 1;
-    for block in (0..8).filter(|&block| fills(block) && (level > 0 || block == 0)) {
-        let (low, width) = match level {
-            0 => ([0; 3], 2),
-            _ => (corner(block), 1),
-        };
-        let slot = |vertex: usize| slot_index(add(low, scale(corner(vertex), width)));
-        // The block beyond a face, if the element fills it; at level 0 there is none.
-        let beyond = |block: usize, face: usize| {
-            let is_inner = level > 0 && (block >> (face / 2) & 1) != face % 2;
-            let other = block ^ 1 << (face / 2);
-            (is_inner && fills(other)).then_some(other)
-        };
-        for face in 0..6 {
-            if beyond(block, face).is_some() {
-                continue;
-            }
-            let ring = face_corners::<Dim3>(face);
-            let edges = [0, 1, 2, 3].map(|k| {
-                // Both corners of a side are on the same end of the axis that leads across it.
-                let (a, b) = (ring[k], ring[(k + 1) % 4]);
-                let common = !(a ^ b) & 7 & !(1 << (face / 2));
-                let axis = common.trailing_zeros() as usize;
-                let across = beyond(block, 2 * axis + (a >> axis & 1));
-                across.is_none_or(|other| beyond(other, face).is_some())
-            });
-            quads.push((ring.map(slot), edges));
-        }
-    }
-    quads
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use fuwafuwa::vector::{cross, dot, length};
     use fuwafuwa::{Material, Rigid, Settings, Shape, VoxelGrid, World};
-
-    #[test]
-    fn quads_close_around_what_is_filled() {
-        let edges = |quads: &Quads| {
-            quads
-                .iter()
-                .flat_map(|quad| quad.1)
-                .filter(|&is| is)
-                .count()
-        };
-        let whole = quads_of(0, 255);
-        assert_eq!((whole.len(), edges(&whole)), (6, 24));
-        let large = quads_of(1, 255);
-        assert_eq!((large.len(), edges(&large)), (24, 48));
-        let corner = quads_of(1, 1);
-        assert_eq!((corner.len(), edges(&corner)), (6, 24));
-        let bar = quads_of(1, 3);
-        assert_eq!((bar.len(), edges(&bar)), (10, 32));
-    }
 
     #[test]
     fn small_elements_look_as_the_body_says() {
