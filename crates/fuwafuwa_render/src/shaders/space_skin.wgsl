@@ -5,6 +5,7 @@ struct SkinCorner {
     @location(1) rest: vec3f,
     @location(2) normal: vec4f,
     @location(3) colour: vec4f,
+    @location(4) other: vec4f,
 }
 
 @vertex
@@ -13,8 +14,15 @@ fn skin_corner(
     @location(1) rest: vec3f,
     @location(2) normal: vec4f,
     @location(3) colour: vec4f,
+    @location(4) other: vec4f,
 ) -> SkinCorner {
-    return SkinCorner(globals.to_clip * vec4f(at, 1.0), at, rest, normal, colour);
+    return SkinCorner(globals.to_clip * vec4f(at, 1.0), at, rest, normal, colour, other);
+}
+
+// The colour of its material: between two of them runs a line that is sharp however close one looks.
+fn material(in: SkinCorner) -> vec3f {
+    let beyond = (in.other.a - 0.5) / max(fwidth(in.other.a), 1e-4);
+    return mix(to_linear(in.colour.rgb), to_linear(in.other.rgb), clamp(beyond + 0.5, 0.0, 1.0));
 }
 
 @fragment
@@ -22,7 +30,7 @@ fn skin(in: SkinCorner) -> @location(0) vec4f {
     let facing = normalize(in.normal.xyz);
     let fresh = in.colour.a;
     var normal = facing;
-    var base = to_linear(in.colour.rgb);
+    let base = material(in);
     if fresh > 0.01 {
         // Crumbly: bumps in two sizes that stay in their place.
         let bumps = rough3(0.9 * in.rest) + 0.7 * rough3(2.3 * in.rest);
@@ -48,8 +56,8 @@ fn sticker(in: SkinCorner) -> @location(0) vec4f {
 @fragment
 fn ghost(in: SkinCorner) -> @location(0) vec4f {
     let away = 1.0 - abs(dot(normalize(in.normal.xyz), towards_eye(in.at)));
-    let colour = mix(vec3f(0.45, 0.42, 0.62), in.colour.rgb, 0.25);
-    return shown(to_linear(colour), 0.16 + 0.6 * smoothstep(0.35, 1.0, away));
+    let colour = mix(vec3f(0.2, 0.18, 0.38), material(in), 0.25);
+    return shown(colour, 0.16 + 0.6 * smoothstep(0.35, 1.0, away));
 }
 
 struct BoxCorner {

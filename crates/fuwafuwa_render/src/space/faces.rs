@@ -6,11 +6,11 @@
 //! with the normal and the colour of each.
 
 use super::pool::Pool;
-use super::rest::{Rest, Tint};
-use crate::theme::{Colour, among, bytes, mix};
+use super::rest::Rest;
+use crate::theme::{Colour, among, bytes};
 use fuwafuwa::dim::{corner, face_corners};
 use fuwafuwa::ids::Table;
-use fuwafuwa::vector::{plus, scaled};
+use fuwafuwa::vector::plus;
 use fuwafuwa::{Body, Bookmark, Dim3, ElementId, NodeId, Point, Vector};
 
 /// No place.
@@ -98,8 +98,10 @@ pub struct Corner {
     pub point: u32,
     /// Where it was [voxels].
     pub rest: Vector,
-    /// Red, green, blue; in the last place 255 where it was inside.
+    /// Red, green, blue of a material; in the last place 255 where it was inside.
     pub colour: [u8; 4],
+    /// Red, green, blue of the material beyond the nearest border; in the last place 128 on that, more beyond.
+    pub other: [u8; 4],
 }
 
 /// What of an element counts for its faces.
@@ -141,6 +143,7 @@ const NO_CORNER: Corner = Corner {
     point: NONE,
     rest: [0.0; 3],
     colour: [0; 4],
+    other: [0; 4],
 };
 
 impl Faces {
@@ -310,7 +313,7 @@ impl Faces {
             return;
         }
         let at = body.mesh().node(point.node).at;
-        let mut colours = [[0.0; 3]; 2];
+        let mut octant = 0;
         let mut counts = [0; 2];
         let mut near = [Near::default(); 2];
         let mut best = f32::MIN;
@@ -319,21 +322,11 @@ impl Faces {
             counts[ground] += 1;
             let form = &self.forms[face.element];
             let vertex = face_corners::<Dim3>(face.side.into())[k];
-            let tint = rest.tint(at, 7 - vertex).filter(|_| ground == 0);
-            colours[ground] = plus(
-                colours[ground],
-                match tint {
-                    Some(Tint {
-                        materials: [first, second],
-                        share,
-                    }) => mix(self.colour(first), self.colour(second), share),
-                    None => self.colour(body.grid().material(form.at)),
-                },
-            );
+            octant = 7 - vertex;
             near[ground].add(face.points[(k + 1) % 4]);
             near[ground].add(face.points[(k + 3) % 4]);
             // The offset is carried by the voxel that it leads into, or away from least.
-            let offset = rest.offset(at, 7 - vertex);
+            let offset = rest.offset(at, octant);
             let inwards = corner(vertex).map(|end| 1.0 - 2.0 * end as f32);
             let towards = (0..3)
                 .map(|axis| (inwards[axis] * offset[axis]).min(0.0))
@@ -353,15 +346,15 @@ impl Faces {
             Ground::Mouth => near[0].common(near[1]),
         };
         (point.near, point.near_count) = (joined.points, joined.count);
+        let tint = rest.tint(at, octant);
+        let [own, other] = tint.materials.map(|number| self.colour(number));
         for ground in 0..2 {
             let vertex = &mut point.vertices[ground];
             let corner = Corner {
                 point: place,
                 rest: plus(at.map(|k| k as f32), point.offset),
-                colour: bytes(
-                    scaled(colours[ground], 1.0 / counts[ground].max(1) as f32),
-                    ground as f32,
-                ),
+                colour: bytes(own, ground as f32),
+                other: bytes(other, tint.side),
             };
             match (*vertex, counts[ground]) {
                 (NONE, 0) => {}

@@ -24,8 +24,15 @@ const FARTHEST: [f32; 2] = [0.3, 0.8];
 /// A flat surface has 0.5, an edge and a limb three voxels wide have 0.25.
 const SOLID: [f32; 2] = [0.22, 0.32];
 const AROUND: i32 = 3;
-/// Rounds in which the materials of neighbours are mixed: more make dots of few voxels pale.
-const TINT_ROUNDS: usize = 2;
+/// Rounds in which the materials of neighbours are mixed: stairs between two of them go as far as that reaches.
+const TINT_ROUNDS: usize = 12;
+/// A point in the midst of a material keeps so much of it, and one apart from it gets no more than what is left of 1: so a
+/// dot of few voxels stays one.
+const KEPT: f32 = 0.52;
+/// A point with less of a second material is not beside a border.
+const BESIDE: f32 = 0.1;
+/// How much the voxels around a point inside count, along each axis.
+const AROUND_INSIDE: [f32; 4] = [1.0, 3.0, 3.0, 1.0];
 /// How far points inside the body are moved off the lattice at most, along each axis [voxels]: more
 /// looks rougher, and lets faces turn over.
 const ROUGHNESS: f32 = 0.45;
@@ -39,6 +46,8 @@ pub struct Rest {
     points: Vec<RestPoint>,
     /// The grid they belong to.
     grid: Option<VoxelGrid<Dim3>>,
+    /// The greatest number of a material in it.
+    materials: u8,
 }
 
 /// What the voxels of a group around a lattice point share on the surface.
@@ -52,13 +61,39 @@ struct RestPoint {
     tint: Tint,
 }
 
-/// The materials of the surface around a point, smoothed too, so that the border of two has no stairs.
+/// The materials around a point, smoothed too, so that the border of two is a line without stairs.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Tint {
-    /// The number of the one that there is most of, and of the next.
+    /// The numbers of the two that there is most of, the lower one first; away from a border the same twice.
     pub materials: [u8; 2],
-    /// How much the next one shows, 0 to 0.5.
-    pub share: f32,
+    /// On which side of their border it is: towards 0 on that of the first one, 0.5 on the border.
+    pub side: f32,
+}
+
+/// The two materials that there is most of, and how much there is.
+#[derive(Copy, Clone, Debug, Default)]
+struct Most([(u8, f32); 2]);
+
+impl Most {
+    fn add(&mut self, material: u8, share: f32) {
+        let [first, second] = &mut self.0;
+        if share > first.1 {
+            (*second, *first) = (*first, (material, share));
+        } else if share > second.1 {
+            *second = (material, share);
+        }
+    }
+
+    fn tint(self) -> Tint {
+        let [(first, more), (second, less)] = self.0;
+        let share = less / (more + less).max(1e-6);
+        let materials = match share < BESIDE {
+            true => [first; 2],
+            false => [first.min(second), first.max(second)],
+        };
+        let side = if first < second { share } else { 1.0 - share };
+        Tint { materials, side }
+    }
 }
 
 const NONE: u32 = u32::MAX;
@@ -67,10 +102,12 @@ impl Rest {
     /// Finds the offsets of a grid.
     pub fn new(grid: &VoxelGrid<Dim3>) -> Self {
         let sharing = Sharing::new(grid);
+        let materials = grid.voxels().map(|voxel| grid.material(voxel));
         let mut rest = Self {
             first: vec![NONE; sharing.point_count()],
             points: Vec::new(),
             grid: Some(grid.clone()),
+            materials: materials.max().unwrap_or(0),
         };
         for at in sharing.points() {
             let groups = sharing.groups(at);
@@ -111,10 +148,27 @@ impl Rest {
         }
     }
 
-    /// The materials of a point of the original surface; none inside.
-    pub fn tint(&self, at: Point, octant: usize) -> Option<Tint> {
-        let found = self.find(at, octant)?;
-        Some(self.points[found as usize].tint)
+    /// The materials of a point, as the voxel in an octant of it sees it.
+    pub fn tint(&self, at: Point, octant: usize) -> Tint {
+        match self.find(at, octant) {
+            Some(found) => self.points[found as usize].tint,
+            None => self.tint_inside(at),
+        }
+    }
+
+    fn tint_inside(&self, at: Point) -> Tint {
+        let mut most = Most::default();
+        let mut shares = [0.0; 256];
+        if let Some(grid) = self.grid.as_ref().filter(|_| self.materials > 1) {
+            for voxel in points_in(at.map(|k| k - 2), at.map(|k| k + 1)) {
+                let weights = [0, 1, 2].map(|k| AROUND_INSIDE[(voxel[k] - at[k] + 2) as usize]);
+                shares[usize::from(grid.material(voxel))] += weights.iter().product::<f32>();
+            }
+        }
+        for material in 1..=self.materials {
+            most.add(material, shares[usize::from(material)]);
+        }
+        most.tint()
     }
 
     fn find(&self, at: Point, octant: usize) -> Option<u32> {
@@ -130,51 +184,24 @@ impl Rest {
     }
 
     fn find_tints(&mut self, grid: &VoxelGrid<Dim3>, neighbours: &[Vec<u32>]) {
-        let mut shares = vec![0.0f32; self.points.len()];
-        // The shares of the two that there is most of at each point.
-        let mut most = vec![[0.0f32; 2]; self.points.len()];
-        for material in 1..=grid
-            .voxels()
-            .map(|voxel| grid.material(voxel))
-            .max()
-            .unwrap_or(0)
-        {
-            for (share, point) in shares.iter_mut().zip(&self.points) {
+        let mut most = vec![Most::default(); self.points.len()];
+        for material in 1..=self.materials {
+            let own = |point: &RestPoint| {
                 let octants = (0..8).filter(|octant| point.group >> octant & 1 == 1);
                 let voxels = octants.map(|octant| voxel_around::<Dim3>(point.at, octant));
-                let own = voxels
-                    .filter(|&voxel| grid.material(voxel) == material)
-                    .count();
-                *share = own as f32 / point.group.count_ones() as f32;
-            }
-            if shares.iter().all(|&share| share == 0.0) {
+                let count = voxels.filter(|&voxel| grid.material(voxel) == material);
+                count.count() as f32 / point.group.count_ones() as f32
+            };
+            let own: Vec<f32> = self.points.iter().map(own).collect();
+            if own.iter().all(|&share| share == 0.0) {
                 continue;
             }
-            for _ in 0..TINT_ROUNDS {
-                let mean = |near: &Vec<u32>| {
-                    let sum: f32 = near.iter().map(|&k| shares[k as usize]).sum();
-                    sum / near.len().max(1) as f32
-                };
-                let means: Vec<f32> = neighbours.iter().map(mean).collect();
-                for (share, mean) in shares.iter_mut().zip(means) {
-                    *share = 0.5 * (*share + mean);
-                }
-            }
-            for (point, (most, &share)) in self.points.iter_mut().zip(most.iter_mut().zip(&shares))
-            {
-                let materials = &mut point.tint.materials;
-                if share > most[0] {
-                    (most[1], materials[1]) = (most[0], materials[0]);
-                    (most[0], materials[0]) = (share, material);
-                } else if share > most[1] {
-                    (most[1], materials[1]) = (share, material);
-                }
+            for (most, share) in most.iter_mut().zip(mingled(&own, neighbours)) {
+                most.add(material, share);
             }
         }
-        for (point, [first, second]) in self.points.iter_mut().zip(most) {
-            // Most of the border is drawn together.
-            let close = (2.0 * second / (first + second).max(1e-6) - 0.25) / 0.75;
-            point.tint.share = 0.5 * close.max(0.0);
+        for (point, most) in self.points.iter_mut().zip(most) {
+            point.tint = most.tint();
         }
     }
 
@@ -230,6 +257,24 @@ fn blurred(places: &[Vector], neighbours: &[Vec<u32>], rounds: usize) -> Vec<Vec
     now
 }
 
+/// The shares of a material after the rounds in which neighbours mix theirs.
+fn mingled(own: &[f32], neighbours: &[Vec<u32>]) -> Vec<f32> {
+    let mut shares = own.to_vec();
+    for _ in 0..TINT_ROUNDS {
+        let mixed = |(k, near): (usize, &Vec<u32>)| {
+            let sum: f32 = near.iter().map(|&k| shares[k as usize]).sum();
+            let share = 0.5 * (shares[k] + sum / near.len().max(1) as f32);
+            match own[k] {
+                0.0 => share.min(1.0 - KEPT),
+                1.0 => share.max(KEPT),
+                _ => share,
+            }
+        };
+        shares = neighbours.iter().enumerate().map(mixed).collect();
+    }
+    shares
+}
+
 /// How far a point may be moved [voxels].
 fn farthest(grid: &VoxelGrid<Dim3>, at: Point) -> f32 {
     let low = at.map(|k| k - AROUND);
@@ -277,21 +322,64 @@ mod tests {
         }
     }
 
+    /// How far into the second material of a grid points of its surface are, by what their tints say.
+    fn sides(grid: &VoxelGrid<Dim3>) -> Vec<(Point, f32)> {
+        let rest = Rest::new(grid);
+        let side = |point: &RestPoint| match point.tint.materials {
+            [1, 1] => 0.0,
+            [2, 2] => 1.0,
+            _ => point.tint.side,
+        };
+        rest.points
+            .iter()
+            .map(|point| (point.at, side(point)))
+            .collect()
+    }
+
     #[test]
-    fn the_border_of_two_materials_is_mixed_and_narrow() {
-        let half = |[x, ..]: Point| 1 + u8::from(x >= 5);
-        let grid = VoxelGrid::<Dim3>::from_fn([10, 4, 4], 1.0, half).unwrap();
+    fn the_border_of_two_materials_has_no_stairs() {
+        // It rises by one voxel in four.
+        let half = |[x, y, _]: Point| 1 + u8::from(4 * y > x + 20);
+        let grid = VoxelGrid::<Dim3>::from_fn([40, 30, 4], 1.0, half).unwrap();
+        let sides = sides(&grid);
+        let mut crossings = Vec::new();
+        for x in 8..32 {
+            let column = sides.iter().filter(|(at, _)| at[0] == x && at[2] == 4);
+            let mut column: Vec<(f32, f32)> =
+                column.map(|(at, side)| (at[1] as f32, *side)).collect();
+            column.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let pair = column
+                .windows(2)
+                .find(|pair| pair[0].1 < 0.5 && pair[1].1 >= 0.5);
+            let pair = pair.expect("the border crosses every column");
+            let share = (0.5 - pair[0].1) / (pair[1].1 - pair[0].1);
+            crossings.push(pair[0].0 + share - 0.25 * x as f32);
+        }
+        let low = crossings.iter().copied().fold(f32::MAX, f32::min);
+        let high = crossings.iter().copied().fold(f32::MIN, f32::max);
+        assert!(high - low < 0.25, "{crossings:?}");
+    }
+
+    #[test]
+    fn a_dot_of_four_voxels_stays_and_so_does_a_painted_surface() {
+        let dot =
+            |[x, y, z]: Point| 1 + u8::from(z == 9 && (4..6).contains(&x) && (4..6).contains(&y));
+        let grid = VoxelGrid::<Dim3>::from_fn([10, 10, 10], 1.0, dot).unwrap();
+        let sides = sides(&grid);
+        let side = |at: Point| {
+            sides
+                .iter()
+                .find(|(own, _)| *own == at)
+                .map(|found| found.1)
+        };
+        assert!(side([5, 5, 10]) > Some(0.5) && side([3, 5, 10]) < Some(0.5));
         let rest = Rest::new(&grid);
-        let tint = |x: i32| rest.tint([x, 4, 2], 0).unwrap();
-        assert_eq!((tint(2).materials[0], tint(2).share), (1, 0.0));
-        assert_eq!((tint(8).materials[0], tint(8).share), (2, 0.0));
-        assert!((tint(5).share - 0.5).abs() < 0.01, "{:?}", tint(5));
-        let beside = tint(4);
-        assert!(
-            beside.materials == [1, 2] && beside.share < 0.35,
-            "{beside:?}"
+        assert_eq!(rest.tint([5, 5, 5], 0).materials, [1, 1]);
+        assert_eq!(
+            rest.tint([5, 5, 9], 0).materials,
+            [1, 2],
+            "inside, below the dot"
         );
-        assert_eq!(rest.tint([5, 2, 2], 0), None);
     }
 
     #[test]

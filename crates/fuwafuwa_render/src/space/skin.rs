@@ -32,8 +32,10 @@ pub struct SkinVertex {
     pub rest: [f32; 3],
     /// Outwards, of length 32767; and ‖F − R‖ of its voxel, 32767 being 1.
     pub normal: [i16; 4],
-    /// Red, green, blue; in the last place 255 where it was inside.
+    /// Red, green, blue of a material; in the last place 255 where it was inside.
     pub colour: [u8; 4],
+    /// Red, green, blue of the material beyond the nearest border; in the last place 128 on that, more beyond.
+    pub other: [u8; 4],
 }
 
 /// The surface of a body.
@@ -172,6 +174,7 @@ impl Skin {
                 rest: corner.rest,
                 normal: [nx, ny, nz, (strain.min(1.0) * 32767.0) as i16],
                 colour: corner.colour,
+                other: corner.other,
             }
         }));
     }

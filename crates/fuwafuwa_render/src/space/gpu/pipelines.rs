@@ -197,8 +197,9 @@ fn depth_state(format: TextureFormat, is_written: bool) -> DepthStencilState {
 }
 
 impl InMemory for SkinVertex {
-    const ATTRIBUTES: &'static [VertexAttribute] =
-        &vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Snorm16x4, 3 => Unorm8x4];
+    const ATTRIBUTES: &'static [VertexAttribute] = &vertex_attr_array![
+        0 => Float32x3, 1 => Float32x3, 2 => Snorm16x4, 3 => Unorm8x4, 4 => Unorm8x4
+    ];
     const STEP: VertexStepMode = VertexStepMode::Vertex;
 }
 
