@@ -6,7 +6,7 @@ use crate::gpu::targets::{bind, new_image, smooth, within};
 use wgpu::*;
 
 /// The sides of what the light sees and of what the sky sees [px]: the latter is blurred far more.
-pub const SHADOW_SIDES: [u32; 2] = [512, 128];
+pub const SHADOW_SIDES: [u32; 2] = [1024, 128];
 
 /// The images of a picture, and what is bound to put it into a window.
 pub struct Targets {
