@@ -8,7 +8,9 @@ use fuwafuwa::{
     World,
 };
 use fuwafuwa_render::frame::ElementColour;
-use fuwafuwa_render::{Basket, Camera, Colour, Frame, Look, Particle, Renderer, Theme};
+use fuwafuwa_render::{
+    Basket, Camera, Colour, Frame, Look, Particle, Renderer, Step, Theme, image,
+};
 use shared::{device, device_with, difference, is_warm};
 use std::sync::LazyLock;
 use wgpu::TextureFormat;
@@ -348,6 +350,37 @@ fn what_is_too_much_for_a_buffer_is_left_out() {
         let image = renderer.render_to_image(&device, &queue, &world, &frame, size);
         assert!(image.is_ok());
     }
+}
+
+#[test]
+fn hands_are_in_front_of_what_is_painted_on_bodies() {
+    let mut world = disc();
+    world.add_rigid(Rigid::hand([0.5, 0.5, 0.0], 0.1)).unwrap();
+    let camera = Camera::fit([-0.1, -0.1, 0.0], [1.1, 1.1, 0.0], SIZE);
+    let half = |paint: fn(&Renderer, &mut wgpu::RenderPass<'static>)| {
+        let (device, queue) = device()?;
+        let format = TextureFormat::Rgba8Unorm;
+        let frame = Frame::new(camera, &THEME);
+        let mut renderer = Renderer::new(&device, format);
+        let pixels = image(&device, &queue, (format, SIZE), |step| match step {
+            Step::Before(encoder) => {
+                renderer.prepare(&device, &queue, encoder, &world, &frame, SIZE);
+            }
+            Step::Inside(pass) => paint(&renderer, pass),
+        });
+        let pixels = pixels.expect("an image");
+        let picture = Picture { camera, pixels };
+        let at = |x| picture.at_pixel(camera.to_pixel([x, 0.5, 0.0], SIZE));
+        Some([at(0.52), at(0.8)])
+    };
+    let (Some([under, body]), Some([hand, beside])) =
+        (half(Renderer::paint_bodies), half(Renderer::paint_rigid))
+    else {
+        return;
+    };
+    assert!(is_warm(under) && is_warm(body), "{under:?} {body:?}");
+    assert!(hand[2] > hand[0] + 0.2, "{hand:?}");
+    assert!(!is_warm(beside), "bodies are not painted again: {beside:?}");
 }
 
 #[test]

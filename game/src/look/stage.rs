@@ -134,15 +134,19 @@ impl Stage {
         let mut renderer = self.renderer.lock().unwrap_or_else(PoisonError::into_inner);
         renderer.prepare(device, queue, &mut encoder, round.world(), &frame, size);
         queue.submit([encoder.finish()]);
-        let paint = Paint(self.renderer.clone(), Renderer::paint);
         let painter = ui.painter();
-        painter.add(Callback::new_paint_callback(view.rect, paint));
+        let paint = |half| {
+            let paint = Paint(self.renderer.clone(), half);
+            painter.add(Callback::new_paint_callback(view.rect, paint));
+        };
+        paint(Renderer::paint_bodies);
+        for face in faces(round, look) {
+            face.paint(painter, view);
+        }
+        paint(Renderer::paint_rigid);
         glow::draw(painter, round, look);
         if let Some(AnyRound::Plane(ghost)) = look.ghost {
             draw_ghost(painter, ghost, view);
-        }
-        for face in faces(round, look) {
-            face.paint(painter, view);
         }
         hint::draw(painter, round, look);
         look.effects.confetti.draw(painter, view);

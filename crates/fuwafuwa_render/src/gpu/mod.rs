@@ -109,36 +109,53 @@ impl Renderer {
 
     /// Puts the picture that was made ready into a pass, filling its viewport.
     pub fn paint(&self, pass: &mut RenderPass<'static>) {
-        let (pipelines, rigid) = (&self.pipelines, &self.geometry.rigid);
-        let there = self.shapes.count();
-        let bars = 0..rigid.bar_count.min(there);
-        let hands = bars.end..(bars.end + rigid.hand_count).min(there);
-        let basket = hands.end..there;
+        self.paint_bodies(pass);
+        self.paint_rigid(pass);
+    }
+
+    /// The first half of [`Renderer::paint`]: the floor, the basket and the bodies. What is on these is painted next.
+    pub fn paint_bodies(&self, pass: &mut RenderPass<'static>) {
+        let (pipelines, [_, _, basket]) = (&self.pipelines, self.kinds());
         pass.set_bind_group(0, &self.globals, &[]);
         pass.set_bind_group(1, &self.targets.body, &[]);
         pass.set_vertex_buffer(0, self.shapes.all());
         pass.set_pipeline(&pipelines.arena);
         pass.draw(0..3, 0..1);
-        let mut draw = |pipeline, shapes| {
-            pass.set_pipeline(pipeline);
-            pass.draw(0..4, shapes);
-        };
-        draw(&pipelines.glow, basket.clone());
+        pass.set_pipeline(&pipelines.glow);
+        pass.draw(0..4, basket.clone());
         if self.covered.is_some() {
             pass.set_pipeline(&pipelines.body);
             pass.draw(0..4, 0..1);
         }
-        let mut draw = |pipeline, shapes| {
+        pass.set_pipeline(&pipelines.border);
+        pass.draw(0..4, basket);
+    }
+
+    /// The second half: bars, hands and particles, which are in front.
+    pub fn paint_rigid(&self, pass: &mut RenderPass<'static>) {
+        let (pipelines, [bars, hands, _]) = (&self.pipelines, self.kinds());
+        pass.set_bind_group(0, &self.globals, &[]);
+        pass.set_vertex_buffer(0, self.shapes.all());
+        for (pipeline, shapes) in [
+            (&pipelines.shadow, 0..hands.end),
+            (&pipelines.bar, bars),
+            (&pipelines.hand, hands),
+        ] {
             pass.set_pipeline(pipeline);
             pass.draw(0..4, shapes);
-        };
-        draw(&pipelines.border, basket);
-        draw(&pipelines.shadow, 0..hands.end);
-        draw(&pipelines.bar, bars);
-        draw(&pipelines.hand, hands);
+        }
         pass.set_vertex_buffer(0, self.dots.all());
         pass.set_pipeline(&pipelines.particle);
         pass.draw(0..4, 0..self.dots.count());
+    }
+
+    /// Which shapes are bars, hands and the basket, as far as the device has room for them.
+    fn kinds(&self) -> [Range<u32>; 3] {
+        let (rigid, there) = (&self.geometry.rigid, self.shapes.count());
+        let bars = 0..rigid.bar_count.min(there);
+        let hands = bars.end..(bars.end + rigid.hand_count).min(there);
+        let basket = hands.end..there;
+        [bars, hands, basket]
     }
 
     fn covered(&self, camera: &Camera, target_size: [u32; 2]) -> Option<[[f32; 2]; 2]> {
