@@ -1,13 +1,12 @@
 //! A frame that follows a body, for a face to be painted in.
 
-use fuwafuwa::vector::{cross, dot, minus, plus, scaled};
 use fuwafuwa::{Body, Dim, PieceId, Vector};
+use glam::{Mat3, Vec3};
 
 /// Steps towards the turn of a piece. Each doubles its correct digits once it is near.
 const STEPS: usize = 12;
 /// What is flatter than this has no turn of its own: its volume, as a share of its length cubed.
 const FLAT: f32 = 1.0e-7;
-const UPRIGHT: [Vector; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// A frame that follows the largest piece of a body.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -38,15 +37,15 @@ pub fn anchor<D: Dim>(body: &Body<D>) -> Anchor {
             .filter(|&(id, _)| pieces.of_node(id).index() == largest);
         own.map(|(id, node)| {
             let (at, _, mass) = body.node_state(id);
-            (at, node.at.map(|k| k as f32), mass)
+            (at.into(), node.at.map(|k| k as f32).into(), mass)
         })
     };
-    let (position, _, axes) = frame::<D, _>(states);
+    let (position, _, turn) = frame::<D, _>(states);
     let whole: f32 = masses.iter().sum();
     let voxels = body.grid().solid_count() as f32 * masses[largest] / whole;
     Anchor {
-        position,
-        axes: axes.unwrap_or(UPRIGHT),
+        position: position.into(),
+        axes: turn.unwrap_or_default().to_cols_array_2d(),
         scale: body.grid().voxel_size()
             * match D::N {
                 2 => (voxels / std::f32::consts::PI).sqrt(),
@@ -63,75 +62,71 @@ pub fn anchor_at<D: Dim>(
     place: Vector,
     reach: f32,
 ) -> Option<(Vector, [Vector; 3])> {
+    let place = Vec3::from(place);
     let states = || {
         let near = body.mesh().nodes().filter_map(move |(id, node)| {
-            let rest = node.at.map(|k| k as f32);
-            let away = minus(rest, place);
-            (dot(away, away) < reach * reach && body.pieces().of_node(id) == piece)
-                .then_some((id, rest))
+            let rest = Vec3::from(node.at.map(|k| k as f32));
+            let is_near = rest.distance_squared(place) < reach * reach;
+            (is_near && body.pieces().of_node(id) == piece).then_some((id, rest))
         });
         near.map(|(id, rest)| {
             let (at, _, mass) = body.node_state(id);
-            (at, rest, mass)
+            (at.into(), rest, mass)
         })
     };
-    let (position, origin, axes) = frame::<D, _>(states);
-    let axes = axes?;
-    let by = scaled(minus(place, origin), body.grid().voxel_size());
-    let moved = (0..3).fold(position, |sum, k| plus(sum, scaled(axes[k], by[k])));
-    Some((moved, axes))
+    let (position, origin, turn) = frame::<D, _>(states);
+    let turn = turn?;
+    let moved = position + turn * ((place - origin) * body.grid().voxel_size());
+    Some((moved.into(), turn.to_cols_array_2d()))
 }
 
 /// The mean place of nodes now and at rest, and their turn, from where each is, was, and how heavy it is.
-fn frame<D: Dim, I: Iterator<Item = (Vector, Vector, f32)>>(
+fn frame<D: Dim, I: Iterator<Item = (Vec3, Vec3, f32)>>(
     states: impl Fn() -> I,
-) -> (Vector, Vector, Option<[Vector; 3]>) {
+) -> (Vec3, Vec3, Option<Mat3>) {
     let whole: f32 = states().map(|(_, _, mass)| mass).sum();
-    let (mut position, mut origin) = ([0.0; 3], [0.0; 3]);
+    let (mut position, mut origin) = (Vec3::ZERO, Vec3::ZERO);
     for (at, rest, mass) in states() {
         let share = mass / whole;
-        position = plus(position, scaled(at, share));
-        origin = plus(origin, scaled(rest, share));
+        position += at * share;
+        origin += rest * share;
     }
-    let mut sums = [[0.0; 3]; 3];
+    let mut sums = Mat3::ZERO;
     for (at, rest, mass) in states() {
-        let (x, r) = (minus(at, position), minus(rest, origin));
-        for (sum, r) in sums.iter_mut().zip(r) {
-            *sum = plus(*sum, scaled(x, mass * r));
-        }
+        let (x, r) = (mass * (at - position), rest - origin);
+        sums += Mat3::from_cols(x * r.x, x * r.y, x * r.z);
     }
     (position, origin, turn_of::<D>(sums))
 }
 
-/// The rotation part of a matrix, both by columns: the mean of it and of its inverse turned over, again and
-/// again [Higham 1986]; none of what is flat or turned inside out.
-fn turn_of<D: Dim>(mut columns: [Vector; 3]) -> Option<[Vector; 3]> {
-    let size = |columns: &[Vector; 3]| columns.iter().map(|c| dot(*c, *c)).sum::<f32>().sqrt();
+/// The rotation part of a matrix: the mean of it and of its inverse turned over, again and again [Higham 1986]; none of
+/// what is flat or turned inside out.
+fn turn_of<D: Dim>(mut turn: Mat3) -> Option<Mat3> {
+    let size = |of: Mat3| {
+        let columns = [of.x_axis, of.y_axis, of.z_axis];
+        columns.map(Vec3::length_squared).iter().sum::<f32>().sqrt()
+    };
     if D::N == 2 {
         // In the plane it turns around the third axis.
-        columns[2] = [0.0, 0.0, size(&columns)];
+        turn.z_axis = Vec3::Z * size(turn);
     }
     for _ in 0..STEPS {
-        let [a, b, c] = columns;
-        let large = size(&columns);
-        let volume = dot(a, cross(b, c));
+        let (large, volume) = (size(turn), turn.determinant());
         if volume.is_nan() || volume <= FLAT * large * large * large {
             return None;
         }
-        let inverse = [cross(b, c), cross(c, a), cross(a, b)].map(|k| scaled(k, 1.0 / volume));
+        let inverse = turn.inverse().transpose();
         // Of the same size, both come close to the turn at once.
-        let share = (size(&inverse) / large).sqrt();
-        columns = [0, 1, 2].map(|k| {
-            let sum = plus(scaled(columns[k], share), scaled(inverse[k], 1.0 / share));
-            scaled(sum, 0.5)
-        });
+        let share = (size(inverse) / large).sqrt();
+        turn = 0.5 * (share * turn + inverse / share);
     }
-    Some(columns)
+    Some(turn)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fuwafuwa::vector::dot;
     use fuwafuwa::{Blade, Dim2, Dim3, Material, NodeId, Settings, VoxelGrid, World};
 
     #[test]

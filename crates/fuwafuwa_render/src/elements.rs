@@ -1,14 +1,13 @@
 //! Elements as coloured quads with lines around them.
 
 use crate::frame::ElementColour;
-use crate::plane::{Flat, flat, unit};
 use crate::theme::{Colour, Theme, bytes, mix};
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::dim::{add, corner, scale};
 use fuwafuwa::stencil::slot_index;
-use fuwafuwa::vector::{minus, plus, scaled};
 use fuwafuwa::view::{ElementFace, blocks, faces};
-use fuwafuwa::{Body, Dim2, ElementView};
+use fuwafuwa::{Body, Dim2, ElementView, Vector};
+use glam::{Vec2, Vec3};
 
 /// For how long an element flashes after it was remodelled [s].
 const FLASH: f32 = 0.4;
@@ -18,9 +17,9 @@ const FLASH: f32 = 0.4;
 #[derive(Copy, Clone, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct ElementVertex {
     /// Where [m].
-    pub at: Flat,
+    pub at: Vec2,
     /// How far it is moved, for the thickness of a line [px].
-    pub across: Flat,
+    pub across: Vec2,
     /// Distance from the middle of the line and half its width [px].
     pub line: [f32; 2],
     /// Colour and opacity.
@@ -95,7 +94,7 @@ impl ElementMesh {
             let first = self.vertices.len() as u32;
             self.vertices.extend(round.map(|at| ElementVertex {
                 at,
-                across: [0.0; 2],
+                across: Vec2::ZERO,
                 line: [0.0, 1e6],
                 colour,
             }));
@@ -119,11 +118,8 @@ impl ElementMesh {
     }
 
     /// A line with square ends; between equal places a square.
-    fn add_line(&mut self, from: Flat, to: Flat, half: f32, colour: [u8; 4]) {
-        let along = match from == to {
-            true => [1.0, 0.0],
-            false => unit(minus(to, from)),
-        };
+    fn add_line(&mut self, from: Vec2, to: Vec2, half: f32, colour: [u8; 4]) {
+        let along = (to - from).try_normalize().unwrap_or(Vec2::X);
         let first = self.vertices.len() as u32;
         let reach = half + 0.7;
         for (at, end, side) in [
@@ -132,10 +128,9 @@ impl ElementMesh {
             (to, 1.0, 1.0),
             (from, -1.0, 1.0),
         ] {
-            let across = scaled([-along[1], along[0]], side * reach);
             self.vertices.push(ElementVertex {
                 at,
-                across: plus(across, scaled(along, end * half)),
+                across: side * reach * along.perp() + end * half * along,
                 line: [side * reach, half],
                 colour,
             });
@@ -155,8 +150,13 @@ pub fn colour_of(view: &ElementView, theme: &Theme, colour: ElementColour, ages:
     mix(plain, [1.0; 3], flash)
 }
 
+/// A place in the plane.
+pub fn flat(at: Vector) -> Vec2 {
+    Vec3::from(at).truncate()
+}
+
 /// The quads that an element fills [m], anticlockwise.
-pub fn fills(view: &ElementView) -> impl Iterator<Item = [Flat; 4]> + '_ {
+pub fn fills(view: &ElementView) -> impl Iterator<Item = [Vec2; 4]> + '_ {
     blocks::<Dim2>(view.level, view.children).map(|(low, width)| {
         [0, 1, 3, 2].map(|vertex| {
             let at = add(low, scale(corner(vertex), width));
@@ -180,10 +180,10 @@ mod tests {
             mesh.add_fill(&view, [0; 4]);
         }
         let at = |index: u32| mesh.vertices[index as usize].at;
-        let areas = mesh.indices.chunks(3).map(|t| {
-            let (a, b) = (minus(at(t[1]), at(t[0])), minus(at(t[2]), at(t[0])));
-            0.5 * crate::plane::cross(a, b)
-        });
+        let areas = mesh
+            .indices
+            .chunks(3)
+            .map(|t| 0.5 * (at(t[1]) - at(t[0])).perp_dot(at(t[2]) - at(t[0])));
         assert!((areas.sum::<f32>() - voxels / 1024.0).abs() < 1e-4);
     }
 

@@ -1,9 +1,9 @@
 //! How to look at a world, as plain data.
 
-use crate::plane::{Flat, flat};
+use crate::elements::flat;
 use crate::theme::Theme;
-use fuwafuwa::vector::{dot, minus, plus, scaled};
 use fuwafuwa::{Dim3, PieceId, Shape, Vector, World};
+use glam::Vec2;
 
 /// Everything that a picture needs beside the world; for one in space, a camera in space.
 #[derive(Clone, Debug)]
@@ -141,10 +141,10 @@ impl Camera {
     /// The camera that sees all between two corners [m] in a target of `size` pixels.
     pub fn fit(low: Vector, high: Vector, size: [u32; 2]) -> Self {
         let aspect = size[0].max(1) as f32 / size[1].max(1) as f32;
-        let span = minus(flat(high), flat(low));
+        let span = flat(high) - flat(low);
         Self {
             centre: [0, 1, 2].map(|axis| 0.5 * (low[axis] + high[axis])),
-            height: span[1].max(span[0] / aspect),
+            height: span.y.max(span.x / aspect),
             tilt: 0.0,
             shake: [0.0; 3],
         }
@@ -153,11 +153,11 @@ impl Camera {
     /// Where a place [m] of the plane is in a target of `size` pixels, from its upper left corner.
     pub fn to_pixel(&self, at: Vector, size: [u32; 2]) -> [f32; 2] {
         let [right, up] = self.axes();
-        let by = minus(flat(at), self.middle());
+        let by = flat(at) - self.middle();
         let scale = size[1] as f32 / self.height;
         [
-            0.5 * size[0] as f32 + dot(by, right) * scale,
-            0.5 * size[1] as f32 - dot(by, up) * scale,
+            0.5 * size[0] as f32 + by.dot(right) * scale,
+            0.5 * size[1] as f32 - by.dot(up) * scale,
         ]
     }
 
@@ -165,21 +165,22 @@ impl Camera {
     pub fn to_world(&self, pixel: [f32; 2], size: [u32; 2]) -> Vector {
         let [right, up] = self.axes();
         let scale = self.height / size[1].max(1) as f32;
-        let along = scaled(right, (pixel[0] - 0.5 * size[0] as f32) * scale);
-        let across = scaled(up, (0.5 * size[1] as f32 - pixel[1]) * scale);
-        let [x, y] = plus(self.middle(), plus(along, across));
-        [x, y, 0.0]
+        let along = right * (pixel[0] - 0.5 * size[0] as f32);
+        let across = up * (0.5 * size[1] as f32 - pixel[1]);
+        (self.middle() + scale * (along + across))
+            .extend(0.0)
+            .into()
     }
 
     /// What is in the middle of the picture [m].
-    pub(crate) fn middle(&self) -> Flat {
-        plus(flat(self.centre), flat(self.shake))
+    pub(crate) fn middle(&self) -> Vec2 {
+        flat(self.centre) + flat(self.shake)
     }
 
     /// What is to the right and what is up.
-    pub(crate) fn axes(&self) -> [Flat; 2] {
-        let (sin, cos) = self.tilt.sin_cos();
-        [[cos, sin], [-sin, cos]]
+    pub(crate) fn axes(&self) -> [Vec2; 2] {
+        let right = Vec2::from_angle(self.tilt);
+        [right, right.perp()]
     }
 }
 

@@ -2,13 +2,13 @@
 
 use crate::elements::ElementMesh;
 use crate::frame::{Frame, Look};
-use crate::plane::Flat;
 use crate::rest::Rest;
 use crate::rigid::RigidShapes;
 use crate::rings::Rings;
 use crate::skin::SkinMesh;
 use crate::theme::bytes;
 use fuwafuwa::{Body, Dim2, World};
+use glam::Vec2;
 use std::ops::Range;
 
 /// A world as vertices, with the buffers to make them again and again.
@@ -21,7 +21,7 @@ pub struct Geometry {
     /// Radius of a disc with the area of the largest body at rest [m].
     pub(crate) radius: f32,
     /// All bodies lie between these corners [m], the low one above the high one if there are none.
-    pub(crate) bounds: [Flat; 2],
+    pub(crate) bounds: [Vec2; 2],
     rings: Rings,
     rests: Vec<Rest>,
 }
@@ -103,12 +103,9 @@ fn radius(body: &Body<Dim2>) -> f32 {
     grid.voxel_size() * (grid.solid_count() as f32 / std::f32::consts::PI).sqrt()
 }
 
-const NOWHERE: [Flat; 2] = [[f32::MAX; 2], [f32::MIN; 2]];
+const NOWHERE: [Vec2; 2] = [Vec2::MAX, Vec2::MIN];
 
 /// The smallest bounds around bounds and a place.
-fn around([low, high]: [Flat; 2], at: Flat) -> [Flat; 2] {
-    [
-        [low[0].min(at[0]), low[1].min(at[1])],
-        [high[0].max(at[0]), high[1].max(at[1])],
-    ]
+fn around([low, high]: [Vec2; 2], at: Vec2) -> [Vec2; 2] {
+    [low.min(at), high.max(at)]
 }

@@ -23,7 +23,6 @@ mod elements;
 pub mod frame;
 pub mod geometry;
 mod gpu;
-mod plane;
 mod rest;
 mod rigid;
 mod rings;

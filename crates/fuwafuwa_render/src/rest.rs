@@ -4,10 +4,9 @@
 //! deformed body carries the offsets along by the deformation of its voxels: so the skin is as
 //! smooth after any motion as before, and no squash is smoothed away.
 
-use crate::plane::Flat;
-use crate::stairs::{limited, smoothed};
-use fuwafuwa::vector::{minus, plus, scaled};
+use crate::stairs::smoothed;
 use fuwafuwa::{Dim2, VoxelGrid};
+use glam::Vec2;
 
 /// Steps to the four sides, anticlockwise from the right.
 const STEPS: [[i32; 2]; 4] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
@@ -25,7 +24,7 @@ pub struct Rest {
     /// By voxel and direction: the place of a side in `offsets`, or none.
     sides: Vec<u32>,
     /// At the start and at the end of a side [voxels].
-    offsets: Vec<[Flat; 2]>,
+    offsets: Vec<[Vec2; 2]>,
     /// The grid they belong to.
     grid: Option<VoxelGrid<Dim2>>,
     first_material: u8,
@@ -55,10 +54,10 @@ impl Rest {
                     (voxel, facing) = next_side(grid, voxel, facing);
                 }
                 let moved = without_stairs(&ring);
-                let moved: Vec<Flat> = moved
+                let moved: Vec<Vec2> = moved
                     .iter()
                     .zip(&ring)
-                    .map(|(a, b)| limited(minus(*a, *b), FARTHEST))
+                    .map(|(a, b)| (a - b).clamp_length_max(FARTHEST))
                     .collect();
                 let next = moved.iter().cycle().skip(1);
                 offsets.extend(moved.iter().zip(next).map(|(a, b)| [*a, *b]));
@@ -85,7 +84,7 @@ impl Rest {
 
     /// The offsets [voxels] at the start and at the end of a side of the original surface, which
     /// runs along `step` with the voxel to its left.
-    pub fn offsets(&self, grid: &VoxelGrid<Dim2>, voxel: [i32; 3], step: [i32; 2]) -> [Flat; 2] {
+    pub fn offsets(&self, grid: &VoxelGrid<Dim2>, voxel: [i32; 3], step: [i32; 2]) -> [Vec2; 2] {
         let direction = STEPS.iter().position(|&known| known == step);
         let side =
             direction.and_then(|direction| self.sides.get(4 * grid.index(voxel) + direction));
@@ -105,9 +104,9 @@ fn beside([x, y, z]: [i32; 3], direction: usize) -> [i32; 3] {
 }
 
 /// Where a side of a voxel begins.
-fn start_of([x, y, _]: [i32; 3], direction: usize) -> Flat {
+fn start_of([x, y, _]: [i32; 3], direction: usize) -> Vec2 {
     let [dx, dy] = [[0, 0], [1, 0], [1, 1], [0, 1]][direction];
-    [(x + dx) as f32, (y + dy) as f32]
+    Vec2::new((x + dx) as f32, (y + dy) as f32)
 }
 
 /// The side that goes on where one ends. Voxels that only meet in a corner do not hang together.
@@ -124,7 +123,7 @@ fn next_side(grid: &VoxelGrid<Dim2>, voxel: [i32; 3], direction: usize) -> ([i32
 }
 
 /// A closed line without its stairs.
-fn without_stairs(ring: &[Flat]) -> Vec<Flat> {
+fn without_stairs(ring: &[Vec2]) -> Vec<Vec2> {
     if ring.len() < SMALL {
         return ring.to_vec();
     }
@@ -134,7 +133,7 @@ fn without_stairs(ring: &[Flat]) -> Vec<Flat> {
 
 /// A closed line, each point of it moved to the mean of those around it, by a bell curve of a
 /// standard deviation [points].
-fn blurred(ring: &[Flat], sigma: f32) -> Vec<Flat> {
+fn blurred(ring: &[Vec2], sigma: f32) -> Vec<Vec2> {
     let count = ring.len() as i32;
     let reach = (3.0 * sigma).ceil() as i32;
     let weight = |k: i32| (-0.5 * (k * k) as f32 / (sigma * sigma)).exp();
@@ -142,9 +141,9 @@ fn blurred(ring: &[Flat], sigma: f32) -> Vec<Flat> {
     let mean = |at: i32| {
         let around = (-reach..=reach).map(|k| {
             let place = (at + k).rem_euclid(count) as usize;
-            scaled(ring[place], weight(k) / total)
+            weight(k) / total * ring[place]
         });
-        around.fold([0.0; 2], plus)
+        around.sum()
     };
     (0..count).map(mean).collect()
 }
@@ -152,16 +151,15 @@ fn blurred(ring: &[Flat], sigma: f32) -> Vec<Flat> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::vector::length;
 
     /// The smoothed surface of a disc [voxels], as the starts of its sides.
-    fn surface(grid: &VoxelGrid<Dim2>) -> Vec<Flat> {
+    fn surface(grid: &VoxelGrid<Dim2>) -> Vec<Vec2> {
         let rest = Rest::new(grid);
         let mut points = Vec::new();
         for voxel in grid.voxels() {
             for direction in (0..4).filter(|&direction| is_bare(grid, voxel, direction)) {
                 let [offset, _] = rest.offsets(grid, voxel, STEPS[direction]);
-                points.push(plus(start_of(voxel, direction), offset));
+                points.push(start_of(voxel, direction) + offset);
             }
         }
         points
@@ -174,7 +172,7 @@ mod tests {
             let half = 0.5 * n as f32;
             let radii: Vec<f32> = surface(&grid)
                 .iter()
-                .map(|p| length(minus(*p, [half; 2])))
+                .map(|place| place.distance(Vec2::splat(half)))
                 .collect();
             let round = (grid.solid_count() as f32 / std::f32::consts::PI).sqrt();
             for radius in radii {

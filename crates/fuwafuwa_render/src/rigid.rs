@@ -1,10 +1,11 @@
 //! Obstacles, hands and the basket as rectangles that a shader draws shapes into.
 
+use crate::elements::flat;
 use crate::frame::{Basket, Particle};
-use crate::plane::{Flat, flat};
 use crate::theme::{Colour, Theme};
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::{Dim2, Shape, World};
+use glam::Vec2;
 
 /// Half-spaces that are drawn; more have no place in the uniforms of a small device.
 pub const MOST_WALLS: usize = 16;
@@ -14,9 +15,9 @@ pub const MOST_WALLS: usize = 16;
 #[derive(Copy, Clone, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct RigidInstance {
     /// One end, or the middle [m].
-    pub from: Flat,
+    pub from: Vec2,
     /// The other end, or half of a box [m].
-    pub to: Flat,
+    pub to: Vec2,
     /// [m]; 0 for a box.
     pub radius: f32,
     /// 0 = capsule, 1 = box, 2 = ball.
@@ -32,7 +33,7 @@ pub struct RigidInstance {
 #[derive(Copy, Clone, Debug, PartialEq, Pod, Zeroable)]
 pub struct DotInstance {
     /// Its middle [m].
-    pub at: Flat,
+    pub at: Vec2,
     /// [m]
     pub radius: f32,
     /// Red, green, blue, opacity.

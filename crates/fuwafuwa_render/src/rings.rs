@@ -6,11 +6,11 @@
 //! quadratic B-spline, of which the corners get more points than the rest. What is smoothed on
 //! one lip of a crack is smoothed in the same way on the other, so that a closed crack stays closed.
 
-use crate::plane::{Flat, cross, flat, mixed, unit};
+use crate::elements::flat;
 use crate::rest::{Rest, SMALL};
 use fuwafuwa::ids::Table;
-use fuwafuwa::vector::{dot, minus, plus, scaled};
 use fuwafuwa::{Body, Dim2, NodeId};
+use glam::Vec2;
 
 /// The closed curves around the pieces of a body, with the buffers that make them.
 #[derive(Clone, Debug, Default)]
@@ -19,7 +19,7 @@ pub struct Rings {
     /// The place of the side that starts at a node, or none.
     leaving: Table<NodeId, u32>,
     ring: Vec<Control>,
-    planed: Vec<Flat>,
+    planed: Vec<Vec2>,
     /// All curves, one after another.
     pub points: Vec<RingPoint>,
     /// Where each curve begins and ends among the points.
@@ -41,9 +41,9 @@ pub struct Span {
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct RingPoint {
     /// Where [m].
-    pub at: Flat,
+    pub at: Vec2,
     /// Outwards, of length 1.
-    pub normal: Flat,
+    pub normal: Vec2,
     /// 1 where it was inside before the body tore, 0 on the original surface.
     pub fresh: f32,
     /// ‖F − R‖ of the voxels next to it.
@@ -58,9 +58,9 @@ struct Side {
     to: NodeId,
     /// The place of the side that goes on, until it was drawn.
     next: u32,
-    start: Flat,
+    start: Vec2,
     /// How far its ends move [m].
-    moved: [Flat; 2],
+    moved: [Vec2; 2],
     is_fresh: bool,
     strain: f32,
     grain: f32,
@@ -69,7 +69,7 @@ struct Side {
 /// A corner of the control polygon.
 #[derive(Copy, Clone, Debug)]
 struct Control {
-    at: Flat,
+    at: Vec2,
     /// Of the sides before and after it.
     fresh: [f32; 2],
     strain: f32,
@@ -117,7 +117,7 @@ impl Rings {
                 to: facet.nodes[1],
                 next: NONE,
                 start: flat(facet.corners[0]),
-                moved: offsets.map(|[x, y]| plus(scaled(right, x), scaled(up, y))),
+                moved: offsets.map(|by| by.x * right + by.y * up),
                 is_fresh: facet.is_fresh,
                 strain: strain(right, up, grid.voxel_size()),
                 grain: grain(from),
@@ -163,7 +163,7 @@ impl Rings {
                 } else {
                     0.5
                 };
-                mixed(ring[k].at, mixed(before, after, 0.5), share)
+                ring[k].at.lerp(before.midpoint(after), share)
             }));
             for (control, &at) in self.ring.iter_mut().zip(&self.planed) {
                 control.at = at;
@@ -178,23 +178,21 @@ impl Rings {
         for k in 0..count {
             let control = self.ring[k];
             let [before, after] = [(k + count - 1) % count, (k + 1) % count].map(|k| &self.ring[k]);
-            let [from, to] = [before, after].map(|other| mixed(control.at, other.at, 0.5));
-            let (into, out) = (unit(minus(control.at, from)), unit(minus(to, control.at)));
-            let places: &[f32] = match dot(into, out) {
+            let [from, to] = [before, after].map(|other| control.at.midpoint(other.at));
+            let (into, out) = [control.at - from, to - control.at]
+                .map(Vec2::normalize_or_zero)
+                .into();
+            let places: &[f32] = match into.dot(out) {
                 straight if straight > 0.95 => &[0.5],
                 _ if count < 8 => &[0.125, 0.375, 0.625, 0.875],
                 _ => &[0.2, 0.5, 0.8],
             };
             for &share in places {
-                let at = mixed(
-                    mixed(from, control.at, share),
-                    mixed(control.at, to, share),
-                    share,
-                );
-                let along = unit(mixed(into, out, share));
+                let (before, after) = (from.lerp(control.at, share), control.at.lerp(to, share));
+                let along = into.lerp(out, share).normalize_or_zero();
                 self.points.push(RingPoint {
-                    at,
-                    normal: [along[1], -along[0]],
+                    at: before.lerp(after, share),
+                    normal: -along.perp(),
                     fresh: control.fresh[0] + (control.fresh[1] - control.fresh[0]) * share,
                     strain: control.strain,
                     grain: control.grain,
@@ -204,7 +202,7 @@ impl Rings {
         let curve = &self.points[start..];
         let next = curve.iter().cycle().skip(1);
         let pivot = curve[0].at;
-        let doubled = |a: &RingPoint, b: &RingPoint| cross(minus(a.at, pivot), minus(b.at, pivot));
+        let doubled = |a: &RingPoint, b: &RingPoint| (a.at - pivot).perp_dot(b.at - pivot);
         let area = curve
             .iter()
             .zip(next)
@@ -217,12 +215,12 @@ impl Rings {
 impl Control {
     fn between(before: &Side, after: &Side) -> Self {
         let by = match (before.is_fresh, after.is_fresh) {
-            (false, false) => mixed(before.moved[1], after.moved[0], 0.5),
+            (false, false) => before.moved[1].midpoint(after.moved[0]),
             (false, true) => before.moved[1],
             _ => after.moved[0],
         };
         Self {
-            at: plus(after.start, by),
+            at: after.start + by,
             fresh: [before, after].map(|side| f32::from(u8::from(side.is_fresh))),
             strain: 0.5 * (before.strain + after.strain),
             grain: after.grain,
@@ -232,16 +230,15 @@ impl Control {
 
 /// The mean sides to the right and upwards [m] of a cell with corners in the order of
 /// [`fuwafuwa::dim::corner`].
-pub fn sides([a, b, c, d]: [Flat; 4]) -> (Flat, Flat) {
-    let right = scaled(plus(minus(b, a), minus(d, c)), 0.5);
-    (right, scaled(plus(minus(c, a), minus(d, b)), 0.5))
+pub fn sides([a, b, c, d]: [Vec2; 4]) -> (Vec2, Vec2) {
+    (0.5 * (b - a + d - c), 0.5 * (c - a + d - b))
 }
 
 /// ‖F − R‖ of a cell with the given sides and the given size at rest [m].
-pub fn strain(right: Flat, up: Flat, size: f32) -> f32 {
-    let (cos, sin) = (right[0] + up[1], right[1] - up[0]);
-    let squared = dot(right, right) + dot(up, up);
-    let squared = squared / (size * size) + 2.0 - 2.0 * dot([cos, sin], [cos, sin]).sqrt() / size;
+pub fn strain(right: Vec2, up: Vec2, size: f32) -> f32 {
+    let turn = right - up.perp();
+    let squared = right.length_squared() + up.length_squared();
+    let squared = squared / (size * size) + 2.0 - 2.0 * turn.length() / size;
     squared.max(0.0).sqrt()
 }
 
@@ -288,10 +285,10 @@ mod tests {
         assert_eq!(rings.spans.len(), 1);
         let voxel = 1.0 / 64.0;
         for point in &rings.points {
-            let away = minus(point.at, [0.5, 0.5]);
-            let radius = dot(away, away).sqrt();
+            let away = point.at - Vec2::splat(0.5);
+            let radius = away.length();
             assert!((radius - round).abs() < 0.25 * voxel, "{radius}");
-            assert!(dot(point.normal, unit(away)) > 0.995);
+            assert!(point.normal.dot(away) > 0.995 * radius);
             assert_eq!((point.fresh, point.strain < 1e-3), (0.0, true));
         }
     }
@@ -307,7 +304,7 @@ mod tests {
             body.set_node_state(id, [2.0 * x, 0.5 * y, 0.0], [0.0; 3]);
         }
         for point in rings(&world).points {
-            let [x, y] = minus(point.at, [1.0, 0.25]);
+            let [x, y] = (point.at - Vec2::new(1.0, 0.25)).to_array();
             let radius = ((x / 2.0).powi(2) + (y * 2.0).powi(2)).sqrt();
             assert!((radius - round).abs() < 0.25 / 64.0, "{radius}");
             assert!(point.strain > 0.5);
@@ -331,7 +328,7 @@ mod tests {
         let torn: Vec<&RingPoint> = halves.points.iter().filter(|p| p.fresh == 1.0).collect();
         assert!(torn.len() > 40);
         for point in torn {
-            assert!((point.at[0] - 0.5).abs() < 0.5 / 32.0);
+            assert!((point.at.x - 0.5).abs() < 0.5 / 32.0);
         }
     }
 
@@ -352,8 +349,7 @@ mod tests {
         let crumb = rings(&world);
         assert!(crumb.points.len() >= 12);
         for point in &crumb.points {
-            let away = minus(point.at, [0.5, 0.5]);
-            let radius = dot(away, away).sqrt();
+            let radius = point.at.distance(Vec2::splat(0.5));
             assert!((0.35..0.55).contains(&radius), "{radius}");
         }
     }

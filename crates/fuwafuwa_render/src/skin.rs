@@ -1,13 +1,12 @@
 //! The triangles that fill the curves around pieces, and the bands along them.
 
-use crate::elements::fills;
-use crate::plane::{Flat, flat};
+use crate::elements::{fills, flat};
 use crate::rings::{Rings, sides, strain};
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::dim::{corner, scale};
 use fuwafuwa::stencil::slot_index;
-use fuwafuwa::vector::{minus, plus, scaled};
 use fuwafuwa::{Body, Dim, Dim2, ElementView};
+use glam::Vec2;
 
 /// Pieces of less area are crumbs [voxels].
 const CRUMB: f32 = 14.0;
@@ -17,7 +16,7 @@ const CRUMB: f32 = 14.0;
 #[derive(Copy, Clone, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct SkinVertex {
     /// Where [m].
-    pub at: Flat,
+    pub at: Vec2,
     /// Colour and opacity.
     pub colour: [u8; 4],
     /// Thickness, freshness, strain, and how much these three count; 0 to 255.
@@ -49,10 +48,8 @@ impl SkinMesh {
         for span in &rings.spans {
             let points = &rings.points[span.start..span.end];
             let pivot = self.vertices.len() as u32;
-            let sum = points
-                .iter()
-                .fold([0.0; 2], |sum, point| plus(sum, point.at));
-            let middle = scaled(sum, 1.0 / points.len() as f32);
+            let sum: Vec2 = points.iter().map(|point| point.at).sum();
+            let middle = sum / points.len() as f32;
             self.vertices.push(SkinVertex {
                 at: middle,
                 ..SkinVertex::default()
@@ -65,7 +62,7 @@ impl SkinMesh {
                 let depth = 0.8 * voxel + (torn - 0.8 * voxel) * point.fresh;
                 let (inner, share) = match is_crumb {
                     true => (middle, 110),
-                    false => (minus(point.at, scaled(point.normal, depth)), 0),
+                    false => (point.at - depth * point.normal, 0),
                 };
                 let relief = [0, byte(point.fresh), byte(2.0 * point.strain), 255];
                 self.vertices.push(SkinVertex {
@@ -88,8 +85,13 @@ impl SkinMesh {
     }
 
     /// Adds a rectangle of one colour.
-    pub fn add_rectangle(&mut self, [low, high]: [Flat; 2], colour: [u8; 4]) {
-        let round = [low, [high[0], low[1]], high, [low[0], high[1]]];
+    pub fn add_rectangle(&mut self, [low, high]: [Vec2; 2], colour: [u8; 4]) {
+        let round = [
+            low,
+            Vec2::new(high.x, low.y),
+            high,
+            Vec2::new(low.x, high.y),
+        ];
         self.add_quad(round, colour, 0.0);
     }
 
@@ -122,7 +124,7 @@ impl SkinMesh {
         }
     }
 
-    fn add_quad(&mut self, round: [Flat; 4], colour: [u8; 4], strain: f32) {
+    fn add_quad(&mut self, round: [Vec2; 4], colour: [u8; 4], strain: f32) {
         let first = self.vertices.len() as u32;
         let relief = [255, 0, byte(2.0 * strain), 255];
         self.vertices
@@ -138,7 +140,6 @@ fn byte(share: f32) -> u8 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plane::cross;
     use crate::rest::Rest;
     use fuwafuwa::{Material, VoxelGrid};
 
@@ -154,7 +155,7 @@ mod tests {
         let at = |index: u32| mesh.vertices[index as usize].at;
         let areas = mesh.fans.chunks(3).map(|t| {
             let [a, b, c] = [at(t[0]), at(t[1]), at(t[2])];
-            0.5 * cross(minus(b, a), minus(c, a))
+            0.5 * (b - a).perp_dot(c - a)
         });
         assert!((areas.sum::<f32>() - enclosed).abs() < 1e-4);
     }

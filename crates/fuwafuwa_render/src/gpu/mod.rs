@@ -160,10 +160,15 @@ impl Renderer {
 
     fn covered(&self, camera: &Camera, target_size: [u32; 2]) -> Option<[[f32; 2]; 2]> {
         let [low, high] = self.geometry.bounds;
-        if low[0] > high[0] {
+        if low.x > high.x {
             return None;
         }
-        let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
+        let corners = [
+            [low.x, low.y],
+            [high.x, low.y],
+            [high.x, high.y],
+            [low.x, high.y],
+        ];
         let pixels = corners.map(|[x, y]| camera.to_pixel([x, y, 0.0], target_size));
         let reach = REACH * THICKNESS * self.geometry.radius / camera.height;
         let share = |axis: usize| {
@@ -216,8 +221,8 @@ impl Renderer {
         let colour = |[red, green, blue]: crate::theme::Colour| [red, green, blue, 1.0];
         let theme = frame.theme;
         let globals = Globals {
-            axes: [right[0], right[1], up[0], up[1]],
-            view: [middle[0], middle[1], camera.height, window[0] / window[1]],
+            axes: [right.x, right.y, up.x, up.y],
+            view: [middle.x, middle.y, camera.height, window[0] / window[1]],
             size: [size[0], size[1], window[0], window[1]],
             tune: [
                 frame.phase(),
@@ -233,13 +238,8 @@ impl Renderer {
             bounds: {
                 // Edges reach half a pixel further.
                 let margin = 2.0 * camera.height / size[1];
-                let [low, high] = *bounds;
-                [
-                    low[0] - margin,
-                    low[1] - margin,
-                    high[0] + margin,
-                    high[1] + margin,
-                ]
+                let [low, high] = [bounds[0] - margin, bounds[1] + margin];
+                [low.x, low.y, high.x, high.y]
             },
             walls,
         };

@@ -9,9 +9,10 @@ use bytemuck::{Pod, Zeroable};
 use fuwafuwa::dim::{corner, scale};
 use fuwafuwa::mesh::Element;
 use fuwafuwa::stencil::slot_index;
-use fuwafuwa::vector::{minus, plus, scaled, three};
+use fuwafuwa::vector::three;
 use fuwafuwa::view::{ElementFace, faces};
 use fuwafuwa::{Body, Dim3, ElementId, ElementView, Vector};
+use glam::Vec3;
 
 /// How far a box stays inside its element [voxels]: so neighbours are told apart.
 const GAP: f32 = 0.03;
@@ -24,7 +25,7 @@ const DEEP: f32 = 1.51;
 #[derive(Copy, Clone, Debug, PartialEq, Pod, Zeroable)]
 pub struct BoxVertex {
     /// Where [m].
-    pub at: Vector,
+    pub at: Vec3,
     /// How far it is from the four sides of its quad, 255 being the width of the quad; 255 also from
     /// a side behind which the element goes on.
     pub sides: [u8; 4],
@@ -75,7 +76,7 @@ impl Boxes {
             let bare = body.bare_faces(id);
             let width = element.cell.width() as f32;
             let piece = body.pieces().of_node(element.nodes[0]).index();
-            let middle = element.cell.at.map(|k| (k as f32 + 0.5) * width);
+            let middle = Vec3::from(element.cell.at.map(|k| k as f32 + 0.5)) * width;
             let depth = planes
                 .get(piece)
                 .map_or(f32::MAX, |plane| plane.depth(middle));
@@ -94,10 +95,8 @@ impl Boxes {
                 forms.len() - 1
             });
             let shown = bytes(colour_of(&view, theme, colour, ages), 1.0);
-            let (centre, share) = (view.slots[13], 1.0 - GAP / width);
-            let shrunk = view
-                .slots
-                .map(|at| plus(centre, scaled(minus(at, centre), share)));
+            let (centre, share) = (Vec3::from(view.slots[13]), GAP / width);
+            let shrunk = view.slots.map(|at| Vec3::from(at).lerp(centre, share));
             for (number, face) in forms[place].2.iter().enumerate() {
                 // At level 0 they are the faces of a voxel.
                 if is_at_cut || bare >> number & 1 == 1 {
@@ -107,7 +106,7 @@ impl Boxes {
         }
     }
 
-    fn add_quad(&mut self, places: &[Vector; 27], face: &ElementFace, colour: [u8; 4]) {
+    fn add_quad(&mut self, places: &[Vec3; 27], face: &ElementFace, colour: [u8; 4]) {
         let first = self.vertices.len() as u32;
         for (k, &slot) in face.slots.iter().enumerate() {
             let at = places[slot];
@@ -134,10 +133,7 @@ fn small_view(
     for (k, &at) in corners.iter().enumerate() {
         slots[slot_index(scale(corner(k), 2))] = at;
     }
-    slots[13] = scaled(
-        corners.iter().fold([0.0; 3], |sum, &at| plus(sum, at)),
-        0.125,
-    );
+    slots[13] = (corners.map(Vec3::from).iter().sum::<Vec3>() / 8.0).into();
     ElementView {
         id,
         level: 0,
@@ -155,7 +151,7 @@ fn small_view(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::vector::{cross, dot, length};
+    use fuwafuwa::vector::{length, minus};
     use fuwafuwa::{Material, Rigid, Settings, Shape, VoxelGrid, World};
 
     #[test]
@@ -205,8 +201,14 @@ mod tests {
             let at = |k: &u32| boxes.vertices[*k as usize].at;
             let triangles = boxes.indices.chunks(3);
             let triangles = triangles.map(|t| (at(&t[0]), at(&t[1]), at(&t[2])));
-            let volume = triangles.map(|(a, b, c)| dot(a, cross(b, c))).sum::<f32>() / 6.0;
-            let front = boxes.vertices.iter().map(|vertex| dot(vertex.at, towards));
+            let volume = triangles
+                .map(|(a, b, c): (Vec3, Vec3, Vec3)| a.dot(b.cross(c)))
+                .sum::<f32>()
+                / 6.0;
+            let front = boxes
+                .vertices
+                .iter()
+                .map(|vertex| vertex.at.dot(towards.into()));
             (volume, front.fold(f32::MIN, f32::max))
         };
         // Gaps make boxes smaller.

@@ -1,10 +1,8 @@
 //! From where a world in space is seen. Up is the second axis.
 
 use fuwafuwa::Vector;
-use fuwafuwa::vector::{cross, dot, length, minus, plus, scaled};
-
-/// A matrix by columns, as shaders have them.
-pub(crate) type Matrix = [[f32; 4]; 4];
+use glam::camera::rh::proj::directx::perspective;
+use glam::{Mat3, Mat4, Vec3};
 
 /// A camera that goes around what it looks at.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -49,9 +47,10 @@ impl Camera {
         let aspect = size[0].max(1) as f32 / size[1].max(1) as f32;
         // The ball around the box fits into the narrower of the two angles.
         let across = (0.5 * field).tan() * aspect.min(1.0);
-        let radius = 0.5 * length(minus(high, low));
+        let (low, high) = (Vec3::from(low), Vec3::from(high));
+        let radius = 0.5 * low.distance(high);
         Self {
-            target: scaled(plus(low, high), 0.5),
+            target: low.midpoint(high).into(),
             distance: radius / across.atan().sin(),
             turn: 0.0,
             rise: 0.45,
@@ -63,23 +62,28 @@ impl Camera {
 
     /// Where it is [m].
     pub fn eye(&self) -> Vector {
-        let [_, _, back] = self.axes();
-        plus(plus(self.target, self.shake), scaled(back, self.distance))
+        self.place().into()
     }
 
     /// What is to its right, what is up for it, and what is behind it; of length 1.
     pub fn axes(&self) -> [Vector; 3] {
-        let ((sin, cos), (up, out)) = (self.turn.sin_cos(), self.rise.sin_cos());
-        let back = [sin * out, up, cos * out];
-        let right = [cos, 0.0, -sin];
-        [right, cross(back, right), back]
+        self.turned().to_cols_array_2d()
+    }
+
+    fn turned(&self) -> Mat3 {
+        Mat3::from_rotation_y(self.turn) * Mat3::from_rotation_x(-self.rise)
+    }
+
+    fn place(&self) -> Vec3 {
+        let [target, shake] = [self.target, self.shake].map(Vec3::from);
+        target + shake + self.distance * self.turned().z_axis
     }
 
     /// Where a place [m] is in a target of `size` pixels, from its upper left corner; none when it is
     /// behind the camera.
     pub fn to_pixel(&self, at: Vector, size: [u32; 2]) -> Option<[f32; 2]> {
-        let by = minus(at, self.eye());
-        let [x, y, z] = self.axes().map(|axis| dot(axis, by));
+        let seen = self.turned().transpose() * (Vec3::from(at) - self.place());
+        let [x, y, z] = seen.to_array();
         let scale = 0.5 * size[1] as f32 / (0.5 * self.field).tan();
         let [left, top] = size.map(|side| 0.5 * side as f32);
         (z < 0.0).then(|| [left - x / z * scale, top + y / z * scale])
@@ -88,53 +92,30 @@ impl Camera {
     /// Where the ray through a pixel of a target of `size` pixels begins [m], and its direction, of
     /// length 1.
     pub fn ray(&self, pixel: [f32; 2], size: [u32; 2]) -> (Vector, Vector) {
-        let [right, up, back] = self.axes();
         let scale = 2.0 * (0.5 * self.field).tan() / size[1].max(1) as f32;
-        let across = scaled(right, (pixel[0] - 0.5 * size[0] as f32) * scale);
-        let along = scaled(up, (0.5 * size[1] as f32 - pixel[1]) * scale);
-        let towards = minus(plus(across, along), back);
-        (self.eye(), scaled(towards, 1.0 / length(towards)))
+        let right = (pixel[0] - 0.5 * size[0] as f32) * scale;
+        let up = (0.5 * size[1] as f32 - pixel[1]) * scale;
+        let towards = self.turned() * Vec3::new(right, up, -1.0);
+        (self.eye(), towards.normalize().into())
     }
 
     /// From metres to the coordinates of a target of `size` pixels that shaders want.
-    pub(crate) fn to_clip(self, size: [u32; 2]) -> Matrix {
+    pub(crate) fn to_clip(self, size: [u32; 2]) -> Mat4 {
         let aspect = size[0].max(1) as f32 / size[1].max(1) as f32;
-        let over = 1.0 / (0.5 * self.field).tan();
         let (near, far) = (NEAR * self.distance, FAR * self.distance);
-        let depth = far / (near - far);
-        let projection = [
-            [over / aspect, 0.0, 0.0, 0.0],
-            [0.0, over, 0.0, 0.0],
-            [0.0, 0.0, depth, -1.0],
-            [0.0, 0.0, near * depth, 0.0],
-        ];
-        product(projection, seen_from(self.eye(), self.axes()))
+        perspective(self.field, aspect, near, far) * seen_from(self.place(), self.turned())
     }
 }
 
 /// From metres to the coordinates of something at a place with axes of its own, of length 1.
-pub(crate) fn seen_from(eye: Vector, axes: [Vector; 3]) -> Matrix {
-    let [x, y, z] = axes;
-    let last = axes.map(|axis| -dot(axis, eye));
-    [
-        [x[0], y[0], z[0], 0.0],
-        [x[1], y[1], z[1], 0.0],
-        [x[2], y[2], z[2], 0.0],
-        [last[0], last[1], last[2], 1.0],
-    ]
-}
-
-/// The matrix that does what the second one does, then what the first one does.
-pub(crate) fn product(a: Matrix, b: Matrix) -> Matrix {
-    b.map(|column| {
-        let parts = a.iter().zip(column).map(|(&of, share)| scaled(of, share));
-        parts.fold([0.0; 4], plus)
-    })
+pub(crate) fn seen_from(eye: Vec3, axes: Mat3) -> Mat4 {
+    Mat4::from_mat3(axes.transpose()) * Mat4::from_translation(-eye)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Vec2;
 
     const SIZE: [u32; 2] = [640, 480];
 
@@ -152,19 +133,16 @@ mod tests {
         let at = [0.3, 0.8, -0.4];
         let pixel = camera.to_pixel(at, SIZE).unwrap();
         let (eye, towards) = camera.ray(pixel, SIZE);
-        let reach = length(minus(at, eye));
-        let hit = plus(eye, scaled(towards, reach));
-        assert!(length(minus(hit, at)) < 1e-4, "{hit:?}");
+        let [at, eye, towards] = [at, eye, towards].map(Vec3::from);
+        let hit = eye + towards * at.distance(eye);
+        assert!(hit.distance(at) < 1e-4, "{hit:?}");
 
-        let clip = camera.to_clip(SIZE);
-        let [x, y, z, w] = [at[0], at[1], at[2], 1.0]
-            .iter()
-            .zip(clip)
-            .fold([0.0; 4], |sum, (&k, column)| plus(sum, scaled(column, k)));
-        let seen = [320.0 + 320.0 * x / w, 240.0 - 240.0 * y / w];
-        assert!(length(minus(seen, pixel)) < 1e-2, "{seen:?} {pixel:?}");
-        assert!((0.0..1.0).contains(&(z / w)));
-        assert_eq!(camera.to_pixel(plus(eye, camera.axes()[2]), SIZE), None);
+        let [x, y, z] = camera.to_clip(SIZE).project_point3(at).to_array();
+        let seen = Vec2::new(320.0 + 320.0 * x, 240.0 - 240.0 * y);
+        assert!(seen.distance(pixel.into()) < 1e-2, "{seen:?} {pixel:?}");
+        assert!((0.0..1.0).contains(&z));
+        let behind = eye + camera.turned().z_axis;
+        assert_eq!(camera.to_pixel(behind.into(), SIZE), None);
     }
 
     #[test]

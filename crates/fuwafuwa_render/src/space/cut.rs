@@ -1,8 +1,9 @@
 //! Where the pieces of a body are cut open, so that one looks into them.
 
 use super::camera::Cut;
-use fuwafuwa::vector::{dot, length, minus, plus, scaled, three};
-use fuwafuwa::{Body, Dim3, Vector};
+use fuwafuwa::vector::three;
+use fuwafuwa::{Body, Dim3};
+use glam::{Mat3, Vec3};
 
 /// A piece is cut across another axis once that faces so much better, as a cosine: what trembles does not flicker.
 const BETTER: f32 = 0.15;
@@ -22,7 +23,7 @@ pub struct Plane {
 
 impl Plane {
     /// How far a place at rest is behind it [voxels].
-    pub fn depth(&self, rest: Vector) -> f32 {
+    pub fn depth(&self, rest: Vec3) -> f32 {
         self.at - self.side * rest[self.axis]
     }
 }
@@ -31,33 +32,32 @@ impl Plane {
 pub fn planes(body: &Body<Dim3>, cut: Cut, before: &[(usize, f32)]) -> Vec<Plane> {
     let nodes = || {
         body.mesh().nodes().map(|(id, node)| {
-            let at = three(body.positions()[id]);
+            let at = Vec3::from(three(body.positions()[id]));
             (
                 body.pieces().of_node(id).index(),
                 at,
-                node.at.map(|k| k as f32),
+                Vec3::from(node.at.map(|k| k as f32)),
             )
         })
     };
-    let none = ([f32::MAX; 3], [f32::MIN; 3], [0.0; 3], 0.0f32);
+    let none = (Vec3::MAX, Vec3::MIN, Vec3::ZERO, 0.0f32);
     let mut spans = vec![none; body.pieces().list.len()];
     for (piece, at, rest) in nodes() {
         let (low, high, sum, count) = &mut spans[piece];
-        (0..3).for_each(|k| (low[k], high[k]) = (low[k].min(rest[k]), high[k].max(rest[k])));
-        (*sum, *count) = (plus(*sum, at), *count + 1.0);
+        (*low, *high) = (low.min(rest), high.max(rest));
+        (*sum, *count) = (*sum + at, *count + 1.0);
     }
     // By piece and axis: in which direction, more or less, the axis leads now.
-    let mut axes = vec![[[0.0; 3]; 3]; spans.len()];
+    let mut axes = vec![Mat3::ZERO; spans.len()];
     for (piece, at, rest) in nodes() {
         let (low, high, sum, count) = spans[piece];
-        let by = minus(at, scaled(sum, 1.0 / count));
-        for k in 0..3 {
-            let along = rest[k] - 0.5 * (low[k] + high[k]);
-            axes[piece][k] = plus(axes[piece][k], scaled(by, along));
-        }
+        let (by, along) = (at - sum / count, rest - low.midpoint(high));
+        axes[piece] += Mat3::from_cols(by * along.x, by * along.y, by * along.z);
     }
-    let plane = |(piece, (low, high, ..), axes): (usize, (Vector, Vector, _, _), [Vector; 3])| {
-        let facing = axes.map(|axis| dot(axis, cut.towards) / length(axis).max(1e-12));
+    let towards = Vec3::from(cut.towards);
+    let plane = |(piece, (low, high, ..), axes): (usize, (Vec3, Vec3, _, _), Mat3)| {
+        let facing = [axes.x_axis, axes.y_axis, axes.z_axis];
+        let facing = facing.map(|axis| axis.normalize_or_zero().dot(towards));
         let more = |a: &usize, b: &usize| facing[*a].abs().total_cmp(&facing[*b].abs());
         let best = (0..3).max_by(more).unwrap_or(0);
         let kept = before.get(piece).copied();

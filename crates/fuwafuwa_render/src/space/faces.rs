@@ -10,8 +10,8 @@ use super::rest::Rest;
 use crate::theme::{Colour, among, bytes};
 use fuwafuwa::dim::{corner, face_corners};
 use fuwafuwa::ids::Table;
-use fuwafuwa::vector::plus;
-use fuwafuwa::{Body, Bookmark, Dim3, ElementId, NodeId, Point, Vector};
+use fuwafuwa::{Body, Bookmark, Dim3, ElementId, NodeId, Point};
+use glam::Vec3;
 
 /// No place.
 pub const NONE: u32 = u32::MAX;
@@ -66,7 +66,7 @@ pub struct SkinPoint {
     /// The nodes of a voxel that it belongs to, and that carries its offset.
     pub voxel: [NodeId; 8],
     /// How far it is moved [voxels], in the frame of the voxel.
-    pub offset: Vector,
+    pub offset: Vec3,
     /// The points that it is smoothed with.
     pub near: [u32; 6],
     /// How many these are.
@@ -97,7 +97,7 @@ pub struct Corner {
     /// The point, or none.
     pub point: u32,
     /// Where it was [voxels].
-    pub rest: Vector,
+    pub rest: Vec3,
     /// Red, green, blue of a material; in the last place 255 where it was inside.
     pub colour: [u8; 4],
     /// Red, green, blue of the material beyond the nearest border; in the last place 128 on that, more beyond.
@@ -131,7 +131,7 @@ const NO_FACE: Face = Face {
 const NO_POINT: SkinPoint = SkinPoint {
     node: NO_NODE,
     voxel: [NO_NODE; 8],
-    offset: [0.0; 3],
+    offset: Vec3::ZERO,
     near: [NONE; 6],
     near_count: 0,
     ground: Ground::Skin,
@@ -141,7 +141,7 @@ const NO_POINT: SkinPoint = SkinPoint {
 };
 const NO_CORNER: Corner = Corner {
     point: NONE,
-    rest: [0.0; 3],
+    rest: Vec3::ZERO,
     colour: [0; 4],
     other: [0; 4],
 };
@@ -327,10 +327,8 @@ impl Faces {
             near[ground].add(face.points[(k + 3) % 4]);
             // The offset is carried by the voxel that it leads into, or away from least.
             let offset = rest.offset(at, octant);
-            let inwards = corner(vertex).map(|end| 1.0 - 2.0 * end as f32);
-            let towards = (0..3)
-                .map(|axis| (inwards[axis] * offset[axis]).min(0.0))
-                .sum();
+            let inwards = Vec3::from(corner(vertex).map(|end| 1.0 - 2.0 * end as f32));
+            let towards = (inwards * offset).min(Vec3::ZERO).element_sum();
             if towards > best {
                 (best, point.voxel, point.offset) = (towards, form.nodes, offset);
             }
@@ -352,7 +350,7 @@ impl Faces {
             let vertex = &mut point.vertices[ground];
             let corner = Corner {
                 point: place,
-                rest: plus(at.map(|k| k as f32), point.offset),
+                rest: Vec3::from(at.map(|k| k as f32)) + point.offset,
                 colour: bytes(own, ground as f32),
                 other: bytes(other, tint.side),
             };

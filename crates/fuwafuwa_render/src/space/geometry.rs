@@ -9,8 +9,9 @@ use super::stickers::Stickers;
 use crate::frame::{Frame, Look};
 use crate::rigid::MOST_WALLS;
 use crate::theme::Theme;
-use fuwafuwa::vector::{minus, plus, scaled, three};
+use fuwafuwa::vector::three;
 use fuwafuwa::{Body, Dim3, ElementId, Rigid, Shape, Vector, World};
+use glam::{Mat3, Vec3};
 use std::ops::Range;
 
 /// How far the floor goes, in distances of the camera.
@@ -165,9 +166,8 @@ fn append(
 
 fn ball(centre: Vector, radius: f32, number: f32) -> RoundedInstance {
     RoundedInstance {
-        centre,
+        centre: centre.into(),
         radius,
-        axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
         number,
         ..RoundedInstance::default()
     }
@@ -176,21 +176,21 @@ fn ball(centre: Vector, radius: f32, number: f32) -> RoundedInstance {
 /// A voxel that is a piece of its own: a ball that is squashed as it is.
 fn crumb(body: &Body<Dim3>, id: ElementId, frame: &Frame<'_, Camera>) -> Option<RoundedInstance> {
     let element = body.mesh().element(id)?;
-    let place = |k: usize| three(body.positions()[element.nodes[k]]);
-    let sum = |side: [usize; 4]| side.map(place).into_iter().fold([0.0; 3], plus);
+    let place = |k: usize| Vec3::from(three(body.positions()[element.nodes[k]]));
+    let sum = |side: [usize; 4]| side.map(place).iter().sum::<Vec3>();
     let (low, high) = (sum([0, 1, 2, 3]), sum([4, 5, 6, 7]));
-    let along = |low: [usize; 4], high: [usize; 4]| scaled(minus(sum(high), sum(low)), 0.25);
+    let along = |low: [usize; 4], high: [usize; 4]| 0.25 * (sum(high) - sum(low));
     let material = body.grid().material(element.cell.at);
     let [red, green, blue] = frame.theme.material(material);
     Some(RoundedInstance {
-        centre: scaled(plus(low, high), 0.125),
+        centre: 0.125 * (low + high),
         radius: CRUMB,
-        axes: [
+        axes: Mat3::from_cols(
             along([0, 2, 4, 6], [1, 3, 5, 7]),
             along([0, 1, 4, 5], [2, 3, 6, 7]),
             along([0, 1, 2, 3], [4, 5, 6, 7]),
-        ],
-        half: [0.0; 3],
+        ),
+        half: Vec3::ZERO,
         colour: [red, green, blue, 1.0],
         number: id.0 as f32,
     })
@@ -236,10 +236,13 @@ mod tests {
         );
         assert_eq!((geometry.room.len(), geometry.boxes.vertices.len()), (6, 0));
         let crumb = geometry.rounded[geometry.crumbs.start as usize];
-        assert_eq!(crumb.centre, [0.25, 2.25, 0.25]);
-        assert_eq!(crumb.axes[1], [0.0, 0.5, 0.0]);
+        assert_eq!(crumb.centre.to_array(), [0.25, 2.25, 0.25]);
+        assert_eq!(crumb.axes.y_axis, 0.5 * Vec3::Y);
         let line = geometry.rounded[geometry.lines.start as usize];
-        assert_eq!((line.centre, line.half[0]), ([0.0, 1.25, 1.0], 1.75));
+        assert_eq!(
+            (line.centre.to_array(), line.half.x),
+            ([0.0, 1.25, 1.0], 1.75)
+        );
         frame.look = Look::Elements {
             colour: crate::frame::ElementColour::Level,
             ages: &[],

@@ -3,11 +3,11 @@
 //! As in the plane: every point of the surface gets an offset, in voxels and in the frame of the
 //! body at rest, and a deformed body carries the offsets along.
 
-use crate::stairs::{limited, smoothed};
+use crate::stairs::smoothed;
 use fuwafuwa::dim::{add, corner, face_corners, points_in, voxel_around};
 use fuwafuwa::sharing::{Groups, Sharing};
-use fuwafuwa::vector::{minus, plus, scaled};
-use fuwafuwa::{Dim, Dim3, Point, Vector, VoxelGrid};
+use fuwafuwa::{Dim, Dim3, Point, VoxelGrid};
+use glam::Vec3;
 
 /// The variance of the smoothing [voxels²] as a share of the root of the number of faces of the
 /// surface. The widest terraces of a ball, where it is flat, grow like that.
@@ -57,7 +57,7 @@ struct RestPoint {
     /// The voxels, as a mask of octants.
     group: u8,
     /// [voxels]
-    offset: Vector,
+    offset: Vec3,
     tint: Tint,
 }
 
@@ -118,17 +118,17 @@ impl Rest {
             rest.points.extend(groups.iter().map(|group| RestPoint {
                 at,
                 group,
-                offset: [0.0; 3],
+                offset: Vec3::ZERO,
                 tint: Tint::default(),
             }));
         }
         let (neighbours, face_count) = rest.neighbours(grid);
-        let places: Vec<Vector> = rest.points.iter().map(|point| place(point.at)).collect();
+        let places: Vec<Vec3> = rest.points.iter().map(|point| place(point.at)).collect();
         let variance = REACH * (face_count as f32).sqrt();
         let rounds = ((variance / VARIANCE) as usize).min(MOST_ROUNDS);
         let smooth = smoothed(&places, |places| blurred(places, &neighbours, rounds));
         for (point, (&to, &from)) in rest.points.iter_mut().zip(smooth.iter().zip(&places)) {
-            point.offset = limited(minus(to, from), farthest(grid, point.at));
+            point.offset = (to - from).clamp_length_max(farthest(grid, point.at));
         }
         rest.find_tints(grid, &neighbours);
         rest
@@ -141,10 +141,13 @@ impl Rest {
 
     /// How far a point is moved [voxels], as the voxel in an octant of it sees it: on the original
     /// surface so that stairs go, inside so that it is rough. It is the same on both lips of a crack.
-    pub fn offset(&self, at: Point, octant: usize) -> Vector {
+    pub fn offset(&self, at: Point, octant: usize) -> Vec3 {
         match self.find(at, octant) {
             Some(found) => self.points[found as usize].offset,
-            None => [0, 1, 2].map(|axis| ROUGHNESS * (2.0 * grain(at, axis) - 1.0)),
+            None => {
+                let grain = Vec3::from([0, 1, 2].map(|axis| grain(at, axis)));
+                ROUGHNESS * (2.0 * grain - 1.0)
+            }
         }
     }
 
@@ -236,21 +239,18 @@ impl Rest {
     }
 }
 
-fn place(at: Point) -> Vector {
-    at.map(|k| k as f32)
+fn place(at: Point) -> Vec3 {
+    at.map(|k| k as f32).into()
 }
 
 /// A surface after some rounds, in each of which every point goes half of the way to the mean of its neighbours.
-fn blurred(places: &[Vector], neighbours: &[Vec<u32>], rounds: usize) -> Vec<Vector> {
+fn blurred(places: &[Vec3], neighbours: &[Vec<u32>], rounds: usize) -> Vec<Vec3> {
     let mut now = places.to_vec();
     let mut next = now.clone();
     for _ in 0..rounds {
         for (to, (from, near)) in next.iter_mut().zip(now.iter().zip(neighbours)) {
-            let sum = near
-                .iter()
-                .fold([0.0; 3], |sum, &k| plus(sum, now[k as usize]));
-            let share = 0.5 / near.len().max(1) as f32;
-            *to = plus(scaled(*from, 0.5), scaled(sum, share));
+            let sum: Vec3 = near.iter().map(|&k| now[k as usize]).sum();
+            *to = from.midpoint(sum / near.len().max(1) as f32);
         }
         std::mem::swap(&mut now, &mut next);
     }
@@ -302,7 +302,6 @@ fn grain(at: Point, axis: u32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::vector::length;
 
     #[test]
     fn a_ball_is_round() {
@@ -312,8 +311,8 @@ mod tests {
             let half = 0.5 * n as f32;
             let round = (grid.solid_count() as f32 * 0.75 / std::f32::consts::PI).cbrt();
             for point in &rest.points {
-                let at = plus(place(point.at), point.offset);
-                let radius = length(minus(at, [half; 3]));
+                let at = place(point.at) + point.offset;
+                let radius = at.distance(Vec3::splat(half));
                 assert!(
                     (radius - round).abs() < 0.35,
                     "n = {n}: {radius}, not {round}"

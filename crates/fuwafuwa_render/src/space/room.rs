@@ -1,17 +1,17 @@
 //! The room: where half-spaces end, as flat pieces of floor and walls.
 
 use bytemuck::{Pod, Zeroable};
-use fuwafuwa::vector::{cross, dot, length, minus, plus, scaled};
 use fuwafuwa::{Shape, Vector};
+use glam::{Vec3, Vec4};
 
 /// A corner of a triangle of the room.
 #[repr(C)]
 #[derive(Copy, Clone, Debug, PartialEq, Pod, Zeroable)]
 pub struct RoomVertex {
     /// Where [m].
-    pub at: Vector,
+    pub at: Vec3,
     /// Out of the wall, of length 1.
-    pub normal: Vector,
+    pub normal: Vec3,
 }
 
 /// Adds the triangles of all planes, each given by its outward normal and its offset [m], as far as no
@@ -23,11 +23,11 @@ pub fn add_planes(
     reach: f32,
 ) {
     for (own, plane) in planes.iter().enumerate() {
-        let mut polygon = sheet(plane, middle, reach);
+        let mut polygon = sheet(plane, middle.into(), reach);
         for (_, other) in planes.iter().enumerate().filter(|&(k, _)| k != own) {
             polygon = clipped(&polygon, other);
         }
-        let normal = [plane[0], plane[1], plane[2]];
+        let normal = normal(plane);
         for k in 2..polygon.len() {
             let corners = [polygon[0], polygon[k - 1], polygon[k]];
             triangles.extend(corners.map(|at| RoomVertex { at, normal }));
@@ -44,22 +44,26 @@ pub fn plane(shape: &Shape) -> Option<[f32; 4]> {
 }
 
 /// How far outside a plane a place is [m].
-fn above([x, y, z, offset]: &[f32; 4], at: Vector) -> f32 {
-    dot([*x, *y, *z], at) - offset
+fn above(plane: &[f32; 4], at: Vec3) -> f32 {
+    normal(plane).dot(at) - plane[3]
+}
+
+fn normal(plane: &[f32; 4]) -> Vec3 {
+    Vec4::from(*plane).truncate()
 }
 
 /// A large square of a plane, counterclockwise seen from outside.
-fn sheet(plane: &[f32; 4], middle: Vector, reach: f32) -> Vec<Vector> {
-    let normal = [plane[0], plane[1], plane[2]];
-    let foot = minus(middle, scaled(normal, above(plane, middle)));
-    let aside = match normal[1].abs() < 0.9 {
-        true => [0.0, 1.0, 0.0],
-        false => [0.0, 0.0, 1.0],
+fn sheet(plane: &[f32; 4], middle: Vec3, reach: f32) -> Vec<Vec3> {
+    let normal = normal(plane);
+    let foot = middle - above(plane, middle) * normal;
+    let aside = if normal.y.abs() < 0.9 {
+        Vec3::Y
+    } else {
+        Vec3::Z
     };
-    let along = cross(aside, normal);
-    let along = scaled(along, reach / length(along));
-    let across = cross(normal, along);
-    let corner = |x: f32, y: f32| plus(foot, plus(scaled(along, x), scaled(across, y)));
+    let along = reach * aside.cross(normal).normalize();
+    let across = normal.cross(along);
+    let corner = |x: f32, y: f32| foot + x * along + y * across;
     vec![
         corner(-1.0, -1.0),
         corner(1.0, -1.0),
@@ -69,14 +73,13 @@ fn sheet(plane: &[f32; 4], middle: Vector, reach: f32) -> Vec<Vector> {
 }
 
 /// What of a polygon is outside a plane.
-fn clipped(polygon: &[Vector], plane: &[f32; 4]) -> Vec<Vector> {
+fn clipped(polygon: &[Vec3], plane: &[f32; 4]) -> Vec<Vec3> {
     let mut rest = Vec::new();
     for (k, &to) in polygon.iter().enumerate() {
         let from = polygon[(k + polygon.len() - 1) % polygon.len()];
         let (before, after) = (above(plane, from), above(plane, to));
         if (before < 0.0) != (after < 0.0) {
-            let share = before / (before - after);
-            rest.push(plus(from, scaled(minus(to, from), share)));
+            rest.push(from.lerp(to, before / (before - after)));
         }
         if after >= 0.0 {
             rest.push(to);
@@ -103,12 +106,12 @@ mod tests {
         let mut floor = 0.0;
         for corners in triangles.chunks(3) {
             let [a, b, c] = [corners[0].at, corners[1].at, corners[2].at];
-            let area = scaled(cross(minus(b, a), minus(c, a)), 0.5);
-            assert!(dot(area, corners[0].normal) >= 0.0, "it faces inwards");
+            let area = 0.5 * (b - a).cross(c - a);
+            assert!(area.dot(corners[0].normal) >= 0.0, "it faces inwards");
             for corner in corners {
                 assert!(planes.iter().all(|plane| above(plane, corner.at) > -1e-5));
             }
-            floor += area[1];
+            floor += area.y;
         }
         assert!((floor - 8.0).abs() < 1e-4, "{floor}");
     }

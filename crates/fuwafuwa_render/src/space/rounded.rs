@@ -7,8 +7,8 @@
 //! ```
 
 use bytemuck::{Pod, Zeroable};
-use fuwafuwa::vector::{cross, length, minus, plus, scaled};
-use fuwafuwa::{Shape, Vector};
+use fuwafuwa::Shape;
+use glam::{Mat3, Vec3};
 
 /// How round the edges of boxes are [m], if they are that large.
 const EDGE: f32 = 0.02;
@@ -18,9 +18,9 @@ const EDGE: f32 = 0.02;
 #[derive(Copy, Clone, Debug, PartialEq, Pod, Zeroable)]
 pub struct RoundedVertex {
     /// Outwards, of length 1.
-    pub normal: Vector,
+    pub normal: Vec3,
     /// Which eighth it belongs to: −1 or 1 along each axis.
-    pub eighth: Vector,
+    pub eighth: Vec3,
 }
 
 /// A ball, a capsule or a box with round edges, to be drawn.
@@ -28,13 +28,13 @@ pub struct RoundedVertex {
 #[derive(Copy, Clone, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct RoundedInstance {
     /// Its middle [m].
-    pub centre: Vector,
+    pub centre: Vec3,
     /// Of its edges, in lengths of its axes.
     pub radius: f32,
     /// Its axes [m].
-    pub axes: [Vector; 3],
+    pub axes: Mat3,
     /// How far the middles of its round edges are from its middle, in lengths of its axes.
-    pub half: Vector,
+    pub half: Vec3,
     /// Red, green, blue, opacity.
     pub colour: [f32; 4],
     /// Which player's hand it is, how far a basket is filled, or what makes a crumb differ from
@@ -63,10 +63,10 @@ pub fn mesh(fine: usize) -> (Vec<RoundedVertex>, Vec<u32>) {
         for j in 0..side {
             for i in 0..side {
                 let ((x, left), (y, low)) = (along(i), along(j));
-                let (mut normal, mut eighth) = ([0.0; 3], [0.0; 3]);
+                let (mut normal, mut eighth) = (Vec3::ZERO, Vec3::ZERO);
                 (normal[axis], normal[u], normal[v]) = (end, bent(x), bent(y));
                 (eighth[axis], eighth[u], eighth[v]) = (end, left, low);
-                let normal = scaled(normal, 1.0 / length(normal));
+                let normal = normal.normalize();
                 vertices.push(RoundedVertex { normal, eighth });
             }
         }
@@ -91,7 +91,6 @@ impl RoundedInstance {
     /// A shape that ends somewhere.
     pub fn of(shape: Shape, [red, green, blue]: crate::Colour, number: f32) -> Option<Self> {
         let plain = Self {
-            axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
             colour: [red, green, blue, 1.0],
             number,
             ..Self::default()
@@ -99,65 +98,65 @@ impl RoundedInstance {
         match shape {
             Shape::HalfSpace { .. } => None,
             Shape::Ball { centre, radius } => Some(Self {
-                centre,
+                centre: centre.into(),
                 radius,
                 ..plain
             }),
             Shape::Box { centre, half } => {
                 let radius = half.into_iter().fold(EDGE, f32::min);
                 Some(Self {
-                    centre,
+                    centre: centre.into(),
                     radius,
-                    half: half.map(|k| k - radius),
+                    half: Vec3::from(half) - radius,
                     ..plain
                 })
             }
-            Shape::Capsule { from, to, radius } => Some(Self {
-                centre: scaled(plus(from, to), 0.5),
-                radius,
-                axes: frame_along(minus(to, from)),
-                half: [0.5 * length(minus(to, from)), 0.0, 0.0],
-                ..plain
-            }),
+            Shape::Capsule { from, to, radius } => {
+                let (from, to) = (Vec3::from(from), Vec3::from(to));
+                Some(Self {
+                    centre: from.midpoint(to),
+                    radius,
+                    axes: frame_along(to - from),
+                    half: Vec3::X * 0.5 * from.distance(to),
+                    ..plain
+                })
+            }
         }
     }
 }
 
 /// Three axes square to each other, of length 1, the first of them along a direction.
-fn frame_along(direction: Vector) -> [Vector; 3] {
-    let long = length(direction);
-    if long < 1e-9 {
-        return [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    }
-    let first = scaled(direction, 1.0 / long);
-    let aside = match first[1].abs() < 0.9 {
-        true => [0.0, 1.0, 0.0],
-        false => [0.0, 0.0, 1.0],
+fn frame_along(direction: Vec3) -> Mat3 {
+    let first = direction.try_normalize().unwrap_or(Vec3::X);
+    let aside = if first.y.abs() < 0.9 {
+        Vec3::Y
+    } else {
+        Vec3::Z
     };
-    let third = cross(first, aside);
-    let third = scaled(third, 1.0 / length(third));
-    [first, cross(third, first), third]
+    let third = first.cross(aside).normalize();
+    Mat3::from_cols(first, third.cross(first), third)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::vector::dot;
+    use fuwafuwa::vector::length;
 
     /// What the mesh encloses when it is drawn out to an instance.
     fn volume(instance: &RoundedInstance) -> f32 {
         let (vertices, indices) = mesh(8);
         let place = |index: u32| {
             let vertex = vertices[index as usize];
-            (0..3).fold(instance.centre, |at, k| {
-                let by = vertex.eighth[k] * instance.half[k] + instance.radius * vertex.normal[k];
-                plus(at, scaled(instance.axes[k], by))
-            })
+            let by = vertex.eighth * instance.half + instance.radius * vertex.normal;
+            instance.centre + instance.axes * by
         };
         let triangles = indices
             .chunks(3)
             .map(|t| [place(t[0]), place(t[1]), place(t[2])]);
-        triangles.map(|[a, b, c]| dot(a, cross(b, c))).sum::<f32>() / 6.0
+        triangles
+            .map(|[a, b, c]: [Vec3; 3]| a.dot(b.cross(c)))
+            .sum::<f32>()
+            / 6.0
     }
 
     #[test]

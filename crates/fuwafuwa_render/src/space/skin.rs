@@ -9,8 +9,8 @@ use super::rest::Rest;
 use crate::theme::Colour;
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::ids::Table;
-use fuwafuwa::vector::{cross, dot, minus, plus, scaled, three};
 use fuwafuwa::{Body, Dim3, ElementId, NodeId, PieceId};
+use glam::{Vec3, Vec4};
 
 /// By how much of the way to the mean of its neighbours a point goes in each round: on the original
 /// surface, at the mouth of a crack, inside. Rounds that go away from it give back the size that the
@@ -44,9 +44,9 @@ pub struct Skin {
     rest: Rest,
     faces: Faces,
     /// By point: where it is, and last how far its voxel is strained.
-    places: Vec<[f32; 4]>,
-    smoothed: Vec<[f32; 4]>,
-    normals: Vec<[f32; 3]>,
+    places: Vec<Vec4>,
+    smoothed: Vec<Vec4>,
+    normals: Vec<Vec3>,
     vertices: Vec<SkinVertex>,
 }
 
@@ -105,8 +105,8 @@ impl Skin {
         self.places.clear();
         self.places
             .extend(self.faces.points.all.iter().map(|point| match point.node {
-                NO_NODE => [0.0; 4],
-                node => carried(point, positions[node], positions, size),
+                NO_NODE => Vec4::ZERO,
+                node => carried(point, positions[node].into(), positions, size),
             }));
     }
 
@@ -127,13 +127,8 @@ impl Skin {
                         Ground::Mouth => shares[1],
                         Ground::Torn => shares[2],
                     };
-                    let sum = near
-                        .iter()
-                        .fold([0.0; 4], |sum, &k| plus(sum, places[k as usize]));
-                    plus(
-                        scaled(own, 1.0 - share),
-                        scaled(sum, share / near.len() as f32),
-                    )
+                    let sum: Vec4 = near.iter().map(|&k| places[k as usize]).sum();
+                    own.lerp(sum / near.len() as f32, share)
                 }),
         );
         std::mem::swap(&mut self.places, &mut self.smoothed);
@@ -142,7 +137,8 @@ impl Skin {
     /// Adds up the normals of the faces at each vertex, the larger ones weighing more.
     fn find_normals(&mut self) {
         self.normals.clear();
-        self.normals.resize(self.faces.vertices.all.len(), [0.0; 3]);
+        self.normals
+            .resize(self.faces.vertices.all.len(), Vec3::ZERO);
         for face in self
             .faces
             .faces
@@ -150,11 +146,11 @@ impl Skin {
             .iter()
             .filter(|face| face.points[0] != NONE)
         {
-            let [a, b, c, d] = face.points.map(|point| three(self.places[point as usize]));
-            let normal = cross(minus(c, a), minus(d, b));
+            let places = face.points.map(|point| self.places[point as usize]);
+            let [a, b, c, d] = places.map(Vec4::truncate);
+            let normal = (c - a).cross(d - b);
             for vertex in face.vertices {
-                let sum = &mut self.normals[vertex as usize];
-                *sum = plus(*sum, normal);
+                self.normals[vertex as usize] += normal;
             }
         }
     }
@@ -166,13 +162,12 @@ impl Skin {
             if corner.point == NONE {
                 return SkinVertex::default();
             }
-            let [x, y, z, strain] = self.places[corner.point as usize];
-            let normal = scaled(normal, 32767.0 / dot(normal, normal).sqrt().max(1e-20));
-            let [nx, ny, nz] = normal.map(|k| k as i16);
+            let place = self.places[corner.point as usize];
+            let normal = normal.normalize_or_zero().extend(place.w.min(1.0));
             SkinVertex {
-                at: [x, y, z],
-                rest: corner.rest,
-                normal: [nx, ny, nz, (strain.min(1.0) * 32767.0) as i16],
+                at: place.truncate().into(),
+                rest: corner.rest.into(),
+                normal: (32767.0 * normal).to_array().map(|k| k as i16),
                 colour: corner.colour,
                 other: corner.other,
             }
@@ -183,31 +178,28 @@ impl Skin {
 /// Where a point is: its node moved by its offset, as the mean deformation of its voxel turns and
 /// stretches it. Behind that ‖F − R‖, to first order.
 #[inline]
-fn carried(
-    point: &SkinPoint,
-    node: [f32; 4],
-    positions: &Table<NodeId, [f32; 4]>,
-    size: f32,
-) -> [f32; 4] {
-    let edges = edges(&point.voxel, positions);
-    let moved = edges.iter().zip(point.offset);
-    let mut place = moved.fold(node, |place, (&edge, by)| plus(place, scaled(edge, by)));
+fn carried(point: &SkinPoint, node: Vec4, positions: &Table<NodeId, [f32; 4]>, size: f32) -> Vec4 {
+    let [x, y, z] = edges(&point.voxel, positions);
+    let by = point.offset;
+    let mut place = node + by.x * x + by.y * y + by.z * z;
     let over = 1.0 / (size * size);
-    let [xx, yy, zz] = edges.map(|edge| dot(edge, edge) * over - 1.0);
-    let [xy, yz, zx] = [(0, 1), (1, 2), (2, 0)].map(|(a, b)| dot(edges[a], edges[b]) * over);
+    let [xx, yy, zz] = [x, y, z].map(|edge| edge.length_squared() * over - 1.0);
+    let [xy, yz, zx] = [x.dot(y), y.dot(z), z.dot(x)].map(|dot| dot * over);
     let squared = xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + yz * yz + zx * zx);
-    place[3] = 0.5 * squared.sqrt();
+    place.w = 0.5 * squared.sqrt();
     place
 }
 
 /// The mean edges of a voxel along its axes [m].
 #[inline]
-fn edges(voxel: &[NodeId; 8], positions: &Table<NodeId, [f32; 4]>) -> [[f32; 4]; 3] {
-    let corners = voxel.map(|id| positions[id]);
+fn edges(voxel: &[NodeId; 8], positions: &Table<NodeId, [f32; 4]>) -> [Vec4; 3] {
+    let corners = voxel.map(|id| Vec4::from(positions[id]));
     [1, 2, 4].map(|side| {
         let low = [0, 1, 2, 3].map(|k| (k & (side - 1)) | (k & !(side - 1)) << 1);
-        let ends = low.map(|k| minus(corners[k + side], corners[k]));
-        scaled(plus(plus(ends[0], ends[1]), plus(ends[2], ends[3])), 0.25)
+        0.25 * low
+            .map(|k| corners[k + side] - corners[k])
+            .iter()
+            .sum::<Vec4>()
     })
 }
 
@@ -215,7 +207,7 @@ fn edges(voxel: &[NodeId; 8], positions: &Table<NodeId, [f32; 4]>) -> [[f32; 4];
 mod tests {
     use super::*;
     use crate::theme::Theme;
-    use fuwafuwa::vector::length;
+    use fuwafuwa::vector::{cross, dot, length, minus};
     use fuwafuwa::{Blade, Material, Settings, VoxelGrid, World};
 
     fn ball(n: usize) -> World<Dim3> {

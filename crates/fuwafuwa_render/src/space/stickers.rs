@@ -10,8 +10,8 @@
 use super::skin::{Skin, SkinVertex};
 use crate::frame::{Mark, Sticker};
 use crate::theme::bytes;
-use fuwafuwa::vector::{cross, dot, length, minus, plus, scaled};
 use fuwafuwa::{Body, Dim3, Vector};
+use glam::{Mat3, Vec2, Vec3};
 
 /// The heights of the skin reach so far to each side, in coordinates of marks, and are so many in a row.
 const REACH: f32 = 1.2;
@@ -47,29 +47,23 @@ impl Stickers {
             return;
         };
         for mark in &sticker.marks {
-            self.add_mark(mark, &heights, sticker, eye);
+            self.add_mark(mark, &heights, sticker, eye.into());
         }
     }
 
-    fn add_mark(&mut self, mark: &Mark, heights: &Heights, sticker: &Sticker, eye: Vector) {
-        let count = mark.outline.len();
-        let sum = mark.outline.iter().fold([0.0; 2], |sum, &at| plus(sum, at));
-        let middle = scaled(sum, 1.0 / count as f32);
-        let place = |at: [f32; 2], height: f32| {
-            let [right, up, out] = sticker.axes;
-            let along = plus(scaled(right, at[0]), scaled(up, at[1]));
-            plus(
-                sticker.from,
-                plus(along, scaled(out, heights.at(at) + height)),
-            )
+    fn add_mark(&mut self, mark: &Mark, heights: &Heights, sticker: &Sticker, eye: Vec3) {
+        let outline: Vec<Vec2> = mark.outline.iter().map(|&at| at.into()).collect();
+        let count = outline.len();
+        let middle = outline.iter().sum::<Vec2>() / count as f32;
+        let axes = Mat3::from_cols_array_2d(&sticker.axes);
+        let place = |at: Vec2, height: f32| {
+            Vec3::from(sticker.from) + axes * at.extend(heights.at(at) + height)
         };
-        let mut places: Vec<Vector> = Vec::new();
+        let mut places: Vec<Vec3> = Vec::new();
         for ring in RINGS {
             let height = mark.lift + mark.bulge * (1.0 - ring * ring).sqrt();
-            let corners = mark.outline.iter();
-            places.extend(
-                corners.map(|&at| place(plus(middle, scaled(minus(at, middle), ring)), height)),
-            );
+            let corners = outline.iter();
+            places.extend(corners.map(|&at| place(middle.lerp(at, ring), height)));
         }
         places.push(place(middle, mark.lift + mark.bulge));
         let mut triangles: Vec<[usize; 3]> = Vec::new();
@@ -83,26 +77,24 @@ impl Stickers {
             let last = (RINGS.len() - 1) * count;
             triangles.push([last + k, last + next, places.len() - 1]);
         }
-        let mut normals = vec![[0.0; 3]; places.len()];
+        let mut normals = vec![Vec3::ZERO; places.len()];
         for corners in &triangles {
             let [a, b, c] = corners.map(|corner| places[corner]);
-            let normal = cross(minus(b, a), minus(c, a));
+            let normal = (b - a).cross(c - a);
             for &corner in corners {
-                normals[corner] = plus(normals[corner], normal);
+                normals[corner] += normal;
             }
         }
         let first = self.vertices.len();
         let [red, green, blue, alpha] = mark.colour;
         let colour = bytes([red, green, blue], alpha);
-        let closer = CLOSER * length(sticker.axes[2]);
+        let closer = CLOSER * axes.z_axis.length();
         self.vertices
             .extend(places.iter().zip(normals).map(|(&at, normal)| {
-                let way = minus(eye, at);
-                let normal = scaled(normal, 32767.0 / length(normal).max(1e-20));
-                let [x, y, z] = normal.map(|k| k as i16);
+                let normal = normal.normalize_or_zero().extend(0.0);
                 SkinVertex {
-                    at: plus(at, scaled(way, closer / length(way).max(closer))),
-                    normal: [x, y, z, 0],
+                    at: at.move_towards(eye, closer).into(),
+                    normal: (32767.0 * normal).to_array().map(|k| k as i16),
                     colour,
                     ..SkinVertex::default()
                 }
@@ -119,34 +111,35 @@ struct Heights([f32; SIDE * SIDE]);
 impl Heights {
     /// Finds it; none where there is no skin.
     fn new(sticker: &Sticker, skin: &Skin, body: &Body<Dim3>) -> Option<Self> {
-        let square = sticker.axes.map(|axis| dot(axis, axis));
+        let axes = sticker.axes.map(Vec3::from);
+        let square = axes.map(Vec3::length_squared);
         if square.contains(&0.0) {
             return None;
         }
         let voxel = body.grid().voxel_size() / square[2].sqrt();
         let near = NEAR[0].max(NEAR[1] * voxel);
-        let mut seen: Vec<[f32; 3]> = Vec::new();
+        let mut seen: Vec<Vec3> = Vec::new();
         for vertex in skin.vertices_of(body, sticker.piece) {
-            let by = minus(vertex.at, sticker.from);
-            let at = [0, 1, 2].map(|k| dot(by, sticker.axes[k]) / square[k]);
-            let normal = [0, 1, 2].map(|k| f32::from(vertex.normal[k]));
-            let is_in_reach = at[0].abs().max(at[1].abs()) < REACH + 2.0 * near;
-            if is_in_reach && at[2] > 0.0 && dot(normal, sticker.axes[2]) > 0.0 {
+            let by = Vec3::from(vertex.at) - Vec3::from(sticker.from);
+            let at = Vec3::from(axes.map(|axis| by.dot(axis))) / Vec3::from(square);
+            let normal = Vec3::from([0, 1, 2].map(|k| f32::from(vertex.normal[k])));
+            let is_in_reach = at.x.abs().max(at.y.abs()) < REACH + 2.0 * near;
+            if is_in_reach && at.z > 0.0 && normal.dot(axes[2]) > 0.0 {
                 seen.push(at);
             }
         }
         // Where there is no skin, the plane goes on where the skin ended.
-        let lowest = seen.iter().map(|at| at[2]).reduce(f32::min)?;
+        let lowest = seen.iter().map(|at| at.z).reduce(f32::min)?;
         let reach = 2.0 * near;
         let mut tops = [lowest; SIDE * SIDE];
         for by in &seen {
-            around(by, reach, |place, _| tops[place] = tops[place].max(by[2]));
+            around(*by, reach, |place, _| tops[place] = tops[place].max(by.z));
         }
         let (mut sums, mut weights) = ([lowest * 1e-6; SIDE * SIDE], [1e-6; SIDE * SIDE]);
         for by in &seen {
-            around(by, reach, |place, share| {
-                if by[2] > tops[place] - FOLD {
-                    sums[place] += share * by[2];
+            around(*by, reach, |place, share| {
+                if by.z > tops[place] - FOLD {
+                    sums[place] += share * by.z;
                     weights[place] += share;
                 }
             });
@@ -155,11 +148,12 @@ impl Heights {
     }
 
     /// The height at a place.
-    fn at(&self, place: [f32; 2]) -> f32 {
+    fn at(&self, place: Vec2) -> f32 {
         let last = SIDE as f32 - 1.0;
-        let [x, y] = place.map(|k| (0.5 * last * (k / REACH + 1.0)).clamp(0.0, last - 1e-3));
-        let (left, low) = (x as usize, y as usize);
-        let (right, up) = (x - left as f32, y - low as f32);
+        let place = 0.5 * last * (place / REACH + 1.0);
+        let place = place.clamp(Vec2::ZERO, Vec2::splat(last - 1e-3));
+        let (left, low) = (place.x as usize, place.y as usize);
+        let [right, up] = place.fract().to_array();
         let row = |low: usize| {
             let first = low * SIDE + left;
             self.0[first] + right * (self.0[first + 1] - self.0[first])
@@ -169,7 +163,7 @@ impl Heights {
 }
 
 /// Does something with all heights that are closer to a place than `reach`, and by how much they are, 0 to 1.
-fn around(place: &[f32; 3], reach: f32, mut act: impl FnMut(usize, f32)) {
+fn around(place: Vec3, reach: f32, mut act: impl FnMut(usize, f32)) {
     let step = 2.0 * REACH / (SIDE - 1) as f32;
     let range = |k: usize| {
         let first = ((place[k] + REACH - reach) / step).ceil().max(0.0) as usize;
@@ -178,11 +172,8 @@ fn around(place: &[f32; 3], reach: f32, mut act: impl FnMut(usize, f32)) {
     };
     for y in range(1) {
         for x in range(0) {
-            let away = minus(
-                [x, y].map(|k| step * k as f32 - REACH),
-                [place[0], place[1]],
-            );
-            let share = 1.0 - dot(away, away) / (reach * reach);
+            let at = step * Vec2::new(x as f32, y as f32) - REACH;
+            let share = 1.0 - at.distance_squared(place.truncate()) / (reach * reach);
             if share > 0.0 {
                 act(y * SIDE + x, share * share * share);
             }
@@ -194,6 +185,7 @@ fn around(place: &[f32; 3], reach: f32, mut act: impl FnMut(usize, f32)) {
 mod tests {
     use super::*;
     use crate::Theme;
+    use fuwafuwa::vector::{length, minus};
     use fuwafuwa::{Blade, Material, PieceId, Settings, VoxelGrid, World};
 
     #[test]

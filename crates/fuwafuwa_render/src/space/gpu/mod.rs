@@ -4,7 +4,7 @@ mod meshes;
 mod pipelines;
 mod targets;
 
-use super::camera::{Camera, Matrix, product, seen_from};
+use super::camera::{Camera, seen_from};
 use super::geometry::Geometry;
 use super::rounded;
 use crate::frame::Frame;
@@ -13,8 +13,8 @@ use crate::gpu::image::{ImageError, Step, image};
 use crate::gpu::targets::{bind, clear, new_uniforms};
 use crate::rigid::MOST_WALLS;
 use bytemuck::{Pod, Zeroable};
-use fuwafuwa::vector::{cross, length, scaled};
-use fuwafuwa::{Dim3, Vector, World};
+use fuwafuwa::{Dim3, World};
+use glam::{Mat3, Mat4, Vec3};
 use meshes::{draw_mesh, mesh_buffers, write_mesh, write_skins};
 use pipelines::Pipelines;
 use std::ops::Range;
@@ -22,9 +22,9 @@ use targets::{SHADOW_SIDES, Shadows, Targets};
 use wgpu::*;
 
 /// Where the light comes from; `LIGHT` in `space.wgsl` says the same.
-const LIGHT: Vector = [-0.42, 0.80, 0.45];
+const LIGHT: Vec3 = Vec3::new(-0.42, 0.80, 0.45);
 /// The sky is above.
-const SKY: Vector = [0.0, 1.0, 0.0];
+const SKY: Vec3 = Vec3::Y;
 /// Half of what the light shines on from side to side, in distances of the camera.
 const LIT: f32 = 0.55;
 /// How far shadows of the light and of the sky are blurred, as shares of their maps: more makes them
@@ -61,9 +61,9 @@ pub struct Renderer {
 #[repr(C)]
 #[derive(Copy, Clone, Debug, Pod, Zeroable)]
 struct Globals {
-    to_clip: Matrix,
-    to_light: Matrix,
-    to_sky: Matrix,
+    to_clip: Mat4,
+    to_light: Mat4,
+    to_sky: Mat4,
     eye: [f32; 4],
     look: [f32; 4],
     tune: [f32; 4],
@@ -186,7 +186,8 @@ impl Renderer {
     fn tell(&self, queue: &Queue, frame: &Frame<'_, Camera>) {
         let (camera, theme, size) = (&frame.camera, frame.theme, self.targets.size);
         let half = LIT * camera.distance;
-        let [to_light, to_sky] = [LIGHT, SKY].map(|light| seen_by(light, camera.target, half));
+        let [to_light, to_sky] =
+            [LIGHT, SKY].map(|light| seen_by(light, camera.target.into(), half));
         let texels = SHADOW_SIDES.map(|side| 2.0 * half / side as f32);
         let four = |[x, y, z]: [f32; 3], w: f32| [x, y, z, w];
         let mut walls = [[0.0; 4]; MOST_WALLS];
@@ -195,7 +196,7 @@ impl Renderer {
         let range = |range: &Range<u32>| range.start as usize..range.end as usize;
         let balls = &self.geometry.rounded[range(&self.geometry.hands)];
         for (place, ball) in balls.iter().take(MOST_HANDS).enumerate() {
-            hands[place] = four(ball.centre, ball.radius);
+            hands[place] = ball.centre.extend(ball.radius).into();
             hand_colours[place] = ball.colour;
         }
         let hand_count = balls.len().min(MOST_HANDS) as f32;
@@ -328,21 +329,13 @@ impl Renderer {
 
 /// From metres to the coordinates of a shadow map that sees `half` [m] around a middle, from where a
 /// light comes.
-fn seen_by(light: Vector, middle: Vector, half: f32) -> Matrix {
-    let back = scaled(light, 1.0 / length(light));
-    let right = cross([0.0, 0.0, -1.0], back);
-    let right = scaled(right, 1.0 / length(right));
-    let seen = seen_from(middle, [right, cross(back, right), back]);
-    let over = 1.0 / half;
+fn seen_by(light: Vec3, middle: Vec3, half: f32) -> Mat4 {
+    let back = light.normalize();
+    let right = Vec3::NEG_Z.cross(back).normalize();
+    let seen = seen_from(middle, Mat3::from_cols(right, back.cross(right), back));
     // Things in front of what is lit throw shadows onto it as well.
-    let depth = -1.0 / (6.0 * half);
-    let flat = [
-        [over, 0.0, 0.0, 0.0],
-        [0.0, over, 0.0, 0.0],
-        [0.0, 0.0, depth, 0.0],
-        [0.0, 0.0, 0.5, 1.0],
-    ];
-    product(flat, seen)
+    let scale = Vec3::new(1.0, 1.0, -1.0 / 6.0) / half;
+    Mat4::from_translation(0.5 * Vec3::Z) * Mat4::from_scale(scale) * seen
 }
 
 fn depth_attachment(view: &TextureView, store: StoreOp) -> RenderPassDepthStencilAttachment<'_> {
