@@ -9,13 +9,13 @@ fn spread(k: i32, count: i32) -> vec2f {
     return sqrt((f32(k) + 0.5) / f32(count)) * vec2f(cos(turn), sin(turn));
 }
 
-// Depth in a map has a sixth of the scale of what lies across; see `seen_by`.
+// Depth in the shadow map has a sixth of the scale of what lies across; see `seen_by`.
 const SQUEEZED = 1.0 / 6.0;
 
-// By how much the depth in a map grows along a surface, to the right and down in the map: what is flat throws no shadow
-// onto itself, however far its neighbourhood is asked.
-fn leaning(to_map: mat4x4f, normal: vec3f) -> vec2f {
-    let turned = (to_map * vec4f(normal, 0.0)).xyz;
+// By how much the depth in the shadow map grows along a surface, to the right and down in the map: what is flat throws no
+// shadow onto itself, however far its neighbourhood is asked.
+fn leaning(normal: vec3f) -> vec2f {
+    let turned = (globals.to_light * vec4f(normal, 0.0)).xyz;
     let slope = SQUEEZED * SQUEEZED * turned.xy / max(-turned.z, 1e-9);
     return vec2f(2.0, -2.0) * clamp(slope, vec2f(-3.0 * SQUEEZED), vec2f(3.0 * SQUEEZED));
 }
@@ -26,7 +26,7 @@ fn open_to_light(at: vec3f, normal: vec3f) -> f32 {
     if max(max(abs(seen.x), abs(seen.y)), seen.z) >= 1.0 {
         return 1.0;
     }
-    let lean = leaning(globals.to_light, normal);
+    let lean = leaning(normal);
     var sum = 0.0;
     for (var k = 0; k < 24; k++) {
         let by = globals.soft.y * spread(k, 24);
@@ -41,11 +41,10 @@ fn open_to_sky(at: vec3f, normal: vec3f) -> f32 {
     if max(max(abs(seen.x), abs(seen.y)), seen.z) >= 1.0 {
         return 1.0;
     }
-    let lean = leaning(globals.to_sky, normal);
     var sum = 0.0;
     for (var k = 0; k < 16; k++) {
-        let by = globals.soft.w * spread(k, 16);
-        sum += textureSampleCompareLevel(sky_map, shadow_sampler, to_uv(seen.xy) + by, seen.z + dot(lean, by));
+        let uv = to_uv(seen.xy) + globals.soft.w * spread(k, 16);
+        sum += textureSampleCompareLevel(sky_map, shadow_sampler, uv, seen.z);
     }
     return sum / 16.0;
 }
