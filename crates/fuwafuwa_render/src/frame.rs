@@ -18,7 +18,7 @@ pub struct Frame<'a, C = Camera> {
     pub basket: Option<Basket>,
     /// Crumbs, dust, sparks.
     pub particles: &'a [Particle],
-    /// What lies on skins in space. In the plane whoever paints on top paints it.
+    /// What lies on skins in space. In the plane it is painted between the two halves of [`crate::Renderer::paint`].
     pub stickers: &'a [Sticker],
     /// A world whose bodies and hands are seen through, in space.
     pub ghost: Option<&'a World<Dim3>>,

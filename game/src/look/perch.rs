@@ -30,12 +30,16 @@ const AGAIN: f32 = 0.5;
 const PLACES: usize = 120;
 /// A face looks at who looks, and so much above: bars stand low.
 const ABOVE: f32 = 0.4;
-/// One that is turned farther away or tilted more, as a cosine, for so long [s], goes to where it is seen; while its body
-/// turns faster than this [rad/s] it rolls with it. Of a body that rolls it takes the place that is seen best so much later [s].
+/// One that is turned farther away, as a cosine, for so long [s], goes to where it is seen; while its body turns faster than
+/// this [rad/s] it rolls with it. One that is tilted as much does so once its body hardly turns any more.
 const LOST: f32 = 0.6;
 const PATIENCE: f32 = 0.12;
 const FAST: f32 = 3.0;
+const CALM: f32 = 0.8;
+/// Of a body that rolls it takes the place that is seen best so much later [s], and so much nearer to its axis: there it is
+/// seen for longer.
 const AHEAD: f32 = 0.4;
+const NEAR_AXIS: f32 = 0.4;
 /// How long it takes to shrink and to come up [s].
 const SHRINK: f32 = 0.08;
 const RISE: f32 = 0.14;
@@ -145,8 +149,10 @@ impl Perch {
         let turned = [0, 1, 2].map(|k| cross(before[k], self.axes[k]));
         let spin = scaled(turned.into_iter().fold([0.0; 3], plus), 0.5 / seconds);
         self.spin = plus(self.spin, scaled(minus(spin, self.spin), 0.2));
-        let seen = eye.map_or(1.0, |eye| seen(self.at, self.axes, eye));
-        self.lost = match seen < LOST && length(self.spin) < FAST {
+        let [facing, upright] = eye.map_or([1.0; 2], |eye| seen(self.at, self.axes, eye));
+        let spin = length(self.spin);
+        let is_lost = facing < LOST || upright < LOST && spin < CALM;
+        self.lost = match is_lost && spin < FAST {
             true => self.lost + seconds,
             false => 0.0,
         };
@@ -275,6 +281,8 @@ impl Skin {
     fn wish(&self, at: Vector) -> Vector {
         let wish = self.eye.map_or(UPRIGHT[2], |eye| wish(at, eye));
         let early = minus(wish, scaled(cross(self.spin, wish), AHEAD));
+        let along = dot(self.spin, wish) / length(self.spin).max(1e-9);
+        let early = plus(early, scaled(self.spin, NEAR_AXIS * along));
         scaled(early, 1.0 / length(early))
     }
 
@@ -365,10 +373,10 @@ fn upright(out: Vector, towards: Vector) -> [Vector; 3] {
     square([[0.0; 3], minus(UPRIGHT[1], back), out])
 }
 
-/// How well a face is seen, as a cosine: turned towards who looks, and upright.
-fn seen(at: Vector, axes: [Vector; 3], eye: Vector) -> f32 {
+/// How well a face is seen, as cosines: turned towards who looks, and upright.
+fn seen(at: Vector, axes: [Vector; 3], eye: Vector) -> [f32; 2] {
     let up = upright(axes[2], minus(eye, at))[1];
-    dot(axes[2], wish(at, eye)).min(dot(axes[1], up))
+    [dot(axes[2], wish(at, eye)), dot(axes[1], up)]
 }
 
 /// Axes of length 1 and square to each other: the third as it is, the second nearly, the first as it must be.

@@ -7,6 +7,7 @@ use fuwafuwa::mesh::Element;
 use fuwafuwa::stencil::{closure, slot_at};
 use fuwafuwa::view::ElementView;
 use fuwafuwa::{Dim, Dim2, Point};
+use fuwafuwa_painter::stage;
 use fuwafuwa_painter::{Frame, Painter, Role, Sample};
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -28,11 +28,11 @@ fn open_to_light(at: vec3f, normal: vec3f) -> f32 {
     }
     let lean = leaning(normal);
     var sum = 0.0;
-    for (var k = 0; k < 24; k++) {
-        let by = globals.soft.y * spread(k, 24);
+    for (var k = 0; k < 16; k++) {
+        let by = globals.soft.y * spread(k, 16);
         sum += textureSampleCompareLevel(shadow_map, shadow_sampler, to_uv(seen.xy) + by, seen.z + dot(lean, by));
     }
-    return sum / 24.0;
+    return sum / 16.0;
 }
 
 // How much of the sky is seen from a place, 0 to 1, as far as what stands straight above tells.

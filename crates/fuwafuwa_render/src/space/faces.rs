@@ -346,7 +346,7 @@ impl Faces {
         (point.near, point.near_count) = (joined.points, joined.count);
         let tint = rest.tint(at, octant);
         let [own, other] = tint.materials.map(|number| self.colour(number));
-        for ground in 0..2 {
+        for (ground, &count) in counts.iter().enumerate() {
             let vertex = &mut point.vertices[ground];
             let corner = Corner {
                 point: place,
@@ -354,7 +354,7 @@ impl Faces {
                 colour: bytes(own, ground as f32),
                 other: bytes(other, tint.side),
             };
-            match (*vertex, counts[ground]) {
+            match (*vertex, count) {
                 (NONE, 0) => {}
                 (NONE, _) => *vertex = self.vertices.take(corner),
                 (known, 0) => {

@@ -71,6 +71,30 @@ fn it_rolls_with_the_skin_however_fast_that_turns() {
 }
 
 #[test]
+fn it_stays_while_its_body_rolls_by_and_is_upright_again_after() {
+    let mut world = ball();
+    let mut perch = Perch::new(world.bodies().first().unwrap(), Some(EYE));
+    let mut leaps = 0;
+    let (mut angle, mut least) = (0.0f32, f32::MAX);
+    for tick in 1..150 {
+        // Two radians a second to the right, for one and a half turns nearly, then it stands.
+        angle += if tick < 100 { 2.0 * TICK } else { 0.0 };
+        let (sin, cos) = angle.sin_cos();
+        deform(&mut world, |_, at| {
+            let [x, y, z] = minus(at, [0.5; 3]);
+            plus([cos * x + sin * y, cos * y - sin * x, z], [0.5; 3])
+        });
+        let before = perch.axes[2];
+        let body = world.bodies().first().unwrap();
+        perch.follow(body, Some(EYE), tick % 5 == 0, TICK);
+        leaps += u32::from(length(minus(perch.axes[2], before)) > 0.2);
+        least = least.min(dot(perch.axes[2], wish([0.5; 3], EYE)));
+    }
+    assert!(leaps <= 2 && least > 0.3, "{leaps} leaps, {least}");
+    assert!(dot(perch.axes[1], UPRIGHT[1]) > 0.8, "{perch:?}");
+}
+
+#[test]
 fn it_comes_back_once_its_body_has_turned_its_back() {
     let mut world = ball();
     let mut perch = Perch::new(world.bodies().first().unwrap(), Some(EYE));

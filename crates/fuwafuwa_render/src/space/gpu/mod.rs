@@ -29,7 +29,7 @@ const SKY: Vec3 = Vec3::Y;
 const LIT: f32 = 0.55;
 /// How far shadows of the light and of the sky are blurred, as shares of their maps: more makes them
 /// softer, until single samples show as steps.
-const SOFTNESS: [f32; 2] = [0.007, 0.035];
+const SOFTNESS: [f32; 2] = [0.006, 0.035];
 /// Hands that throw shadows; more have no place in the uniforms of a small device.
 const MOST_HANDS: usize = 4;
 /// How fine balls are that may be large, and small ones.

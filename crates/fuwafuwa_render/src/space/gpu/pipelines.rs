@@ -116,10 +116,6 @@ impl Pipelines {
             Some(RoundedInstance::layout()),
         ];
         let balls = |entries, target| drawn(&rigid, entries, &rounded, target);
-        let both_sides = Target {
-            cull: None,
-            ..clear.clone()
-        };
         let behind = Target {
             depth: Some(DepthStencilState {
                 depth_compare: Some(CompareFunction::Greater),
@@ -127,16 +123,23 @@ impl Pipelines {
             }),
             ..clear.clone()
         };
-        // A ghost in the same place as a body is a little behind it, and not seen.
-        let farther = |is_written| {
+        // Of two things in the same place, which is behind: by how many steps of depth.
+        let moved = |steps: i32, is_written| {
             Some(DepthStencilState {
                 bias: DepthBiasState {
-                    constant: 16,
-                    slope_scale: 4.0,
+                    constant: steps,
+                    slope_scale: 0.25 * steps as f32,
                     clamp: 0.0,
                 },
                 ..depth_state(DEPTH_FORMAT, is_written)
             })
+        };
+        // A ghost is a little behind a body, and not seen; the bottom of a basket is in front of the floor.
+        let farther = |is_written| moved(16, is_written);
+        let both_sides = Target {
+            depth: moved(-16, false),
+            cull: None,
+            ..clear.clone()
         };
         let ghost_depth = Target {
             depth: farther(true),
