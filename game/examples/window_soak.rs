@@ -42,11 +42,14 @@ const KEYS: [Key; 16] = [
     Key::X,
 ];
 
+/// A file that is dropped.
+type AnyFile = Arc<dyn DroppedFile + Send + Sync>;
+
 /// The game, and whoever plays it.
 struct Soak {
     app: App,
     random: fastrand::Rng,
-    files: Vec<Arc<dyn DroppedFile>>,
+    files: Vec<AnyFile>,
     pad: Device,
     began: Instant,
     frames: u64,
@@ -217,14 +220,14 @@ fn resident() -> Option<f64> {
 }
 
 /// Files that somebody may drop: two levels, a picture, a model, and one that is nothing.
-fn files(folder: &Path) -> std::io::Result<Vec<Arc<dyn DroppedFile>>> {
+fn files(folder: &Path) -> std::io::Result<Vec<AnyFile>> {
     let levels = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/tamaire_play/levels");
     let broken = folder.join("broken.toml");
     std::fs::write(&broken, "dim = 7\n")?;
     let named = ["classic.toml", "hoop.toml", "cat.png", "pudding.vox"];
     let paths = named.iter().map(|name| levels.join(name)).chain([broken]);
     Ok(paths
-        .map(|path| Arc::new(Dropped(path)) as Arc<dyn DroppedFile>)
+        .map(|path| Arc::new(Dropped(path)) as AnyFile)
         .collect())
 }
 
