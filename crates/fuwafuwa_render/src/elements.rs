@@ -1,13 +1,14 @@
 //! Elements as coloured quads with lines around them.
 
 use crate::frame::ElementColour;
+use crate::plane::flat;
 use crate::theme::{Colour, Theme, bytes, mix};
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::dim::{add, corner, scale};
 use fuwafuwa::stencil::slot_index;
 use fuwafuwa::view::{ElementFace, blocks, faces};
-use fuwafuwa::{Body, Dim2, ElementView, Vector};
-use glam::{Vec2, Vec3};
+use fuwafuwa::{Body, Dim2, ElementView};
+use glam::Vec2;
 
 /// For how long an element flashes after it was remodelled [s].
 const FLASH: f32 = 0.4;
@@ -148,11 +149,6 @@ pub fn colour_of(view: &ElementView, theme: &Theme, colour: ElementColour, ages:
     let age = ages.get(view.id.index()).copied().unwrap_or(FLASH);
     let flash = 0.65 * (1.0 - age / FLASH).clamp(0.0, 1.0);
     mix(plain, [1.0; 3], flash)
-}
-
-/// A place in the plane.
-pub fn flat(at: Vector) -> Vec2 {
-    Vec3::from(at).truncate()
 }
 
 /// The quads that an element fills [m], anticlockwise.

@@ -1,6 +1,6 @@
 //! How to look at a world, as plain data.
 
-use crate::elements::flat;
+use crate::plane::flat;
 use crate::theme::Theme;
 use fuwafuwa::{Dim3, PieceId, Shape, Vector, World};
 use glam::Vec2;

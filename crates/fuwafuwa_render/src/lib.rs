@@ -23,6 +23,7 @@ mod elements;
 pub mod frame;
 pub mod geometry;
 mod gpu;
+mod plane;
 mod rest;
 mod rigid;
 mod rings;

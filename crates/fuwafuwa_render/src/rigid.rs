@@ -1,7 +1,7 @@
 //! Obstacles, hands and the basket as rectangles that a shader draws shapes into.
 
-use crate::elements::flat;
 use crate::frame::{Basket, Particle};
+use crate::plane::flat;
 use crate::theme::{Colour, Theme};
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::{Dim2, Shape, World};

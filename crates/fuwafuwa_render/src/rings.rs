@@ -6,7 +6,7 @@
 //! quadratic B-spline, of which the corners get more points than the rest. What is smoothed on
 //! one lip of a crack is smoothed in the same way on the other, so that a closed crack stays closed.
 
-use crate::elements::flat;
+use crate::plane::flat;
 use crate::rest::{Rest, SMALL};
 use fuwafuwa::ids::Table;
 use fuwafuwa::{Body, Dim2, NodeId};

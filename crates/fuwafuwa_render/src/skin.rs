@@ -1,6 +1,7 @@
 //! The triangles that fill the curves around pieces, and the bands along them.
 
-use crate::elements::{fills, flat};
+use crate::elements::fills;
+use crate::plane::flat;
 use crate::rings::{Rings, sides, strain};
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::dim::{corner, scale};
