@@ -11,6 +11,9 @@ const LETTERS: usize = 80;
 /// After so many lines that cannot be read a text is taken for another kind.
 const MOST_LINES: usize = 32;
 
+/// All of a text is read again for each of them: of a long one fewer are looked for [bytes].
+const MOST_READ: usize = 1 << 21;
+
 /// What is left of a text when all that cannot be used is taken out.
 pub struct Sifted<T> {
     /// What it says.
@@ -54,7 +57,8 @@ pub fn sift<T: DeserializeOwned + Serialize + Default>(text: &str) -> Sifted<T> 
 /// The same without the lines that are none of TOML.
 fn good_lines(text: &str, refused: &mut Vec<String>) -> String {
     let mut lines: Vec<&str> = text.lines().collect();
-    for _ in 0..MOST_LINES {
+    let most = MOST_LINES.min(1 + MOST_READ / text.len().max(1));
+    for _ in 0..most {
         let text = lines.join("\n");
         let Err(error) = DeTable::parse(&text) else {
             return text;
