@@ -13,11 +13,11 @@ const FLAGS: &str = "--cfg fuzzing -Cpasses=sancov-module -Cllvm-args=-sanitizer
     -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table \
     -Cllvm-args=-sanitizer-coverage-trace-compares";
 
-/// What no input may take [s], [MiB].
+/// What no input may take, in seconds and in MiB.
 const MOST_SECONDS: u32 = 2;
 const MOST_MEMORY: u32 = 1024;
 
-/// Longest input [bytes].
+/// Longest input, in bytes.
 const MOST_BYTES: u32 = 1 << 16;
 
 /// Without a word it takes so long for all doors together.
