@@ -11,6 +11,12 @@ const LETTERS: usize = 80;
 /// After so many lines that cannot be read a text is taken for another kind.
 const MOST_LINES: usize = 32;
 
+/// When so much was taken out, more is not looked at one by one: what is wrong goes with its neighbours.
+const MOST_REFUSED: usize = 256;
+
+/// All of a text is read again for each of them: of a long one fewer are looked for [bytes].
+const MOST_READ: usize = 1 << 21;
+
 /// What is left of a text when all that cannot be used is taken out.
 pub struct Sifted<T> {
     /// What it says.
@@ -54,7 +60,8 @@ pub fn sift<T: DeserializeOwned + Serialize + Default>(text: &str) -> Sifted<T> 
 /// The same without the lines that are none of TOML.
 fn good_lines(text: &str, refused: &mut Vec<String>) -> String {
     let mut lines: Vec<&str> = text.lines().collect();
-    for _ in 0..MOST_LINES {
+    let most = MOST_LINES.min(1 + MOST_READ / text.len().max(1));
+    for _ in 0..most {
         let text = lines.join("\n");
         let Err(error) = DeTable::parse(&text) else {
             return text;
@@ -78,66 +85,68 @@ fn good_lines(text: &str, refused: &mut Vec<String>) -> String {
 }
 
 /// The part of a value with which the whole can still be read.
-fn good_part(
-    path: &str,
-    value: Value,
-    read: &dyn Fn(&Value) -> Result<(), String>,
-    refused: &mut Vec<String>,
-) -> Value {
-    if read(&value).is_ok() {
-        return value;
-    }
+fn good_part(path: &str, value: Value, read: &Read, refused: &mut Vec<String>) -> Value {
     match value {
         Value::Table(entries) => {
-            let mut good = Table::new();
-            for (key, entry) in entries {
-                let with = |entry: &Value| {
-                    let mut more = good.clone();
-                    more.insert(key.clone(), entry.clone());
-                    read(&Value::Table(more))
-                };
-                if let Some(entry) = good_entry(&inside(path, &key), entry, &with, refused) {
-                    good.insert(key, entry);
-                }
-            }
-            Value::Table(good)
+            let entries: Vec<Entry> = entries.into_iter().collect();
+            table_of(&good_entries(path, &entries, table_of, read, refused))
         }
         Value::Array(entries) => {
-            let mut good = Vec::new();
-            for (index, entry) in entries.into_iter().enumerate() {
-                let with = |entry: &Value| {
-                    let mut more = good.clone();
-                    more.push(entry.clone());
-                    read(&Value::Array(more))
-                };
-                let path = inside(path, &(index + 1).to_string());
-                good.extend(good_entry(&path, entry, &with, refused));
-            }
-            Value::Array(good)
+            let numbered = (1..).map(|number: usize| number.to_string());
+            let entries: Vec<Entry> = numbered.zip(entries).collect();
+            array_of(&good_entries(path, &entries, array_of, read, refused))
         }
         value => value,
     }
 }
 
-/// The part of an entry with which what it belongs to can still be read, if any.
-fn good_entry(
+/// Says why a value cannot be read, if it cannot.
+type Read<'a> = dyn Fn(&Value) -> Result<(), String> + 'a;
+
+/// Something in a table or an array, by its name or number.
+type Entry = (String, Value);
+
+fn table_of(entries: &[Entry]) -> Value {
+    Value::Table(entries.iter().cloned().collect())
+}
+
+fn array_of(entries: &[Entry]) -> Value {
+    Value::Array(entries.iter().map(|(_, entry)| entry.clone()).collect())
+}
+
+/// Those of some entries with which what is made `of` them can be read. They are halved until what is wrong is alone, so
+/// that many take as long as they are, and not as long as many times each other.
+fn good_entries(
     path: &str,
-    entry: Value,
-    read: &dyn Fn(&Value) -> Result<(), String>,
+    entries: &[Entry],
+    of: fn(&[Entry]) -> Value,
+    read: &Read,
     refused: &mut Vec<String>,
-) -> Option<Value> {
-    let Err(reason) = read(&entry) else {
-        return Some(entry);
-    };
-    let before = refused.len();
-    let part = good_part(path, entry, read, refused);
-    if read(&part).is_ok() {
-        return Some(part);
+) -> Vec<Entry> {
+    match (read(&of(entries)), entries) {
+        (Ok(()), _) => entries.to_vec(),
+        (Err(_), []) => Vec::new(),
+        (Err(_), _) if refused.len() >= MOST_REFUSED => Vec::new(),
+        (Err(reason), [(name, entry)]) => {
+            let path = inside(path, name);
+            let with = |entry: &Value| read(&of(&[(name.clone(), entry.clone())]));
+            let before = refused.len();
+            let part = good_part(&path, entry.clone(), &with, refused);
+            if with(&part).is_ok() {
+                return vec![(name.clone(), part)];
+            }
+            // What is wrong with it is wrong with all of it.
+            refused.truncate(before);
+            refused.push(named(&path, &reason));
+            Vec::new()
+        }
+        (Err(_), entries) => {
+            let (first, last) = entries.split_at(entries.len() / 2);
+            let mut good = good_entries(path, first, of, read, refused);
+            good.extend(good_entries(path, last, of, read, refused));
+            good
+        }
     }
-    // What is wrong with it is wrong with all of it.
-    refused.truncate(before);
-    refused.push(named(path, &reason));
-    None
 }
 
 /// Notes what stands in a table and means nothing.
@@ -149,6 +158,7 @@ fn name_unknown(path: &str, table: &Table, meant: &Table, refused: &mut Vec<Stri
                 name_unknown(&path, table, meant, refused);
             }
             (_, Some(_)) => {}
+            (_, None) if refused.len() >= MOST_REFUSED => {}
             (_, None) => refused.push(named(&path, "it means nothing here")),
         }
     }
@@ -240,6 +250,29 @@ mod tests {
             "speed = 0.75\nvolume = 0.5",
             &["line 2 ("],
         );
+    }
+
+    /// It once took four times as long for twice as many.
+    #[test]
+    fn a_long_text_that_is_all_wrong_is_read_in_time() {
+        let entries = |count: usize, value: &str| {
+            let lines = (0..count).map(|number| format!("key{number} = {value}\n"));
+            lines.collect::<String>()
+        };
+        let texts = [
+            format!("speed = \"fast\"\n{}", entries(20_000, "1")),
+            format!("[calibrations]\n{}", entries(20_000, "1")),
+            format!("[bindings.keys]\n{}", entries(20_000, "[\"Q\"]")),
+            format!("[bindings.keys]\npause = [{}]", "\"?\", ".repeat(20_000)),
+        ];
+        for text in texts {
+            let start = std::time::Instant::now();
+            let found = sift::<Settings>(&text);
+            let refused = found.refused.len();
+            assert!((200..=MOST_REFUSED + 1).contains(&refused), "{refused}");
+            let seconds = start.elapsed().as_secs_f32();
+            assert!(seconds < 20.0, "{seconds} s for {:?}", &text[..40]);
+        }
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! The chores of this repository, run as `cargo xtask <task>`. Plain std, so that it builds in a moment.
 
+mod fuzz;
 mod kernel;
 mod packages;
 mod shell;
@@ -41,6 +42,7 @@ fn main() -> ExitCode {
         Task::Wasm(if_missing) => wasm::run(if_missing),
         Task::Kernel(if_missing) => kernel::run(if_missing),
         Task::Soak(words) => soak(&words),
+        Task::Fuzz(words) => fuzz::run(&words),
         Task::Rapier => run_all(RAPIER),
     };
     match outcome {

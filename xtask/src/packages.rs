@@ -23,6 +23,8 @@ pub enum Purpose {
     Window,
     /// To draw without a window, as tests do.
     Drawing,
+    /// To compile the fuzzer.
+    Fuzzing,
 }
 
 /// How to see that a package is there.
@@ -62,13 +64,14 @@ const fn package(
 /// this program would not have been linked.
 #[rustfmt::skip]
 const PACKAGES: &[Package] = {
-    use Purpose::{Build, Drawing, Window};
+    use Purpose::{Build, Drawing, Fuzzing, Window};
     use Seen::{Installed, Program};
     &[
         package("cmake", Program("cmake"), &[Build], "configures SDL, which reads sticks and pads"),
         package("make", Program("make"), &[Build], "builds SDL"),
         package("pkg-config", Program("pkg-config"), &[Build], "finds ALSA"),
         package("libasound2-dev", Installed, &[Build], "ALSA, for sound"),
+        package("g++", Program("g++"), &[Fuzzing], "compiles libFuzzer"),
         package("libx11-6", Installed, &[Window], "X11 windows"),
         package("libx11-xcb1", Installed, &[Window], "X11 windows"),
         package("libxcursor1", Installed, &[Window], "the mouse pointer in X11 windows"),

@@ -16,6 +16,9 @@ tasks:
   kernel --install the same; what is missing comes from Debian's or Ubuntu's packages
   soak [MINUTES [LEVEL …]]
                    ten minutes of two hands that do anything, on every level, unless told otherwise
+  fuzz [MINUTES [DOOR …]]
+                   nine minutes of scenes, levels, pictures, replays, settings … that nobody
+                   meant, each looking for a way that none before it took
   rapier           whether crates/against_rapier, a workspace of its own, still compiles
   help             this text, as does --help after any task; that of the game: play -- --help
 
@@ -35,6 +38,8 @@ pub enum Task {
     Kernel(IfMissing),
     /// With how long to play, and which levels.
     Soak(Vec<String>),
+    /// With how long, and through which doors.
+    Fuzz(Vec<String>),
     Rapier,
     Help,
 }
@@ -70,6 +75,7 @@ impl Task {
             ["kernel"] => Task::Kernel(IfMissing::Say),
             ["kernel", "--install"] => Task::Kernel(IfMissing::Install),
             ["soak", ..] => Task::Soak(own[1..].to_vec()),
+            ["fuzz", ..] => Task::Fuzz(own[1..].to_vec()),
             ["rapier"] => Task::Rapier,
             ["help"] => Task::Help,
             _ => return Err(format!("there is no task `{}`", arguments.join(" "))),
@@ -112,6 +118,7 @@ mod tests {
             "soak 2 hoop",
             Ok(Task::Soak(vec!["2".into(), "hoop".into()])),
         );
+        check("fuzz 1 png", Ok(Task::Fuzz(vec!["1".into(), "png".into()])));
         for line in [
             "help",
             "--help",

@@ -1,0 +1,160 @@
+//! What becomes of bytes behind each door.
+
+use crate::seeds::{CAT, PUDDING, SNAPSHOT_HEADER};
+use crate::tick::{FEW_VOXELS, play, step};
+use fuwafuwa::grid::MAX_EXTENT;
+use fuwafuwa::hash::Hash;
+use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, Settings, VoxelGrid, World, snapshot};
+use fuwafuwa_scenes::import::{Colours, Model, Picture};
+use fuwafuwa_scenes::scene::BodyText;
+use fuwafuwa_scenes::{Recording, Scene};
+use std::io;
+use std::sync::Arc;
+use tamaire_play::{AnyRound, InputFrame, Level, Playback, Replay};
+
+pub fn scene(bytes: &[u8]) -> bool {
+    let Some(mut scene) = text(bytes).and_then(|text| Scene::read("a.toml", text, &[]).ok()) else {
+        return false;
+    };
+    let written = toml::to_string(&scene).expect("a scene that was read can be written");
+    let again = Scene::read("a.toml", &written, &[]).expect("and read again");
+    assert_eq!(toml::to_string(&again).ok(), Some(written));
+    if scene.embed_files(&fetch).is_err() {
+        return false;
+    }
+    match scene.dim {
+        2 => play::<Dim2>(&scene),
+        _ => play::<Dim3>(&scene),
+    }
+}
+
+pub fn level(bytes: &[u8]) -> bool {
+    let Ok(level) = Level::read("a.toml", bytes, &fetch) else {
+        return false;
+    };
+    let text = level.text_to_keep().expect("a short one is not too long");
+    let again = Level::read_kept("a.toml", text.as_bytes()).expect("it can be read again");
+    assert_eq!(again.text_to_keep().ok(), Some(text));
+    if is_small(&level) {
+        let mut round = AnyRound::new(Arc::new(level));
+        round.step(InputFrame::towards([0.5; 3]));
+    }
+    true
+}
+
+pub fn png(bytes: &[u8]) -> bool {
+    let Ok(picture) = Picture::decode("a.png", bytes) else {
+        return false;
+    };
+    let mut colours = Colours::default();
+    let plain = picture.grid(32, 0.1, &colours);
+    colours.named.extend([([255, 0, 0], 1), ([0, 0, 255], 2)]);
+    let coloured = picture.grid(MAX_EXTENT.min(48), 0.1, &colours);
+    [plain, coloured].into_iter().flatten().for_each(drop_in);
+    true
+}
+
+pub fn vox(bytes: &[u8]) -> bool {
+    let Ok(model) = Model::decode("a.vox", bytes) else {
+        return false;
+    };
+    let grid = model.grid(0.1, &Colours::default());
+    let is_taken = grid.is_ok();
+    grid.into_iter().for_each(drop_in);
+    is_taken
+}
+
+pub fn replay(bytes: &[u8]) -> bool {
+    let Ok(replay) = Replay::of_bytes(bytes) else {
+        return false;
+    };
+    let text = replay.text();
+    let again = Replay::read(&text).expect("what was read can be read again");
+    assert_eq!(again.text(), text);
+    let Ok(mut playback) = Playback::new(Arc::new(replay)) else {
+        return false;
+    };
+    while playback.round().ticks() < 3 && is_small(playback.round().level()) {
+        if playback.step().is_err() {
+            return false;
+        }
+    }
+    true
+}
+
+pub fn recording(bytes: &[u8]) -> bool {
+    let text = text(bytes);
+    let Some(mut recording) = text.and_then(|text| Recording::read("a.toml", text).ok()) else {
+        return false;
+    };
+    let written = recording.text().expect("what was read is not too long");
+    Recording::read("a.toml", &written).expect("it can be read again");
+    recording.goals.truncate(2);
+    match recording.scene.dim {
+        2 => play::<Dim2>(&recording.scene) && recording.replay::<Dim2>(|_| {}).is_ok(),
+        _ => play::<Dim3>(&recording.scene) && recording.replay::<Dim3>(|_| {}).is_ok(),
+    }
+}
+
+/// The bytes are the dimension and what follows the header: a checksum keeps out accidents, not strangers.
+pub fn snapshot(bytes: &[u8]) -> bool {
+    let Some((&dim, state)) = bytes.split_first() else {
+        return false;
+    };
+    let mut whole = SNAPSHOT_HEADER.to_vec();
+    whole.push(dim);
+    whole.extend(Hash::of(state).to_le_bytes());
+    whole.extend(state);
+    match dim {
+        3 => go_on::<Dim3>(&whole),
+        _ => go_on::<Dim2>(&whole),
+    }
+}
+
+fn text(bytes: &[u8]) -> Option<&str> {
+    std::str::from_utf8(bytes).ok()
+}
+
+/// What scenes may name.
+fn fetch(name: &str) -> io::Result<Vec<u8>> {
+    match name {
+        "cat.png" => Ok(CAT.to_vec()),
+        "pudding.vox" => Ok(PUDDING.to_vec()),
+        _ => Err(io::ErrorKind::NotFound.into()),
+    }
+}
+
+fn is_small(level: &Level) -> bool {
+    let bodies = &level.scene().body;
+    let across = |body: &BodyText| body.n.unwrap_or(usize::MAX);
+    bodies.len() <= 4 && bodies.iter().all(|body| across(body) <= 12)
+}
+
+/// Puts a shape into a world and plays a tick.
+fn drop_in<D: Dim>(grid: VoxelGrid<D>) {
+    if grid.solid_count() > FEW_VOXELS {
+        return;
+    }
+    let mut world = World::new(Settings::default()).expect("the usual settings are good");
+    if let Ok(body) = Body::new(grid, &[Material::default(); 255]) {
+        world.add_body(body);
+        step(&mut world);
+    }
+}
+
+fn go_on<D: Dim>(bytes: &[u8]) -> bool {
+    let Ok(mut world) = snapshot::load::<D>(bytes) else {
+        return false;
+    };
+    let again = snapshot::load::<D>(&snapshot::save(&world)).expect("it can be loaded again");
+    assert_eq!(again.hash(), world.hash());
+    let voxels: usize = world
+        .bodies()
+        .iter()
+        .map(|body| body.grid().solid_count())
+        .sum();
+    if voxels <= FEW_VOXELS {
+        step(&mut world);
+    }
+    true
+}

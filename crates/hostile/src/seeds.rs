@@ -1,0 +1,172 @@
+//! Good bytes for each door, and small: what is large is tested where it is read.
+
+use fuwafuwa::{Dim, Dim2, Dim3, snapshot};
+use fuwafuwa_scenes::{Recording, Scene, scene};
+use png::{BitDepth, ColorType};
+use std::sync::Arc;
+use tamaire_play::level::{NAMED, NAMED_3D};
+use tamaire_play::{AnyRound, InputFrame, Level};
+
+pub const CAT: &[u8] = include_bytes!("../../tamaire_play/levels/cat.png");
+pub const PUDDING: &[u8] = include_bytes!("../../tamaire_play/levels/pudding.vox");
+
+/// The four letters and the number of the format.
+pub const SNAPSHOT_HEADER: [u8; 8] = {
+    let [a, b, c, d] = snapshot::VERSION.to_le_bytes();
+    [b'f', b'u', b'w', b'a', a, b, c, d]
+};
+
+/// A scene with what those that come along lack.
+const RICH: &str = include_str!("rich.toml");
+
+/// Voxels across.
+const FEW: usize = 8;
+
+pub fn scenes() -> Vec<Vec<u8>> {
+    let texts = small_scenes().into_iter().map(|scene| text_of(&scene));
+    texts.chain([RICH.into()]).collect()
+}
+
+pub fn levels() -> Vec<Vec<u8>> {
+    small_levels()
+        .iter()
+        .map(|level| text_of(level.scene()))
+        .collect()
+}
+
+pub fn pictures() -> Vec<Vec<u8>> {
+    let kinds = [
+        (ColorType::Grayscale, BitDepth::One),
+        (ColorType::Grayscale, BitDepth::Sixteen),
+        (ColorType::GrayscaleAlpha, BitDepth::Eight),
+        (ColorType::Rgb, BitDepth::Eight),
+        (ColorType::Rgba, BitDepth::Eight),
+        (ColorType::Rgba, BitDepth::Sixteen),
+        (ColorType::Indexed, BitDepth::Two),
+    ];
+    let pictures = kinds
+        .into_iter()
+        .map(|(colour, depth)| picture(colour, depth));
+    pictures.chain([CAT.to_vec()]).collect()
+}
+
+pub fn models() -> Vec<Vec<u8>> {
+    let cube = (0..27_u8).map(|k| [k % 3, k / 3 % 3, k / 9, 1 + k % 2]);
+    vec![model(3, &cube.collect::<Vec<_>>()), PUDDING.to_vec()]
+}
+
+pub fn replays() -> Vec<Vec<u8>> {
+    let played = |level: Level| {
+        let mut round = AnyRound::new(Arc::new(level));
+        for tick in 0..61 {
+            let away = 0.01 * tick as f32;
+            let frame = InputFrame::towards([away, 0.5, 0.0]);
+            round.step(frame.with(1, [-away, 0.5, 0.0]));
+        }
+        round.replay().text().into_bytes()
+    };
+    let few = ["classic", "twins", "donut", "classic-3d"];
+    let levels = small_levels().into_iter();
+    levels
+        .filter(|level| few.contains(&level.id.as_str()))
+        .map(played)
+        .collect()
+}
+
+pub fn recordings() -> Vec<Vec<u8>> {
+    let recorded = |scene: &Scene| match scene.dim {
+        2 => Recording::of::<Dim2>(scene, 2, |_| {}),
+        _ => Recording::of::<Dim3>(scene, 2, |_| {}),
+    };
+    let text = |scene| recorded(&scene).expect("it can be built").text();
+    let texts = small_scenes().into_iter().map(text);
+    texts
+        .map(|text| text.expect("it is short").into_bytes())
+        .collect()
+}
+
+pub fn snapshots() -> Vec<Vec<u8>> {
+    let scenes = small_scenes().into_iter();
+    let saved = |scene: Scene| match scene.dim {
+        2 => saved::<Dim2>(&scene),
+        _ => saved::<Dim3>(&scene),
+    };
+    scenes.map(saved).collect()
+}
+
+/// The scenes that come along, with small bodies.
+fn small_scenes() -> Vec<Scene> {
+    let small = |name: &str| {
+        let mut changes = vec![format!("body.n={FEW}"), "seconds=0.1".into()];
+        if name == "diced" {
+            changes.push("body.diced=0.5".into());
+        }
+        Scene::open(name, &changes).expect("it comes along")
+    };
+    scene::NAMED.iter().map(|(name, _)| small(name)).collect()
+}
+
+/// The levels that come along, with small bodies where their size can be chosen.
+pub fn small_levels() -> Vec<Level> {
+    let small = |(id, text): &(&str, &str)| {
+        let level = Level::open(id).expect("it comes along");
+        if level.scene().body[0].file.is_some() {
+            return level;
+        }
+        let scene = Scene::read(id, text, &[format!("body.n={FEW}")]);
+        Level::of(id, scene.expect("it comes along")).expect("it can be smaller")
+    };
+    NAMED.iter().chain(&NAMED_3D).map(small).collect()
+}
+
+fn text_of(scene: &Scene) -> Vec<u8> {
+    let text = toml::to_string(scene);
+    text.expect("a scene that was read can be written")
+        .into_bytes()
+}
+
+/// What [`crate::DOORS`] takes of a snapshot.
+fn saved<D: Dim>(scene: &Scene) -> Vec<u8> {
+    let mut world = scene.build::<D>().expect("it can be built");
+    world.step();
+    let bytes = snapshot::save(&world);
+    // The dimension, and what follows the checksum.
+    [&bytes[8..9], &bytes[17..]].concat()
+}
+
+/// Some pixels of a kind.
+fn picture(colour: ColorType, depth: BitDepth) -> Vec<u8> {
+    const SIDE: usize = 9;
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, SIDE as u32, SIDE as u32);
+    encoder.set_color(colour);
+    encoder.set_depth(depth);
+    if colour == ColorType::Indexed {
+        encoder.set_palette(&[255, 0, 0, 0, 0, 255, 250, 250, 250, 0, 0, 0][..]);
+        encoder.set_trns(&[255, 255, 0][..]);
+    }
+    let row = (SIDE * colour.samples() * depth as usize).div_ceil(8);
+    let samples: Vec<u8> = (0..SIDE * row).map(|k| (k * k * 37) as u8).collect();
+    let mut writer = encoder.write_header().expect("a vector takes all");
+    writer
+        .write_image_data(&samples)
+        .expect("a vector takes all");
+    writer.finish().expect("a vector takes all");
+    bytes
+}
+
+/// A model of MagicaVoxel.
+fn model(side: u32, voxels: &[[u8; 4]]) -> Vec<u8> {
+    let chunk = |name: &[u8; 4], contents: &[u8], children: &[u8]| {
+        let lengths = [contents, children].map(|part| (part.len() as u32).to_le_bytes());
+        [name, lengths.as_flattened(), contents, children].concat()
+    };
+    let count = (voxels.len() as u32).to_le_bytes();
+    let chunks = [
+        chunk(b"SIZE", [side.to_le_bytes(); 3].as_flattened(), &[]),
+        chunk(b"XYZI", &[&count, voxels.as_flattened()].concat(), &[]),
+        chunk(b"RGBA", &[200; 1024], &[]),
+    ];
+    let main = chunk(b"MAIN", &[], &chunks.concat());
+    [b"VOX ", &150_u32.to_le_bytes()[..], &main].concat()
+}
