@@ -1,5 +1,6 @@
 //! Where a round is played: a scene with a table `[game]`, in a text file that a person can write.
 
+use crate::Route;
 use fuwafuwa::hash::Hash;
 use fuwafuwa::{Dim, Shape, World};
 use fuwafuwa_scenes::scene::{
@@ -236,12 +237,23 @@ impl Level {
             return Err(missing("view", reason));
         }
         let (id, start) = (id.into(), Arc::default());
-        Ok(Self {
+        let level = Self {
             id,
             scene,
             game,
             start,
-        })
+        };
+        let possible = level.possible_routes();
+        let stated = &level.game.routes;
+        if !stated.iter().all(|route| possible.contains(route)) {
+            let reason = format!("expected some of {possible:?}, found {stated:?}");
+            return Err(LevelError::NoGame {
+                id: level.id,
+                field: "game.routes",
+                reason,
+            });
+        }
+        Ok(level)
     }
 
     /// The scene.
@@ -252,6 +264,26 @@ impl Level {
     /// What makes a game of it.
     pub fn game(&self) -> &GameText {
         &self.game
+    }
+
+    /// The routes by which it can be won: none without a basket, not by shaving where nothing tears, and
+    /// only those that it states where it does.
+    pub fn routes(&self) -> &[Route] {
+        match self.game.routes.as_slice() {
+            [] => self.possible_routes(),
+            stated => stated,
+        }
+    }
+
+    /// The routes that its basket and its materials allow; a mix is some of both, and no route of its own.
+    fn possible_routes(&self) -> &'static [Route] {
+        let materials = self.scene.materials();
+        let can_tear = materials.iter().any(|m| m.strength.is_finite());
+        match (self.game.basket.is_some(), can_tear) {
+            (false, _) => &[],
+            (true, false) => &[Route::Squeeze],
+            (true, true) => &[Route::Squeeze, Route::Shave],
+        }
     }
 
     /// Low and high corner of the room in which hands may move [m].
@@ -372,6 +404,33 @@ mod tests {
             let checked = scene.and_then(|scene| Level::of(id, scene));
             assert!(checked.is_ok(), "{id}: {checked:?}");
         }
+    }
+
+    #[test]
+    fn a_level_has_the_routes_that_its_material_allows() {
+        let routes = |id| Level::open(id).unwrap().routes().to_vec();
+        let both = [Route::Squeeze, Route::Shave];
+        for (id, expected) in [
+            ("classic", &both[..]),
+            ("rubber", &both[..1]),
+            ("biscuit", &both[1..]),
+            ("sandbox", &[]),
+        ] {
+            assert_eq!(routes(id), expected, "{id}");
+        }
+        for (id, _) in NAMED.iter().chain(&NAMED_3D) {
+            let level = Level::open(id).unwrap();
+            let mut wished = level.game().wish.iter().filter_map(|wish| wish.route);
+            assert!(wished.all(|route| level.routes().contains(&route)), "{id}");
+        }
+    }
+
+    #[test]
+    fn a_level_states_only_routes_that_it_can_have() {
+        let (_, rubber) = NAMED[7];
+        let refused = refusal("rubber", rubber, &["game.routes=[\"shave\"]"]);
+        let expected = "rubber: game.routes: expected some of [Squeeze], found [Shave]";
+        assert_eq!(refused.as_deref(), Some(expected));
     }
 
     #[test]

@@ -136,9 +136,9 @@ fn tile(ui: &mut Ui, game: &Game, maps: &Maps, place: usize, size: Vec2) -> Resp
     let base = rect.bottom() - 26.0;
     let mut x = rect.center().x;
     let wishes = &level.game().wish;
-    let routes = [Route::Squeeze, Route::Shave];
-    let has_basket = level.game().basket.is_some();
-    let width = 24.0 * wishes.len() as f32 + if has_basket { 16.0 + 64.0 } else { 0.0 };
+    let routes = level.routes();
+    let gap = if routes.is_empty() { 0.0 } else { 16.0 };
+    let width = 24.0 * wishes.len() as f32 + gap + 32.0 * routes.len() as f32;
     x -= 0.5 * width;
     for wish in wishes {
         let name = WishName::of(wish);
@@ -148,8 +148,8 @@ fn tile(ui: &mut Ui, game: &Game, maps: &Maps, place: usize, size: Vec2) -> Resp
         words(ui, pos2(x + 12.0, base), star, 20.0, tone);
         x += 24.0;
     }
-    x += 16.0;
-    for route in routes.into_iter().filter(|_| has_basket) {
+    x += gap;
+    for &route in routes {
         let is_done = record.is_some_and(|record| {
             record.best.contains_key(&route) || record.best.contains_key(&Route::Mix)
         });

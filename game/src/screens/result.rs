@@ -8,7 +8,7 @@ use crate::platform::HAS_PICTURES;
 use crate::words::Words;
 use egui::{Align, Layout, Role, Sense, Ui, Vec2, WidgetInfo, pos2, vec2};
 use std::sync::Arc;
-use tamaire_play::{Level, Outcome, Route, Wish};
+use tamaire_play::{Outcome, Route, Wish};
 use tamaire_sound::Menu;
 
 /// Width of the card [points].
@@ -42,7 +42,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
             ui.add_space(12.0);
             wishes(ui, &theme, said, &outcome, &level.game().wish);
             ui.add_space(14.0);
-            if can_tear(&level) {
+            if level.routes().contains(&other(outcome.route)) {
                 line(ui, (said.other_way)(outcome.route), 23.0, theme.accent);
                 ui.add_space(GAP);
             }
@@ -58,13 +58,12 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     }
 }
 
-/// Whether there is another way.
-fn can_tear(level: &Level) -> bool {
-    level
-        .scene()
-        .materials()
-        .iter()
-        .any(|material| material.strength.is_finite())
+/// The other way.
+fn other(route: Route) -> Route {
+    match route {
+        Route::Squeeze => Route::Shave,
+        Route::Shave | Route::Mix => Route::Squeeze,
+    }
 }
 
 /// The route, as a sign and in words.

@@ -19,6 +19,9 @@ pub struct GameText {
     /// For how long it must rest there [s].
     #[serde(default = "usual_hold")]
     pub hold: f32,
+    /// The routes by which it can be won, where they are not those that its materials allow.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub routes: Vec<RouteText>,
     /// What else one may try.
     #[serde(default)]
     pub wish: Vec<WishText>,
