@@ -6,7 +6,7 @@ mod pointing;
 mod presses;
 
 use crate::game::{Game, Screen};
-use crate::input::{Action, Latch, Means, Seat};
+use crate::input::{Action, Means, Seat};
 use crate::look::{Stage, dress};
 use crate::platform::{GpuWatch, dropped};
 use crate::screens;
@@ -42,7 +42,6 @@ pub struct App {
     navigators: Vec<(sticks::DeviceId, Navigator)>,
     presses: Presses,
     fingers: Fingers,
-    latch: Latch,
     dwell: Dwell,
     screen_before: Screen,
     /// Whether the window ever had the focus, and whether it was asked to fill the screen.
@@ -75,7 +74,6 @@ impl App {
             navigators,
             presses,
             fingers: Fingers::default(),
-            latch: Latch::default(),
             dwell: Dwell::default(),
             screen_before,
             had_focus: false,
@@ -172,7 +170,8 @@ impl App {
         let Some(at) = ctx.input(|input| input.pointer.latest_pos()) else {
             return;
         };
-        if self.dwell.pass(on, seconds) {
+        let has_moved = ctx.input(|input| input.pointer.delta() != egui::Vec2::ZERO);
+        if self.dwell.pass(on, has_moved, seconds) {
             self.presses.waiting().click = Some(at);
         }
         self.dwell.draw(ctx, at, &self.game.theme());
@@ -229,10 +228,10 @@ impl App {
         }
         point(game, ctx, &self.fingers);
         if game.screen() != Screen::Play {
-            self.latch.release();
+            game.controls.latch.release();
         }
         game.controls.devices.keys = match game.settings.toggle_keys {
-            true => self.latch.keys(),
+            true => game.controls.latch.keys(),
             false => ctx.input(|input| input.keys_down.iter().copied().collect()),
         };
         if game.screen() == Screen::Play
@@ -241,6 +240,7 @@ impl App {
         {
             look_around(game, ctx, &mut self.fingers);
         }
+        let is_playing = game.screen() == Screen::Play;
         let mut taken = Vec::new();
         for event in &events {
             let Event::Key {
@@ -266,7 +266,9 @@ impl App {
                 continue;
             }
             let action = game.settings.bindings.of_key(key);
-            self.latch.press(key, &game.settings.bindings);
+            if is_playing && game.settings.toggle_keys {
+                game.controls.latch.press(key, &game.settings.bindings);
+            }
             if key == Key::F11 && action.is_none() {
                 game.settings.full_screen ^= true;
                 game.keep_settings();
@@ -313,6 +315,7 @@ impl eframe::App for App {
         if self.screen_before != self.game.screen() {
             // What had the focus is gone.
             self.screen_before = self.game.screen();
+            self.dwell = Dwell::default();
             ctx.memory_mut(|memory| {
                 if let Some(id) = memory.focused() {
                     memory.surrender_focus(id);

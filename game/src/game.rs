@@ -204,8 +204,15 @@ impl Game {
     /// Begins the level again, against a round that somebody played in it.
     pub fn race(&mut self, replay: Arc<Replay>) -> Result<(), ReplayError> {
         let ghost = Playback::new(replay)?;
-        let level = ghost.round().level().clone();
+        // What is won in it counts, by whatever name it was kept.
+        let played = ghost.round().level();
+        let known = self
+            .levels
+            .iter()
+            .find(|level| level.hash() == played.hash());
+        let level = known.unwrap_or(played).clone();
         self.begin(Session::of_people(level).against(ghost));
+        self.bout.is_ghost_chosen = true;
         Ok(())
     }
 
@@ -217,18 +224,18 @@ impl Game {
 
     /// The same again from its start.
     pub fn retry(&mut self) {
-        let again = self.bout.session.again();
-        let is_beaten = self.bout.won.is_some_and(|(_, is_best)| is_best);
-        self.begin(if is_beaten {
-            self.with_best(again)
-        } else {
-            again
-        });
+        let (session, is_chosen) = (&self.bout.session, self.bout.is_ghost_chosen);
+        let again = match session.is_played() && !is_chosen {
+            true => self.with_best(Session::of_people(session.round().level().clone())),
+            false => session.again(),
+        };
+        self.begin(again);
+        self.bout.is_ghost_chosen = is_chosen;
     }
 
     /// A round, beside the fastest one that was won in its level where that is wished.
     fn with_best(&self, session: Session) -> Session {
-        if !self.settings.race_best || !session.is_played() {
+        if !self.settings.race_best {
             return session;
         }
         let level = session.round().level();
@@ -243,7 +250,8 @@ impl Game {
 
     fn begin(&mut self, session: Session) {
         self.bout.begin(session, self.time);
-        self.controls.begin();
+        let is_space = self.bout.turn().is_some();
+        self.controls.begin(is_space);
         let level = self.bout.round().level();
         let known = self.levels.iter().position(|known| known == level);
         self.chosen = known.unwrap_or(self.chosen);

@@ -15,13 +15,17 @@ pub(super) struct Dwell {
     on: Option<Id>,
     /// For how long [s].
     seconds: f32,
+    /// Whether it came there by itself: what comes up under it is not meant.
+    has_moved: bool,
 }
 
 impl Dwell {
     /// Lets time pass with the mouse on something; says whether that is pressed now, which happens once.
-    pub(super) fn pass(&mut self, on: Option<Id>, seconds: f32) -> bool {
+    pub(super) fn pass(&mut self, on: Option<Id>, has_moved: bool, seconds: f32) -> bool {
+        self.has_moved |= has_moved;
+        let on = on.filter(|_| self.has_moved);
         if self.on != on {
-            *self = Self { on, seconds: 0.0 };
+            (self.on, self.seconds) = (on, 0.0);
         }
         let before = self.seconds;
         self.seconds += if on.is_some() { seconds } else { 0.0 };
@@ -54,7 +58,8 @@ mod tests {
     fn what_the_mouse_rests_on_is_pressed_once() {
         let [one, other] = ["one", "other"].map(|name| Some(Id::unique(name)));
         let mut dwell = Dwell::default();
-        let mut pass = |on, seconds| dwell.pass(on, seconds);
+        assert!(!dwell.pass(one, false, 9.0), "it came up under the mouse");
+        let mut pass = |on, seconds| dwell.pass(on, true, seconds);
         assert!(!pass(None, 9.0) && !pass(one, 0.6) && !pass(other, 0.6));
         assert!(pass(other, 0.6) && !pass(other, 9.0));
         assert!(!pass(None, 0.1) && !pass(other, 0.9) && pass(other, 0.2));

@@ -15,6 +15,8 @@ pub(super) struct Fingers {
     /// The one that points, and where.
     first: Option<(Finger, Pos2)>,
     others: BTreeMap<Finger, Drag>,
+    /// The one that egui takes for a mouse.
+    mouse: Option<Finger>,
     /// Those that hold a button.
     holding: BTreeMap<Finger, Action>,
     drawn: Drawn,
@@ -65,11 +67,15 @@ impl Fingers {
             } = *event
             {
                 let finger = (device_id, id);
+                let is_mouse = *self.mouse.get_or_insert(finger) == finger;
+                if is_mouse && matches!(phase, TouchPhase::End | TouchPhase::Cancel) {
+                    self.mouse = None;
+                }
                 let button = buttons.iter().find(|button| button.place.contains(pos));
                 match button.filter(|_| phase == TouchPhase::Start) {
                     Some(&button) => {
-                        // The first one clicks like a mouse, as it lifts.
-                        if self.are_down() {
+                        // A mouse clicks, as it is let go.
+                        if !is_mouse {
                             pressed.push(button);
                         }
                         self.holding.insert(finger, button.action);

@@ -21,7 +21,9 @@ const TURN: f32 = 1.5;
 /// Notes where the mouse or the first finger points, which counts until a tick has heard of it; on a button it does not
 /// mean the hand, nor while it turns the camera.
 pub(super) fn point(game: &mut Game, ctx: &Context, fingers: &Fingers) {
-    let is_on_button = ctx.interaction_snapshot(|seen| !seen.hovered.is_empty());
+    // What a finger holds that presses a button is no place for a hand either, and another one may have a hand.
+    let is_on_button =
+        !fingers.are_down() && ctx.interaction_snapshot(|seen| !seen.hovered.is_empty());
     let is_on = game.screen() == Screen::Play;
     let devices = &mut game.controls.devices;
     if !is_on || is_on_button {
@@ -29,7 +31,8 @@ pub(super) fn point(game: &mut Game, ctx: &Context, fingers: &Fingers) {
         return;
     }
     let view = game.bout.view;
-    let second = view.zip(fingers.second());
+    let is_plane = matches!(game.bout.round(), AnyRound::Plane(_));
+    let second = view.zip(fingers.second()).filter(|_| is_plane);
     devices.second = second.map(|(view, at)| view.in_world(at, 0.0));
     let at = match fingers.are_down() {
         true => fingers.first(),

@@ -13,6 +13,8 @@ const CHEER: f32 = 1.4;
 pub struct Bout {
     /// It in time.
     pub session: Session,
+    /// Whether the ghost beside it, if any, is one that the player chose.
+    pub(super) is_ghost_chosen: bool,
     /// What flies about.
     pub effects: Effects,
     /// From where it is seen.
@@ -39,6 +41,7 @@ impl Bout {
     pub(super) fn new(session: Session) -> Self {
         Self {
             session,
+            is_ghost_chosen: false,
             effects: Effects::default(),
             camera: CameraRig::default(),
             view: None,
@@ -55,6 +58,7 @@ impl Bout {
     /// Another round, seen from where the last one was seen; the game is so old [s].
     pub(super) fn begin(&mut self, session: Session, time: f64) {
         self.session = session;
+        self.is_ghost_chosen = false;
         self.opening = Opening::begin(time);
         self.effects = Effects::default();
         self.lesson.begin();

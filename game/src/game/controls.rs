@@ -1,6 +1,6 @@
 //! With what the game is played: what devices say, and who holds which.
 
-use crate::input::{Action, Devices, Means, Players, Seat};
+use crate::input::{Action, Devices, Latch, Means, Players, Seat};
 use crate::platform::Pads;
 use egui::Rect;
 use sticks::{Change, DeviceId, Labels};
@@ -37,6 +37,8 @@ pub struct Controls {
     pub means: Means,
     /// The stick or pad with which something was done last.
     in_hand: Option<DeviceId>,
+    /// Keys that stay down, where that is wished.
+    pub latch: Latch,
     /// What fingers can press, as it was seen last.
     pub buttons: Vec<ScreenButton>,
     /// An action whose key or button the next one pressed becomes.
@@ -52,14 +54,20 @@ impl Controls {
             players: Players::default(),
             means: Means::default(),
             in_hand: None,
+            latch: Latch::default(),
             buttons: Vec::new(),
             rebinding: None,
         }
     }
 
     /// Another round begins: what pointed at places of the last one counts no more.
-    pub(super) fn begin(&mut self) {
+    pub(super) fn begin(&mut self, is_space: bool) {
         self.players.start();
+        self.latch.release();
+        // In space a second finger raises the hand of the first.
+        if is_space && self.players.second() == Some(Seat::Finger) {
+            self.players.join(Seat::Finger);
+        }
         (self.devices.pointer, self.devices.second) = (None, None);
         self.devices.lift = 0.0;
     }

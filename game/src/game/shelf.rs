@@ -60,11 +60,15 @@ impl Shelf {
     }
 
     fn found(&self, replay: &Replay, levels: &[Arc<Level>]) -> Result<Found, ReplayError> {
-        let level = replay.level()?;
-        let here = self.levels().find(|known| **known == level);
-        let known = here.or_else(|| levels.iter().find(|known| ***known == level).cloned());
+        // To build a level takes long: the same one is not built again.
+        let is_same = |known: &Arc<Level>| format!("{:016x}", known.hash()) == replay.level_hash;
+        let known = levels.iter().cloned().chain(self.levels()).find(is_same);
+        let level = match known {
+            Some(level) => level,
+            None => Arc::new(replay.level()?),
+        };
         Ok(Found {
-            level: known.unwrap_or_else(|| Arc::new(level)),
+            level,
             outcome: replay.outcome,
             seconds: replay.ticks() as f32 * fuwafuwa::world::TICK,
         })

@@ -46,6 +46,6 @@ impl Game {
     }
 
     fn is_played_in_space(&self) -> bool {
-        self.screen() == Screen::Play && self.bout.session.is_played() && self.bout.turn().is_some()
+        self.screen() == Screen::Play && self.bout.is_played_in_space()
     }
 }

@@ -186,6 +186,7 @@ pub fn slider(
         let width = (ui.available_width() - 84.0).max(60.0);
         let (rect, mut response) =
             ui.allocate_exact_size(vec2(width, 36.0), Sense::click_and_drag());
+        note_hovered(ui, &response);
         let before = *value;
         let track = Rect::from_center_size(rect.center(), vec2(rect.width() - 28.0, 12.0));
         if let Some(pointer) = response.interact_pointer_pos() {
