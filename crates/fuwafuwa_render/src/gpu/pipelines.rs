@@ -147,7 +147,7 @@ impl Pipelines {
             shrink: blurs(&blur_layout, &blur, "shrink"),
             soften: blurs(&blur_layout, &blur, "soften"),
             shape: blurs(&shape_layout, &shape, "shape"),
-            arena: stage(Some(&body_layout), &body, ("whole", "arena")).build(&shown),
+            arena: stage(Some(&body_layout), &body, ("placed", "arena")).build(&shown),
             body: stage(Some(&body_layout), &body, ("bounding", "body")).build(&Target {
                 topology: PrimitiveTopology::TriangleStrip,
                 ..shown.clone()

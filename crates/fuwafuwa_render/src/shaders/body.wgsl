@@ -7,17 +7,26 @@
 @group(1) @binding(5) var shapes: texture_2d<f32>;
 @group(1) @binding(6) var smooth_sampler: sampler;
 
-// The rectangle around all bodies.
-@vertex
-fn bounding(@builtin(vertex_index) index: u32) -> Covering {
-    let at = mix(globals.bounds.xy, globals.bounds.zw, vec2f(f32(index & 1u), f32(index >> 1u)));
-    let clip = to_clip(at);
-    return Covering(clip, to_uv(clip.xy));
+// Over the picture or a part of it, and the place [m] that is seen there. It is handed on, though it follows from `uv`:
+// where it was worked out of that for each pixel, Mesa's llvmpipe 22.3 lost memory with each frame.
+struct Placed {
+    @builtin(position) clip: vec4f,
+    @location(0) uv: vec2f,
+    @location(1) at: vec2f,
 }
 
-// The place that is seen there.
-fn place_at(uv: vec2f) -> vec2f {
-    return to_world(vec2f(2.0, -2.0) * uv + vec2f(-1.0, 1.0));
+@vertex
+fn placed(@builtin(vertex_index) index: u32) -> Placed {
+    let clip = covering(index);
+    return Placed(vec4f(clip, 0.0, 1.0), to_uv(clip), to_world(clip));
+}
+
+// The rectangle around all bodies.
+@vertex
+fn bounding(@builtin(vertex_index) index: u32) -> Placed {
+    let at = mix(globals.bounds.xy, globals.bounds.zw, vec2f(f32(index & 1u), f32(index >> 1u)));
+    let clip = to_clip(at);
+    return Placed(clip, to_uv(clip.xy), at);
 }
 
 // How deep inside the arena a place is [m], its corners a little rounded, and the way inside.
@@ -43,9 +52,9 @@ fn shadow(uv: vec2f) -> f32 {
 }
 
 @fragment
-fn arena(in: Covering) -> @location(0) vec4f {
+fn arena(in: Placed) -> @location(0) vec4f {
     let pixel = globals.view.z / globals.size.w;
-    let at = place_at(in.uv);
+    let at = in.at;
     let inside = depth(at);
     let centred = (in.uv - 0.5) * vec2f(globals.view.w, 1.0);
     let rim = smoothstep(0.1, 0.85, length(centred) / max(1.0, 0.75 * globals.view.w));
@@ -69,7 +78,7 @@ fn arena(in: Covering) -> @location(0) vec4f {
 }
 
 @fragment
-fn body(in: Covering) -> @location(0) vec4f {
+fn body(in: Placed) -> @location(0) vec4f {
     let pixel = 1.0 / globals.size.xy;
     var sharp = vec4f(0.0);
     for (var k = 0; k < 4; k++) {
@@ -80,7 +89,7 @@ fn body(in: Covering) -> @location(0) vec4f {
         return vec4f(0.0);
     }
     let metres = globals.view.z / globals.size.w;
-    let alpha = sharp.a * smoothstep(-metres, metres, depth(place_at(in.uv)).z);
+    let alpha = sharp.a * smoothstep(-metres, metres, depth(in.at).z);
     if globals.tune.w < 0.5 {
         return shown(to_linear(sharp.rgb / sharp.a), alpha);
     }
