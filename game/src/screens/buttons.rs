@@ -1,16 +1,20 @@
 //! The round buttons over a round: two for everybody, and for fingers all that keys and pads have.
 
-use super::hud::{EDGE, GAP, HIGH, pale};
 use super::icons;
 use super::widgets::note_hovered;
 use crate::game::{Game, ScreenButton};
 use crate::input::{Action, Means};
+use crate::look::Theme;
 use egui::{Color32, Painter, Pos2, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 use tamaire_play::AnyRound;
 
 /// Draws what stands for an action, so many times as large as usual.
 type Icon = fn(&Painter, Pos2, f32, Color32);
 
+/// Height of what stands in the upper row, between two of these, and from the edge of the window.
+pub(super) const HIGH: f32 = 44.0;
+pub(super) const GAP: f32 = 8.0;
+pub(super) const EDGE: f32 = 15.0;
 /// Side of those that a thumb holds [points].
 const THUMB: f32 = 68.0;
 
@@ -88,4 +92,9 @@ fn one(game: &mut Game, ui: &Ui, button: ScreenButton, name: &str, icon: Icon) -
         game.act(button.action, button.seat());
     }
     response.hovered()
+}
+
+/// What is under something that does not hide the round.
+pub(super) fn pale(theme: &Theme) -> Color32 {
+    theme.card.gamma_multiply(0.72)
 }

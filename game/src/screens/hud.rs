@@ -1,17 +1,14 @@
 //! The little that is shown over a round: time, how full the basket is, what is different from usual.
 
+use super::buttons::{self, EDGE, GAP, HIGH, pale};
+use super::icons;
 use super::widgets::fitted;
-use super::{buttons, icons};
 use crate::game::Game;
 use crate::input::Action;
 use crate::look::Theme;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
 use fuwafuwa_render::frame::ElementColour;
 
-/// Height of what stands in the upper row, between two of these, and from the edge of the window.
-pub(super) const HIGH: f32 = 44.0;
-pub(super) const GAP: f32 = 8.0;
-pub(super) const EDGE: f32 = 15.0;
 /// Height of a line of the lesson.
 const LINE: f32 = 34.0;
 /// Radius of the jar.
@@ -255,8 +252,4 @@ fn draw_jar(ui: &Ui, middle: Pos2, scale: f32, game: &Game) {
             icons::tick(painter, middle, 0.55 * scale * JAR, stroke);
         }
     }
-}
-
-pub(super) fn pale(theme: &Theme) -> Color32 {
-    theme.card.gamma_multiply(0.72)
 }
