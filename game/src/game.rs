@@ -203,14 +203,14 @@ impl Game {
 
     /// Begins the level again, against a round that somebody played in it.
     pub fn race(&mut self, replay: Arc<Replay>) -> Result<(), ReplayError> {
-        let ghost = Playback::new(replay)?;
         // What is won in it counts, by whatever name it was kept.
-        let played = ghost.round().level();
         let known = self
             .levels
             .iter()
-            .find(|level| level.hash() == played.hash());
-        let level = known.unwrap_or(played).clone();
+            .find(|level| replay.is_of(level))
+            .cloned();
+        let ghost = Playback::new(replay)?;
+        let level = known.unwrap_or_else(|| ghost.round().level().clone());
         self.begin(Session::of_people(level).against(ghost));
         self.bout.is_ghost_chosen = true;
         Ok(())
@@ -240,9 +240,8 @@ impl Game {
         }
         let level = session.round().level();
         // What was won by other rules, or in another level of this name, is raced no more.
-        let best = self.files.best(level).map(Arc::new);
-        let ghost = best.and_then(|best| Playback::new(best).ok());
-        match ghost.filter(|ghost| ghost.round().level().hash() == level.hash()) {
+        let best = self.files.best(level).filter(|best| best.is_of(level));
+        match best.and_then(|best| Playback::new(Arc::new(best)).ok()) {
             Some(ghost) => session.against(ghost),
             None => session,
         }

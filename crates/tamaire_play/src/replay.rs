@@ -185,8 +185,13 @@ impl Replay {
     /// [`ReplayError`] when it is broken, or not the one that was played.
     pub fn level(&self) -> Result<Level, ReplayError> {
         let level = Level::of(&self.level, self.scene.clone())?;
-        let same = format!("{:016x}", level.hash()) == self.level_hash;
-        same.then_some(level).ok_or(ReplayError::LevelChanged)
+        let is_same = self.is_of(&level);
+        is_same.then_some(level).ok_or(ReplayError::LevelChanged)
+    }
+
+    /// Whether it was played in this level, by whatever name.
+    pub fn is_of(&self, level: &Level) -> bool {
+        self.level_hash == format!("{:016x}", level.hash())
     }
 }
 

@@ -61,8 +61,11 @@ impl Shelf {
 
     fn found(&self, replay: &Replay, levels: &[Arc<Level>]) -> Result<Found, ReplayError> {
         // To build a level takes long: the same one is not built again.
-        let is_same = |known: &Arc<Level>| format!("{:016x}", known.hash()) == replay.level_hash;
-        let known = levels.iter().cloned().chain(self.levels()).find(is_same);
+        let known = levels
+            .iter()
+            .cloned()
+            .chain(self.levels())
+            .find(|known| replay.is_of(known));
         let level = match known {
             Some(level) => level,
             None => Arc::new(replay.level()?),

@@ -1,6 +1,6 @@
 //! The system's dialog in which a file is picked.
 
-use super::Given;
+use super::given::{Given, Picked};
 use std::sync::mpsc::{self, Receiver, TryRecvError};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -14,16 +14,6 @@ const SOON: Duration = Duration::from_millis(400);
 /// The dialog, which the game goes on behind.
 #[derive(Default)]
 pub struct Dialog(Option<Receiver<Picked>>);
-
-/// What came of a dialog.
-pub enum Picked {
-    /// This was picked.
-    File(Given),
-    /// Nothing was.
-    Nothing,
-    /// The system has no such dialog.
-    NoDialog,
-}
 
 impl Dialog {
     /// Asks for a file, unless one is being asked for; `kind` says of what kind, to the player.

@@ -314,9 +314,7 @@ impl Files {
 
     /// The fastest win that was kept of a level.
     pub fn best(&self, level: &Level) -> Option<Replay> {
-        let name = plain(&level.id);
-        let bytes = self.storage.read(Kind::Best, &name).ok()??;
-        Replay::of_bytes(&bytes).ok()
+        self.round(Kind::Best, &plain(&level.id)).ok()
     }
 
     /// The replays that are kept, the newest first.
@@ -331,8 +329,13 @@ impl Files {
     /// # Errors
     /// [`ReplayError`] when it cannot be read or is none.
     pub fn replay(&self, name: &str) -> Result<Replay, ReplayError> {
+        self.round(Kind::Replay, name)
+    }
+
+    /// The round of a kind and a name.
+    fn round(&self, kind: Kind, name: &str) -> Result<Replay, ReplayError> {
         let unreadable = |reason: String| ReplayError::Unreadable(reason);
-        let read = self.storage.read(Kind::Replay, name);
+        let read = self.storage.read(kind, name);
         let bytes = read.map_err(|error| unreadable(error.to_string()))?;
         let bytes = bytes.ok_or_else(|| unreadable("it is no longer there".into()))?;
         Replay::of_bytes(&bytes)

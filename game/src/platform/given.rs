@@ -12,6 +12,16 @@ pub enum Given {
     Replay(String, Result<Box<Replay>, ReplayError>),
 }
 
+/// What came of asking for a file.
+pub enum Picked {
+    /// This was picked.
+    File(Given),
+    /// Nothing was.
+    Nothing,
+    /// The system has no such dialog.
+    NoDialog,
+}
+
 impl Given {
     /// The replay, level, picture or model in the bytes of a file of this name. What a level names is fetched.
     pub fn read(name: &str, bytes: &[u8], fetch: Fetch) -> Self {

@@ -30,10 +30,10 @@ mod writer;
 
 pub use clock::Clock;
 pub use date::local as local_date;
-pub use dialog::{Dialog, IS_THERE as HAS_DIALOG, Picked};
+pub use dialog::{Dialog, IS_THERE as HAS_DIALOG};
 pub use files::{Damage, Files, News};
 pub use forces::Forces;
-pub use given::{Given, dropped};
+pub use given::{Given, Picked, dropped};
 #[cfg(not(target_family = "wasm"))]
 pub use given::{level_at, replay_in};
 pub use gpu::GpuWatch;

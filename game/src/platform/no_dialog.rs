@@ -1,6 +1,6 @@
 //! Where no file can be picked.
 
-use super::Given;
+use super::given::Picked;
 
 /// Whether there is a dialog here.
 pub const IS_THERE: bool = false;
@@ -8,16 +8,6 @@ pub const IS_THERE: bool = false;
 /// The dialog that there is not.
 #[derive(Default)]
 pub struct Dialog;
-
-/// What came of a dialog.
-pub enum Picked {
-    /// This was picked.
-    File(Given),
-    /// Nothing was.
-    Nothing,
-    /// The system has no such dialog.
-    NoDialog,
-}
 
 impl Dialog {
     /// Asks for a file: in vain.

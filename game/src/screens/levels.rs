@@ -3,12 +3,11 @@
 use super::doomed::{doom, is_doomed};
 use super::icons;
 use super::widgets::{
-    Weight, button, fitted, focus_ring, header_with, is_on, liveliness, page, place_of_page,
+    Weight, fitted, focus_ring, header_to_open, is_on, liveliness, page, place_of_page,
     plain_button, veil, words,
 };
 use crate::game::Game;
 use crate::look::{Maps, Stage};
-use crate::platform::HAS_DIALOG;
 use crate::records::{Record, WishName};
 use egui::{
     Color32, Rect, Response, RichText, Role, Sense, Stroke, Tooltip, Ui, Vec2, WidgetInfo, pos2,
@@ -38,13 +37,8 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     let area = place_of_page(ui);
     let mut back = ui.input(|input| input.key_pressed(egui::Key::Escape));
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
-        let (response, opens) = header_with(ui, &theme, said.back, said.levels, |ui| {
-            HAS_DIALOG && button(ui, &theme, said.open, vec2(150.0, 48.0), Weight::Other).clicked()
-        });
+        let response = header_to_open(ui, game, said.levels);
         back |= response.clicked();
-        if opens {
-            game.ask_for_file();
-        }
         page(ui, "levels", f32::INFINITY, |ui| {
             ui.spacing_mut().item_spacing = vec2(GAP, GAP);
             let width = ui.available_width();

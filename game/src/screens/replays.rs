@@ -2,10 +2,10 @@
 
 use super::doomed::{doom, is_doomed};
 use super::icons;
-use super::widgets::{Weight, button, card, fitted, header_with, page, place_of_page, veil};
+use super::widgets::{Weight, button, card, fitted, header_to_open, page, place_of_page, veil};
 use crate::game::{Found, Game, Kept};
 use crate::look::{Maps, Stage};
-use crate::platform::{Entry, HAS_DIALOG, HAS_PICTURES, local_date};
+use crate::platform::{Entry, HAS_PICTURES, local_date};
 use egui::{Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, vec2};
 use tamaire_sound::Menu;
 
@@ -32,14 +32,9 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     let mut back = ui.input(|input| input.key_pressed(egui::Key::Escape));
     let area = place_of_page(ui);
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
-        let (response, opens) = header_with(ui, &theme, said.back, said.replays, |ui| {
-            HAS_DIALOG && button(ui, &theme, said.open, vec2(150.0, 48.0), Weight::Other).clicked()
-        });
+        let response = header_to_open(ui, game, said.replays);
         super::play::focus_first(ui, &response);
         back |= response.clicked();
-        if opens {
-            game.ask_for_file();
-        }
         page(ui, "replays", 960.0, |ui| {
             if game.shelf.is_empty() {
                 ui.vertical_centered(|ui| {

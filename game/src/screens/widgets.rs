@@ -2,6 +2,7 @@
 
 use crate::game::Game;
 use crate::look::Theme;
+use crate::platform::HAS_DIALOG;
 use egui::{
     Align, Align2, Color32, Context, FocusDirection, FontId, Galley, Id, Key, Layout, Painter,
     Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2,
@@ -309,8 +310,21 @@ pub fn header(ui: &mut Ui, theme: &Theme, back: &str, text: &str) -> Response {
     header_with(ui, theme, back, text, |_| ()).0
 }
 
-/// The same with something at the right end, and what that gives back.
-pub fn header_with<R>(
+/// The same with a button at the right end that asks for a file, where files can be picked.
+pub fn header_to_open(ui: &mut Ui, game: &mut Game, text: &str) -> Response {
+    let (theme, said) = (game.theme(), game.words());
+    let (back, opens) = header_with(ui, &theme, said.back, text, |ui| {
+        let size = vec2(150.0, 48.0);
+        HAS_DIALOG && button(ui, &theme, said.open, size, Weight::Other).clicked()
+    });
+    if opens {
+        game.ask_for_file();
+    }
+    back
+}
+
+/// A header with something at the right end, and what that gives back.
+fn header_with<R>(
     ui: &mut Ui,
     theme: &Theme,
     back: &str,
