@@ -131,11 +131,11 @@ impl App {
             .retain(|(id, _)| devices.iter().any(|device| device.id == *id));
         for device in &devices {
             let known = self.navigators.iter().position(|(id, _)| *id == device.id);
-            let place = known.unwrap_or_else(|| {
+            let index = known.unwrap_or_else(|| {
                 self.navigators.push((device.id, Navigator::default()));
                 self.navigators.len() - 1
             });
-            for direction in self.navigators[place].1.step(device, seconds) {
+            for direction in self.navigators[index].1.step(device, seconds) {
                 screens::note_use_of_keys(ctx, true);
                 self.game.controls.note_stick(device.id);
                 // One that is tried is pushed about for its own sake.
@@ -190,7 +190,7 @@ impl App {
             game.controls.buttons.clear();
         }
         let pressed = self.fingers.hear(&events, &game.controls.buttons);
-        game.controls.devices.held = self.fingers.held().collect();
+        game.controls.devices.pressed = self.fingers.pressed().collect();
         let is_by_stick = self.presses.waiting().is_by_stick;
         let is_touched = ctx.input(|input| input.any_touches())
             || events

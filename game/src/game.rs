@@ -3,7 +3,7 @@
 
 mod bout;
 mod controls;
-mod haptics;
+mod forces;
 mod heard;
 mod keep;
 mod lesson;
@@ -195,10 +195,33 @@ impl Game {
 
     /// Begins a level.
     pub fn start(&mut self, level: usize) {
-        let level = level.min(self.levels.len() - 1);
+        let level = self.levels[level.min(self.levels.len() - 1)].clone();
         self.bout.camera.face_front();
-        let session = Session::of_people(self.levels[level].clone());
-        self.begin(self.with_best(session));
+        self.play(&level);
+    }
+
+    /// Begins a level, as easy as it is wished, beside the fastest round that was won in it where that is wished.
+    fn play(&mut self, level: &Arc<Level>) {
+        let level = self.eased(level);
+        self.begin(self.with_best(Session::of_people(level)));
+    }
+
+    /// A level with what is to be easier in it.
+    fn eased(&mut self, level: &Arc<Level>) -> Arc<Level> {
+        let assists = &self.settings.assists;
+        let current = self.bout.round().level();
+        if current.game().assists == *assists && current.is_version_of(level) {
+            // It is built.
+            return current.clone();
+        }
+        match level.assisted(assists) {
+            _ if assists.is_empty() => level.clone(),
+            Ok(eased) => Arc::new(eased),
+            Err(error) => {
+                self.notify((self.words().level_error)(&error));
+                level.clone()
+            }
+        }
     }
 
     /// Begins the level again, against a round that somebody played in it.
@@ -225,11 +248,15 @@ impl Game {
     /// The same again from its start.
     pub fn retry(&mut self) {
         let (session, is_chosen) = (&self.bout.session, self.bout.is_ghost_chosen);
-        let again = match session.is_played() && !is_chosen {
-            true => self.with_best(Session::of_people(session.round().level().clone())),
-            false => session.again(),
-        };
-        self.begin(again);
+        if session.is_played() && !is_chosen {
+            let level = session.round().level();
+            // What was wished to be easier may have changed.
+            let level = self
+                .listed(level)
+                .map_or(level, |index| &self.levels[index]);
+            return self.play(&level.clone());
+        }
+        self.begin(session.again());
         self.bout.is_ghost_chosen = is_chosen;
     }
 
@@ -251,9 +278,8 @@ impl Game {
         self.bout.begin(session, self.time);
         let is_space = self.bout.turn().is_some();
         self.controls.begin(is_space);
-        let level = self.bout.round().level();
-        let known = self.levels.iter().position(|known| known == level);
-        self.chosen = known.unwrap_or(self.chosen);
+        let listed = self.listed(self.bout.round().level());
+        self.chosen = listed.unwrap_or(self.chosen);
         self.go(Screen::Play);
     }
 
@@ -262,10 +288,10 @@ impl Game {
         match given {
             Given::Level(Ok(level)) => self.offer(*level),
             Given::Level(Err(error)) => self.notify((self.words().level_error)(&error)),
-            Given::Replay(place, replay) => {
+            Given::Replay(name, replay) => {
                 let outcome = replay.and_then(|replay| self.watch(Arc::from(replay)));
                 if let Err(error) = outcome {
-                    self.tell_of_replay(&place, &error);
+                    self.tell_of_replay(&name, &error);
                 }
             }
         }
@@ -294,26 +320,26 @@ impl Game {
         let replay = self.files.replay(name);
         let outcome = replay.and_then(|replay| act(self, Arc::new(replay)));
         if let Err(error) = outcome {
-            self.tell_of_replay(&self.files.place(name), &error);
+            self.tell_of_replay(&self.files.location(name), &error);
         }
     }
 
-    fn tell_of_replay(&mut self, place: &str, error: &ReplayError) {
+    fn tell_of_replay(&mut self, name: &str, error: &ReplayError) {
         let reason = (self.words().replay_error)(error);
-        self.notify(format!("{place}: {reason}"));
+        self.notify(format!("{name}: {reason}"));
     }
 
     fn offer(&mut self, level: Level) {
         let known = self.levels.iter().position(|known| **known == level);
-        let place = known.unwrap_or_else(|| {
+        let index = known.unwrap_or_else(|| {
             self.levels.retain(|known| known.id != level.id);
             self.levels.push(Arc::new(level));
             self.levels.len() - 1
         });
-        if self.is_own(place) {
-            self.files.keep_level(self.levels[place].clone());
+        if self.is_own(index) {
+            self.files.keep_level(self.levels[index].clone());
         }
-        self.start(place);
+        self.start(index);
     }
 
     /// The levels that a little picture is made of: those that are seen in lists.
@@ -325,9 +351,16 @@ impl Game {
             .collect()
     }
 
+    /// Which level of the list this is, if maybe an easier one.
+    fn listed(&self, level: &Level) -> Option<usize> {
+        self.levels
+            .iter()
+            .position(|known| level.is_version_of(known))
+    }
+
     /// Whether a level does not come along.
-    pub fn is_own(&self, place: usize) -> bool {
-        place >= NAMED.len() + NAMED_3D.len()
+    pub fn is_own(&self, index: usize) -> bool {
+        index >= NAMED.len() + NAMED_3D.len()
     }
 
     /// Something was asked for with a key or button.

@@ -16,6 +16,8 @@ pub struct Records(BTreeMap<String, Record>);
 pub struct Record {
     /// Fewest ticks by each route.
     pub best: BTreeMap<Route, u64>,
+    /// The same where something was made easier.
+    pub best_assisted: BTreeMap<Route, u64>,
     /// Which of the level's wishes came true.
     pub wishes: BTreeSet<WishName>,
 }
@@ -36,7 +38,7 @@ enum Written {
 impl From<Written> for WishName {
     fn from(written: Written) -> Self {
         Self(match written {
-            Written::Place(place) => place.to_string(),
+            Written::Place(index) => index.to_string(),
             Written::Name(name) => name,
         })
     }
@@ -64,11 +66,21 @@ impl Record {
     /// Takes over what is better in another one of the same level.
     fn take(&mut self, other: Self) {
         for (route, ticks) in other.best {
-            let best = self.best.entry(route).or_insert(ticks);
-            *best = ticks.min(*best);
+            lower(&mut self.best, route, ticks);
+        }
+        for (route, ticks) in other.best_assisted {
+            lower(&mut self.best_assisted, route, ticks);
         }
         self.wishes.extend(other.wishes);
     }
+}
+
+/// Takes over a time that is better than the one by its route; says whether it was.
+fn lower(best: &mut BTreeMap<Route, u64>, route: Route, ticks: u64) -> bool {
+    let known = best.entry(route).or_insert(u64::MAX);
+    let is_better = ticks < *known;
+    *known = ticks.min(*known);
+    is_better
 }
 
 impl Records {
@@ -88,16 +100,17 @@ impl Records {
         self.0.get(level)
     }
 
-    /// Takes note of a win; says whether it was faster than any before by that route.
+    /// Takes note of a win; says whether it was faster than any before by that route. Where something was made easier it
+    /// is held against such wins alone, and no wish comes true.
     pub fn note(&mut self, level: &Level, outcome: &Outcome) -> bool {
         let record = self.0.entry(level.id.clone()).or_default();
+        if !level.game().assists.is_empty() {
+            return lower(&mut record.best_assisted, outcome.route, outcome.ticks);
+        }
         let wishes = level.game().wish.iter();
         let fulfilled = wishes.filter(|wish| outcome.fulfils(wish));
         record.wishes.extend(fulfilled.map(WishName::of));
-        let best = record.best.entry(outcome.route).or_insert(u64::MAX);
-        let is_better = outcome.ticks < *best;
-        *best = outcome.ticks.min(*best);
-        is_better
+        lower(&mut record.best, outcome.route, outcome.ticks)
     }
 
     /// Takes over what is better in others.
@@ -125,8 +138,8 @@ impl Records {
             let Some(record) = self.0.get_mut(&level.id) else {
                 continue;
             };
-            for (place, wish) in level.game().wish.iter().enumerate() {
-                if record.wishes.remove(&WishName(place.to_string())) {
+            for (index, wish) in level.game().wish.iter().enumerate() {
+                if record.wishes.remove(&WishName(index.to_string())) {
                     record.wishes.insert(WishName::of(wish));
                 }
             }

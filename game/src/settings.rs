@@ -5,7 +5,8 @@ use crate::sift::{Sifted, sift};
 use crate::words::Language;
 use force_feedback::Calibration;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use tamaire_play::Assist;
 use tamaire_sound::Volumes;
 
 /// Felt as full force [N]. In the levels hands are pushed with 100 to 500: with less all bodies would feel alike, with
@@ -40,6 +41,8 @@ pub struct Settings {
     pub toggle_keys: bool,
     /// Whether a mouse that rests on a button presses it.
     pub dwell: bool,
+    /// What is made easier in levels.
+    pub assists: BTreeSet<Assist>,
     /// Whether one's fastest round is raced by itself.
     pub race_best: bool,
     /// Whether the window fills the screen.
@@ -75,6 +78,7 @@ impl Default for Settings {
             stick_places: false,
             toggle_keys: false,
             dwell: false,
+            assists: BTreeSet::new(),
             race_best: false,
             full_screen: false,
             reduced_motion: false,

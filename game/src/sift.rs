@@ -66,8 +66,8 @@ fn good_lines(text: &str, refused: &mut Vec<String>) -> String {
         let Err(error) = DeTable::parse(&text) else {
             return text;
         };
-        let place = error.span().map_or(0, |span| span.start);
-        let breaks = text.as_bytes()[..place.min(text.len())].iter();
+        let start = error.span().map_or(0, |span| span.start);
+        let breaks = text.as_bytes()[..start.min(text.len())].iter();
         let line = breaks.filter(|&&byte| byte == b'\n').count();
         // What is missing at the end of a line may be missed on the next one that says something.
         let at = (0..=line)

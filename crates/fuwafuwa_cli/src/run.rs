@@ -4,7 +4,7 @@ use crate::report::Progress;
 use anyhow::{Context, Result};
 use fuwafuwa::{Dim, Dim2, Dim3, World};
 use fuwafuwa_painter::solid::{Camera, Solid};
-use fuwafuwa_painter::stage;
+use fuwafuwa_painter::worlds;
 use fuwafuwa_painter::{Painter, Pixmap, film};
 use fuwafuwa_scenes::disk::scene_at;
 use fuwafuwa_scenes::{Recording, Scene};
@@ -73,11 +73,11 @@ impl Filmed for Dim2 {
     fn painted(world: &World<Self>, scene: &Scene, elements: bool) -> Result<Painter> {
         let (mut painter, frame) = Painter::for_view(scene.view, WIDTH);
         let draw = if elements {
-            stage::plane_elements
+            worlds::plane_elements
         } else {
-            stage::plane_skin
+            worlds::plane_skin
         };
-        stage::plane(&mut painter, frame, world, draw);
+        worlds::plane(&mut painter, frame, world, draw);
         Ok(painter)
     }
 }
@@ -97,11 +97,11 @@ impl Filmed for Dim3 {
             across: 1.15 * across,
         });
         if elements {
-            stage::space(&mut solid, world, |solid, body| {
-                stage::space_elements(solid, body, |_| true);
+            worlds::space(&mut solid, world, |solid, body| {
+                worlds::space_elements(solid, body, |_| true);
             });
         } else {
-            stage::space(&mut solid, world, stage::space_skin);
+            worlds::space(&mut solid, world, worlds::space_skin);
         }
         let mut painter = Painter::new(WIDTH, WIDTH);
         painter.image([0.0; 2], solid.pixels(WIDTH, WIDTH)?);

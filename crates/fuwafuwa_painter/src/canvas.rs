@@ -1,8 +1,8 @@
 //! The depth buffer behind [`crate::solid`].
 
 use crate::PaintError;
+use crate::role::{Role, colour};
 use crate::shadow::{KEY, Shadow};
-use crate::theme::{Role, colour};
 use fuwafuwa::shape::Vector;
 use fuwafuwa::vector::{cross, dot, length, minus, plus, scaled};
 use tiny_skia::{Pixmap, PremultipliedColorU8};

@@ -1,11 +1,11 @@
 //! Pictures and films of worlds, painted without a GPU, from shapes that have a role and no colour:
-//! see [`theme`].
+//! see [`role`].
 //!
 //! A [`Painter`] is a list of shapes; it becomes a drawing ([`Painter::svg`]), an image
 //! ([`Painter::pixels`]) or a frame of a [`film`], the same in all of them. Bodies in space are
 //! painted by [`solid`] into an image that lies on the paper like any other shape.
 //!
-//! Whole worlds are put on a painter by [`stage`], which shows elements and voxels as they are. The look of the game is
+//! Whole worlds are put on a painter by [`worlds`], which shows elements and voxels as they are. The look of the game is
 //! that of the crate `fuwafuwa_render` alone.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
@@ -17,17 +17,17 @@ pub mod film;
 mod letters;
 mod paper;
 mod raster;
+pub mod role;
 mod shadow;
 pub mod solid;
-pub mod stage;
 mod svg;
-pub mod theme;
+pub mod worlds;
 
 pub use error::PaintError;
 pub use paper::{Frame, Spot};
 pub use raster::png_of;
+pub use role::Role;
 use std::rc::Rc;
-pub use theme::Role;
 pub use tiny_skia::Pixmap;
 
 /// One thing on the paper.
@@ -223,7 +223,7 @@ pub fn rectangle([x, y]: Spot, size: Spot) -> Vec<Spot> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use theme::colour;
+    use role::colour;
 
     #[test]
     fn a_caption_stands_on_paper_of_its_own() {

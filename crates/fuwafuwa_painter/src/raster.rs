@@ -1,6 +1,6 @@
 //! The painter's shapes as pixels.
 
-use crate::theme::colour;
+use crate::role::colour;
 use crate::{PaintError, Painter, Role, Shape, Spot};
 use tiny_skia::{
     Color, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, PixmapPaint, Stroke,

@@ -4,8 +4,8 @@
 use crate::PaintError;
 pub use crate::canvas::{Camera, Triangle};
 use crate::canvas::{Canvas, unit};
+use crate::role::Role;
 use crate::shadow::Shadow;
-use crate::theme::Role;
 use fuwafuwa::shape::Vector;
 use fuwafuwa::vector::{cross, minus, plus, scaled};
 use tiny_skia::Pixmap;
@@ -158,7 +158,7 @@ fn corner(centre: Vector, half: Vector, axis: usize, sides: [f32; 3]) -> Vector 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::theme::colour;
+    use crate::role::colour;
 
     const CAMERA: Camera = Camera {
         eye: [0.0, 1.0, 4.0],

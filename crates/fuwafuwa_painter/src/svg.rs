@@ -1,7 +1,7 @@
 //! The painter's shapes as an SVG document.
 
 use crate::raster::png_of;
-use crate::theme::colour;
+use crate::role::colour;
 use crate::{PaintError, Painter, Role, Shape, Spot};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;

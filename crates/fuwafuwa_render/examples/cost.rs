@@ -2,7 +2,7 @@
 
 use fuwafuwa::Dim2;
 use fuwafuwa_render::frame::ElementColour;
-use fuwafuwa_render::{Camera, Frame, Geometry, Look, Renderer, Theme};
+use fuwafuwa_render::{Camera, Frame, Geometry, Look, Palette, Renderer};
 use fuwafuwa_scenes::Scene;
 use std::error::Error;
 use std::time::Instant;
@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             scene.send(&mut world, tick);
             world.step();
         }
-        let theme = Theme::candy();
+        let palette = Palette::candy();
         let elements = Look::Elements {
             colour: ElementColour::Level,
             ages: &[],
@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let camera = Camera::fit(scene.view[0], scene.view[1], SIZE);
             let frame = Frame {
                 look,
-                ..Frame::new(camera, &theme)
+                ..Frame::new(camera, &palette)
             };
             let mut geometry = Geometry::default();
             let gather = best(200, || geometry.gather(&world, &frame));

@@ -5,7 +5,7 @@ use fuwafuwa::vector::scaled;
 use fuwafuwa::{Dim3, PieceId, World};
 use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_render::space::{Camera, Cut, Geometry, Skin};
-use fuwafuwa_render::{Ages, Frame, Look, Mark, Sticker, Theme, anchor};
+use fuwafuwa_render::{Ages, Frame, Look, Mark, Palette, Sticker, anchor};
 use fuwafuwa_scenes::Scene;
 use std::error::Error;
 use std::f32::consts::TAU;
@@ -25,7 +25,7 @@ const PARTS: [&str; 4] = [
 fn main() -> Result<(), Box<dyn Error>> {
     let scene = Scene::open("tear-3d", &std::env::args().skip(1).collect::<Vec<_>>())?;
     let mut world = scene.build::<Dim3>()?;
-    let theme = Theme::candy();
+    let palette = Palette::candy();
     let mut skins = vec![Skin::default(); GOES];
     let mut geometries = PARTS.map(|_| vec![Geometry::default(); GOES]);
     let mut ages = Ages::default();
@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for tick in 0..=TICKS {
         let mut is_new = false;
         let skin = best(&mut skins, |skin| {
-            is_new = skin.follow(world.bodies().first().unwrap(), &theme.materials);
+            is_new = skin.follow(world.bodies().first().unwrap(), &palette.materials);
         });
         times[0].push((is_new, skin));
         ages.follow(&world, 1.0 / 60.0);
@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         for (part, geometries) in geometries.iter_mut().enumerate() {
             let share = 0.7 + 0.3 * (tick as f32 / 20.0).sin();
             let camera = Camera::fit(scene.view[0], scene.view[1], [1, 1]);
-            let mut frame = Frame::new(camera, &theme);
+            let mut frame = Frame::new(camera, &palette);
             match part {
                 0 => {}
                 1 => frame.stickers = &stickers,

@@ -3,7 +3,7 @@
 
 use fuwafuwa::{Dim2, Shape, World};
 use fuwafuwa_render::frame::ElementColour;
-use fuwafuwa_render::{Ages, Basket, Camera, Frame, Look, Particle, Renderer, Theme, anchor};
+use fuwafuwa_render::{Ages, Basket, Camera, Frame, Look, Palette, Particle, Renderer, anchor};
 use fuwafuwa_scenes::Scene;
 use std::error::Error;
 use std::fs::File;
@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         ..Default::default()
     }))?;
     let mut renderer = Renderer::new(&device, wgpu::TextureFormat::Rgba8Unorm);
-    let (candy, safe) = (Theme::candy(), Theme::colour_safe());
+    let (candy, safe) = (Palette::candy(), Palette::colour_safe());
     for (name, moments) in MOMENTS {
         if !chosen.is_empty() && !chosen.iter().any(|one| one == name) {
             continue;
@@ -62,7 +62,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 ("strains", elements(ElementColour::Strain), &candy),
                 ("safe", Look::Skin, &safe),
             ];
-            for (look_name, look, theme) in looks {
+            for (look_name, look, palette) in looks {
                 let frame = Frame {
                     look,
                     basket: (name == "squeeze").then_some(Basket {
@@ -74,7 +74,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                     }),
                     particles: &particles,
                     seconds: tick as f64 / 60.0,
-                    ..Frame::new(camera, theme)
+                    ..Frame::new(camera, palette)
                 };
                 let begin = Instant::now();
                 let image = renderer.render_to_image(&device, &queue, &world, &frame, SIZE)?;

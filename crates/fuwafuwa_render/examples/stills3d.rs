@@ -5,7 +5,7 @@
 use fuwafuwa::{Dim3, World};
 use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_render::space::{Camera, Cut, Renderer};
-use fuwafuwa_render::{Ages, Basket, Frame, Look, Particle, Theme};
+use fuwafuwa_render::{Ages, Basket, Frame, Look, Palette, Particle};
 use fuwafuwa_scenes::Scene;
 use std::error::Error;
 use std::fs::File;
@@ -158,7 +158,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         ..Default::default()
     }))?;
     let mut renderer = Renderer::new(&device, wgpu::TextureFormat::Rgba8Unorm);
-    let (candy, safe) = (Theme::candy(), Theme::colour_safe());
+    let (candy, safe) = (Palette::candy(), Palette::colour_safe());
     for (take, text, moments, turn) in TAKES {
         let scene = match text {
             "" => Scene::open(take, &[])?,
@@ -203,7 +203,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 (Look::Skin, &safe, None),
             ];
             let particles = dust(&world);
-            for (name, (look, theme, cut)) in names(tick).into_iter().zip(looks) {
+            for (name, (look, palette, cut)) in names(tick).into_iter().zip(looks) {
                 if !is_chosen(&name) {
                     continue;
                 }
@@ -222,7 +222,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                     basket,
                     particles: &particles,
                     seconds: tick as f64 / 60.0,
-                    ..Frame::new(camera, theme)
+                    ..Frame::new(camera, palette)
                 };
                 let begin = Instant::now();
                 let image = renderer.render_to_image(&device, &queue, &world, &frame, SIZE)?;

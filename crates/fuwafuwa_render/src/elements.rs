@@ -1,8 +1,8 @@
 //! Elements as coloured quads with lines around them.
 
 use crate::frame::ElementColour;
+use crate::palette::{Colour, Palette, bytes, mix};
 use crate::plane::flat;
-use crate::theme::{Colour, Theme, bytes, mix};
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::dim::{add, corner, scale};
 use fuwafuwa::stencil::slot_index;
@@ -62,14 +62,14 @@ impl ElementMesh {
     pub fn add(
         &mut self,
         body: &Body<Dim2>,
-        theme: &Theme,
+        palette: &Palette,
         colour: ElementColour,
         ages: &[f32],
         nodes: bool,
     ) {
         let views: Vec<ElementView> = body.element_views().collect();
         for view in &views {
-            self.add_fill(view, bytes(colour_of(view, theme, colour, ages), 1.0));
+            self.add_fill(view, bytes(colour_of(view, palette, colour, ages), 1.0));
         }
         for view in &views {
             // The larger an element, the bolder: levels can be told apart without colours.
@@ -77,11 +77,11 @@ impl ElementMesh {
             self.add_edges(
                 view,
                 0.4 + 0.25 * level,
-                bytes(theme.ink, 0.45 + 0.12 * level),
+                bytes(palette.ink, 0.45 + 0.12 * level),
             );
         }
         if nodes {
-            let ink = bytes(theme.ink, 1.0);
+            let ink = bytes(palette.ink, 1.0);
             for (id, _) in body.mesh().nodes() {
                 let at = flat(body.node_state(id).0);
                 self.add_line(at, at, 1.8, ink);
@@ -141,10 +141,15 @@ impl ElementMesh {
 }
 
 /// The colour of an element; for a moment after it was remodelled it flashes.
-pub fn colour_of(view: &ElementView, theme: &Theme, colour: ElementColour, ages: &[f32]) -> Colour {
+pub fn colour_of(
+    view: &ElementView,
+    palette: &Palette,
+    colour: ElementColour,
+    ages: &[f32],
+) -> Colour {
     let plain = match colour {
-        ElementColour::Level => theme.level(view.level),
-        ElementColour::Strain => theme.strain(view.strain),
+        ElementColour::Level => palette.level(view.level),
+        ElementColour::Strain => palette.strain(view.strain),
     };
     let age = ages.get(view.id.index()).copied().unwrap_or(FLASH);
     let flash = 0.65 * (1.0 - age / FLASH).clamp(0.0, 1.0);
@@ -187,13 +192,13 @@ mod tests {
     fn a_young_element_flashes_and_an_old_one_does_not() {
         let grid = VoxelGrid::<Dim2>::from_fn([1, 1, 1], 1.0, |_| 1).unwrap();
         let body = Body::new(grid, &[Material::default()]).unwrap();
-        let theme = Theme::candy();
+        let palette = Palette::candy();
         let colour = |age: f32| {
             let mut mesh = ElementMesh::default();
-            mesh.add(&body, &theme, ElementColour::Level, &[age], false);
+            mesh.add(&body, &palette, ElementColour::Level, &[age], false);
             mesh.vertices[0].colour
         };
-        assert_eq!(colour(9.0), bytes(theme.level(0), 1.0));
+        assert_eq!(colour(9.0), bytes(palette.level(0), 1.0));
         assert!(colour(0.0)[2] > colour(9.0)[2]);
     }
 }

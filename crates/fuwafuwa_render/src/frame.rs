@@ -1,7 +1,7 @@
 //! How to look at a world, as plain data.
 
+use crate::palette::Palette;
 use crate::plane::flat;
-use crate::theme::Theme;
 use fuwafuwa::{Dim3, PieceId, Shape, Vector, World};
 use glam::Vec2;
 
@@ -11,7 +11,7 @@ pub struct Frame<'a, C = Camera> {
     /// From where.
     pub camera: C,
     /// In which colours.
-    pub theme: &'a Theme,
+    pub palette: &'a Palette,
     /// The skin, or what is inside.
     pub look: Look<'a>,
     /// The region to get into.
@@ -36,10 +36,10 @@ impl<'a, C> Frame<'a, C> {
     }
 
     /// The skin of a world as it stands, and nothing beside it.
-    pub fn new(camera: C, theme: &'a Theme) -> Self {
+    pub fn new(camera: C, palette: &'a Palette) -> Self {
         Self {
             camera,
-            theme,
+            palette,
             look: Look::Skin,
             basket: None,
             particles: &[],

@@ -2,11 +2,11 @@
 
 use crate::elements::ElementMesh;
 use crate::frame::{Frame, Look};
+use crate::palette::bytes;
 use crate::rest::Rest;
 use crate::rigid::RigidShapes;
 use crate::rings::Rings;
 use crate::skin::SkinMesh;
-use crate::theme::bytes;
 use fuwafuwa::{Body, Dim2, World};
 use glam::Vec2;
 use std::ops::Range;
@@ -43,7 +43,7 @@ impl Geometry {
         self.elements.clear();
         let basket = frame.basket.as_ref();
         self.rigid
-            .gather(world, frame.theme, basket, frame.particles);
+            .gather(world, frame.palette, basket, frame.particles);
         self.radius = world.bodies().iter().map(radius).fold(0.0, f32::max);
         self.bounds = NOWHERE;
         self.rests.resize_with(world.bodies().len(), Rest::default);
@@ -56,7 +56,7 @@ impl Geometry {
                     nodes,
                 } => {
                     let ages = ages.get(place).map_or(&[][..], Vec::as_slice);
-                    self.elements.add(body, frame.theme, colour, ages, nodes);
+                    self.elements.add(body, frame.palette, colour, ages, nodes);
                     let corners = self.elements.vertices.iter().map(|vertex| vertex.at);
                     self.bounds = corners.fold(self.bounds, around);
                 }
@@ -82,7 +82,7 @@ impl Geometry {
         let bounds = points.fold(NOWHERE, around);
         self.bounds = bounds.into_iter().fold(self.bounds, around);
         let first = rest.first_material();
-        let colour = |number| bytes(frame.theme.material(number), 1.0);
+        let colour = |number| bytes(frame.palette.material(number), 1.0);
         self.skin.add_rectangle(bounds, colour(first));
         if body.materials().len() > 1 {
             for view in body.element_views().filter(|view| view.material != first) {

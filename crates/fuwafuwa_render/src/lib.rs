@@ -4,7 +4,7 @@
 //! it and draws what has to be drawn apart; [`Renderer::paint`] puts the picture into a pass of a
 //! window, and [`Renderer::render_to_image`] into an image, without any window.
 //!
-//! The way through: [`theme`] and [`frame`] are what a caller says → `stairs` and `rest` how a body is smooth
+//! The way through: [`palette`] and [`frame`] are what a caller says → `stairs` and `rest` how a body is smooth
 //! before it moves → `rings` its smooth outlines now → `skin`, `elements`, `rigid` turn a world into vertices, without a GPU →
 //! `geometry` all of them → `gpu` draws them. [`anchor`] and [`ages`] answer questions of those
 //! who paint on top.
@@ -23,6 +23,7 @@ mod elements;
 pub mod frame;
 pub mod geometry;
 mod gpu;
+pub mod palette;
 mod plane;
 mod rest;
 mod rigid;
@@ -30,7 +31,6 @@ mod rings;
 mod skin;
 pub mod space;
 mod stairs;
-pub mod theme;
 
 pub use ages::Ages;
 pub use anchor::{Anchor, anchor, anchor_at};
@@ -39,4 +39,4 @@ pub use geometry::Geometry;
 pub use gpu::Renderer;
 pub use gpu::image::{ImageError, Step, image, pass_into};
 pub use gpu::targets::new_image;
-pub use theme::{Colour, Theme};
+pub use palette::{Colour, Palette};

@@ -1,8 +1,8 @@
 //! Obstacles, hands and the basket as rectangles that a shader draws shapes into.
 
 use crate::frame::{Basket, Particle};
+use crate::palette::{Colour, Palette};
 use crate::plane::flat;
-use crate::theme::{Colour, Theme};
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::{Dim2, Shape, World};
 use glam::Vec2;
@@ -60,7 +60,7 @@ impl RigidShapes {
     pub fn gather(
         &mut self,
         world: &World<Dim2>,
-        theme: &Theme,
+        palette: &Palette,
         basket: Option<&Basket>,
         particles: &[Particle],
     ) {
@@ -71,19 +71,19 @@ impl RigidShapes {
             if let Shape::HalfSpace { normal, offset } = *obstacle.shape() {
                 self.walls.push([normal[0], normal[1], offset, 0.0]);
             }
-            let bar = instance(*obstacle.shape(), theme.bar, 0.0);
+            let bar = instance(*obstacle.shape(), palette.bar, 0.0);
             self.shapes.extend(bar);
         }
         self.walls.truncate(MOST_WALLS);
         self.bar_count = self.shapes.len() as u32;
         for (player, (_, hand)) in world.hands().enumerate() {
-            let hand = instance(*hand.shape(), theme.hand(player), player as f32);
+            let hand = instance(*hand.shape(), palette.hand(player), player as f32);
             self.shapes.extend(hand);
         }
         self.hand_count = self.shapes.len() as u32 - self.bar_count;
         if let Some(basket) = basket {
             self.shapes
-                .extend(instance(basket.region, theme.basket, basket.fill));
+                .extend(instance(basket.region, palette.basket, basket.fill));
         }
         self.dots
             .extend(particles.iter().map(|particle| DotInstance {
@@ -144,7 +144,7 @@ mod tests {
         };
         let mut rigid = RigidShapes::default();
         for _ in 0..2 {
-            rigid.gather(&world, &Theme::candy(), Some(&basket), &[dot]);
+            rigid.gather(&world, &Palette::candy(), Some(&basket), &[dot]);
         }
         assert_eq!(rigid.walls, [[0.0, 1.0, -2.0, 0.0]]);
         assert_eq!(

@@ -9,14 +9,14 @@ use fuwafuwa::{
 };
 use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_render::{
-    Basket, Camera, Colour, Frame, Look, Particle, Renderer, Step, Theme, image,
+    Basket, Camera, Colour, Frame, Look, Palette, Particle, Renderer, Step, image,
 };
 use shared::{device, device_with, difference, is_warm};
 use std::sync::LazyLock;
 use wgpu::TextureFormat;
 
 const SIZE: [u32; 2] = [480, 480];
-static THEME: LazyLock<Theme> = LazyLock::new(Theme::candy);
+static PALETTE: LazyLock<Palette> = LazyLock::new(Palette::candy);
 
 /// A picture, and what it was taken of.
 struct Picture {
@@ -31,7 +31,7 @@ fn take<'a>(
 ) -> Option<Picture> {
     let (device, queue) = device()?;
     let camera = Camera::fit([-0.1, -0.1, 0.0], [1.1, 1.1, 0.0], SIZE);
-    let mut frame = Frame::new(camera, &THEME);
+    let mut frame = Frame::new(camera, &PALETTE);
     change(&mut frame);
     let mut renderer = Renderer::new(&device, format);
     let pixels = renderer.render_to_image(&device, &queue, world, &frame, SIZE);
@@ -170,7 +170,7 @@ fn elements_have_the_colour_of_their_level() {
             * 0.5
             * f32::from(1u8 << (view.level - 1));
         let seen = picture.around([x - quarter, y - quarter]);
-        let wanted = THEME.level(view.level);
+        let wanted = PALETTE.level(view.level);
         assert!(
             difference(seen, wanted) < 0.12,
             "level {}: {seen:?}, not {wanted:?}",
@@ -261,7 +261,7 @@ fn nothing_is_a_picture_too_and_so_is_what_has_no_skin() {
     let Some((device, queue)) = device() else {
         return;
     };
-    let theme = Theme::colour_safe();
+    let palette = Palette::colour_safe();
     let camera = Camera::fit([0.0; 3], [1.0; 3], [7, 5]);
     let mut renderer = Renderer::new(&device, TextureFormat::Rgba8Unorm);
     let mut coarse = floating();
@@ -282,7 +282,7 @@ fn nothing_is_a_picture_too_and_so_is_what_has_no_skin() {
         let mut image = |world: &World<Dim2>, look| {
             let frame = Frame {
                 look,
-                ..Frame::new(camera, &theme)
+                ..Frame::new(camera, &palette)
             };
             let image = renderer.render_to_image(&device, &queue, world, &frame, size);
             image.unwrap()
@@ -307,7 +307,7 @@ fn a_window_wider_than_a_texture_can_be_is_drawn_smaller() {
     assert_eq!(device.limits().max_texture_dimension_2d, 2048);
     let mut renderer = Renderer::new(&device, TextureFormat::Rgba8Unorm);
     let size = [2560, 800];
-    let frame = Frame::new(Camera::fit([0.0; 3], [1.0; 3], size), &THEME);
+    let frame = Frame::new(Camera::fit([0.0; 3], [1.0; 3], size), &PALETTE);
     let mut encoder = device.create_command_encoder(&Default::default());
     renderer.prepare(&device, &queue, &mut encoder, &disc(), &frame, size);
     queue.submit([encoder.finish()]);
@@ -340,7 +340,7 @@ fn what_is_too_much_for_a_buffer_is_left_out() {
     world.add_body(body.unwrap());
     let mut renderer = Renderer::new(&device, TextureFormat::Rgba8Unorm);
     let size = [96, 96];
-    let mut frame = Frame::new(Camera::fit([0.0; 3], [1.0; 3], size), &THEME);
+    let mut frame = Frame::new(Camera::fit([0.0; 3], [1.0; 3], size), &PALETTE);
     for colour in [None, Some(ElementColour::Level)] {
         frame.look = colour.map_or(Look::Skin, |colour| Look::Elements {
             colour,
@@ -360,7 +360,7 @@ fn hands_are_in_front_of_what_is_painted_on_bodies() {
     let half = |paint: fn(&Renderer, &mut wgpu::RenderPass<'static>)| {
         let (device, queue) = device()?;
         let format = TextureFormat::Rgba8Unorm;
-        let frame = Frame::new(camera, &THEME);
+        let frame = Frame::new(camera, &PALETTE);
         let mut renderer = Renderer::new(&device, format);
         let pixels = image(&device, &queue, (format, SIZE), |step| match step {
             Step::Before(encoder) => {

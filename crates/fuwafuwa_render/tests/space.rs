@@ -6,13 +6,13 @@ mod shared;
 use fuwafuwa::{Blade, Body, Dim3, Material, PieceId, Rigid, Settings, Shape, VoxelGrid, World};
 use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_render::space::{Camera, Cut, Renderer};
-use fuwafuwa_render::{Basket, Colour, Frame, Look, Mark, Particle, Sticker, Theme};
+use fuwafuwa_render::{Basket, Colour, Frame, Look, Mark, Palette, Particle, Sticker};
 use shared::{device, device_with, difference, is_warm};
 use std::sync::LazyLock;
 use wgpu::TextureFormat;
 
 const SIZE: [u32; 2] = [480, 480];
-static THEME: LazyLock<Theme> = LazyLock::new(Theme::candy);
+static PALETTE: LazyLock<Palette> = LazyLock::new(Palette::candy);
 
 /// A picture, and what it was taken of.
 struct Picture {
@@ -26,7 +26,7 @@ fn take<'a>(
     change: impl Fn(&mut Frame<'a, Camera>),
 ) -> Option<Picture> {
     let (device, queue) = device()?;
-    let mut frame = Frame::new(Camera::fit([0.0; 3], [1.0; 3], SIZE), &THEME);
+    let mut frame = Frame::new(Camera::fit([0.0; 3], [1.0; 3], SIZE), &PALETTE);
     change(&mut frame);
     let mut renderer = Renderer::new(&device, format);
     let pixels = renderer.render_to_image(&device, &queue, world, &frame, SIZE);
@@ -205,7 +205,7 @@ fn a_cut_through_the_elements_shows_their_levels() {
             continue;
         }
         let seen = picture.around([x + 0.2 * width, y + 0.2 * width, 0.5]);
-        let wanted = THEME.level(view.level);
+        let wanted = PALETTE.level(view.level);
         assert!(
             difference(hue(seen), hue(wanted)) < 0.2,
             "level {}: {seen:?}, not {wanted:?}",
@@ -359,7 +359,7 @@ fn small_targets_and_small_buffers_are_drawn_as_far_as_they_go() {
     };
     let mut renderer = Renderer::new(&device, TextureFormat::Rgba8Unorm);
     for (world, size) in [(ball(), [1, 1]), (floating(), [3, 200]), (ball(), [96, 96])] {
-        let mut frame = Frame::new(Camera::fit([0.0; 3], [1.0; 3], size), &THEME);
+        let mut frame = Frame::new(Camera::fit([0.0; 3], [1.0; 3], size), &PALETTE);
         for colour in [None, Some(ElementColour::Strain)] {
             frame.look = colour.map_or(Look::Skin, |colour| Look::Elements {
                 colour,

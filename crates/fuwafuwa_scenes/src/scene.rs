@@ -58,7 +58,7 @@ mod rigid;
 pub use body::{BodyText, Form, MaterialText, PartText, ending_of};
 pub use embed::Fetch;
 pub use error::{SceneError, shortened};
-pub use game::{GameText, RouteText, WishText, Words};
+pub use game::{AssistText, GameText, RouteText, WishText, Words};
 pub(crate) use rigid::send;
 pub use rigid::{BallText, BoxText, CapsuleText, HalfSpaceText, HandText, ObstacleText};
 

@@ -61,8 +61,8 @@ impl AnyRound {
     }
 
     /// See [`Round::held`].
-    pub fn held(&self) -> f32 {
-        both!(self, round => round.held())
+    pub fn share_held(&self) -> f32 {
+        both!(self, round => round.share_held())
     }
 
     /// See [`Round::frames`].

@@ -1,8 +1,8 @@
 //! The game without a window: push a soft body into a basket that is smaller than it.
 //!
 //! The way through, each module using only those above it:
-//! [`input`] what players do in a tick → [`level`] where they do it → [`rules`] what counts as won, and how
-//! → [`round`] one go at a level → [`any`] the same, whatever its dimension → [`replay`] the same again → [`bot`] players that are programs.
+//! [`input`] what players do in a tick → [`level`] where they do it → [`assists`] the same made easier → [`rules`] what
+//! counts as won, and how → [`round`] one go at a level → [`any`] the same, whatever its dimension → [`replay`] the same again → [`bot`] players that are programs.
 //!
 //! A window, a bot and a replay play alike: they hand one [`InputFrame`] a tick to [`Round::step`]
 //! and look at what came of it. A round in the plane is a `Round<Dim2>`, one in space a `Round<Dim3>`;
@@ -32,6 +32,7 @@
 #![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
 
 pub mod any;
+pub mod assists;
 pub mod bot;
 pub mod input;
 pub mod level;
@@ -41,7 +42,9 @@ pub mod rules;
 
 pub use any::AnyRound;
 pub use bot::{Bot, BotKind};
-pub use fuwafuwa_scenes::scene::{RouteText as Route, WishText as Wish, Words, shortened};
+pub use fuwafuwa_scenes::scene::{
+    AssistText as Assist, RouteText as Route, WishText as Wish, Words, shortened,
+};
 pub use input::{InputFrame, PLAYERS};
 pub use level::Level;
 pub use replay::{Playback, Replay, ReplayError};

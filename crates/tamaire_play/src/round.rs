@@ -113,7 +113,7 @@ impl<D: Dim> Round<D> {
 
     /// For which share of the time that it has to rest in the basket enough has rested there; 1 once
     /// it is won.
-    pub fn held(&self) -> f32 {
+    pub fn share_held(&self) -> f32 {
         match self.progress.outcome {
             Some(_) => 1.0,
             None => (self.progress.held / self.level.game().hold.max(0.1)).clamp(0.0, 1.0),

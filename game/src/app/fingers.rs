@@ -71,7 +71,7 @@ impl Fingers {
                 if is_mouse && matches!(phase, TouchPhase::End | TouchPhase::Cancel) {
                     self.mouse = None;
                 }
-                let button = buttons.iter().find(|button| button.place.contains(pos));
+                let button = buttons.iter().find(|button| button.rect.contains(pos));
                 match button.filter(|_| phase == TouchPhase::Start) {
                     Some(&button) => {
                         // A mouse clicks, as it is let go.
@@ -88,7 +88,7 @@ impl Fingers {
     }
 
     /// What the buttons mean that are held.
-    pub(super) fn held(&self) -> impl Iterator<Item = Action> {
+    pub(super) fn pressed(&self) -> impl Iterator<Item = Action> {
         self.holding.values().copied()
     }
 

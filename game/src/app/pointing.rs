@@ -42,7 +42,7 @@ pub(super) fn point(game: &mut Game, ctx: &Context, fingers: &Fingers) {
         return;
     };
     let round = game.bout.round();
-    let place = match round {
+    let position = match round {
         AnyRound::Plane(_) => view.in_world(at, 0.0),
         // In space it points at the floor, where the hand's shadow is: so nothing jumps when the hand has risen.
         AnyRound::Space(in_space) => {
@@ -55,7 +55,7 @@ pub(super) fn point(game: &mut Game, ctx: &Context, fingers: &Fingers) {
             [x, goal[1], z]
         }
     };
-    game.controls.devices.pointer = Some(place);
+    game.controls.devices.pointer = Some(position);
 }
 
 /// How high what the first hand begins above is [m]: the floor, or a shelf. It stays the same when the hand comes past

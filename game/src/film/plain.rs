@@ -2,7 +2,7 @@
 
 use fuwafuwa::vector::{plus, scaled};
 use fuwafuwa_painter::solid::{Camera, Solid};
-use fuwafuwa_painter::{Frame, PaintError, Painter, Pixmap, stage};
+use fuwafuwa_painter::{Frame, PaintError, Painter, Pixmap, worlds};
 use tamaire_play::AnyRound;
 
 /// A picture of a round as it is now that is so large without its caption [px].
@@ -24,7 +24,7 @@ pub fn picture(
                 0.5 * size[1] + unit * middle[1],
             ];
             let frame = Frame { origin, unit };
-            stage::plane(&mut painter, frame, round.world(), stage::plane_elements);
+            worlds::plane(&mut painter, frame, round.world(), worlds::plane_elements);
         }
         AnyRound::Space(round) => {
             let mut solid = Solid::new(Camera {
@@ -32,8 +32,8 @@ pub fn picture(
                 target: middle,
                 across: 1.1 * across,
             });
-            stage::space(&mut solid, round.world(), |solid, body| {
-                stage::space_elements(solid, body, |_| true);
+            worlds::space(&mut solid, round.world(), |solid, body| {
+                worlds::space_elements(solid, body, |_| true);
             });
             painter.image([0.0; 2], solid.pixels(width, height)?);
         }

@@ -11,7 +11,7 @@ pub struct ScreenButton {
     /// What it asks for.
     pub action: Action,
     /// Where fingers press it [points].
-    pub place: Rect,
+    pub rect: Rect,
 }
 
 impl ScreenButton {

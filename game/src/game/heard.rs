@@ -63,19 +63,21 @@ fn cues_of<D: Dim>(round: &Round<D>, view: Option<View>) -> Vec<Cue> {
     for event in round.world().events() {
         match *event {
             Event::Released {
-                at: place, energy, ..
+                at: position,
+                energy,
+                ..
             } => {
                 torn += energy.max(0.01);
-                at = across(view, place);
+                at = across(view, position);
             }
             Event::Touched {
                 with: With::Obstacle(_),
                 impulse,
-                at: place,
+                at: position,
                 body,
                 piece,
             } => {
-                let x = across(view, place);
+                let x = across(view, position);
                 let mass = mass_of(body, piece);
                 let speed = impulse / mass;
                 if mass > CRUMB * round.progress().mass {
@@ -96,7 +98,7 @@ fn cues_of<D: Dim>(round: &Round<D>, view: Option<View>) -> Vec<Cue> {
     cues
 }
 
-/// Where a place is seen, from -1 at the left to 1 at the right; before anything is seen, in the middle.
+/// Where a position is seen, from -1 at the left to 1 at the right; before anything is seen, in the middle.
 fn across(view: Option<View>, at: Vector) -> f32 {
     view.map_or(0.0, |view| view.across(at))
 }
@@ -116,8 +118,8 @@ mod tests {
         let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
         let mut heard = |level: &str, turn: f32| {
             let mut levels = game.levels.iter();
-            let place = levels.position(|known| known.id == level);
-            game.start(place.expect("it comes along"));
+            let index = levels.position(|known| known.id == level);
+            game.start(index.expect("it comes along"));
             assert_eq!(soundscape(&game).presses[0].x, 0.0, "nothing is seen yet");
             game.bout.camera.orbit(turn, 0.0);
             let screen = Rect::from_min_max(pos2(0.0, 0.0), pos2(900.0, 600.0));

@@ -35,10 +35,10 @@ impl Game {
     }
 
     /// Takes a level that does not come along out of the list. What was reached in it stays.
-    pub fn take_out(&mut self, place: usize) {
-        let level = self.levels.remove(place);
+    pub fn take_out(&mut self, index: usize) {
+        let level = self.levels.remove(index);
         self.files.remove_level(&level.id);
-        if self.chosen >= place {
+        if self.chosen >= index {
             self.chosen = self.chosen.saturating_sub(1);
         }
     }
@@ -65,9 +65,9 @@ impl Game {
             News::Level(level) if self.levels.iter().any(|known| known.id == level.id) => {}
             News::Level(level) => self.levels.push(level),
             News::Damaged(damage) => self.tell_of(damage),
-            News::Saved(place) => {
+            News::Saved(location) => {
                 self.shelf.look(&self.files);
-                self.notify(format!("{} {place}", self.words().saved));
+                self.notify(format!("{} {location}", self.words().saved));
             }
             News::Failed(reason) => {
                 self.notify(format!("{} {reason}", self.words().not_written));

@@ -59,9 +59,9 @@ impl Screens {
 
     /// Goes back to a screen that is open, or opens it over the topmost one from which it can be.
     pub(super) fn go(&mut self, screen: Screen) {
-        let place = self.0.iter().rposition(|&open| open == screen);
-        let place = place.or_else(|| self.0.iter().rposition(|&open| screen.opens_over(open)));
-        self.0.truncate(place.unwrap_or(0) + 1);
+        let index = self.0.iter().rposition(|&open| open == screen);
+        let index = index.or_else(|| self.0.iter().rposition(|&open| screen.opens_over(open)));
+        self.0.truncate(index.unwrap_or(0) + 1);
         if self.top() != screen {
             self.0.push(screen);
         }
@@ -69,8 +69,8 @@ impl Screens {
 
     /// Closes a screen and whatever is open over it; the title stays.
     pub(super) fn close(&mut self, screen: Screen) {
-        let place = self.0.iter().position(|&open| open == screen);
-        self.0.truncate(place.unwrap_or(self.0.len()).max(1));
+        let index = self.0.iter().position(|&open| open == screen);
+        self.0.truncate(index.unwrap_or(self.0.len()).max(1));
     }
 }
 

@@ -51,12 +51,12 @@ impl Shelf {
 
     /// Looks into one that is not known yet. A level that is known, here or among `levels`, is the same one.
     pub(super) fn look_into_one(&mut self, files: &Files, levels: &[Arc<Level>]) {
-        let Some(place) = self.0.iter().position(|kept| kept.found.is_none()) else {
+        let Some(index) = self.0.iter().position(|kept| kept.found.is_none()) else {
             return;
         };
-        let read = files.replay(&self.0[place].entry.name);
+        let read = files.replay(&self.0[index].entry.name);
         let found = read.and_then(|replay| self.found(&replay, levels));
-        self.0[place].found = Some(found.ok());
+        self.0[index].found = Some(found.ok());
     }
 
     fn found(&self, replay: &Replay, levels: &[Arc<Level>]) -> Result<Found, ReplayError> {

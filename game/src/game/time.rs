@@ -130,7 +130,7 @@ impl Game {
             .enumerate()
             .filter(|(_, size)| *size > 0.0)
         {
-            if let Some(device) = players.held(player).filter(|_| in_round) {
+            if let Some(device) = players.device_of(player).filter(|_| in_round) {
                 forces.tear(device, size);
             }
         }
@@ -148,7 +148,7 @@ impl Game {
         if self.bout.session.is_played() && self.bout.won.is_none() {
             let level = self.bout.round().level().clone();
             // A round that somebody shared may have another level under a known name.
-            let is_known = self.levels.contains(&level);
+            let is_known = self.listed(&level).is_some();
             let is_best = is_known && self.records.note(&level, &outcome);
             self.bout.won = Some((outcome, is_best));
             self.sound.play(Cue::Won(match outcome.route {

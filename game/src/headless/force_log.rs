@@ -178,13 +178,13 @@ fn turn(round: &AnyRound) -> Option<f32> {
     matches!(round, AnyRound::Space(_)).then_some(0.0)
 }
 
-/// Where a stick points that points at a place in the arena [m].
-fn aim_at(place: Vector, round: &AnyRound) -> [f32; 2] {
+/// Where a stick points that points at a position in the arena [m].
+fn aim_at(position: Vector, round: &AnyRound) -> [f32; 2] {
     let [low, high] = round.level().arena();
     let share = [0, 1, 2].map(|axis: usize| {
         let middle = 0.5 * (low[axis] + high[axis]);
         let half = 0.5 * (high[axis] - low[axis]);
-        (place[axis] - middle) / half.max(1e-3)
+        (position[axis] - middle) / half.max(1e-3)
     });
     haptics::on_stick(share, turn(round))
 }

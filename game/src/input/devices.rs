@@ -31,7 +31,7 @@ pub struct Devices {
     /// Where a second finger points, likewise: it is the hand of a second player who joined with it.
     pub second: Option<Vector>,
     /// What the buttons on the screen mean that fingers hold.
-    pub held: BTreeSet<Action>,
+    pub pressed: BTreeSet<Action>,
     /// Keys that are held.
     pub keys: BTreeSet<Key>,
     /// How far the wheel or a second finger was turned or drawn, for the hand to rise in space [m].
@@ -80,7 +80,7 @@ impl Devices {
     /// Whether a key that means this, or a button on the screen, is held.
     pub(super) fn holds(&self, bindings: &Bindings, action: Action) -> bool {
         let means = |&key| bindings.of_key(key) == Some(action);
-        self.held.contains(&action) || self.keys.iter().any(means)
+        self.pressed.contains(&action) || self.keys.iter().any(means)
     }
 }
 

@@ -8,7 +8,7 @@ use fuwafuwa::Vector;
 pub struct Manner {
     /// 1 = usual.
     pub sensitivity: f32,
-    /// Whether a stick points at a place in the arena, instead of saying how fast to go.
+    /// Whether a stick points at a position in the arena, instead of saying how fast to go.
     pub stick_places: bool,
     /// Low and high corner of where goals may be [m].
     pub arena: [Vector; 2],
@@ -31,26 +31,26 @@ impl Manner {
         ]
     }
 
-    /// The nearest place in the arena. A level in the plane says nothing about the third axis.
-    pub(super) fn within(&self, mut place: Vector) -> Vector {
+    /// The nearest position in the arena. A level in the plane says nothing about the third axis.
+    pub(super) fn within(&self, mut position: Vector) -> Vector {
         let [low, high] = self.arena;
         let axes = if self.turn.is_some() { 3 } else { 2 };
         for axis in 0..axes {
-            place[axis] = place[axis].clamp(low[axis], high[axis]);
+            position[axis] = position[axis].clamp(low[axis], high[axis]);
         }
-        place
+        position
     }
 
-    /// The place in the arena at which a stick points, in space at a height [m].
-    pub(super) fn place_of(&self, stick: [f32; 2], height: f32) -> Vector {
+    /// The position in the arena at which a stick points, in space at a height [m].
+    pub(super) fn position_of(&self, stick: [f32; 2], height: f32) -> Vector {
         let [low, high] = self.arena;
         let way = self.along(Vec2::from(stick));
-        let mut place = [0, 1, 2].map(|axis: usize| {
+        let mut position = [0, 1, 2].map(|axis: usize| {
             0.5 * (low[axis] + high[axis]) + 0.5 * way[axis] * (high[axis] - low[axis])
         });
         if self.turn.is_some() {
-            place[1] = height;
+            position[1] = height;
         }
-        place
+        position
     }
 }

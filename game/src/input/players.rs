@@ -23,7 +23,7 @@ pub struct Players {
     second: Option<Seat>,
     /// Where each wants to be [m]. The hand may be far from there, and its goal as well.
     goals: [Option<Vector>; PLAYERS],
-    /// How sticks leaned in the last tick. One that points at a place does so when it moves; while
+    /// How sticks leaned in the last tick. One that points at a position does so when it moves; while
     /// it is still, be it at rest, mouse and keys have their say.
     leans: BTreeMap<DeviceId, [f32; 2]>,
     /// With what each moved the hand last, and how long ago [s].
@@ -35,7 +35,7 @@ pub struct Players {
 #[derive(Default)]
 struct Asked {
     /// To be somewhere [m].
-    place: Option<Vector>,
+    position: Option<Vector>,
     /// To go to the right and away, at full pace where this is 1 long.
     lean: Vec2,
     /// To rise, at full pace where this is 1.
@@ -51,7 +51,7 @@ impl Players {
     }
 
     /// The stick or pad with which a player moved the hand last, unless it was something else. Who has several feels one.
-    pub fn held(&self, player: usize) -> Option<DeviceId> {
+    pub fn device_of(&self, player: usize) -> Option<DeviceId> {
         match self.used[player] {
             Some(Seat::Stick(id)) => Some(id),
             _ => None,
@@ -138,22 +138,22 @@ impl Players {
         self.rested[player] += seconds;
         let wanted = self.goals[player].unwrap_or(here);
         let asked = self.asked(player, devices, bindings, manner, wanted[1]);
-        let mut goal = asked.place.or(self.goals[player]);
+        let mut goal = asked.position.or(self.goals[player]);
         if asked.lean != Vec2::ZERO {
             // From where the goal is now: what pushes in vain winds nothing up.
             let lean = asked.lean * (1.0 / asked.lean.length().max(1.0));
             let step = manner.along(lean * PACE * manner.sensitivity * seconds);
-            let mut place = manner.within(plus(here, step));
+            let mut position = manner.within(plus(here, step));
             if manner.turn.is_some() {
-                place[1] = wanted[1];
+                position[1] = wanted[1];
             }
-            goal = Some(place);
+            goal = Some(position);
         }
         let lift = asked.lift.clamp(-1.0, 1.0) * RISE * manner.sensitivity * seconds;
         if lift != 0.0 || asked.wheel != 0.0 {
-            let mut place = goal.unwrap_or(here);
-            place[1] = raised(place[1], here[1], asked.wheel, lift);
-            goal = Some(manner.within(place));
+            let mut position = goal.unwrap_or(here);
+            position[1] = raised(position[1], here[1], asked.wheel, lift);
+            goal = Some(manner.within(position));
         }
         self.goals[player] = goal;
     }
@@ -193,7 +193,7 @@ impl Players {
             if !manner.stick_places && !pushes_back {
                 asked.lean += Vec2::from(stick);
             } else if moved || self.used[player] == Some(Seat::Stick(device.id)) {
-                asked.place = Some(manner.place_of(stick, height));
+                asked.position = Some(manner.position_of(stick, height));
             }
             let held = held_on(device, bindings);
             let means = |action| held.contains(&action);
@@ -211,12 +211,12 @@ impl Players {
         }
         let wheel = rises * devices.lift;
         if holds(Seat::Pointer) && (devices.pointer.is_some() || wheel != 0.0) {
-            asked.place = devices.pointer.or(asked.place);
+            asked.position = devices.pointer.or(asked.position);
             asked.wheel = wheel;
             self.used[player] = Some(Seat::Pointer);
         }
         if player == 1 && self.second == Some(Seat::Finger) && devices.second.is_some() {
-            asked.place = devices.second;
+            asked.position = devices.second;
             self.used[1] = Some(Seat::Finger);
         }
         asked

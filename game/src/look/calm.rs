@@ -12,7 +12,7 @@ pub(super) fn frame<'a, D: Dim, C>(camera: C, round: &Round<D>, theme: &'a Theme
     let fill = (round.progress().inside / round.level().game().share).clamp(0.0, 1.0);
     Frame {
         camera,
-        theme: &theme.world,
+        palette: &theme.world,
         look: fuwafuwa_render::Look::Skin,
         basket: round.basket().map(|&region| Basket { region, fill }),
         particles: &[],

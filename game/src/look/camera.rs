@@ -242,8 +242,8 @@ mod tests {
             Rect::from_min_size(pos2(10.0, 20.0), vec2(800.0, 600.0)),
             arena,
         );
-        let place = view.in_world(view.on_screen([0.7, -0.3, 0.0]), 0.0);
-        assert!((place[0] - 0.7).abs() < 1e-4 && (place[1] + 0.3).abs() < 1e-4);
+        let position = view.in_world(view.on_screen([0.7, -0.3, 0.0]), 0.0);
+        assert!((position[0] - 0.7).abs() < 1e-4 && (position[1] + 0.3).abs() < 1e-4);
         camera.follow([1.0, 0.5, 0.0], arena, 0.05, true);
         assert_eq!(camera.view_of_plane(view.rect, arena).centre, [0.0, 0.0]);
     }
@@ -278,8 +278,8 @@ mod tests {
             camera.orbit(0.0, rise);
             let view = camera.view_of_space(rect, arena);
             let at = [0.7, 0.4, -0.3];
-            let place = view.in_world(view.on_screen(at), at[1]);
-            assert!(length(minus(place, at)) < 1e-2, "{place:?}");
+            let position = view.in_world(view.on_screen(at), at[1]);
+            assert!(length(minus(position, at)) < 1e-2, "{position:?}");
         }
         // From far below: past the horizon, and with the hand above the eye, right stays right and far is far.
         camera.face_front();

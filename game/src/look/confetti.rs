@@ -42,15 +42,15 @@ impl Confetti {
         let [low, high] = room;
         let height = high[1] - low[1];
         self.pieces = (0..COUNT)
-            .map(|place| {
-                let side = if place % 2 == 0 { 1.0 } else { -1.0 };
+            .map(|index| {
+                let side = if index % 2 == 0 { 1.0 } else { -1.0 };
                 let from = if side > 0.0 { low[0] } else { high[0] };
                 Paper {
                     at: [from, low[1] + 0.2 * height, 0.0],
                     velocity: vec2(side * any(0.6, 6.4), any(1.6, 4.6)) * 0.5 * height,
                     angle: any(0.0, 6.0),
                     spin: any(-9.0, 9.0),
-                    kind: place / 2 % PAPER.len(),
+                    kind: index / 2 % PAPER.len(),
                     left: any(2.5, 4.5),
                 }
             })

@@ -248,9 +248,9 @@ impl Effects {
 fn material_at<D: Dim>(body: &Body<D>, at: Vector) -> u8 {
     let mesh = body.mesh();
     let square = |id: NodeId| {
-        let place = body.node_state(id).0;
+        let position = body.node_state(id).0;
         (0..D::N)
-            .map(|axis| (place[axis] - at[axis]).powi(2))
+            .map(|axis| (position[axis] - at[axis]).powi(2))
             .sum::<f32>()
     };
     let nearest = mesh

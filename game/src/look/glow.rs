@@ -12,7 +12,7 @@ const GOLD: Color32 = Color32::from_rgb(255, 205, 70);
 /// Draws it.
 pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &Look) {
     let (progress, view) = (round.progress(), &look.view);
-    let held = round.held();
+    let held = round.share_held();
     if held == 0.0 {
         return;
     }

@@ -137,10 +137,10 @@ fn smoothed(mut points: Vec<Pos2>) -> Vec<Pos2> {
     for _ in 0..6 {
         let before = points.clone();
         let count = before.len();
-        for (place, point) in points.iter_mut().enumerate() {
+        for (index, point) in points.iter_mut().enumerate() {
             let (last, next) = (
-                before[(place + count - 1) % count],
-                before[(place + 1) % count],
+                before[(index + count - 1) % count],
+                before[(index + 1) % count],
             );
             *point = *point + 0.25 * ((last - *point) + (next - *point));
         }

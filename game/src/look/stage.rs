@@ -257,8 +257,8 @@ fn draw_ghost(painter: &Painter, round: &Round<Dim2>, view: &View) {
             let points = outline.points.iter().map(|&at| view.on_screen(at));
             let points: Vec<Pos2> = points.collect();
             // Edge by edge: where a crack turns back, a line with corners shoots far out.
-            for (place, &point) in points.iter().enumerate() {
-                let next = points[(place + 1) % points.len()];
+            for (index, &point) in points.iter().enumerate() {
+                let next = points[(index + 1) % points.len()];
                 painter.line_segment([point, next], stroke);
             }
         }

@@ -22,7 +22,7 @@ pub struct Theme {
     /// What has done well.
     pub good: Color32,
     /// The world.
-    pub world: fuwafuwa_render::Theme,
+    pub world: fuwafuwa_render::Palette,
 }
 
 impl Theme {
@@ -58,14 +58,14 @@ impl Theme {
             accent: rgb(240, 108, 98),
             on_accent: rgb(255, 255, 255),
             good: rgb(87, 168, 92),
-            world: fuwafuwa_render::Theme::candy(),
+            world: fuwafuwa_render::Palette::candy(),
         };
         match colour_safe {
             false => usual,
             true => Self {
                 accent: rgb(213, 94, 0),
                 good: rgb(0, 114, 178),
-                world: fuwafuwa_render::Theme::colour_safe(),
+                world: fuwafuwa_render::Palette::colour_safe(),
                 ..usual
             },
         }

@@ -9,7 +9,7 @@ use crate::words::Language;
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
-use tamaire_play::{Level, Replay, ReplayError, shortened};
+use tamaire_play::{Assist, Level, Replay, ReplayError, shortened};
 
 /// Most levels that are read at the start: those that were kept last.
 const MOST_LEVELS: usize = 100;
@@ -144,8 +144,8 @@ impl Files {
             Ok(Some(bytes)) => bytes,
             Ok(None) => return (usual, None),
             Err(error) => {
-                let place = self.storage.place(Kind::Note, name);
-                let refused = vec![format!("{place} ({error})")];
+                let location = self.storage.location(Kind::Note, name);
+                let refused = vec![format!("{location} ({error})")];
                 let aside = None;
                 let is_told = std::mem::replace(&mut self.is_failing, true);
                 let damage = (!is_told).then_some(Damage { refused, aside });
@@ -307,14 +307,14 @@ impl Files {
 
     /// Keeps a win as the round to race in its level, unless one that was won faster is kept.
     pub fn keep_best(&mut self, level: &Level, replay: Replay) {
-        let (storage, name) = (self.storage.clone(), plain(&level.id));
+        let (storage, name) = (self.storage.clone(), name_of_best(level));
         self.writer
             .write(move || Done::Note(keep_best(&*storage, &name, &replay)));
     }
 
     /// The fastest win that was kept of a level.
     pub fn best(&self, level: &Level) -> Option<Replay> {
-        self.round(Kind::Best, &plain(&level.id)).ok()
+        self.round(Kind::Best, &name_of_best(level)).ok()
     }
 
     /// The replays that are kept, the newest first.
@@ -342,8 +342,8 @@ impl Files {
     }
 
     /// Where a replay is kept, for people to read.
-    pub fn place(&self, name: &str) -> String {
-        self.storage.place(Kind::Replay, name)
+    pub fn location(&self, name: &str) -> String {
+        self.storage.location(Kind::Replay, name)
     }
 
     /// Deletes a replay.
@@ -372,7 +372,7 @@ fn put_aside(storage: &dyn Storage, kind: Kind, name: &str, bytes: &[u8]) -> io:
             found.is_none().then(|| bytes.to_vec())
         })?;
         if is_there {
-            return Ok(storage.place(kind, &aside));
+            return Ok(storage.location(kind, &aside));
         }
         number += 1;
     }
@@ -385,10 +385,10 @@ fn is_aside(name: &str) -> bool {
 
 /// The level of a name; one that cannot be used is put aside.
 fn read_level(storage: &dyn Storage, name: &str) -> Result<Arc<Level>, Damage> {
-    let place = storage.place(Kind::Level, name);
+    let location = storage.location(Kind::Level, name);
     let refused = |reason: &str, aside| {
         let reason = shortened(reason, LETTERS);
-        let refused = vec![format!("{place} ({reason})")];
+        let refused = vec![format!("{location} ({reason})")];
         Damage { refused, aside }
     };
     let unreadable = |error: io::Error| refused(&error.to_string(), None);
@@ -438,6 +438,15 @@ fn plain(name: &str) -> String {
     name.chars().filter(is_plain).take(60).collect()
 }
 
+/// By which the fastest win in a level is kept: one for the level as it is, one for each way of making it easier.
+fn name_of_best(level: &Level) -> String {
+    let assists = level.game().assists.iter().map(|assist| match assist {
+        Assist::WiderBasket => "-wider",
+        Assist::Unbreakable => "-unbreakable",
+    });
+    plain(&level.id) + &assists.collect::<String>()
+}
+
 /// Keeps a win, unless one in the same level that took no longer is kept.
 fn keep_best(storage: &dyn Storage, name: &str, replay: &Replay) -> io::Result<()> {
     let Ok(text) = replay.text_to_keep() else {
@@ -467,7 +476,7 @@ fn save(storage: &dyn Storage, kind: Kind, stem: &str, bytes: &[u8]) -> Result<S
             is_free.then(|| bytes.to_vec())
         });
         match written {
-            Ok(()) if is_free => return Ok(storage.place(kind, &name)),
+            Ok(()) if is_free => return Ok(storage.location(kind, &name)),
             Ok(()) => {}
             Err(error) => last = Some(error.to_string()),
         }

@@ -109,7 +109,7 @@ impl Storage for Folder {
         fs::remove_file(self.path(kind, name)?)
     }
 
-    fn place(&self, kind: Kind, name: &str) -> String {
+    fn location(&self, kind: Kind, name: &str) -> String {
         let path = self.path(kind, name);
         path.map_or_else(|_| name.into(), |path| path.display().to_string())
     }

@@ -52,10 +52,10 @@ mod on_disk {
     impl Given {
         /// A replay, a level, a picture or a model in a file, or a level that comes along, by its name.
         pub fn at(path: &Path) -> Self {
-            let place = path.to_string_lossy();
-            match is_replay(&place) {
-                true => Self::Replay(place.into(), replay_in(path).map(Box::new)),
-                false => Self::Level(level_at(&place).map(Box::new)),
+            let location = path.to_string_lossy();
+            match is_replay(&location) {
+                true => Self::Replay(location.into(), replay_in(path).map(Box::new)),
+                false => Self::Level(level_at(&location).map(Box::new)),
             }
         }
     }
@@ -64,13 +64,13 @@ mod on_disk {
     ///
     /// # Errors
     /// [`LevelError`] says what is wrong with it.
-    pub fn level_at(place: &str) -> Result<Level, LevelError> {
-        let path = Path::new(place);
-        let known = Level::open(place);
+    pub fn level_at(location: &str) -> Result<Level, LevelError> {
+        let path = Path::new(location);
+        let known = Level::open(location);
         if known.is_ok() || !path.exists() {
             return known;
         }
-        let unreadable = |reason: String| LevelError::Unreadable(place.into(), reason);
+        let unreadable = |reason: String| LevelError::Unreadable(location.into(), reason);
         let bytes =
             bytes_of(path, MAX_FILE_BYTES).map_err(|error| unreadable(error.to_string()))?;
         // Its records stay when its folder is moved.

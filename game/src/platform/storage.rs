@@ -72,7 +72,7 @@ pub trait Storage: Send + Sync {
     fn remove(&self, kind: Kind, name: &str) -> io::Result<()>;
 
     /// Where that is, for people to read.
-    fn place(&self, kind: Kind, name: &str) -> String;
+    fn location(&self, kind: Kind, name: &str) -> String;
 }
 
 /// Keeps nothing.
@@ -108,7 +108,7 @@ impl Storage for Nowhere {
         self.answer(())
     }
 
-    fn place(&self, _: Kind, name: &str) -> String {
+    fn location(&self, _: Kind, name: &str) -> String {
         name.into()
     }
 }

@@ -49,24 +49,24 @@ pub(super) fn show(game: &mut Game, ui: &Ui, corner: Pos2, scale: f32) -> (f32, 
     }
     let side = scale * HIGH;
     let step = vec2(side + scale * GAP, 0.0);
-    let in_row = |place: usize| Rect::from_min_size(corner + place as f32 * step, vec2(side, side));
+    let in_row = |index: usize| Rect::from_min_size(corner + index as f32 * step, vec2(side, side));
     let end = in_row(row.len()).left();
     let last = ui.max_rect().right_bottom() - scale * vec2(EDGE + THUMB, EDGE + THUMB);
     let count = thumb.len();
-    let in_corner = |place: usize| {
-        let up = scale * (THUMB + 2.0 * GAP) * (count - 1 - place) as f32;
+    let in_corner = |index: usize| {
+        let up = scale * (THUMB + 2.0 * GAP) * (count - 1 - index) as f32;
         Rect::from_min_size(pos2(last.x, last.y - up), scale * vec2(THUMB, THUMB))
     };
     let row = row.into_iter().enumerate();
     let thumb = thumb.into_iter().enumerate();
     let all: Vec<_> = row
-        .map(|(place, button)| (in_row(place), button))
-        .chain(thumb.map(|(place, button)| (in_corner(place), button)))
+        .map(|(index, button)| (in_row(index), button))
+        .chain(thumb.map(|(index, button)| (in_corner(index), button)))
         .collect();
     let mut is_on_button = false;
     game.controls.buttons.clear();
-    for (place, (action, name, icon)) in all {
-        let button = ScreenButton { action, place };
+    for (rect, (action, name, icon)) in all {
+        let button = ScreenButton { action, rect };
         game.controls.buttons.push(button);
         is_on_button |= one(game, ui, button, name, icon);
     }
@@ -75,19 +75,19 @@ pub(super) fn show(game: &mut Game, ui: &Ui, corner: Pos2, scale: f32) -> (f32, 
 
 /// Shows a button; gives back whether the mouse is on it.
 fn one(game: &mut Game, ui: &Ui, button: ScreenButton, name: &str, icon: Icon) -> bool {
-    let (theme, place) = (game.theme(), button.place);
+    let (theme, rect) = (game.theme(), button.rect);
     // Not for the keyboard, which has its own keys for it.
-    let response = ui.interact(place, egui::Id::unique(name), Sense::CLICK);
+    let response = ui.interact(rect, egui::Id::unique(name), Sense::CLICK);
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
     note_hovered(ui, &response);
-    let is_held = game.controls.devices.held.contains(&button.action);
+    let is_held = game.controls.devices.pressed.contains(&button.action);
     let fill = match is_held || response.hovered() {
         true => theme.card,
         false => pale(&theme),
     };
-    let (middle, radius) = (place.center(), 0.5 * place.width());
+    let (middle, radius) = (rect.center(), 0.5 * rect.width());
     ui.painter().circle_filled(middle, radius, fill);
-    icon(ui.painter(), middle, place.width() / HIGH, theme.ink);
+    icon(ui.painter(), middle, rect.width() / HIGH, theme.ink);
     if response.clicked() {
         game.act(button.action, button.seat());
     }

@@ -99,18 +99,18 @@ fn show_device(ui: &mut Ui, theme: &Theme, game: &mut Game, device: &Device) {
         None => (said.ability)(Ability::Nothing),
     };
     let size = vec2(ui.available_width(), 34.0);
-    let (place, _) = ui.allocate_exact_size(size, Sense::hover());
+    let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
     let right = fitted(ui.painter(), can, 19.0, 0.4 * size.x, theme.faint);
     let width = size.x - right.size().x - 20.0;
     let left = fitted(ui.painter(), &device.about.name, 24.0, width, theme.ink);
-    let at = place.left_center() - vec2(0.0, 0.5 * left.size().y);
+    let at = rect.left_center() - vec2(0.0, 0.5 * left.size().y);
     ui.painter().galley(at, left, theme.ink);
-    let at = place.right_center() - vec2(right.size().x, 0.5 * right.size().y);
+    let at = rect.right_center() - vec2(right.size().x, 0.5 * right.size().y);
     ui.painter().galley(at, right, theme.faint);
     ui.horizontal(|ui| {
         let size = vec2(2.0 * CIRCLE, 2.0 * CIRCLE + 8.0);
-        let (place, _) = ui.allocate_exact_size(size, Sense::hover());
-        draw_stick(ui.painter(), theme, place.center(), device, report);
+        let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
+        draw_stick(ui.painter(), theme, rect.center(), device, report);
         ui.add_space(14.0);
         ui.vertical(|ui| draw_report(ui, theme, said, device, report));
         ui.add_space(14.0);
@@ -149,12 +149,12 @@ fn draw_report(ui: &mut Ui, theme: &Theme, said: &Words, device: &Device, report
     let width = 330.0;
     let a_row = (width / LIGHTS) as usize;
     let lights = device.controls().count().div_ceil(a_row) as f32;
-    let (place, _) = ui.allocate_exact_size(
+    let (rect, _) = ui.allocate_exact_size(
         vec2(width, 2.0 * ROW + 30.0 + 12.0 * rows + LIGHTS * lights),
         Sense::hover(),
     );
     let painter = ui.painter();
-    let mut at = place.left_top();
+    let mut at = rect.left_top();
     let zero = Output::Force([0.0; 2]);
     let output = report.map_or(zero, |report| report.output);
     let (names, levels) = match output {

@@ -69,7 +69,7 @@ struct Row<'a> {
 
 impl Row<'_> {
     /// The place for something so wide before it is scaled, with a background.
-    fn place(&mut self, width: f32) -> Rect {
+    fn take(&mut self, width: f32) -> Rect {
         let size = self.scale * vec2(width, HIGH);
         if self.at.x + size.x > self.right && self.at.x > self.start {
             self.at = pos2(self.start, self.at.y + self.scale * (HIGH + GAP));
@@ -90,7 +90,7 @@ fn draw_clock(row: &mut Row, theme: &Theme, game: &Game) {
     };
     let clock = format!("{seconds:.1}");
     // As wide as it will ever be: what jumps cannot be read.
-    let at = row.place(34.0 + 15.0 * clock.len().max(4) as f32).center();
+    let at = row.take(34.0 + 15.0 * clock.len().max(4) as f32).center();
     let font = FontId::proportional(26.0 * row.scale);
     let painter = row.painter;
     painter.text(at, Align2::CENTER_CENTER, clock, font, theme.ink);
@@ -103,8 +103,8 @@ fn draw_chips(row: &mut Row, theme: &Theme, game: &Game) {
         let font = FontId::proportional(19.0 * row.scale);
         let text = format!("{sign} {text}");
         let galley = row.painter.layout_no_wrap(text, font, theme.ink);
-        let place = row.place(galley.size().x / row.scale + 28.0);
-        let at = place.center() - 0.5 * galley.size();
+        let rect = row.take(galley.size().x / row.scale + 28.0);
+        let at = rect.center() - 0.5 * galley.size();
         row.painter.galley(at, galley, theme.ink);
     };
     if !game.bout.session.is_played() {
@@ -137,8 +137,8 @@ fn draw_chips(row: &mut Row, theme: &Theme, game: &Game) {
 fn draw_lesson(ui: &Ui, screen: Rect, scale: f32, game: &Game) {
     let (theme, painter) = (game.theme(), ui.painter());
     let mut bottom = screen.bottom();
-    for (place, (line, is_missing)) in game.lesson().into_iter().enumerate().rev() {
-        let id = egui::Id::unique(("lesson", place));
+    for (index, (line, is_missing)) in game.lesson().into_iter().enumerate().rev() {
+        let id = egui::Id::unique(("lesson", index));
         let strength = match game.settings.reduced_motion {
             true => f32::from(u8::from(is_missing)),
             false => ui.ctx().animate_bool_with_time(id, is_missing, 0.5),
@@ -161,7 +161,7 @@ fn draw_lesson(ui: &Ui, screen: Rect, scale: f32, game: &Game) {
 
 /// What the colours of elements tell: small to large, or at ease to strained.
 fn draw_legend(row: &mut Row, theme: &Theme, colour: ElementColour) {
-    let (rect, scale, painter) = (row.place(176.0), row.scale, row.painter);
+    let (rect, scale, painter) = (row.take(176.0), row.scale, row.painter);
     let middle = rect.center().y;
     let line = Stroke::new(1.0, theme.ink);
     match colour {
@@ -241,7 +241,7 @@ fn draw_jar(ui: &Ui, middle: Pos2, scale: f32, game: &Game) {
     painter.extend(Shape::dashed_line(&ends, dashes, 6.0 * scale, 4.0 * scale));
     let edge = Stroke::new(2.0 * scale, theme.ink.gamma_multiply(0.35));
     painter.circle_stroke(middle, glass, edge);
-    let held = round.held();
+    let held = round.share_held();
     if held > 0.0 {
         let ring = Stroke::new(7.0 * scale, theme.good);
         icons::arc(painter, middle, scale * JAR, held, ring);

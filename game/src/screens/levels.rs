@@ -48,17 +48,17 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
             let places: Vec<usize> = (0..game.levels.len()).collect();
             for row in places.chunks(columns as usize) {
                 ui.horizontal_top(|ui| {
-                    for &place in row {
+                    for &index in row {
                         ui.vertical(|ui| {
-                            let response = tile(ui, game, maps, place, size);
-                            if place == game.chosen {
+                            let response = tile(ui, game, maps, index, size);
+                            if index == game.chosen {
                                 super::play::focus_first(ui, &response);
                             }
                             if response.clicked() {
-                                wanted = Some(Wish::Play(place));
+                                wanted = Some(Wish::Play(index));
                             }
-                            if game.is_own(place) && way_out(ui, game, place, wide).clicked() {
-                                wanted = Some(Wish::TakeOut(place));
+                            if game.is_own(index) && way_out(ui, game, index, wide).clicked() {
+                                wanted = Some(Wish::TakeOut(index));
                             }
                         });
                     }
@@ -77,18 +77,18 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     };
     game.blip(Menu::Confirm);
     match wish {
-        Wish::Play(place) => {
+        Wish::Play(index) => {
             doom(ui, None);
-            game.start(place);
+            game.start(index);
         }
-        Wish::TakeOut(place) if is_doomed(ui, &game.levels[place].id) => game.take_out(place),
-        Wish::TakeOut(place) => doom(ui, Some(&game.levels[place].id)),
+        Wish::TakeOut(index) if is_doomed(ui, &game.levels[index].id) => game.take_out(index),
+        Wish::TakeOut(index) => doom(ui, Some(&game.levels[index].id)),
     }
 }
 
 /// The button that takes a level out of the list, when it is pressed again.
-fn way_out(ui: &mut Ui, game: &Game, place: usize, wide: f32) -> Response {
-    let (level, said) = (&game.levels[place], game.words());
+fn way_out(ui: &mut Ui, game: &Game, index: usize, wide: f32) -> Response {
+    let (level, said) = (&game.levels[index], game.words());
     let text = match is_doomed(ui, &level.id) {
         true => said.surely,
         false => said.take_out,
@@ -100,9 +100,9 @@ fn way_out(ui: &mut Ui, game: &Game, place: usize, wide: f32) -> Response {
 }
 
 /// A level as a card: a little map, its name, what was reached.
-fn tile(ui: &mut Ui, game: &Game, maps: &Maps, place: usize, size: Vec2) -> Response {
+fn tile(ui: &mut Ui, game: &Game, maps: &Maps, index: usize, size: Vec2) -> Response {
     let theme = game.theme();
-    let level = &game.levels[place];
+    let level = &game.levels[index];
     let name = game.settings.language.of(&level.game().name);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
@@ -150,9 +150,14 @@ fn tile(ui: &mut Ui, game: &Game, maps: &Maps, place: usize, size: Vec2) -> Resp
         icons::route(painter, &theme, pos2(x + 16.0, base), 10.0, route, is_done);
         x += 32.0;
     }
-    if record.is_some() {
+    if let Some(record) = record {
         let at = map.right_top() + vec2(-14.0, 14.0);
-        painter.circle(at, 14.0, theme.good, Stroke::new(3.0, theme.card));
+        let tone = if record.best.is_empty() {
+            theme.faint
+        } else {
+            theme.good
+        };
+        painter.circle(at, 14.0, tone, Stroke::new(3.0, theme.card));
         icons::tick(painter, at, 7.0, Stroke::new(3.0, theme.card));
     }
     focus_ring(ui, &response, rect, 22.0, &theme);
@@ -170,12 +175,14 @@ fn explain(ui: &Ui, game: &Game, tile: &Response, level: &Level, record: Option<
         let star = if reached { "★" } else { "☆" };
         format!("{star} {}", (said.wish)(wish))
     });
-    let times = record.into_iter().flat_map(|record| &record.best);
-    let times = times.map(|(&route, &ticks)| {
+    let time = |(&route, &ticks): (&Route, &u64)| {
         let seconds = ticks as f32 * fuwafuwa::world::TICK;
         format!("{} {seconds:.1} s", (said.route)(route))
-    });
-    let lines: Vec<String> = wishes.chain(times).collect();
+    };
+    let times = record.into_iter().flat_map(|record| &record.best);
+    let assisted = record.into_iter().flat_map(|record| &record.best_assisted);
+    let assisted = assisted.map(|best| format!("{}, {}", time(best), said.assisted));
+    let lines: Vec<String> = wishes.chain(times.map(time)).chain(assisted).collect();
     if lines.is_empty() {
         return;
     }
@@ -195,8 +202,8 @@ fn legend(ui: &mut Ui, game: &Game) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         let sign = |ui: &mut Ui, name: &str, draw: &dyn Fn(&Ui, egui::Pos2)| {
-            let (place, _) = ui.allocate_exact_size(vec2(40.0, 30.0), Sense::hover());
-            draw(ui, place.center());
+            let (rect, _) = ui.allocate_exact_size(vec2(40.0, 30.0), Sense::hover());
+            draw(ui, rect.center());
             ui.label(RichText::new(name).size(17.0).color(theme.faint));
             ui.add_space(16.0);
         };

@@ -75,12 +75,12 @@ fn notices(game: &Game, ui: &Ui) {
         y += size.y + 8.0;
     }
     if let Some(share) = game.files.developed() {
-        let place = Rect::from_min_size(
+        let rect = Rect::from_min_size(
             pos2(screen.center().x - 0.5 * BAR.x, y),
             scale * vec2(BAR.x, BAR.y),
         );
-        let done = Rect::from_min_size(place.min, vec2(share * place.width(), place.height()));
-        painter.rect_filled(place.expand(3.0), BAR.y, Color32::from_black_alpha(190));
+        let done = Rect::from_min_size(rect.min, vec2(share * rect.width(), rect.height()));
+        painter.rect_filled(rect.expand(3.0), BAR.y, Color32::from_black_alpha(190));
         painter.rect_filled(done, BAR.y, game.theme().accent);
     }
 }

@@ -20,14 +20,14 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 (said.settings, |game| game.go(Screen::Settings)),
                 (said.levels, |game| game.go(Screen::Levels)),
             ];
-            for (place, (text, act)) in options.into_iter().enumerate() {
-                let weight = if place == 0 {
+            for (index, (text, act)) in options.into_iter().enumerate() {
+                let weight = if index == 0 {
                     Weight::Main
                 } else {
                     Weight::Other
                 };
                 let response = button(ui, &theme, text, vec2(300.0, 54.0), weight);
-                if place == 0 {
+                if index == 0 {
                     super::play::focus_first(ui, &response);
                 }
                 if response.clicked() {

@@ -78,16 +78,16 @@ fn show_one(ui: &mut Ui, game: &Game, maps: &Maps, kept: &Kept) -> Option<Wish> 
     let found = kept.found.as_ref().and_then(Option::as_ref);
     let count = if HAS_PICTURES { 4.0 } else { 3.0 };
     let room = ui.available_width() - PICTURE.x - count * (BUTTON.x + GAP) - GAP;
-    let (place, _) = ui.allocate_exact_size(PICTURE, Sense::hover());
-    ui.painter().rect_filled(place, 12.0, theme.paper);
+    let (rect, _) = ui.allocate_exact_size(PICTURE, Sense::hover());
+    ui.painter().rect_filled(rect, 12.0, theme.paper);
     if let Some(found) = found {
-        maps.draw(ui.painter(), place, &found.level);
+        maps.draw(ui.painter(), rect, &found.level);
     }
     let frame = Stroke::new(4.0, theme.card);
     ui.painter()
-        .rect_stroke(place.expand(2.0), 13.0, frame, StrokeKind::Middle);
-    let (place, response) = ui.allocate_exact_size(vec2(room, PICTURE.y), Sense::hover());
-    tell(ui, game, kept, found, place, &response);
+        .rect_stroke(rect.expand(2.0), 13.0, frame, StrokeKind::Middle);
+    let (rect, response) = ui.allocate_exact_size(vec2(room, PICTURE.y), Sense::hover());
+    tell(ui, game, kept, found, rect, &response);
     let delete = match is_doomed(ui, &kept.entry.name) {
         true => said.surely,
         false => said.delete,
@@ -111,20 +111,17 @@ fn show_one(ui: &mut Ui, game: &Game, maps: &Maps, kept: &Kept) -> Option<Wish> 
 }
 
 /// Where it was played, when, and how it was won.
-fn tell(
-    ui: &Ui,
-    game: &Game,
-    kept: &Kept,
-    found: Option<&Found>,
-    place: Rect,
-    response: &Response,
-) {
+fn tell(ui: &Ui, game: &Game, kept: &Kept, found: Option<&Found>, rect: Rect, response: &Response) {
     let (theme, said, painter) = (game.theme(), game.words(), ui.painter());
     let name = name_of(game, kept, found);
     let date = local_date(kept.entry.written);
     let (route, end) = match found {
         Some(found) => {
-            let seconds = format!("{:.1} s", found.seconds);
+            let help = match found.level.game().assists.is_empty() {
+                true => String::new(),
+                false => format!(", {}", said.assisted),
+            };
+            let seconds = format!("{:.1} s{help}", found.seconds);
             match found.outcome {
                 Some(outcome) => (
                     Some(outcome.route),
@@ -137,19 +134,19 @@ fn tell(
     };
     response
         .widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("{name}, {date}, {end}")));
-    let mut top = place.top();
+    let mut top = rect.top();
     for (text, size, ink) in [(&name, 22.0, theme.ink), (&date, 17.0, theme.faint)] {
-        let galley = fitted(painter, text, size, place.width(), ink);
-        painter.galley(egui::pos2(place.left(), top), galley, ink);
+        let galley = fitted(painter, text, size, rect.width(), ink);
+        painter.galley(egui::pos2(rect.left(), top), galley, ink);
         top += size + 4.0;
     }
-    let mut left = place.left();
+    let mut left = rect.left();
     if let Some(route) = route {
         let at = egui::pos2(left + 14.0, top + 11.0);
         icons::route(painter, &theme, at, 9.0, route, true);
         left += 32.0;
     }
-    let galley = fitted(painter, &end, 17.0, place.right() - left, theme.faint);
+    let galley = fitted(painter, &end, 17.0, rect.right() - left, theme.faint);
     painter.galley(egui::pos2(left, top), galley, theme.faint);
 }
 

@@ -8,7 +8,7 @@ use crate::platform::HAS_PICTURES;
 use crate::words::Words;
 use egui::{Align, Layout, Role, Sense, Ui, Vec2, WidgetInfo, pos2, vec2};
 use std::sync::Arc;
-use tamaire_play::{Outcome, Route, Wish};
+use tamaire_play::{Level, Outcome, Route, Wish};
 use tamaire_sound::Menu;
 
 /// Width of the card [points].
@@ -40,7 +40,10 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
             ui.add_space(14.0);
             numbers(ui, &theme, said, &outcome);
             ui.add_space(12.0);
-            wishes(ui, &theme, said, &outcome, &level.game().wish);
+            match help_of(&level, said) {
+                None => wishes(ui, &theme, said, &outcome, &level.game().wish),
+                Some(help) => line(ui, &help, 20.0, theme.faint),
+            }
             ui.add_space(14.0);
             if level.routes().contains(&other(outcome.route)) {
                 line(ui, (said.other_way)(outcome.route), 23.0, theme.accent);
@@ -58,6 +61,13 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     }
 }
 
+/// What was made easier, where anything was.
+fn help_of(level: &Level, said: &Words) -> Option<String> {
+    let assists = level.game().assists.iter();
+    let names: Vec<&str> = assists.map(|&assist| (said.assist)(assist)).collect();
+    (!names.is_empty()).then(|| format!("{}: {}", said.assisted, names.join(", ")))
+}
+
 /// The other way.
 fn other(route: Route) -> Route {
     match route {
@@ -70,12 +80,12 @@ fn other(route: Route) -> Route {
 fn headline(ui: &mut Ui, theme: &Theme, said: &Words, route: Route) {
     const SIGN: f32 = 64.0;
     let room = vec2(ui.available_width(), 58.0);
-    let (place, response) = ui.allocate_exact_size(room, Sense::hover());
+    let (rect, response) = ui.allocate_exact_size(room, Sense::hover());
     let name = (said.route)(route);
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, name));
     let galley = fitted(ui.painter(), name, 44.0, room.x - SIGN, theme.accent);
-    let left = place.center().x - 0.5 * (SIGN + galley.size().x);
-    let middle = pos2(left + 0.4 * SIGN, place.center().y);
+    let left = rect.center().x - 0.5 * (SIGN + galley.size().x);
+    let middle = pos2(left + 0.4 * SIGN, rect.center().y);
     icons::route(ui.painter(), theme, middle, 22.0, route, true);
     let at = pos2(left + SIGN, middle.y - 0.5 * galley.size().y);
     ui.painter().galley(at, galley, theme.accent);
@@ -117,9 +127,9 @@ fn wishes(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcome, wishes: &
     let width = lines.iter().map(|(galley, _)| galley.size().x);
     let width = width.fold(0.0, f32::max);
     for (galley, ink) in lines {
-        let (place, response) = ui.allocate_exact_size(vec2(width, 28.0), Sense::hover());
+        let (rect, response) = ui.allocate_exact_size(vec2(width, 28.0), Sense::hover());
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, galley.text()));
-        let at = place.left_center() - vec2(0.0, 0.5 * galley.size().y);
+        let at = rect.left_center() - vec2(0.0, 0.5 * galley.size().y);
         ui.painter().galley(at, galley, ink);
     }
 }
@@ -140,8 +150,8 @@ fn buttons(ui: &mut Ui, theme: &Theme, said: &Words) -> Option<Act> {
     ];
     for row in rows.into_iter().take(if HAS_PICTURES { 3 } else { 2 }) {
         ui.add_space(GAP + 2.0);
-        let place = vec2(width, SMALL);
-        ui.allocate_ui_with_layout(place, Layout::left_to_right(Align::Min), |ui| {
+        let size = vec2(width, SMALL);
+        ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Min), |ui| {
             ui.spacing_mut().item_spacing.x = GAP;
             for (text, act) in row {
                 if button(ui, theme, text, vec2(200.0, SMALL), Weight::Other).clicked() {

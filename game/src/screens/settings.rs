@@ -7,6 +7,7 @@ use crate::look::Theme;
 use crate::settings::Settings;
 use crate::words::Language;
 use egui::{RichText, Ui, vec2};
+use tamaire_play::Assist;
 use tamaire_sound::Menu;
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
@@ -84,6 +85,16 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 let toggles = &mut chosen.toggle_keys;
                 choice(ui, &theme, said.toggle_keys, toggles, &options);
                 choice(ui, &theme, said.dwell, &mut chosen.dwell, &options);
+            });
+            section(ui, &theme, said.assists_section, |ui| {
+                for assist in [Assist::WiderBasket, Assist::Unbreakable] {
+                    let mut is_on = chosen.assists.contains(&assist);
+                    choice(ui, &theme, (said.assist)(assist), &mut is_on, &options);
+                    match is_on {
+                        true => chosen.assists.insert(assist),
+                        false => chosen.assists.remove(&assist),
+                    };
+                }
             });
             section(ui, &theme, said.look_section, |ui| {
                 if !cfg!(target_family = "wasm") {

@@ -19,8 +19,8 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     };
     let mut wanted = None;
     column(ui, 340.0, ACROSS, |ui| {
-        let (place, _) = ui.allocate_exact_size(vec2(340.0, 190.0), Sense::hover());
-        let top = place.center_top() + vec2(0.0, 66.0 + bob);
+        let (rect, _) = ui.allocate_exact_size(vec2(340.0, 190.0), Sense::hover());
+        let top = rect.center_top() + vec2(0.0, 66.0 + bob);
         for (by, colour) in [(5.0, Color32::from_black_alpha(40)), (0.0, theme.accent)] {
             words(ui, top + vec2(0.0, by), "玉入れ", 104.0, colour);
         }
@@ -30,14 +30,14 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
             (said.replays, Screen::Replays),
             (said.settings, Screen::Settings),
         ];
-        for (place, (text, screen)) in options.into_iter().enumerate() {
-            let (weight, size) = match place {
+        for (index, (text, screen)) in options.into_iter().enumerate() {
+            let (weight, size) = match index {
                 0 => (Weight::Main, vec2(280.0, 68.0)),
                 _ => (Weight::Other, vec2(280.0, 56.0)),
             };
             ui.add_space(8.0);
             let response = button(ui, &theme, text, size, weight);
-            if place == 0 {
+            if index == 0 {
                 super::play::focus_first(ui, &response);
             }
             if response.clicked() {
@@ -63,12 +63,12 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
 fn switch_language(game: &mut Game, ui: &mut Ui) {
     let size = vec2(128.0, 40.0);
     let at = ui.max_rect().right_top() + vec2(-size.x - 72.0, 52.0);
-    let place = Rect::from_min_size(at, size);
+    let rect = Rect::from_min_size(at, size);
     let theme = game.theme();
     let spoken = game.settings.language;
     let others = Language::ALL.into_iter();
     for (language, name) in others.filter(|&(language, _)| language != spoken) {
-        ui.scope_builder(egui::UiBuilder::new().max_rect(place), |ui| {
+        ui.scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| {
             if button(ui, &theme, name, size, Weight::Other).clicked() {
                 game.settings.language = language;
                 game.keep_settings();

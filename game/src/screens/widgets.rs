@@ -224,9 +224,9 @@ pub fn slider(
         focus_ring(ui, &response, rect, 18.0, theme);
         let text = format!("{:.0} %", 100.0 * *value);
         let font = FontId::proportional(20.0);
-        let (place, _) = ui.allocate_exact_size(vec2(74.0, 36.0), Sense::hover());
+        let (rect, _) = ui.allocate_exact_size(vec2(74.0, 36.0), Sense::hover());
         ui.painter().text(
-            place.right_center(),
+            rect.right_center(),
             Align2::RIGHT_CENTER,
             text,
             font,
@@ -286,9 +286,9 @@ pub fn choice<T: Copy + PartialEq>(
 fn row<R>(ui: &mut Ui, theme: &Theme, name: &str, contents: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
         let width = 0.4 * ui.available_width();
-        let (place, _) = ui.allocate_exact_size(vec2(width, 44.0), Sense::hover());
+        let (rect, _) = ui.allocate_exact_size(vec2(width, 44.0), Sense::hover());
         let galley = fitted(ui.painter(), name, 21.0, width - 8.0, theme.ink);
-        let at = place.left_center() - vec2(0.0, 0.5 * galley.size().y);
+        let at = rect.left_center() - vec2(0.0, 0.5 * galley.size().y);
         ui.painter().galley(at, galley, theme.ink);
         contents(ui)
     })
@@ -363,9 +363,9 @@ fn step_through(ui: &Ui) {
 
 /// Where a page is: down to the lower edge of the window, where it goes on out of sight.
 pub fn place_of_page(ui: &Ui) -> Rect {
-    let mut place = ui.max_rect().shrink2(EDGE);
-    place.max.y = ui.max_rect().bottom();
-    place
+    let mut rect = ui.max_rect().shrink2(EDGE);
+    rect.max.y = ui.max_rect().bottom();
+    rect
 }
 
 /// The rest of a screen: a column of so many points at most, which scrolls and fades where it goes

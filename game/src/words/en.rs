@@ -3,7 +3,7 @@
 use super::Words;
 use crate::input::{Action, Means};
 use force_feedback::{Ability, Stop};
-use tamaire_play::Route;
+use tamaire_play::{Assist, Route};
 
 pub(super) const WORDS: Words = Words {
     play: "Play",
@@ -66,6 +66,12 @@ pub(super) const WORDS: Words = Words {
     hands_section: "Hands",
     toggle_keys: "Keys stay down until pressed again",
     dwell: "Resting the mouse presses a button",
+    assists_section: "Help, from the next round on",
+    assist: |assist| match assist {
+        Assist::WiderBasket => "Wider basket",
+        Assist::Unbreakable => "Nothing tears",
+    },
+    assisted: "with help",
     legend: [
         "won",
         "a wish came true",

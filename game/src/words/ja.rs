@@ -4,7 +4,7 @@ use super::Words;
 use crate::input::{Action, Means};
 use force_feedback::{Ability, Stop};
 use tamaire_play::level::LevelError;
-use tamaire_play::{ReplayError, Route};
+use tamaire_play::{Assist, ReplayError, Route};
 
 pub(super) const WORDS: Words = Words {
     play: "あそぶ",
@@ -67,6 +67,12 @@ pub(super) const WORDS: Words = Words {
     hands_section: "手",
     toggle_keys: "キーは もういちど おすまで おしたまま",
     dwell: "マウスを とめると ボタンを おす",
+    assists_section: "おたすけ（つぎの ラウンドから）",
+    assist: |assist| match assist {
+        Assist::WiderBasket => "かごを ひろく",
+        Assist::Unbreakable => "ちぎれない からだ",
+    },
+    assisted: "おたすけあり",
     legend: [
         "クリア",
         "ねがいが かなった",

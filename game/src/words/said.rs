@@ -3,7 +3,7 @@
 use crate::input::{Action, Means};
 use force_feedback::{Ability, Calibration, Stop};
 use tamaire_play::level::LevelError;
-use tamaire_play::{Outcome, ReplayError, Route, Wish};
+use tamaire_play::{Assist, Outcome, ReplayError, Route, Wish};
 
 /// What the game says.
 #[allow(missing_docs)] // each field says what it is
@@ -38,6 +38,9 @@ pub struct Words {
     pub hands_section: &'static str,
     pub toggle_keys: &'static str,
     pub dwell: &'static str,
+    pub assists_section: &'static str,
+    pub assist: fn(Assist) -> &'static str,
+    pub assisted: &'static str,
     pub legend: [&'static str; 5],
     pub language: &'static str,
     pub volume: &'static str,

@@ -66,7 +66,7 @@ fn a_round_is_won_kept_watched_raced_and_deleted() {
     click(&mut window, "Save replay");
     game(&mut window).finish_writing();
     assert!(notices(&window).contains("classic-1.tamaire"));
-    let path = files.place(&files.replays()[0].name);
+    let path = files.location(&files.replays()[0].name);
     let saved = fs::read_to_string(&path).unwrap();
 
     click(&mut window, "Race it");

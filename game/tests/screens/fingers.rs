@@ -16,7 +16,7 @@ fn goal(window: &Window, player: usize) -> [f32; 3] {
 fn place(window: &Window, action: Action) -> Option<Rect> {
     let buttons = &window.state().game.controls.buttons;
     let button = buttons.iter().find(|button| button.action == action);
-    button.map(|button| button.place)
+    button.map(|button| button.rect)
 }
 
 /// A round in which a finger holds the hand at a place in the world [m].

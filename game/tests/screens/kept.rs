@@ -71,7 +71,7 @@ impl Storage for Memory {
         Ok(())
     }
 
-    fn place(&self, _: Kind, name: &str) -> String {
+    fn location(&self, _: Kind, name: &str) -> String {
         name.into()
     }
 }

@@ -5,7 +5,7 @@ use anyhow::Result;
 use fuwafuwa::Point;
 use fuwafuwa::dim::add;
 use fuwafuwa::pyramid::Cell;
-use fuwafuwa_painter::stage;
+use fuwafuwa_painter::worlds;
 use fuwafuwa_painter::{Frame, Painter, Role, Sample};
 
 /// Figure 4: when a child is generated.
@@ -67,8 +67,8 @@ pub fn conditions() -> Result<Painter> {
         at: [MIDDLE - 1, 3, 0],
     };
     for (_, view) in views(&coarse.after, &[near].into()) {
-        stage::plane_element(&mut painter, frame, &view, 1.2);
-        painter.ring(stage::outline(frame, &view), 4.0, Role::Removed);
+        worlds::plane_element(&mut painter, frame, &view, 1.2);
+        painter.ring(worlds::outline(frame, &view), 4.0, Role::Removed);
     }
     draw_nodes(&mut painter, frame, &coarse.before);
     released(&mut painter, frame, coarse.height);

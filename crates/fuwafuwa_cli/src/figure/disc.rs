@@ -7,7 +7,7 @@ use fuwafuwa::pyramid::{Grading, Pyramid};
 use fuwafuwa::stencil::slot_at;
 use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, Mesh, NodeId, Point, VoxelGrid};
 use fuwafuwa_painter::solid::{Camera, Solid};
-use fuwafuwa_painter::stage;
+use fuwafuwa_painter::worlds;
 use fuwafuwa_painter::{Frame, Painter, Role, Sample};
 use std::collections::BTreeSet;
 
@@ -26,7 +26,7 @@ pub fn elements() -> Result<Painter> {
         unit: 960.0,
     };
     for view in body.element_views() {
-        stage::plane_element(&mut painter, frame, &view, 1.7);
+        worlds::plane_element(&mut painter, frame, &view, 1.7);
     }
     let hanging = hanging_nodes(body.mesh());
     for (id, _) in body.mesh().nodes() {
@@ -102,7 +102,7 @@ pub fn opened_ball() -> Result<Painter> {
         across: 1.36,
     });
     solid.floor(0.5 / BALL as f32);
-    stage::space_elements(&mut solid, &body, |view| {
+    worlds::space_elements(&mut solid, &body, |view| {
         let middle = [0, 1, 2].map(|axis: usize| {
             let slots = view.slots.iter().map(|slot| slot[axis]);
             slots.sum::<f32>() / view.slots.len() as f32
@@ -160,7 +160,7 @@ fn draw_level(
         );
     }
     for view in body.element_views().filter(|view| view.level == level) {
-        stage::plane_element(painter, frame, &view, 1.3);
+        worlds::plane_element(painter, frame, &view, 1.3);
     }
     // The body's outline ties the panels together.
     for line in body.outlines() {

@@ -7,7 +7,7 @@ use fuwafuwa::mesh::Element;
 use fuwafuwa::stencil::{closure, slot_at};
 use fuwafuwa::view::ElementView;
 use fuwafuwa::{Dim, Dim2, Point};
-use fuwafuwa_painter::stage;
+use fuwafuwa_painter::worlds;
 use fuwafuwa_painter::{Frame, Painter, Role, Sample};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -70,7 +70,7 @@ pub fn phases() -> Result<Painter> {
     }
     for k in 2..4 {
         for (_, view) in views(&release.after, &children) {
-            stage::plane_element(&mut painter, frame(k), &view, 1.2);
+            worlds::plane_element(&mut painter, frame(k), &view, 1.2);
         }
         mark(
             &mut painter,

@@ -9,7 +9,7 @@ use fuwafuwa::{
     Blade, Body, Dim2, Dim3, Drive, Material, Rigid, Settings, Shape, VoxelGrid, World,
 };
 use fuwafuwa_painter::solid::{Camera, Solid};
-use fuwafuwa_painter::stage::{self, DrawPlane, DrawSpace};
+use fuwafuwa_painter::worlds::{self, DrawPlane, DrawSpace};
 use fuwafuwa_painter::{Frame, PaintError, Painter, Pixmap, Role, Sample, film};
 
 /// How long a frame of a film is shown [1/100 s].
@@ -51,8 +51,8 @@ pub fn disc() -> Result<(Painter, Vec<Pixmap>)> {
     let (mut elements, mut skins) = (Vec::new(), Vec::new());
     for tick in 0..TICKS {
         if tick % PACE == 0 {
-            elements.push(plane_frame(&world, tick, stage::plane_elements)?);
-            skins.push(plane_frame(&world, tick, stage::plane_skin)?);
+            elements.push(plane_frame(&world, tick, worlds::plane_elements)?);
+            skins.push(plane_frame(&world, tick, worlds::plane_skin)?);
         }
         let way = (tick as f32 / (TICKS as f32 * 0.8)).min(1.0);
         world.set_goal(hand, [0.46 + 0.05 * way, 1.2 - 1.1 * way, 0.0])?;
@@ -102,7 +102,7 @@ pub fn ball() -> Result<(Painter, Vec<Pixmap>)> {
                 along: [0.0, 0.0, 2.0],
             };
             world.cut(world.nth_body(0).unwrap(), &blade).unwrap();
-            skins.push(space_frame(&world, tick, stage::space_skin)?);
+            skins.push(space_frame(&world, tick, worlds::space_skin)?);
             sections.push(space_frame(&world, tick, draw_section)?);
         }
         world.step();
@@ -126,7 +126,7 @@ pub fn ball() -> Result<(Painter, Vec<Pixmap>)> {
 /// Elements whose cells lie behind the middle of the body, at rest.
 fn draw_section(solid: &mut Solid, body: &Body<Dim3>) {
     let middle = body.grid().size()[2] / 2;
-    stage::space_elements(solid, body, |view| {
+    worlds::space_elements(solid, body, |view| {
         let element = body.mesh().element(view.id);
         element.is_some_and(|element| element.cell.first_voxel()[2] < middle)
     });
@@ -139,7 +139,7 @@ fn plane_frame(world: &World<Dim2>, tick: usize, draw: DrawPlane) -> Result<Pixm
         origin: [0.5 * (SIZE as f32 - UNIT), SIZE as f32 - 34.0],
         unit: UNIT,
     };
-    stage::plane(&mut painter, frame, world, draw);
+    worlds::plane(&mut painter, frame, world, draw);
     write_time(&mut painter, tick);
     Ok(painter.pixels()?)
 }
@@ -150,7 +150,7 @@ fn space_frame(world: &World<Dim3>, tick: usize, draw: DrawSpace) -> Result<Pixm
         target: [0.5, 0.42, 0.5],
         across: 2.3,
     });
-    stage::space(&mut solid, world, draw);
+    worlds::space(&mut solid, world, draw);
     let mut painter = Painter::new(SIZE, SIZE);
     painter.image([0.0; 2], solid.pixels(SIZE, SIZE)?);
     write_time(&mut painter, tick);

@@ -12,7 +12,7 @@ use fuwafuwa::mesh::Element;
 use fuwafuwa::pyramid::Cell;
 use fuwafuwa::view::ElementView;
 use fuwafuwa::{Body, Dim, Dim2, Material, Point, VoxelGrid};
-use fuwafuwa_painter::stage;
+use fuwafuwa_painter::worlds;
 use fuwafuwa_painter::{Frame, Painter, Role};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -87,7 +87,7 @@ impl Release {
 /// Draws the elements.
 pub fn draw(painter: &mut Painter, frame: Frame, body: &Body<Dim2>) {
     for view in body.element_views() {
-        stage::plane_element(painter, frame, &view, 1.2);
+        worlds::plane_element(painter, frame, &view, 1.2);
     }
 }
 
@@ -108,7 +108,7 @@ pub fn mark(
     role: Role,
 ) {
     for (_, view) in views(body, cells) {
-        painter.ring(stage::outline(frame, &view), 4.0, role);
+        painter.ring(worlds::outline(frame, &view), 4.0, role);
     }
 }
 

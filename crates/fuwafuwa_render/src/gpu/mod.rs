@@ -3,7 +3,7 @@
 pub(crate) mod buffer;
 pub(crate) mod image;
 mod pipelines;
-pub(crate) mod stage;
+pub(crate) mod program;
 pub(crate) mod targets;
 
 use crate::frame::{Camera, Frame, Look};
@@ -218,8 +218,8 @@ impl Renderer {
         let mut walls = [[0.0; 4]; crate::rigid::MOST_WALLS];
         walls[..rigid.walls.len()].copy_from_slice(&rigid.walls);
         let flag = |is: bool| f32::from(u8::from(is));
-        let colour = |[red, green, blue]: crate::theme::Colour| [red, green, blue, 1.0];
-        let theme = frame.theme;
+        let colour = |[red, green, blue]: crate::palette::Colour| [red, green, blue, 1.0];
+        let palette = frame.palette;
         let globals = Globals {
             axes: [right.x, right.y, up.x, up.y],
             view: [middle.x, middle.y, camera.height, window[0] / window[1]],
@@ -231,10 +231,10 @@ impl Renderer {
                 flag(frame.look == Look::Skin),
             ],
             scale: [*radius, edge, thickness, 0.0],
-            floor_middle: colour(theme.floor[0]),
-            floor_rim: colour(theme.floor[1]),
-            frame: colour(theme.frame),
-            fresh: colour(theme.fresh),
+            floor_middle: colour(palette.floor[0]),
+            floor_rim: colour(palette.floor[1]),
+            frame: colour(palette.frame),
+            fresh: colour(palette.fresh),
             bounds: {
                 // Edges reach half a pixel further.
                 let margin = 2.0 * camera.height / size[1];

@@ -1,7 +1,7 @@
 //! What the GPU is to do with each kind of vertex.
 
-use super::stage::{
-    InMemory, OVER, SAMPLES, Stage, Target, layout, module, sampler, texture, uniform, wgsl,
+use super::program::{
+    InMemory, OVER, Program, SAMPLES, Target, layout, module, sampler, texture, uniform, wgsl,
 };
 use crate::elements::ElementVertex;
 use crate::rigid::{DotInstance, RigidInstance};
@@ -93,8 +93,8 @@ impl Pipelines {
             "rigid",
             wgsl!("globals.wgsl", "light.wgsl", "rigid.wgsl"),
         );
-        let stage =
-            |extra, module, entries| Stage::new(device, &globals_layout, extra, module, entries);
+        let program =
+            |extra, module, entries| Program::new(device, &globals_layout, extra, module, entries);
         let plain = |front, back| stencil(CompareFunction::Always, front, back);
         let (keep, zero) = (StencilOperation::Keep, StencilOperation::Zero);
         let (more, less) = (
@@ -103,7 +103,7 @@ impl Pipelines {
         );
         let inside = |pass| stencil(CompareFunction::NotEqual, pass, pass);
         let skins = |entries, stencil, blend, mask| {
-            stage(None, &skin, entries).build(&Target {
+            program(None, &skin, entries).build(&Target {
                 buffers: &[Some(SkinVertex::layout())],
                 depth: Some(stencil),
                 samples: SAMPLES,
@@ -118,7 +118,7 @@ impl Pipelines {
             ColorWrites::empty(),
         );
         let blurs = |layout, module, entry| {
-            stage(Some(layout), module, ("whole", entry)).build(&Target::of(&[SOFT_FORMAT; 2]))
+            program(Some(layout), module, ("whole", entry)).build(&Target::of(&[SOFT_FORMAT; 2]))
         };
         let formats = [target];
         let shown = Target {
@@ -126,7 +126,7 @@ impl Pipelines {
             ..Target::of(&formats)
         };
         let shapes = |entries| {
-            stage(None, &rigid, entries).build(&Target {
+            program(None, &rigid, entries).build(&Target {
                 buffers: &[Some(RigidInstance::layout())],
                 topology: PrimitiveTopology::TriangleStrip,
                 ..shown.clone()
@@ -137,7 +137,7 @@ impl Pipelines {
             cover: skins(skin_entries, inside(keep), OVER, all),
             wipe: skins(skin_entries, inside(zero), OVER, none),
             band: skins(skin_entries, plain(keep, keep), ONTO, all),
-            element: stage(None, &skin, ("element_corner", "element")).build(&Target {
+            element: program(None, &skin, ("element_corner", "element")).build(&Target {
                 buffers: &[Some(ElementVertex::layout())],
                 depth: Some(plain(keep, keep)),
                 samples: SAMPLES,
@@ -147,8 +147,8 @@ impl Pipelines {
             shrink: blurs(&blur_layout, &blur, "shrink"),
             soften: blurs(&blur_layout, &blur, "soften"),
             shape: blurs(&shape_layout, &shape, "shape"),
-            arena: stage(Some(&body_layout), &body, ("placed", "arena")).build(&shown),
-            body: stage(Some(&body_layout), &body, ("bounding", "body")).build(&Target {
+            arena: program(Some(&body_layout), &body, ("placed", "arena")).build(&shown),
+            body: program(Some(&body_layout), &body, ("bounding", "body")).build(&Target {
                 topology: PrimitiveTopology::TriangleStrip,
                 ..shown.clone()
             }),
@@ -157,7 +157,7 @@ impl Pipelines {
             hand: shapes(("close_corner", "hand")),
             glow: shapes(("wide_corner", "glow")),
             border: shapes(("close_corner", "border")),
-            particle: stage(None, &rigid, ("dot_corner", "particle")).build(&Target {
+            particle: program(None, &rigid, ("dot_corner", "particle")).build(&Target {
                 buffers: &[Some(DotInstance::layout())],
                 topology: PrimitiveTopology::TriangleStrip,
                 ..shown.clone()

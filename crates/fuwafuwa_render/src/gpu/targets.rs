@@ -1,7 +1,7 @@
 //! The images that bodies are drawn into, apart from the window.
 
 use super::pipelines::{Pipelines, SKIN_FORMAT, SOFT_FORMAT, STENCIL_FORMAT};
-use super::stage::SAMPLES;
+use super::program::SAMPLES;
 use bytemuck::{Pod, Zeroable};
 use wgpu::*;
 

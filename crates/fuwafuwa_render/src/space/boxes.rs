@@ -4,7 +4,7 @@ use super::camera::Cut;
 use super::cut::planes;
 use crate::elements::colour_of;
 use crate::frame::ElementColour;
-use crate::theme::{Theme, bytes};
+use crate::palette::{Palette, bytes};
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::dim::{corner, scale};
 use fuwafuwa::mesh::Element;
@@ -57,7 +57,7 @@ impl Boxes {
         &mut self,
         place: usize,
         body: &Body<Dim3>,
-        theme: &Theme,
+        palette: &Palette,
         colour: ElementColour,
         ages: &[f32],
         cut: Option<Cut>,
@@ -94,7 +94,7 @@ impl Boxes {
                 forms.push((form.0, form.1, faces::<Dim3>(form.0, form.1)));
                 forms.len() - 1
             });
-            let shown = bytes(colour_of(&view, theme, colour, ages), 1.0);
+            let shown = bytes(colour_of(&view, palette, colour, ages), 1.0);
             let (centre, share) = (Vec3::from(view.slots[13]), GAP / width);
             let shrunk = view.slots.map(|at| Vec3::from(at).lerp(centre, share));
             for (number, face) in forms[place].2.iter().enumerate() {
@@ -188,12 +188,12 @@ mod tests {
         world.add_body(Body::new(grid, &[Material::default()]).unwrap());
         let volume = |world: &World<Dim3>, share: f32| {
             let towards = [0.6, 0.0, 0.8];
-            let (theme, cut) = (Theme::candy(), Some(Cut { towards, share }));
+            let (palette, cut) = (Palette::candy(), Some(Cut { towards, share }));
             let mut boxes = Boxes::default();
             boxes.add(
                 0,
                 world.bodies().first().unwrap(),
-                &theme,
+                &palette,
                 ElementColour::Level,
                 &[],
                 cut,

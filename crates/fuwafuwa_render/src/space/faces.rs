@@ -7,7 +7,7 @@
 
 use super::pool::Pool;
 use super::rest::Rest;
-use crate::theme::{Colour, among, bytes};
+use crate::palette::{Colour, among, bytes};
 use fuwafuwa::dim::{corner, face_corners};
 use fuwafuwa::ids::Table;
 use fuwafuwa::{Body, Bookmark, Dim3, ElementId, NodeId, Point};

@@ -7,8 +7,8 @@ use super::rounded::RoundedInstance;
 use super::skin::Skin;
 use super::stickers::Stickers;
 use crate::frame::{Frame, Look};
+use crate::palette::Palette;
 use crate::rigid::MOST_WALLS;
-use crate::theme::Theme;
 use fuwafuwa::vector::three;
 use fuwafuwa::{Body, Dim3, ElementId, Rigid, Shape, Vector, World};
 use glam::{Mat3, Vec3};
@@ -53,24 +53,24 @@ impl Geometry {
         self.rounded.clear();
         self.boxes.clear();
         self.stickers.clear();
-        let theme = frame.theme;
+        let palette = frame.palette;
         let bars = world.obstacles();
-        let bars = bars.filter_map(|bar| RoundedInstance::of(*bar.shape(), theme.bar, 0.0));
+        let bars = bars.filter_map(|bar| RoundedInstance::of(*bar.shape(), palette.bar, 0.0));
         self.bars = append(&mut self.rounded, bars);
         let hands = || world.hands().enumerate();
-        self.hands = append(&mut self.rounded, balls(world, theme));
+        self.hands = append(&mut self.rounded, balls(world, palette));
         self.renewed_ghosts.clear();
         let ghosts = frame.ghost.map_or(0, |ghost| ghost.bodies().len());
         self.ghosts.resize_with(ghosts, Skin::default);
         if let Some(ghost) = frame.ghost {
             let skins = self.ghosts.iter_mut().zip(ghost.bodies());
-            let renewed = skins.map(|(skin, body)| skin.follow(body, &theme.materials));
+            let renewed = skins.map(|(skin, body)| skin.follow(body, &palette.materials));
             self.renewed_ghosts.extend(renewed);
         }
         let of_ghost = frame
             .ghost
             .into_iter()
-            .flat_map(|ghost| balls(ghost, theme));
+            .flat_map(|ghost| balls(ghost, palette));
         self.ghost_hands = append(&mut self.rounded, of_ghost);
         self.skins.resize_with(world.bodies().len(), Skin::default);
         self.renewed.clear();
@@ -79,7 +79,7 @@ impl Geometry {
             match frame.look {
                 Look::Skin => {
                     let skin = &mut self.skins[place];
-                    self.renewed.push(skin.follow(body, &theme.materials));
+                    self.renewed.push(skin.follow(body, &palette.materials));
                     let crumbs = skin.crumbs().iter();
                     let crumbs = crumbs.filter_map(|&id| crumb(body, id, frame));
                     append(&mut self.rounded, crumbs);
@@ -87,7 +87,7 @@ impl Geometry {
                 Look::Elements { colour, ages, .. } => {
                     let ages = ages.get(place).map_or(&[][..], Vec::as_slice);
                     let cut = frame.camera.cut;
-                    self.boxes.add(place, body, theme, colour, ages, cut);
+                    self.boxes.add(place, body, palette, colour, ages, cut);
                 }
             }
         }
@@ -112,13 +112,13 @@ impl Geometry {
             let below = self.ground_below(hand.position())?;
             let (from, to, radius) = (hand.position(), below, LINE);
             let line = Shape::Capsule { from, to, radius };
-            RoundedInstance::of(line, theme.hand(player), player as f32)
+            RoundedInstance::of(line, palette.hand(player), player as f32)
         });
         let lines: Vec<RoundedInstance> = lines.collect();
         self.lines = append(&mut self.rounded, lines);
         let basket = frame.basket.iter();
         let basket = basket
-            .filter_map(|basket| RoundedInstance::of(basket.region, theme.basket, basket.fill));
+            .filter_map(|basket| RoundedInstance::of(basket.region, palette.basket, basket.fill));
         self.basket = append(&mut self.rounded, basket);
     }
 
@@ -147,10 +147,10 @@ impl Geometry {
 }
 
 /// The hands of a world.
-fn balls(world: &World<Dim3>, theme: &Theme) -> impl Iterator<Item = RoundedInstance> {
+fn balls(world: &World<Dim3>, palette: &Palette) -> impl Iterator<Item = RoundedInstance> {
     let hands = world.hands().enumerate();
     hands.filter_map(|(player, (_, hand))| {
-        RoundedInstance::of(*hand.shape(), theme.hand(player), player as f32)
+        RoundedInstance::of(*hand.shape(), palette.hand(player), player as f32)
     })
 }
 
@@ -181,7 +181,7 @@ fn crumb(body: &Body<Dim3>, id: ElementId, frame: &Frame<'_, Camera>) -> Option<
     let (low, high) = (sum([0, 1, 2, 3]), sum([4, 5, 6, 7]));
     let along = |low: [usize; 4], high: [usize; 4]| 0.25 * (sum(high) - sum(low));
     let material = body.grid().material(element.cell.at);
-    let [red, green, blue] = frame.theme.material(material);
+    let [red, green, blue] = frame.palette.material(material);
     Some(RoundedInstance {
         centre: 0.125 * (low + high),
         radius: CRUMB,
@@ -219,8 +219,8 @@ mod tests {
                 .unwrap()
                 .moved([0.0, 2.0, 0.0]),
         );
-        let theme = Theme::candy();
-        let mut frame = Frame::new(Camera::fit([-1.0; 3], [1.0; 3], [1, 1]), &theme);
+        let palette = Palette::candy();
+        let mut frame = Frame::new(Camera::fit([-1.0; 3], [1.0; 3], [1, 1]), &palette);
         let mut geometry = Geometry::default();
         for is_first in [true, false] {
             geometry.gather(&world, &frame);

@@ -6,7 +6,7 @@
 
 use super::faces::{Faces, Ground, NO_NODE, NONE, SkinPoint};
 use super::rest::Rest;
-use crate::theme::Colour;
+use crate::palette::Colour;
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::ids::Table;
 use fuwafuwa::{Body, Dim3, ElementId, NodeId, PieceId};
@@ -206,7 +206,7 @@ fn edges(voxel: &[NodeId; 8], positions: &Table<NodeId, [f32; 4]>) -> [Vec4; 3] 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::theme::Theme;
+    use crate::palette::Palette;
     use fuwafuwa::vector::{cross, dot, length, minus};
     use fuwafuwa::{Blade, Material, Settings, VoxelGrid, World};
 
@@ -219,7 +219,7 @@ mod tests {
 
     fn skin(world: &World<Dim3>) -> Skin {
         let mut skin = Skin::default();
-        skin.follow(world.bodies().first().unwrap(), &Theme::candy().materials);
+        skin.follow(world.bodies().first().unwrap(), &Palette::candy().materials);
         skin
     }
 
@@ -320,20 +320,20 @@ mod tests {
         };
         for x in [0.2, 0.8, 0.3, 0.55, 0.4, 0.48] {
             cut(&mut world, x);
-            assert!(kept.follow(world.bodies().first().unwrap(), &Theme::candy().materials));
+            assert!(kept.follow(world.bodies().first().unwrap(), &Palette::candy().materials));
             let new = skin(&world);
             assert_eq!(sorted(&kept), sorted(&new));
             assert!((kept.volume() / new.volume() - 1.0).abs() < 1e-4);
             world.step();
-            kept.follow(world.bodies().first().unwrap(), &Theme::candy().materials);
+            kept.follow(world.bodies().first().unwrap(), &Palette::candy().materials);
         }
-        let safe = Theme::colour_safe().materials;
+        let safe = Palette::colour_safe().materials;
         assert!(kept.follow(world.bodies().first().unwrap(), &safe));
         assert!(!kept.follow(world.bodies().first().unwrap(), &safe));
         // Another body with a grid of its own, and an untorn one with the same.
         for n in [16, 20] {
             let other = ball(n);
-            kept.follow(other.bodies().first().unwrap(), &Theme::candy().materials);
+            kept.follow(other.bodies().first().unwrap(), &Palette::candy().materials);
             assert_eq!(sorted(&kept), sorted(&skin(&other)));
         }
     }

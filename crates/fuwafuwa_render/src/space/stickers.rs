@@ -9,7 +9,7 @@
 
 use super::skin::{Skin, SkinVertex};
 use crate::frame::{Mark, Sticker};
-use crate::theme::bytes;
+use crate::palette::bytes;
 use fuwafuwa::{Body, Dim3, Vector};
 use glam::{Mat3, Vec2, Vec3};
 
@@ -184,7 +184,7 @@ fn around(place: Vec3, reach: f32, mut act: impl FnMut(usize, f32)) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Theme;
+    use crate::Palette;
     use fuwafuwa::vector::{length, minus};
     use fuwafuwa::{Blade, Material, PieceId, Settings, VoxelGrid, World};
 
@@ -210,7 +210,7 @@ mod tests {
         let mut skin = Skin::default();
         let mut stuck = |world: &World<Dim3>, sticker: &Sticker| {
             let body = world.bodies().first().unwrap();
-            skin.follow(body, &Theme::candy().materials);
+            skin.follow(body, &Palette::candy().materials);
             let mut stickers = Stickers::default();
             stickers.add(sticker, &skin, body, [0.5, 0.5, 9.0]);
             stickers

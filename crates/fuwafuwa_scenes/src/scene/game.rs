@@ -4,6 +4,7 @@ use super::error::{Wrong, require};
 use super::rigid::{BoxText, Shapes};
 use fuwafuwa::{Dim, Shape};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
 /// The table `[game]` of a level. The engine knows nothing of it; the crate `tamaire_play` plays by it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -22,9 +23,22 @@ pub struct GameText {
     /// The routes by which it can be won, where they are not those that its materials allow.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub routes: Vec<RouteText>,
+    /// What was made easier in it, so that what is won in it can be told from what is won without help.
+    #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
+    pub assists: BTreeSet<AssistText>,
     /// What else one may try.
     #[serde(default)]
     pub wish: Vec<WishText>,
+}
+
+/// What can be made easier in a level.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AssistText {
+    /// The bars stand further apart.
+    WiderBasket,
+    /// Nothing tears.
+    Unbreakable,
 }
 
 /// The same in each language of the game.

@@ -184,7 +184,7 @@ impl Renderer {
 
     /// Writes the uniforms.
     fn tell(&self, queue: &Queue, frame: &Frame<'_, Camera>) {
-        let (camera, theme, size) = (&frame.camera, frame.theme, self.targets.size);
+        let (camera, palette, size) = (&frame.camera, frame.palette, self.targets.size);
         let half = LIT * camera.distance;
         let [to_light, to_sky] =
             [LIGHT, SKY].map(|light| seen_by(light, camera.target.into(), half));
@@ -214,10 +214,10 @@ impl Renderer {
             ],
             size: [size[0] as f32, size[1] as f32, 0.0, 0.0],
             soft: [texels[0], SOFTNESS[0], texels[1], SOFTNESS[1]],
-            floor_middle: four(theme.floor[0], 1.0),
-            floor_rim: four(theme.floor[1], 1.0),
-            frame: four(theme.frame, 1.0),
-            fresh: four(theme.fresh, 1.0),
+            floor_middle: four(palette.floor[0], 1.0),
+            floor_rim: four(palette.floor[1], 1.0),
+            frame: four(palette.frame, 1.0),
+            fresh: four(palette.fresh, 1.0),
             hands,
             hand_colours,
             walls,

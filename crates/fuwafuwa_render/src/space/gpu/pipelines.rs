@@ -1,7 +1,8 @@
 //! What the GPU is to do with each kind of vertex of a world in space.
 
-use crate::gpu::stage::{
-    InMemory, OVER, SAMPLES, Stage, Target, entry, layout, module, sampler, texture, uniform, wgsl,
+use crate::gpu::program::{
+    InMemory, OVER, Program, SAMPLES, Target, entry, layout, module, sampler, texture, uniform,
+    wgsl,
 };
 use crate::space::boxes::BoxVertex;
 use crate::space::room::RoomVertex;
@@ -77,8 +78,8 @@ impl Pipelines {
         );
         let rigid = module(device, "rigid", rigid);
         let window = module(device, "window", wgsl!("whole.wgsl", "space_window.wgsl"));
-        let stage =
-            |extra, module, entries| Stage::new(device, &globals_layout, extra, module, entries);
+        let program =
+            |extra, module, entries| Program::new(device, &globals_layout, extra, module, entries);
         let solid = Target {
             depth: Some(depth_state(DEPTH_FORMAT, true)),
             cull: Some(Face::Back),
@@ -104,7 +105,7 @@ impl Pipelines {
         let drawn =
             |module, entries, buffers: &[Option<VertexBufferLayout<'_>>], target: &Target<'_>| {
                 let shadow = (!target.formats.is_empty()).then_some(&shadow_layout);
-                stage(shadow, module, entries).build(&Target {
+                program(shadow, module, entries).build(&Target {
                     buffers,
                     ..target.clone()
                 })
@@ -180,7 +181,7 @@ impl Pipelines {
             element_shadow: drawn(&skin, ("box_corner", ""), &boxes, &dark),
             bar_shadow: balls(("plain_corner", ""), &dark),
             crumb_shadow: balls(("rough_corner", ""), &dark),
-            window: stage(Some(&window_layout), &window, ("whole", window_entry))
+            window: program(Some(&window_layout), &window, ("whole", window_entry))
                 .build(&Target::of(&[target])),
             globals_layout,
             shadow_layout,

@@ -1,7 +1,7 @@
 //! The images that a world in space is drawn into, apart from the window.
 
 use super::pipelines::{DEPTH_FORMAT, PICTURE_FORMAT, Pipelines, SHADOW_FORMAT};
-use crate::gpu::stage::SAMPLES;
+use crate::gpu::program::SAMPLES;
 use crate::gpu::targets::{bind, new_image, smooth, within};
 use wgpu::*;
 

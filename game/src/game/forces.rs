@@ -72,7 +72,8 @@ impl Game {
 
     /// What the player who holds a device feels.
     fn state(&self, id: DeviceId) -> Option<State> {
-        let player = (0..PLAYERS).find(|&player| self.controls.players.held(player) == Some(id))?;
+        let player =
+            (0..PLAYERS).find(|&player| self.controls.players.device_of(player) == Some(id))?;
         let hands = self.bout.round().hands();
         let contact = haptics::on_stick(haptics::contact(hands.get(player)?), self.bout.turn());
         let pushes_back = self.controls.devices.pushing.contains(&id);

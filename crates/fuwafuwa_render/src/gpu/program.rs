@@ -16,7 +16,7 @@ pub const SAMPLES: u32 = 4;
 pub const OVER: BlendState = BlendState::PREMULTIPLIED_ALPHA_BLENDING;
 
 /// Shaders of a pipeline and what they are bound to; where there is no target, the second says nothing.
-pub struct Stage<'a> {
+pub struct Program<'a> {
     device: &'a Device,
     layout: PipelineLayout,
     module: &'a ShaderModule,
@@ -52,7 +52,7 @@ impl<'a> Target<'a> {
     }
 }
 
-impl<'a> Stage<'a> {
+impl<'a> Program<'a> {
     /// Shaders that are bound to the globals, and maybe to something else.
     pub fn new(
         device: &'a Device,

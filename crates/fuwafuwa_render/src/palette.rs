@@ -14,7 +14,7 @@ pub const fn rgb(hex: u32) -> Colour {
 
 /// Which colour everything has.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Theme {
+pub struct Palette {
     /// The floor of the arena, in the middle and at its rim.
     pub floor: [Colour; 2],
     /// The frame around the arena: half-spaces.
@@ -37,7 +37,7 @@ pub struct Theme {
     pub ink: Colour,
 }
 
-impl Theme {
+impl Palette {
     /// Warm bodies on a cool floor.
     pub fn candy() -> Self {
         Self {
@@ -109,7 +109,7 @@ impl Theme {
     }
 }
 
-impl Default for Theme {
+impl Default for Palette {
     fn default() -> Self {
         Self::candy()
     }
@@ -139,20 +139,20 @@ mod tests {
 
     #[test]
     fn colours_start_over_and_levels_end() {
-        let theme = Theme::candy();
-        assert_eq!(theme.hand(0), theme.hand(2));
-        assert_ne!(theme.hand(0), theme.hand(1));
-        assert_eq!(theme.level(200), theme.levels[4]);
-        assert_eq!(theme.strain(0.0), theme.strains[0]);
-        assert_eq!(theme.strain(9.0), theme.strains[2]);
+        let palette = Palette::candy();
+        assert_eq!(palette.hand(0), palette.hand(2));
+        assert_ne!(palette.hand(0), palette.hand(1));
+        assert_eq!(palette.level(200), palette.levels[4]);
+        assert_eq!(palette.strain(0.0), palette.strains[0]);
+        assert_eq!(palette.strain(9.0), palette.strains[2]);
         assert_eq!(bytes(rgb(0xff8000), 1.0), [255, 128, 0, 255]);
     }
 
     #[test]
     fn safe_levels_differ_in_lightness() {
-        let theme = Theme::colour_safe();
+        let palette = Palette::colour_safe();
         let lightness = |c: Colour| 0.3 * c[0] + 0.59 * c[1] + 0.11 * c[2];
-        for pair in theme.levels.windows(2) {
+        for pair in palette.levels.windows(2) {
             assert!(lightness(pair[0]) > lightness(pair[1]) + 0.08, "{pair:?}");
         }
     }

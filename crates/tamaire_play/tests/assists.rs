@@ -1,0 +1,50 @@
+//! What is made easier is easier: a bot that pushes the body in whole wins every level.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+use tamaire_play::level::{NAMED, NAMED_3D};
+use tamaire_play::{AnyRound, Assist, Bot, BotKind, Level, Outcome, Route};
+
+/// Nobody should take longer than a minute.
+const MINUTE: usize = 60 * 60;
+
+/// How a round of a level ends that is made easier by `assists`.
+fn squeezed(level: &Level, assists: &[Assist], seed: u64) -> Option<Outcome> {
+    let easy = level.assisted(&BTreeSet::from_iter(assists.iter().copied()));
+    let mut round = AnyRound::new(Arc::new(easy.unwrap()));
+    let mut bot = Bot::new(BotKind::Squeeze, seed);
+    for _ in 0..MINUTE {
+        let frame = round.ask(&mut bot);
+        round.step(frame);
+        if round.progress().outcome.is_some() {
+            break;
+        }
+    }
+    round.progress().outcome
+}
+
+#[test]
+fn every_level_can_be_squeezed_with_all_help() {
+    for (id, _) in NAMED.iter().chain(&NAMED_3D) {
+        let level = Level::open(id).unwrap();
+        if level.game().basket.is_none() {
+            continue;
+        }
+        let outcome = squeezed(&level, &[Assist::WiderBasket, Assist::Unbreakable], 301);
+        let outcome = outcome.unwrap_or_else(|| panic!("{id} is not won"));
+        let torn = (outcome.route, outcome.lost);
+        assert_eq!(torn, (Route::Squeeze, 0), "{id}: {outcome:?}");
+    }
+}
+
+#[test]
+fn a_wider_basket_is_won_sooner() {
+    let twins = Level::open("twins").unwrap();
+    let ticks = |assists: &[Assist]| -> u64 {
+        let won = (301..306).map(|seed| squeezed(&twins, assists, seed));
+        won.map(|outcome| outcome.map_or(MINUTE as u64, |outcome| outcome.ticks))
+            .sum()
+    };
+    let [plain, wide] = [ticks(&[]), ticks(&[Assist::WiderBasket])];
+    assert!(wide < plain, "{wide} ticks, without help {plain}");
+}
