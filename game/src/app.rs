@@ -4,6 +4,7 @@ mod dwell;
 mod fingers;
 mod pointing;
 mod presses;
+mod switch;
 
 use crate::game::{Game, Screen};
 use crate::input::{Action, Means, Seat};
@@ -16,6 +17,7 @@ use fingers::Fingers;
 use pointing::{look_around, point};
 use presses::Presses;
 use sticks::{Change, Control, Navigator, PadButton};
+use switch::Switch;
 
 /// Each screen has room enough in a window of this many points.
 const ROOM: egui::Vec2 = egui::vec2(900.0, 640.0);
@@ -43,6 +45,7 @@ pub struct App {
     presses: Presses,
     fingers: Fingers,
     dwell: Dwell,
+    switch: Switch,
     screen_before: Screen,
     /// Whether the window ever had the focus, and whether it was asked to fill the screen.
     had_focus: bool,
@@ -75,6 +78,7 @@ impl App {
             presses,
             fingers: Fingers::default(),
             dwell: Dwell::default(),
+            switch: Switch::default(),
             screen_before,
             had_focus: false,
             is_full: false,
@@ -108,6 +112,9 @@ impl App {
                 self.game.controls.rebinding = None;
                 self.game.settings.bindings.bind_button(action, control);
                 self.game.keep_settings();
+                continue;
+            }
+            if Switch::is(control) && !in_menu && self.game.settings.scanning.step().is_some() {
                 continue;
             }
             let action = self.game.settings.bindings.of_button(control);
@@ -311,6 +318,8 @@ impl eframe::App for App {
         let seconds = ctx.input(|input| input.stable_dt).min(0.1);
         self.hear_sticks(&ctx, seconds);
         self.hear_window(&ctx);
+        self.switch
+            .pass(&mut self.game, &self.presses, &ctx, seconds);
         self.game.pass(seconds);
         if self.screen_before != self.game.screen() {
             // What had the focus is gone.

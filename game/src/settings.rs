@@ -1,6 +1,6 @@
 //! What players chose. It is kept in a file that a person can read.
 
-use crate::input::Bindings;
+use crate::input::{Bindings, Scanning};
 use crate::sift::{Sifted, sift};
 use crate::words::Language;
 use force_feedback::Calibration;
@@ -41,6 +41,8 @@ pub struct Settings {
     pub toggle_keys: bool,
     /// Whether a mouse that rests on a button presses it.
     pub dwell: bool,
+    /// How fast what can be done is offered to whoever plays with one switch.
+    pub scanning: Scanning,
     /// What is made easier in levels.
     pub assists: BTreeSet<Assist>,
     /// Whether one's fastest round is raced by itself.
@@ -78,6 +80,7 @@ impl Default for Settings {
             stick_places: false,
             toggle_keys: false,
             dwell: false,
+            scanning: Scanning::default(),
             assists: BTreeSet::new(),
             race_best: false,
             full_screen: false,

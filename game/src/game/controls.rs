@@ -1,6 +1,6 @@
 //! With what the game is played: what devices say, and who holds which.
 
-use crate::input::{Action, Devices, Latch, Means, Players, Seat};
+use crate::input::{Action, Devices, Latch, Means, Players, Scan, Seat};
 use crate::platform::Pads;
 use egui::Rect;
 use sticks::{Change, DeviceId, Labels};
@@ -39,6 +39,8 @@ pub struct Controls {
     in_hand: Option<DeviceId>,
     /// Keys that stay down, where that is wished.
     pub latch: Latch,
+    /// What is offered to whoever plays with one switch.
+    pub scan: Scan,
     /// What fingers can press, as it was seen last.
     pub buttons: Vec<ScreenButton>,
     /// An action whose key or button the next one pressed becomes.
@@ -55,6 +57,7 @@ impl Controls {
             means: Means::default(),
             in_hand: None,
             latch: Latch::default(),
+            scan: Scan::default(),
             buttons: Vec::new(),
             rebinding: None,
         }
@@ -64,6 +67,7 @@ impl Controls {
     pub(super) fn begin(&mut self, is_space: bool) {
         self.players.start();
         self.latch.release();
+        (self.scan, self.devices.taken) = (Scan::default(), None);
         // In space a second finger raises the hand of the first.
         if is_space && self.players.second() == Some(Seat::Finger) {
             self.players.join(Seat::Finger);

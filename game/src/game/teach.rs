@@ -6,8 +6,14 @@ use fuwafuwa::vector::minus;
 
 impl Game {
     /// How the hand moves and rises and the camera turns, with what was used last; each with whether it is still to be
-    /// told. Nothing in the plane, where nobody plays, and to those who have won in space.
+    /// told. Nothing in the plane, where nobody plays, and to those who have won in space. Who plays with one switch is told
+    /// what that does.
     pub fn lesson(&self) -> Vec<(String, bool)> {
+        if self.settings.scanning.step().is_some() {
+            let is_played = self.screen() == Screen::Play && self.bout.session.is_played();
+            let told = self.words().how_by_switch.to_string();
+            return Vec::from_iter(is_played.then_some((told, !self.controls.scan.is_known)));
+        }
         // Where elements are seen, the wheel looks deeper.
         if !self.is_played_in_space() || self.has_won_in_space() || self.bout.elements.is_some() {
             return Vec::new();

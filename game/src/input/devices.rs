@@ -1,6 +1,6 @@
 //! What devices say at a moment, and which way that leads.
 
-use super::{Action, Bindings};
+use super::{Action, Bindings, Offer};
 use egui::{Key, Vec2};
 use fuwafuwa::Vector;
 use std::collections::BTreeSet;
@@ -32,6 +32,8 @@ pub struct Devices {
     pub second: Option<Vector>,
     /// What the buttons on the screen mean that fingers hold.
     pub pressed: BTreeSet<Action>,
+    /// What the one switch has taken of what was offered.
+    pub taken: Option<Offer>,
     /// Keys that are held.
     pub keys: BTreeSet<Key>,
     /// How far the wheel or a second finger was turned or drawn, for the hand to rise in space [m].

@@ -18,9 +18,10 @@ pub struct Manner {
 }
 
 impl Manner {
-    /// Which way in the world it is when somebody leans: to the right, and away.
-    pub(super) fn along(&self, lean: Vec2) -> Vector {
-        let Some(turn) = self.turn else {
+    /// Which way in the world it is when somebody leans to the right and away; in space, where the camera went around to the
+    /// right by `turn` [rad].
+    pub fn along(turn: Option<f32>, lean: Vec2) -> Vector {
+        let Some(turn) = turn else {
             return [lean.x, lean.y, 0.0];
         };
         let (sin, cos) = turn.sin_cos();
@@ -44,7 +45,7 @@ impl Manner {
     /// The position in the arena at which a stick points, in space at a height [m].
     pub(super) fn position_of(&self, stick: [f32; 2], height: f32) -> Vector {
         let [low, high] = self.arena;
-        let way = self.along(Vec2::from(stick));
+        let way = Self::along(self.turn, Vec2::from(stick));
         let mut position = [0, 1, 2].map(|axis: usize| {
             0.5 * (low[axis] + high[axis]) + 0.5 * way[axis] * (high[axis] - low[axis])
         });

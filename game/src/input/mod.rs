@@ -5,12 +5,14 @@ mod devices;
 mod latch;
 mod manner;
 mod players;
+mod scan;
 
 pub use bindings::{Bindings, PadKey};
 pub use devices::{Devices, Seat};
 pub use latch::Latch;
 pub use manner::Manner;
 pub use players::Players;
+pub use scan::{Offer, Scan, Scanning};
 
 use serde::{Deserialize, Serialize};
 

@@ -1,7 +1,7 @@
 //! Who plays which hand with which device, and where they want it to be.
 
 use super::devices::{DEAD, RIM, direction, held_on, opposed, rise_of};
-use super::{Action, Bindings, Devices, Manner, Seat};
+use super::{Action, Bindings, Devices, Manner, Offer, Seat};
 use egui::Vec2;
 use fuwafuwa::Vector;
 use fuwafuwa::vector::plus;
@@ -13,6 +13,8 @@ use tamaire_play::{InputFrame, PLAYERS};
 const NOISE: f32 = 0.01;
 /// How fast a key or a stick that leans fully moves the goal at the usual sensitivity [m/s].
 const PACE: f32 = 2.0;
+/// The share of that at which one switch moves it, which cannot push now harder, now less: so a body gives way and stays whole.
+const SWITCHED: f32 = 0.4;
 /// How fast it rises in space [m/s].
 const RISE: f32 = 1.2;
 
@@ -142,7 +144,7 @@ impl Players {
         if asked.lean != Vec2::ZERO {
             // From where the goal is now: what pushes in vain winds nothing up.
             let lean = asked.lean * (1.0 / asked.lean.length().max(1.0));
-            let step = manner.along(lean * PACE * manner.sensitivity * seconds);
+            let step = Manner::along(manner.turn, lean * PACE * manner.sensitivity * seconds);
             let mut position = manner.within(plus(here, step));
             if manner.turn.is_some() {
                 position[1] = wanted[1];
@@ -180,6 +182,15 @@ impl Players {
             if asked.lean != Vec2::ZERO || asked.lift != 0.0 {
                 self.used[player] = Some(Seat::Keys);
             }
+        }
+        if let Some(offer) = devices.taken.filter(|_| player == 0) {
+            match offer {
+                Offer::Way(way) => asked.lean += SWITCHED * way,
+                Offer::Raise => asked.lift += rises,
+                Offer::Lower => asked.lift -= rises,
+                Offer::Pause => {}
+            }
+            self.used[player] = Some(Seat::Keys);
         }
         let all = devices.sticks.devices.iter();
         for device in all.filter(|device| holds(Seat::Stick(device.id))) {

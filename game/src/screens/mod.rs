@@ -7,6 +7,7 @@ mod forces;
 mod hud;
 mod icons;
 mod levels;
+mod offers;
 mod paused;
 mod play;
 mod replays;

@@ -1,6 +1,6 @@
 //! The round itself.
 
-use super::hud;
+use super::{hud, offers};
 use crate::game::{Game, Screen};
 use crate::look::{Hint, Look, Stage};
 use egui::{Response, Ui};
@@ -46,6 +46,7 @@ pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
 /// What is shown over a round.
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     let is_on_button = hud::show(game, ui);
+    offers::show(game, ui);
     if game.bout.session.is_played() && !is_on_button {
         ui.ctx().set_cursor_icon(egui::CursorIcon::None);
     }

@@ -42,7 +42,10 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
             ui.add_space(12.0);
             match help_of(&level, said) {
                 None => wishes(ui, &theme, said, &outcome, &level.game().wish),
-                Some(help) => line(ui, &help, 20.0, theme.faint),
+                Some(help) => {
+                    line(ui, &help, 20.0, theme.faint);
+                    ui.add_space(GAP);
+                }
             }
             ui.add_space(14.0);
             if level.routes().contains(&other(outcome.route)) {

@@ -2,7 +2,7 @@
 
 use super::widgets::{Weight, button, card, choice, header, page, place_of_page, slider, veil};
 use crate::game::{Game, Screen};
-use crate::input::Action;
+use crate::input::{Action, Scanning};
 use crate::look::Theme;
 use crate::settings::Settings;
 use crate::words::Language;
@@ -85,6 +85,13 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 let toggles = &mut chosen.toggle_keys;
                 choice(ui, &theme, said.toggle_keys, toggles, &options);
                 choice(ui, &theme, said.dwell, &mut chosen.dwell, &options);
+                let speeds = [
+                    (Scanning::Off, said.off),
+                    (Scanning::Slow, "2 s"),
+                    (Scanning::Medium, "1.2 s"),
+                    (Scanning::Quick, "0.7 s"),
+                ];
+                choice(ui, &theme, said.scanning, &mut chosen.scanning, &speeds);
             });
             section(ui, &theme, said.assists_section, |ui| {
                 for assist in [Assist::WiderBasket, Assist::Unbreakable] {

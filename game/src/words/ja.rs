@@ -67,6 +67,8 @@ pub(super) const WORDS: Words = Words {
     hands_section: "手",
     toggle_keys: "キーは もういちど おすまで おしたまま",
     dwell: "マウスを とめると ボタンを おす",
+    scanning: "スイッチひとつで じゅんばんに",
+    how_by_switch: "スペース：やじるしのほうへ（おしているあいだ）",
     assists_section: "おたすけ（つぎの ラウンドから）",
     assist: |assist| match assist {
         Assist::WiderBasket => "かごを ひろく",

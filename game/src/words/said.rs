@@ -38,6 +38,8 @@ pub struct Words {
     pub hands_section: &'static str,
     pub toggle_keys: &'static str,
     pub dwell: &'static str,
+    pub scanning: &'static str,
+    pub how_by_switch: &'static str,
     pub assists_section: &'static str,
     pub assist: fn(Assist) -> &'static str,
     pub assisted: &'static str,

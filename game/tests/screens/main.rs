@@ -3,6 +3,7 @@
 
 mod clicks;
 mod fingers;
+mod help;
 mod hostile;
 mod kept;
 mod models;

@@ -22,6 +22,8 @@ pub fn open(files: Files, size: egui::Vec2, pixels: f32) -> Window {
     let builder = Harness::builder().with_size(size).wgpu();
     let builder = builder.with_pixels_per_point(pixels);
     let builder = builder.with_step_dt(TICK).with_render_cursor(false);
+    // As the game has it; the harness would darken what egui draws.
+    let builder = builder.with_theme(egui::Theme::Light);
     let mut window = builder.build_eframe(|context| {
         let game = Game::new(files, Sound::none(), Pads::none());
         App::new(context, game).expect("there is a GPU, if only in software")
@@ -74,8 +76,8 @@ pub fn notices(window: &Window) -> String {
 /// Begins the level of this name, and lets it be seen.
 pub fn start(window: &mut Window, id: &str) {
     let game = game(window);
-    let place = game.levels.iter().position(|level| level.id == id);
-    game.start(place.expect("it comes along"));
+    let index = game.levels.iter().position(|level| level.id == id);
+    game.start(index.expect("it comes along"));
     frames(window, 2);
 }
 

@@ -1,0 +1,57 @@
+//! Play with one switch: the space key, Enter, or the first button of a stick or pad.
+
+use super::presses::Presses;
+use crate::game::{Game, Screen};
+use crate::input::{Action, Scan, Seat};
+use egui::{Context, Key};
+use sticks::{Control, PadButton};
+
+/// Offers what can be done in turn.
+#[derive(Debug, Default)]
+pub(super) struct Switch {
+    /// For how long the switch has been offered what has the focus in a menu [steps].
+    offered_for: f32,
+}
+
+impl Switch {
+    /// Whether a button of a stick or pad is the switch.
+    pub(super) fn is(control: Control) -> bool {
+        matches!(control, Control::Pad(PadButton::South) | Control::Button(0))
+    }
+
+    /// Lets time pass, for whoever plays so: in a round the hand is offered its ways, in menus the focus moves on.
+    pub(super) fn pass(&mut self, game: &mut Game, presses: &Presses, ctx: &Context, seconds: f32) {
+        let Some(step) = game.settings.scanning.step() else {
+            game.controls.devices.taken = None;
+            return;
+        };
+        let (steps, is_pressed) = (seconds / step, is_pressed(game, ctx));
+        if game.screen() != Screen::Play {
+            game.controls.scan = Scan::default();
+            let before = if is_pressed { 0.0 } else { self.offered_for };
+            self.offered_for = before + steps;
+            if self.offered_for >= 1.0 && game.controls.rebinding.is_none() {
+                self.offered_for = 0.0;
+                presses.waiting().keys.push(Key::Tab);
+            }
+            return;
+        }
+        let (is_space, stays) = (game.bout.turn().is_some(), game.settings.toggle_keys);
+        let controls = &mut game.controls;
+        let rests = controls.scan.pass(is_pressed, stays, steps, is_space);
+        controls.devices.taken = controls.scan.taken(is_space);
+        if rests {
+            game.act(Action::Pause, Seat::Keys);
+        }
+    }
+}
+
+fn is_pressed(game: &Game, ctx: &Context) -> bool {
+    let by_key = ctx.input(|input| {
+        let mut keys = [Key::Space, Key::Enter].iter();
+        keys.any(|key| input.keys_down.contains(key))
+    });
+    let devices = &game.controls.devices.sticks.devices;
+    let mut buttons = devices.iter().flat_map(|device| device.controls());
+    by_key || buttons.any(|(control, button)| Switch::is(control) && button.down)
+}

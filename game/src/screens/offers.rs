@@ -1,0 +1,86 @@
+//! What is offered in a round to whoever plays with one switch, around the hand.
+
+use super::{hud, icons};
+use crate::game::Game;
+use crate::input::{Manner, Offer};
+use crate::look::Theme;
+use egui::{Color32, Painter, Pos2, Shape, Stroke, Ui, Vec2};
+
+/// The ring on which it is shown, the arrow, and the disc under a sign [points].
+const RING: f32 = 58.0;
+const ARROW: f32 = 21.0;
+const DISC: f32 = 21.0;
+/// How far ahead of the hand it is asked where a way leads [m].
+const AHEAD: f32 = 0.1;
+
+/// Shows what is offered, and whether it is taken.
+pub(super) fn show(game: &Game, ui: &Ui) {
+    let round = game.bout.round();
+    let is_offered = game.settings.scanning.step().is_some() && game.bout.session.is_played();
+    let Some(view) = game.bout.view else {
+        return;
+    };
+    if !is_offered || round.progress().outcome.is_some() {
+        return;
+    }
+    let (theme, scale) = (game.theme(), hud::scale(game, ui));
+    let (here, turn) = (round.hands()[0].position(), game.bout.turn());
+    let middle = view.on_screen(here);
+    let is_taken = game.controls.devices.taken.is_some();
+    let painter = ui.painter();
+    let pale = Color32::from_white_alpha(150);
+    painter.circle_stroke(middle, scale * RING, Stroke::new(scale * 2.5, pale));
+    let above = middle - Vec2::new(0.0, scale * RING);
+    match game.controls.scan.offer(turn.is_some()) {
+        Offer::Way(way) => {
+            let ahead = Manner::along(turn, AHEAD * way);
+            let there = view.on_screen([0, 1, 2].map(|axis| here[axis] + ahead[axis]));
+            arrow(
+                painter,
+                middle,
+                (there - middle).normalized(),
+                scale,
+                tone(&theme, is_taken),
+            );
+        }
+        Offer::Raise => sign(painter, &theme, above, scale, is_taken, icons::up),
+        Offer::Lower => sign(painter, &theme, above, scale, is_taken, icons::down),
+        Offer::Pause => sign(painter, &theme, above, scale, is_taken, icons::pause),
+    }
+}
+
+fn tone(theme: &Theme, is_taken: bool) -> Color32 {
+    if is_taken { theme.accent } else { theme.ink }
+}
+
+/// An arrow on the ring that points outwards.
+fn arrow(painter: &Painter, middle: Pos2, way: Vec2, scale: f32, tone: Color32) {
+    let point = |out: f32, aside: f32| middle + scale * (out * way + aside * way.rot90());
+    let corners = vec![
+        point(RING + ARROW, 0.0),
+        point(RING - 0.6 * ARROW, ARROW),
+        point(RING - 0.35 * ARROW, 0.0),
+        point(RING - 0.6 * ARROW, -ARROW),
+    ];
+    // Two halves: together they are not convex.
+    for half in [[0, 1, 2], [0, 2, 3]] {
+        let half = half.map(|corner| corners[corner]).to_vec();
+        painter.add(Shape::convex_polygon(half, tone, Stroke::NONE));
+    }
+    let edge = Stroke::new(scale * 2.5, Color32::WHITE);
+    painter.add(Shape::closed_line(corners, edge));
+}
+
+/// A sign on a disc.
+fn sign(
+    painter: &Painter,
+    theme: &Theme,
+    at: Pos2,
+    scale: f32,
+    is_taken: bool,
+    icon: fn(&Painter, Pos2, f32, Color32),
+) {
+    let edge = Stroke::new(scale * 2.5, tone(theme, is_taken));
+    painter.circle(at, scale * DISC, theme.card, edge);
+    icon(painter, at, scale, tone(theme, is_taken));
+}

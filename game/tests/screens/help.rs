@@ -1,0 +1,157 @@
+//! Help for who needs it: levels made easier, and one switch for everything.
+
+use crate::window::*;
+use egui::Key;
+use egui::accesskit::Role;
+use egui_kittest::kittest::Queryable;
+use std::collections::BTreeSet;
+use tamaire::game::Screen;
+use tamaire::input::{Offer, Scanning};
+use tamaire::platform::Files;
+use tamaire_play::{Assist, Route};
+
+#[test]
+fn what_is_won_with_help_is_kept_beside_what_is_won_without() {
+    let folder = folder("help");
+    let mut window = window(Files::in_folder(&folder));
+    let all = BTreeSet::from([Assist::WiderBasket, Assist::Unbreakable]);
+    game(&mut window).settings.assists = all.clone();
+    start(&mut window, "biscuit");
+    let level = game(&mut window).bout.round().level().clone();
+    assert_eq!(level.game().assists, all);
+    assert_eq!(level.routes(), [Route::Squeeze]);
+    win(&mut window);
+    window.get_by_label_contains("with help: Wider basket, Nothing tears");
+    let game = game(&mut window);
+    let record = game.records.of("biscuit").unwrap();
+    assert!(record.best.is_empty() && record.wishes.is_empty());
+    assert!(record.best_assisted.contains_key(&Route::Squeeze));
+    game.keep_replay();
+    game.finish_writing();
+    let plain = game
+        .levels
+        .iter()
+        .find(|level| level.id == "biscuit")
+        .unwrap()
+        .clone();
+    assert!(game.files.best(&level).unwrap().is_of(&level));
+    assert!(game.files.best(&plain).is_none());
+
+    // The same again is as easy, until nothing is to be easier; neither is another level.
+    game.retry();
+    assert_eq!(game.bout.round().level(), &level);
+    game.settings.assists.clear();
+    game.retry();
+    assert_eq!(game.bout.round().level(), &plain);
+    game.go(Screen::Replays);
+    frames(&mut window, 6);
+    window.get_by_label_contains("s, with help");
+    drop(window);
+    std::fs::remove_dir_all(folder).unwrap();
+}
+
+/// Waits until a button of this name is what the switch presses, and presses it.
+fn choose(window: &mut Window, name: &str) {
+    let patience = 60 * 60;
+    for _ in 0..patience {
+        if button(window, name).is_focused() {
+            tap(window);
+            return;
+        }
+        frames(window, 1);
+    }
+    panic!("{name} is never offered");
+}
+
+fn tap(window: &mut Window) {
+    window.key_down(Key::Space);
+    frames(window, 3);
+    window.key_up(Key::Space);
+    frames(window, 3);
+}
+
+/// Waits until this is offered in a round.
+fn wait_for(window: &mut Window, is_wanted: impl Fn(Offer) -> bool) {
+    for _ in 0..60 * 60 {
+        let game = game(window);
+        let is_space = game.bout.turn().is_some();
+        if is_wanted(game.controls.scan.offer(is_space)) {
+            return;
+        }
+        frames(window, 1);
+    }
+    panic!("it is never offered");
+}
+
+#[test]
+fn one_switch_is_enough_to_win_and_to_go_on() {
+    let mut window = window(Files::nowhere());
+    game(&mut window).settings.scanning = Scanning::Quick;
+    choose(&mut window, "Play");
+    assert_eq!(screen(&window), Screen::Levels);
+    choose(&mut window, "Classic");
+    assert_eq!(screen(&window), Screen::Play);
+    // What chose the level has moved nothing.
+    let start = game(&mut window).bout.round().start(0);
+    assert_eq!(game(&mut window).bout.round().hands()[0].goal(), start);
+
+    wait_for(&mut window, |offer| offer == Offer::Pause);
+    tap(&mut window);
+    assert_eq!(screen(&window), Screen::Paused);
+    choose(&mut window, "Go on");
+    assert_eq!(screen(&window), Screen::Play);
+
+    // The body is right of the hand, and the basket right of the body.
+    wait_for(
+        &mut window,
+        |offer| matches!(offer, Offer::Way(way) if way.x > 0.9995),
+    );
+    window.key_down(Key::Space);
+    for _ in 0..60 * 10 {
+        if game(&mut window).bout.round().progress().inside > 0.8 {
+            break;
+        }
+        frames(&mut window, 1);
+    }
+    // What rests in the basket is not pressed any more.
+    window.key_up(Key::Space);
+    wait_for(
+        &mut window,
+        |offer| matches!(offer, Offer::Way(way) if way.x < -0.99),
+    );
+    window.key_down(Key::Space);
+    frames(&mut window, 60);
+    window.key_up(Key::Space);
+    frames(&mut window, 150);
+    assert_eq!(screen(&window), Screen::Result);
+    assert_eq!(game(&mut window).bout.won.unwrap().0.route, Route::Squeeze);
+    choose(&mut window, "Levels");
+    assert_eq!(screen(&window), Screen::Levels);
+}
+
+#[test]
+fn in_space_the_switch_raises_and_lowers_the_hand() {
+    let mut window = window(Files::nowhere());
+    game(&mut window).settings.scanning = Scanning::Medium;
+    game(&mut window).settings.toggle_keys = true;
+    start(&mut window, "classic-3d");
+    frames(&mut window, 2);
+    let height = |window: &mut Window| game(window).bout.round().hands()[0].goal()[1];
+    let before = height(&mut window);
+    wait_for(&mut window, |offer| offer == Offer::Raise);
+    // One press takes it, the next one leaves it.
+    tap(&mut window);
+    frames(&mut window, 20);
+    let raised = height(&mut window);
+    assert!(raised > before + 0.1, "{before} m, then {raised} m");
+    tap(&mut window);
+    wait_for(&mut window, |offer| offer == Offer::Lower);
+    tap(&mut window);
+    frames(&mut window, 10);
+    assert!(height(&mut window) < raised);
+    assert!(
+        window
+            .query_by_role_and_label(Role::Button, "Play")
+            .is_none()
+    );
+}
