@@ -8,9 +8,9 @@ use std::ops::RangeInclusive;
 
 mod form;
 
-/// Most voxels on one axis of a grid.
+/// Most voxels on one axis of a grid: so far from its origin single precision still tells a ten-thousandth of a voxel.
 pub const MAX_EXTENT: usize = 1024;
-/// Most voxels in the box of a grid, solid or not.
+/// Most voxels in the box of a grid, solid or not: 64 MiB of them, and eight corners of each have numbers of 32 bits.
 pub const MAX_VOXELS: usize = 1 << 26;
 /// Edge lengths that a voxel can have [m]: with others, volumes and positions leave single precision.
 pub const VOXEL_SIZES: RangeInclusive<f32> = 1e-6..=1e3;

@@ -11,7 +11,7 @@ use crate::vector::{as_row, dot, minus, plus, scaled};
 
 impl<D: Dim> Body<D> {
     /// Moves a free body on by `duration` seconds under `gravity` [m/s²], without contact or
-    /// damping: symplectic Euler, stable while `duration` ≤ 0.6 s / c (s the voxel, c the wave).
+    /// damping: symplectic Euler, stable while `duration` is at most [`Body::longest_substep`].
     #[inline(never)]
     pub fn advance(&mut self, duration: f32, gravity: [f32; 3]) {
         self.push(duration, gravity);
