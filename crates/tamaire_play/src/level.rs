@@ -2,7 +2,8 @@
 
 use crate::Route;
 use fuwafuwa::hash::Hash;
-use fuwafuwa::{Dim, Shape, World};
+use fuwafuwa::vector::{plus, scaled};
+use fuwafuwa::{Body, Dim, Dim2, Dim3, Shape, Vector, World};
 use fuwafuwa_scenes::scene::{
     BodyText, Fetch, GameText, MAX_TEXT_BYTES, Scene, SceneError, ending_of,
 };
@@ -196,22 +197,16 @@ impl Level {
     /// [`LevelError`] says what is wrong with it.
     pub fn of(id: &str, scene: Scene) -> Result<Self, LevelError> {
         let level = Self::unbuilt(id, scene)?;
-        let widest = match level.scene.dim {
-            2 => widest_hand(&level.start::<fuwafuwa::Dim2>()?.0),
-            _ => widest_hand(&level.start::<fuwafuwa::Dim3>()?.0),
+        let checked = match level.scene.dim {
+            2 => check(&level.start::<Dim2>()?.0, level.arena()),
+            _ => check(&level.start::<Dim3>()?.0, level.arena()),
         };
-        let [low, high] = level.scene.view;
-        let axes = 0..usize::from(level.scene.dim);
-        let room = axes.map(|axis| high[axis] - low[axis]);
-        let room = room.fold(f32::INFINITY, f32::min);
-        if widest > 0.9 * room {
-            return Err(LevelError::NoGame {
-                id: id.into(),
-                field: "hand",
-                reason: format!("expected hands that can move in the view, {room} m wide"),
-            });
-        }
-        Ok(level)
+        let wrong = |(field, reason)| LevelError::NoGame {
+            id: id.into(),
+            field,
+            reason,
+        };
+        checked.map(|()| level).map_err(wrong)
     }
 
     /// The same, without a look at what takes a world to be seen.
@@ -360,6 +355,37 @@ fn text_in<'a>(id: &str, bytes: &'a [u8], most: u64) -> Result<&'a str, LevelErr
     text.map_err(|error| wrong(format!("expected a text in UTF-8: {error}")))
 }
 
+/// Checks that in the arena hands can move and bodies can be reached; else which field is wrong, and what was expected.
+fn check<D: Dim>(world: &World<D>, [low, high]: [Vector; 2]) -> Result<(), (&'static str, String)> {
+    let room = (0..D::N).map(|axis| high[axis] - low[axis]);
+    let room = room.fold(f32::INFINITY, f32::min);
+    if widest_hand(world) > 0.9 * room {
+        let reason = format!("expected hands that can move in the view, {room} m wide");
+        return Err(("hand", reason));
+    }
+    let is_within = |middle: Vector| (0..D::N).all(|k| (low[k]..=high[k]).contains(&middle[k]));
+    let mut middles = world.bodies().iter().map(middle);
+    match middles.position(|middle| !is_within(middle)) {
+        None => Ok(()),
+        Some(index) => {
+            let reason = format!(
+                "expected bodies in the view; of body {} the middle is not",
+                index + 1
+            );
+            Err(("body", reason))
+        }
+    }
+}
+
+/// The middle of the nodes of a body [m].
+fn middle<D: Dim>(body: &Body<D>) -> Vector {
+    let positions = body.mesh().nodes().map(|(id, _)| body.node_state(id).0);
+    let (sum, count) = positions.fold(([0.0; 3], 0.0), |(sum, count), at| {
+        (plus(sum, at), count + 1.0)
+    });
+    scaled(sum, 1.0 / count)
+}
+
 /// How wide the widest hand is on any axis [m].
 fn widest_hand<D: Dim>(world: &World<D>) -> f32 {
     let widths = world.hands().flat_map(|(_, hand)| {
@@ -434,13 +460,21 @@ mod tests {
     }
 
     #[test]
+    fn a_body_that_no_hand_can_reach_is_refused() {
+        let (_, twins) = NAMED[3];
+        let refused = refusal("twins", twins, &["body.2.at=[2.0, 0.0, 0.0]"]);
+        let expected = "twins: body: expected bodies in the view; of body 2 the middle is not";
+        assert_eq!(refused.as_deref(), Some(expected));
+    }
+
+    #[test]
     fn a_copy_of_the_start_is_a_start() {
         let level = Level::open("twins").unwrap();
-        let built = level.scene.build::<fuwafuwa::Dim2>().unwrap();
-        let mut rounds = [0, 1].map(|_| level.build::<fuwafuwa::Dim2>().0);
+        let built = level.scene.build::<Dim2>().unwrap();
+        let mut rounds = [0, 1].map(|_| level.build::<Dim2>().0);
         rounds[0].step();
         assert_ne!(rounds[0].hash(), built.hash());
-        let again = level.clone().build::<fuwafuwa::Dim2>().0;
+        let again = level.clone().build::<Dim2>().0;
         assert_eq!(
             (rounds[1].hash(), again.hash()),
             (built.hash(), built.hash())

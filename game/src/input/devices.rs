@@ -79,10 +79,15 @@ impl Devices {
         (keys + sticks.sum::<f32>()).clamp(-1.0, 1.0)
     }
 
-    /// Whether a key that means this, or a button on the screen, is held.
-    pub(super) fn holds(&self, bindings: &Bindings, action: Action) -> bool {
+    /// Whether a key that means this is held.
+    pub(super) fn holds_key(&self, bindings: &Bindings, action: Action) -> bool {
         let means = |&key| bindings.of_key(key) == Some(action);
-        self.pressed.contains(&action) || self.keys.iter().any(means)
+        self.keys.iter().any(means)
+    }
+
+    /// Whether a key that means this, or a button on the screen, is held.
+    fn holds(&self, bindings: &Bindings, action: Action) -> bool {
+        self.pressed.contains(&action) || self.holds_key(bindings, action)
     }
 }
 

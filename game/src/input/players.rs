@@ -176,7 +176,7 @@ impl Players {
         let rises = if manner.turn.is_some() { 1.0 } else { 0.0 };
         let mut asked = Asked::default();
         if holds(Seat::Keys) {
-            let held = |action| devices.holds(bindings, action);
+            let held = |action| devices.holds_key(bindings, action);
             asked.lean = direction(held);
             asked.lift = rises * opposed(held, Action::Raise, Action::Lower);
             if asked.lean != Vec2::ZERO || asked.lift != 0.0 {
@@ -219,6 +219,12 @@ impl Players {
                 self.used[player] = Some(Seat::Stick(device.id));
                 self.rested[player] = 0.0;
             }
+        }
+        let pressed = |action| devices.pressed.contains(&action);
+        let thumbs = rises * opposed(pressed, Action::Raise, Action::Lower);
+        if holds(Seat::Pointer) && thumbs != 0.0 {
+            asked.lift += thumbs;
+            self.used[player] = Some(Seat::Pointer);
         }
         let wheel = rises * devices.lift;
         if holds(Seat::Pointer) && (devices.pointer.is_some() || wheel != 0.0) {

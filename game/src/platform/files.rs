@@ -33,6 +33,8 @@ const REST: f32 = 1.0;
 pub struct Files {
     storage: Arc<dyn Storage>,
     writer: Writer<Done>,
+    /// Photos and clips take seconds, for which nothing else has to wait.
+    darkroom: Writer<Done>,
     /// What settings are where none were kept.
     usual: Settings,
     /// Settings that are still to be written, and in how long [s].
@@ -103,6 +105,7 @@ impl Files {
         Self {
             storage: Arc::new(storage),
             writer: Writer::new(),
+            darkroom: Writer::new(),
             usual: Settings::default(),
             resting: None,
             developed: None,
@@ -226,7 +229,7 @@ impl Files {
         let developed = Arc::new(AtomicU32::new(0));
         self.developed = Some(developed.clone());
         let storage = self.storage.clone();
-        self.writer.write(move || {
+        self.darkroom.write(move || {
             let stem = stem_of(&replay);
             let told = |share: f32| developed.store((100.0 * share) as u32, Ordering::Relaxed);
             let picture = pictures::shoot(kind, replay, &told);
@@ -248,14 +251,16 @@ impl Files {
                 self.write_settings();
             }
         }
-        let done = self.writer.results();
+        let mut done = self.writer.results();
+        done.extend(self.darkroom.results());
         self.news(done)
     }
 
     /// Writes what is still to be written, and waits until it is.
     pub fn finish(&mut self) -> Vec<News> {
         self.write_settings();
-        let done = self.writer.finish();
+        let mut done = self.writer.finish();
+        done.extend(self.darkroom.finish());
         self.news(done)
     }
 
@@ -271,7 +276,7 @@ impl Files {
 
     /// Whether something is still to be written.
     pub fn is_busy(&self) -> bool {
-        self.resting.is_some() || self.writer.is_busy()
+        self.resting.is_some() || self.writer.is_busy() || self.darkroom.is_busy()
     }
 
     fn write_settings(&mut self) {

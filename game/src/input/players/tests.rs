@@ -253,3 +253,20 @@ fn each_device_belongs_to_one_player() {
     let frame = players.frame(&devices, &bindings, &MANNER, &HANDS[..1], TICK);
     assert_eq!(frame.goal(1), None);
 }
+
+#[test]
+fn buttons_on_the_screen_are_of_whoever_has_the_pointer() {
+    let manner = Manner {
+        turn: Some(0.0),
+        ..MANNER
+    };
+    let mut players = Players::default();
+    players.join(Seat::Keys);
+    let devices = Devices {
+        pressed: [Action::Raise].into(),
+        ..Devices::default()
+    };
+    let [first, second] = goals(&mut players, &devices, &manner);
+    assert!(first.expect("it rises")[1] > HANDS[0][1]);
+    assert!(second.is_none_or(|stays| stays == HANDS[1]), "{second:?}");
+}
