@@ -20,9 +20,9 @@ impl Level {
         Self::of(&self.id, assisted(self.scene(), assists))
     }
 
-    /// Whether this is that level, with or without something made easier.
+    /// Whether this is the level of that name, with or without something made easier.
     pub fn is_version_of(&self, plain: &Level) -> bool {
-        *self.scene() == assisted(plain.scene(), &self.game().assists)
+        self.id == plain.id && *self.scene() == assisted(plain.scene(), &self.game().assists)
     }
 }
 

@@ -12,7 +12,7 @@ impl Game {
         if self.settings.scanning.step().is_some() {
             let is_played = self.screen() == Screen::Play && self.bout.session.is_played();
             let told = self.words().how_by_switch.to_string();
-            return Vec::from_iter(is_played.then_some((told, !self.controls.scan.is_known)));
+            return Vec::from_iter(is_played.then_some((told, !self.controls.scan.is_known())));
         }
         // Where elements are seen, the wheel looks deeper.
         if !self.is_played_in_space() || self.has_won_in_space() || self.bout.elements.is_some() {

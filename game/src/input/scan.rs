@@ -55,8 +55,7 @@ pub struct Scan {
     /// Whether the switch was up: what brought the round up takes nothing in it.
     was_up: bool,
     is_taken: bool,
-    /// Whether anything was taken yet.
-    pub is_known: bool,
+    is_known: bool,
 }
 
 impl Scan {
@@ -85,6 +84,11 @@ impl Scan {
             (after, true) if after < 2.0 => Offer::Lower,
             _ => Offer::Pause,
         }
+    }
+
+    /// Whether anything was taken yet.
+    pub fn is_known(&self) -> bool {
+        self.is_known
     }
 
     /// What of it is taken.

@@ -110,6 +110,9 @@ fn draw_chips(row: &mut Row, theme: &Theme, game: &Game) {
     if !game.bout.session.is_played() {
         chip("●", said.watching);
     }
+    if !game.bout.round().level().game().assists.is_empty() {
+        chip("+", said.assisted);
+    }
     if game.bout.stepping {
         chip("▶1", (said.action)(Action::Step));
     } else if game.bout.slow {
