@@ -17,10 +17,12 @@ const GENTLE: f32 = 0.7;
 const CAREFUL: f32 = 0.2;
 /// A bot that gets nowhere for so many ticks looks at another piece.
 const PATIENCE: u32 = 210;
-/// How far off the middle of a piece its strokes pass, in terms of its reach: in the plane, where a hand
-/// cuts off all that it passes, and in space, where it would only plough a furrow so far out.
+/// How far off the middle of a piece its first strokes pass, in terms of its reach: in the plane, where a
+/// hand cuts off all that it passes, and in space, where it would only plough a furrow so far out.
 const GRAZING: [f32; 2] = [0.78, 0.55];
-/// The shaving bot gathers when the largest piece has this share of what it had.
+/// After a stroke that took nothing off they pass so much closer to the middle.
+const CLOSER: f32 = 0.85;
+/// The shaving bot gathers when the largest pieces have this share of what they had.
 const SMALL_ENOUGH: f32 = 0.92;
 /// With so much of all mass in the basket, strokes are no faster than brisk.
 const IN_THE_MOUTH: f32 = 0.1;
@@ -61,8 +63,12 @@ pub struct Bot {
     whims: [(Vector, u32); crate::PLAYERS],
     stroke: Stroke,
     strokes: u32,
+    /// How far off the middle they pass, in terms of what the first did; and how many pieces there were
+    /// before the last.
+    off: f32,
+    pieces: usize,
     gathers: bool,
-    /// Share of the mass in the largest piece at which it gathers.
+    /// Share of the mass in the largest pieces, as it was at the start, at which it gathers.
     aim: f32,
     /// The most that was in the basket, for how many ticks nothing got better, and how many pieces
     /// were given up for it.
@@ -106,6 +112,8 @@ impl Bot {
             stroke: Stroke::Rest,
             // The first goes along one side or the other.
             strokes: u32::from(temper[0] > 0.0),
+            off: 1.0,
+            pieces: 0,
             gathers: false,
             aim: SMALL_ENOUGH + 0.01 * temper[2],
             best: 0.0,
@@ -198,12 +206,12 @@ impl Bot {
     /// Strokes past the middle of the largest piece, now on one side of it, now on the other, until
     /// it is small enough; then gathers what is needed.
     fn shave<D: Dim>(&mut self, sight: &Sight) -> Vector {
-        self.gathers |= sight.share < self.aim;
+        self.gathers |= sight.kept < self.aim;
         // What is stuck in front of the mouth has to be smaller still; not what is looked at for want of
         // something better, nor when so little is missing that the next piece may do.
         let is_stuck = self.skips == 0 && !sight.piece.fits && sight.surplus < -0.05;
         if self.gathers && self.waited > PATIENCE && is_stuck {
-            (self.gathers, self.aim) = (false, SMALL_ENOUGH * sight.share);
+            (self.gathers, self.aim) = (false, SMALL_ENOUGH * sight.kept);
         }
         if self.gathers {
             return self.push(sight);
@@ -222,7 +230,8 @@ impl Bot {
                 self.strokes += 1;
                 let is_even = self.strokes.is_multiple_of(2);
                 let side = if is_even { 1.0 } else { -1.0 };
-                let off = (GRAZING[D::N - 2] + 0.04 * self.temper[1]) * reach;
+                self.pieces = sight.pieces;
+                let off = (GRAZING[D::N - 2] + 0.04 * self.temper[1]) * self.off * reach;
                 let from = plus(scaled(*axis, -1.15 * reach), scaled(*across, side * off));
                 self.stroke = Stroke::Reach(from, 90);
                 sight.hand
@@ -237,8 +246,11 @@ impl Bot {
                 self.go(sight, place, BRISK)
             }
             Stroke::Cut(to, patience) => {
-                let there = length(minus(sight.hand, to)) < 0.1;
-                self.stroke = match there || patience == 0 {
+                let is_over = length(minus(sight.hand, to)) < 0.1 || patience == 0;
+                if is_over && sight.pieces <= self.pieces {
+                    self.off *= CLOSER;
+                }
+                self.stroke = match is_over {
                     true => Stroke::Rest,
                     false => Stroke::Cut(to, patience - 1),
                 };

@@ -11,7 +11,7 @@ use std::str::Utf8Error;
 use std::sync::Arc;
 
 /// Number of the format and of the rules; it changes when an older round would run differently.
-pub const VERSION: u32 = 5;
+pub const VERSION: u32 = 6;
 
 /// Most bytes of a replay: what is longer is not read.
 pub const MAX_BYTES: usize = 1 << 25;

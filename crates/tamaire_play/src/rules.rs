@@ -12,7 +12,8 @@ const RESTING: f32 = 0.4;
 pub const CRUMB: f32 = 0.002;
 /// Share of the mass that must still hang together for a body to count as whole.
 const WHOLE: f32 = 0.99;
-/// What is strained by more than this on the mean while it rests is held squeezed by the bars.
+/// What is strained by so much more than its own weight does it, on the mean while it rests, is held squeezed
+/// by the bars.
 const SQUEEZED: f32 = 0.08;
 /// The strain is looked at this often [ticks]: squeezing in takes longer.
 const LOOK: u64 = 4;
@@ -39,6 +40,8 @@ pub struct Progress {
     /// How it ended, if it has.
     pub outcome: Option<Outcome>,
     bodies: usize,
+    /// What rests and is strained by more than this on the mean is held squeezed.
+    squeezed: f32,
     /// Mass of the largest piece of each body at the start, all together [kg].
     whole: f32,
 }
@@ -92,6 +95,7 @@ impl Progress {
             relaxed: false,
             outcome: None,
             bodies: world.bodies().len(),
+            squeezed: SQUEEZED + own_strain(world),
             whole: greatest(&views_of(world)),
         }
     }
@@ -117,7 +121,7 @@ impl Progress {
         self.relaxed &= enough;
         let looks = self.held == TICK || world.ticks().is_multiple_of(LOOK);
         if enough && looks && !self.relaxed {
-            self.relaxed = strain_inside(world, &views, basket) <= SQUEEZED;
+            self.relaxed = strain_inside(world, &views, basket) <= self.squeezed;
         }
         if enough && self.held >= level.game().hold {
             let all = views.iter().flatten();
@@ -157,6 +161,23 @@ fn greatest(views: &[Vec<PieceView>]) -> f32 {
         .iter()
         .map(|views| views.iter().map(|view| view.mass).fold(0.0, f32::max));
     greatest.sum()
+}
+
+/// The mean strain of the body that its own weight strains most: of a column as high as it is, of its heaviest
+/// and softest material, whose foot bears ρ g h and whose top nothing.
+fn own_strain<D: Dim>(world: &World<D>) -> f32 {
+    let gravity = world.settings().gravity;
+    let of = |body: &Body<D>| {
+        let materials = body.materials().iter();
+        let heavy = materials.map(|m| m.density / m.elasticity.young as f32);
+        let pieces = body.piece_views().into_iter();
+        let drops = pieces.map(|piece| {
+            let sides = minus(piece.high, piece.low);
+            (0..3).map(|axis| (gravity[axis] * sides[axis]).abs()).sum()
+        });
+        0.5 * heavy.fold(0.0, f32::max) * drops.fold(0.0, f32::max)
+    };
+    world.bodies().iter().map(of).fold(0.0, f32::max)
 }
 
 fn total_mass<D: Dim>(world: &World<D>) -> f32 {
@@ -223,9 +244,9 @@ fn is_inside(region: &Shape, [x, y, z, _]: [f32; 4]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::is_inside;
-    use crate::{Bot, BotKind, Level, Round};
-    use fuwafuwa::{Dim2, Shape};
+    use super::{SQUEEZED, is_inside, strain_inside, views_of};
+    use crate::{Bot, BotKind, InputFrame, Level, Round};
+    use fuwafuwa::{Dim2, Dim3, Shape};
     use std::sync::Arc;
 
     #[test]
@@ -256,5 +277,23 @@ mod tests {
             moved = moved.max(progress.within - progress.inside);
         }
         assert!(moved > 0.1, "{moved}");
+    }
+
+    #[test]
+    fn what_only_its_own_weight_strains_is_not_squeezed() {
+        let mut round = Round::<Dim3>::new(Arc::new(Level::open("hoop").unwrap()));
+        for _ in 0..120 {
+            round.step(InputFrame::default());
+        }
+        let (world, [low, high]) = (round.world(), round.level().arena());
+        let room = Shape::Box {
+            centre: [0, 1, 2].map(|k| 0.5 * (low[k] + high[k])),
+            half: [0, 1, 2].map(|k| 0.5 * (high[k] - low[k])),
+        };
+        let strain = strain_inside(world, &views_of(world), &room);
+        let limit = round.progress().squeezed;
+        assert!(SQUEEZED < strain && strain < limit, "{strain}, {limit}");
+        let flat = Round::<Dim2>::new(Arc::new(Level::open("classic").unwrap()));
+        assert_eq!(flat.progress().squeezed, SQUEEZED);
     }
 }

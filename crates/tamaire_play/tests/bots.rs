@@ -92,6 +92,39 @@ fn both_ways_win_in_space() {
     wins("classic-3d", BotKind::Shave, Route::Shave, 1..=2);
 }
 
+/// The levels in the plane, or in space, that offer shaving.
+fn shaved(named: &[(&'static str, &str)]) -> Vec<&'static str> {
+    let offers = |id: &&str| Level::open(id).unwrap().routes().contains(&Route::Shave);
+    named.iter().map(|(id, _)| *id).filter(offers).collect()
+}
+
+/// That shaving wins so many rounds of a level as it is meant.
+fn is_shaved(id: &str, seeds: RangeInclusive<u64>, least: usize) {
+    let outcomes = outcomes(id, BotKind::Shave, seeds, MINUTE);
+    let won = outcomes.iter().flatten();
+    let count = won.filter(|won| won.route == Route::Shave).count();
+    assert!(count >= least, "{id}: {count}, {outcomes:?}");
+}
+
+/// The levels of which the bot shaves fewer than eighteen of twenty, and how many it does.
+const FALLS_SHORT: [(&str, usize); 3] = [("twins", 12), ("donut", 11), ("hoop", 10)];
+
+#[test]
+fn what_can_be_shaved_in_the_plane_is_shaved() {
+    for id in shaved(&NAMED) {
+        is_shaved(id, 2..=3, 2);
+    }
+}
+
+#[test]
+#[ignore = "takes minutes: cargo test --release -p tamaire_play --test bots -- --ignored"]
+fn what_can_be_shaved_is_shaved_eighteen_times_of_twenty() {
+    for id in shaved(&NAMED).into_iter().chain(shaved(&NAMED_3D)) {
+        let short = FALLS_SHORT.iter().find(|(known, _)| *known == id);
+        is_shaved(id, 1..=20, short.map_or(18, |(_, least)| *least));
+    }
+}
+
 #[test]
 #[ignore = "takes minutes: cargo test --release -p tamaire_play --test bots -- --ignored"]
 fn both_ways_win_twenty_of_twenty_in_space() {

@@ -22,8 +22,10 @@ pub(super) struct Sight {
     pub across: Vector,
     /// The piece that matters.
     pub piece: Piece,
-    /// Share of all mass in the largest piece of all.
-    pub share: f32,
+    /// The mass in the largest piece of each body, as a share of what that was at the start.
+    pub kept: f32,
+    /// Number of pieces.
+    pub pieces: usize,
     /// Share of it in the basket.
     pub within: f32,
     /// Share of it in the basket beyond what is needed, moving or not.
@@ -60,6 +62,8 @@ struct Basket {
     mouth: Vector,
     /// Half of its width on each axis across that counts [m]; else infinite.
     half: Vector,
+    /// The same of what goes through between the bars of its mouth [m].
+    opening: Vector,
 }
 
 impl Sight {
@@ -111,7 +115,8 @@ impl Sight {
             axis: basket.axis,
             across: across::<D>(basket.axis),
             piece,
-            share: largest.mass / mass,
+            kept: round.progress().kept,
+            pieces: views.len(),
             within,
             surplus: within - round.level().game().share,
             hand: hand.position(),
@@ -160,7 +165,7 @@ impl Piece {
             way,
             reach,
             behind: minus(centre, scaled(way, 1.1 * reach)),
-            fits: narrowest > 0.0,
+            fits: (0..3).all(|k| half[k] < basket.opening[k]),
         }
     }
 }
@@ -174,7 +179,16 @@ impl Basket {
         let mouth = minus(centre, scaled(axis, dot(half, axis).abs()));
         let is_across = |k: usize| k < D::N && axis[k] == 0.0;
         let half = [0, 1, 2].map(|k| if is_across(k) { half[k] } else { f32::INFINITY });
-        Some(Self { axis, mouth, half })
+        let opening = [0, 1, 2].map(|k| match half[k].is_finite() {
+            true => half[k].min(opening(mouth, axis, k, obstacles)),
+            false => half[k],
+        });
+        Some(Self {
+            axis,
+            mouth,
+            half,
+            opening,
+        })
     }
 
     /// How much wider it is on each axis than something, half by half [m]; negative where it is too
@@ -216,6 +230,27 @@ fn inwards<D: Dim>(centre: Vector, half: Vector, obstacles: &[&Shape]) -> Vector
     let ways = WAYS.into_iter().take(2 * D::N);
     ways.max_by(|a, b| sees(a).total_cmp(&sees(b)))
         .expect("there are four at least")
+}
+
+/// How far one sees on an axis across, from the middle of a mouth and a bit before and behind it [m].
+fn opening(mouth: Vector, axis: Vector, across: usize, obstacles: &[&Shape]) -> f32 {
+    let sees = |from: Vector, way: Vector| {
+        let mut far = 0.0;
+        for _ in 0..20 {
+            far += clearance(plus(from, scaled(way, far)), obstacles).max(0.0);
+        }
+        far
+    };
+    let mut least = f32::INFINITY;
+    for step in -4..=4 {
+        let from = plus(mouth, scaled(axis, 0.05 * step as f32));
+        for side in [-1.0, 1.0] {
+            let mut way = [0.0; 3];
+            way[across] = side;
+            least = least.min(sees(from, way));
+        }
+    }
+    least
 }
 
 /// A direction across an axis: from the first axis to the last that counts, and else to the first.

@@ -1,0 +1,195 @@
+//! How often a bot wins a level as it is meant, and how.
+//!
+//! `cargo run --release -p tamaire_play --example bots -- LEVEL|all squeeze|shave FROM TO` lets the bot play
+//! by the seeds FROM to TO, a minute at most, two rounds at a time, and prints a row a level: how many
+//! rounds it won by its route, by another one, or not, and by which seeds; of those won the medians of the
+//! seconds, of the share kept in one piece, and of the pieces. `all` stands for the levels that come along
+//! and offer the route. `--rounds` prints a row for each round, too.
+
+use clap::Parser;
+use std::error::Error;
+use std::io::{self, Write};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+use tamaire_play::level::{NAMED, NAMED_3D};
+use tamaire_play::{AnyRound, Bot, BotKind, Level, Outcome, Route};
+
+/// Ticks of the longest round.
+const MINUTE: usize = 60 * 60;
+/// Rounds that are played at a time.
+const THREADS: usize = 2;
+/// The bots that are after a route.
+const ROUTES: [(&str, BotKind, Route); 2] = [
+    ("squeeze", BotKind::Squeeze, Route::Squeeze),
+    ("shave", BotKind::Shave, Route::Shave),
+];
+
+/// How often a bot wins a level as it is meant, and how.
+#[derive(Parser)]
+struct Options {
+    /// A level, or `all` that come along and offer the route.
+    level: String,
+    /// Which bot plays: squeeze or shave.
+    bot: String,
+    /// It plays by the seeds from this …
+    from: u64,
+    /// … to this.
+    to: u64,
+    /// Prints a row for each round, too.
+    #[arg(long)]
+    rounds: bool,
+}
+
+/// How the round of a seed ended, if it was won.
+type Ending = (u64, Option<Outcome>);
+
+fn main() -> ExitCode {
+    match play_all(&Options::parse()) {
+        // Who read may have seen enough.
+        Err(error) if !is_closed(&*error) => {
+            eprintln!("bots: {error}");
+            ExitCode::FAILURE
+        }
+        _ => ExitCode::SUCCESS,
+    }
+}
+
+fn is_closed(error: &(dyn Error + 'static)) -> bool {
+    let error = error.downcast_ref::<io::Error>();
+    error.is_some_and(|error| error.kind() == io::ErrorKind::BrokenPipe)
+}
+
+fn play_all(options: &Options) -> Result<(), Box<dyn Error>> {
+    let Options { from, to, .. } = *options;
+    let known = ROUTES.iter().find(|(name, ..)| *name == options.bot);
+    let &(name, kind, route) =
+        known.ok_or_else(|| format!("expected squeeze or shave, found {:?}", options.bot))?;
+    if from > to {
+        return Err(format!("expected seeds FROM to TO, found {from} to {to}").into());
+    }
+    let levels = levels(&options.level, route)?;
+    writeln!(
+        io::stdout(),
+        "{:>12} {name:>8} {:>6} {:>6} | {:>7} {:>5} {:>6} | seeds",
+        "level",
+        "other",
+        "lost",
+        "seconds",
+        "kept",
+        "pieces"
+    )?;
+    for level in levels.into_iter().map(Arc::new) {
+        let endings = endings(&level, kind, from, to);
+        if options.rounds {
+            tell_rounds(&level.id, &endings)?;
+        }
+        tell(&level.id, route, &endings)?;
+    }
+    Ok(())
+}
+
+/// The level that is asked for, or all that offer a route.
+fn levels(asked: &str, route: Route) -> Result<Vec<Level>, Box<dyn Error>> {
+    let offers = |level: &Level| level.routes().contains(&route);
+    if asked != "all" {
+        let level = Level::open(asked)?;
+        return match offers(&level) {
+            true => Ok(vec![level]),
+            false => Err(format!("{asked} does not offer the route {route:?}").into()),
+        };
+    }
+    let all = NAMED.iter().chain(&NAMED_3D).map(|(id, _)| Level::open(id));
+    let all: Vec<Level> = all.collect::<Result<_, _>>()?;
+    Ok(all.into_iter().filter(offers).collect())
+}
+
+/// How the rounds end, by seed.
+fn endings(level: &Arc<Level>, kind: BotKind, from: u64, to: u64) -> Vec<Ending> {
+    let seeds: Vec<u64> = (from..=to).collect();
+    let next = AtomicUsize::new(0);
+    let play_on = || {
+        let mut endings = Vec::new();
+        while let Some(&seed) = seeds.get(next.fetch_add(1, Ordering::Relaxed)) {
+            endings.push((seed, play(level, kind, seed)));
+        }
+        endings
+    };
+    let mut endings: Vec<Ending> = thread::scope(|scope| {
+        let threads: Vec<_> = (0..THREADS).map(|_| scope.spawn(play_on)).collect();
+        let joined = threads.into_iter().map(|thread| thread.join());
+        joined
+            .flat_map(|part| part.expect("no round panics"))
+            .collect()
+    });
+    endings.sort_by_key(|(seed, _)| *seed);
+    endings
+}
+
+fn play(level: &Arc<Level>, kind: BotKind, seed: u64) -> Option<Outcome> {
+    let mut round = AnyRound::new(level.clone());
+    let mut bot = Bot::new(kind, seed);
+    for _ in 0..MINUTE {
+        let frame = round.ask(&mut bot);
+        round.step(frame);
+        if round.progress().outcome.is_some() {
+            break;
+        }
+    }
+    round.progress().outcome
+}
+
+fn tell_rounds(id: &str, endings: &[Ending]) -> io::Result<()> {
+    for (seed, outcome) in endings {
+        match outcome {
+            None => writeln!(io::stdout(), "{id:>12} {seed:>8} lost")?,
+            Some(won) => writeln!(
+                io::stdout(),
+                "{id:>12} {seed:>8} {:<13} | {:>7.1} {:>5.2} {:>6} | {} not in the basket",
+                format!("{:?}", won.route),
+                won.seconds(),
+                won.kept,
+                won.pieces,
+                won.lost
+            )?,
+        }
+    }
+    Ok(())
+}
+
+/// A row about a level.
+fn tell(id: &str, route: Route, endings: &[Ending]) -> io::Result<()> {
+    let won: Vec<Outcome> = endings.iter().filter_map(|(_, outcome)| *outcome).collect();
+    let of = |wanted: &dyn Fn(&Outcome) -> bool| -> Vec<u64> {
+        let wanted = endings
+            .iter()
+            .filter(|(_, outcome)| outcome.is_some_and(|won| wanted(&won)));
+        wanted.map(|(seed, _)| *seed).collect()
+    };
+    let other = of(&|won| won.route != route);
+    let lost = endings.iter().filter(|(_, outcome)| outcome.is_none());
+    let lost: Vec<u64> = lost.map(|(seed, _)| *seed).collect();
+    let seeds = [("other", &other), ("lost", &lost)].map(|(name, seeds)| match seeds.is_empty() {
+        true => String::new(),
+        false => format!(" {name} {seeds:?}"),
+    });
+    writeln!(
+        io::stdout(),
+        "{id:>12} {:>8} {:>6} {:>6} | {:>7.1} {:>5.2} {:>6} |{}",
+        won.len() - other.len(),
+        other.len(),
+        lost.len(),
+        median(won.iter().map(Outcome::seconds)),
+        median(won.iter().map(|won| won.kept)),
+        median(won.iter().map(|won| won.pieces as f32)),
+        seeds.concat(),
+    )
+}
+
+/// The middle one, or 0 of none.
+fn median(values: impl Iterator<Item = f32>) -> f32 {
+    let mut sorted: Vec<f32> = values.collect();
+    sorted.sort_by(f32::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
+}
