@@ -13,7 +13,8 @@ mod sides;
 
 use crate::body::{Bodies, Body};
 use crate::dim::Dim;
-use crate::ids::PieceId;
+use crate::handle::BodySlot;
+use crate::ids::{PieceId, Table};
 use crate::rigid::Rigids;
 use crate::solve::Row;
 use crate::threads;
@@ -46,7 +47,7 @@ pub struct Contacts {
 }
 
 /// A sleeping piece that was hit: body and piece number.
-pub type Hit = (u32, PieceId);
+pub type Hit = (BodySlot, PieceId);
 
 impl Contacts {
     /// Finds the contacts of this substep among what is nearby. Returns the sleepers that were hit.
@@ -86,7 +87,7 @@ impl Contacts {
         let shares = threads::shares(&mut pairs.list);
         let found = threads::map(shares, |(first, pairs)| {
             let (mut contacts, mut hits) = (Vec::new(), Vec::new());
-            for (pair, place) in pairs.iter_mut().zip(first..) {
+            for (pair, index) in pairs.iter_mut().zip(first..) {
                 let body = bodies.at(pair.body);
                 let rigid = rigids.at(pair.rigid);
                 let node = pair.node;
@@ -121,7 +122,7 @@ impl Contacts {
                 }
                 let friction = rigid.friction;
                 let contact = Contact::new(normal, gap, duration, 1.0 / inverse_mass, friction);
-                contacts.push((contact.known_as::<D>(place, &pair.impulse), &*pair));
+                contacts.push((contact.known_as::<D>(index, &pair.impulse), &*pair));
             }
             (contacts, hits)
         });
@@ -130,7 +131,7 @@ impl Contacts {
             self.nodes
                 .extend(contacts.into_iter().map(|(contact, pair)| NodeContact {
                     contact,
-                    node: self.motion.place(pair.body, pair.node),
+                    node: self.motion.row(pair.body, pair.node),
                     hand: rigids.at(pair.rigid).is_driven().then_some(pair.rigid),
                 }));
         }
@@ -146,17 +147,15 @@ impl Contacts {
         self.spheres.clear();
         let waking = WAKE_SPEED * duration;
         let friction = |body: Option<&Body<D>>| body.map_or(0.0, Body::friction);
-        let frictions: Vec<f32> = bodies.places().map(friction).collect();
+        let frictions: Table<BodySlot, f32> = bodies.slots().map(friction).collect();
         let (all, captives) = (&nearby.spheres, &nearby.captives);
-        let widths = bodies
-            .placed()
-            .map(|(_, body)| body.truth.grid.voxel_size());
+        let widths = bodies.iter().map(|body| body.truth.grid.voxel_size());
         let widest = widths.fold(0.0, f32::max);
         let shares = threads::shares(&mut nearby.pairs.list);
         let found = threads::map(shares, |(first, pairs)| {
             let (mut contacts, mut hits) = (Vec::new(), Vec::new());
-            for (pair, place) in pairs.iter_mut().zip(first..) {
-                let [a, b] = pair.spheres.map(|place| place as usize);
+            for (pair, index) in pairs.iter_mut().zip(first..) {
+                let [a, b] = pair.spheres;
                 let apart = minus(all.centres[a], all.centres[b]);
                 let squared = inner::<D>(apart, apart);
                 let is_beyond = |touching: f32| {
@@ -201,10 +200,10 @@ impl Contacts {
                     continue;
                 }
                 let inertia = 1.0 / (first + second);
-                let [first, second] = both.map(|sphere| frictions[sphere.body as usize]);
+                let [first, second] = both.map(|sphere| frictions[sphere.body]);
                 let friction = 0.5 * (first + second);
                 let contact = Contact::new(normal, gap, duration, inertia, friction);
-                contacts.push((contact.known_as::<D>(place, &pair.impulse), both));
+                contacts.push((contact.known_as::<D>(index, &pair.impulse), both));
             }
             (contacts, hits)
         });
@@ -221,9 +220,9 @@ impl Contacts {
     /// Finds the contacts of the hands with what is fixed, and with each other.
     fn find_hands(&mut self, rigids: &Rigids, duration: f32) {
         self.hands.clear();
-        for (place, hand) in rigids.placed().filter(|(_, rigid)| rigid.is_driven()) {
-            let others = rigids.placed();
-            for (other, rigid) in others.filter(|&(at, rigid)| at < place || !rigid.is_driven()) {
+        for (own, hand) in rigids.by_slot().filter(|(_, rigid)| rigid.is_driven()) {
+            let others = rigids.by_slot();
+            for (other, rigid) in others.filter(|&(at, rigid)| at < own || !rigid.is_driven()) {
                 let inverse_mass = hand.inverse_mass() + rigid.inverse_mass();
                 let relative = minus(as_row(hand.velocity()), as_row(rigid.velocity()));
                 if inverse_mass == 0.0 || !relative.iter().all(|k| k.is_finite()) {
@@ -241,7 +240,7 @@ impl Contacts {
                 let (normal, inertia) = (as_row(normal), 1.0 / inverse_mass);
                 self.hands.push(HandContact {
                     contact: Contact::new(normal, gap, duration, inertia, friction),
-                    both: [place, other],
+                    both: [own, other],
                 });
             }
         }
@@ -280,7 +279,7 @@ impl Contacts {
                 motion.push_node(row, rigids, change, duration);
             });
             for_each(&mut self.hands, backwards, |row| {
-                let [own, other] = row.both.map(|place| as_row(rigids.at(place).velocity()));
+                let [own, other] = row.both.map(|slot| as_row(rigids.at(slot).velocity()));
                 let change = row.contact.solve::<D>(minus(own, other));
                 rigids.at_mut(row.both[0]).push(three(change), duration);
                 let other = rigids.at_mut(row.both[1]);

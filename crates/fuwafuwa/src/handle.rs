@@ -1,18 +1,21 @@
-//! Things that come and go: each keeps its place while others leave, and its handle is of no use once it has left.
+//! Things that come and go: each keeps its slot while others leave, and its handle is of no use once it has left.
 
+use crate::ids::{Id, Table, id};
 use std::fmt;
-use std::marker::PhantomData;
 
-/// What a thing in an [`Arena`] is known by: a place, and how many stood there before.
+/// What a thing in an [`Arena`] is known by: a slot, and how many stood there before.
 pub trait Handle: Copy + Ord + fmt::Debug + sealed::Sealed {
     /// What it is a handle of.
     const KIND: &'static str;
 
     #[doc(hidden)]
-    fn new(place: u32, generation: u32) -> Self;
+    type Slot: Id;
 
     #[doc(hidden)]
-    fn parts(self) -> (u32, u32);
+    fn new(slot: Self::Slot, generation: u32) -> Self;
+
+    #[doc(hidden)]
+    fn parts(self) -> (Self::Slot, u32);
 }
 
 mod sealed {
@@ -21,19 +24,19 @@ mod sealed {
 }
 
 macro_rules! handle {
-    ($(#[$doc:meta])* $name:ident, $kind:literal) => {
+    ($(#[$doc:meta])* $name:ident, $kind:literal, $slot:ident) => {
         $(#[$doc])*
         #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
         pub struct $name {
-            place: u32,
+            slot: $slot,
             generation: u32,
         }
 
         impl $name {
             /// Where it stands or stood among the others.
-            pub(crate) fn place(self) -> u32 {
-                self.place
+            pub(crate) fn slot(self) -> $slot {
+                self.slot
             }
         }
 
@@ -41,25 +44,42 @@ macro_rules! handle {
 
         impl Handle for $name {
             const KIND: &'static str = $kind;
+            type Slot = $slot;
 
-            fn new(place: u32, generation: u32) -> Self {
-                Self { place, generation }
+            fn new(slot: $slot, generation: u32) -> Self {
+                Self { slot, generation }
             }
 
-            fn parts(self) -> (u32, u32) {
-                (self.place, self.generation)
+            fn parts(self) -> ($slot, u32) {
+                (self.slot, self.generation)
             }
         }
     };
 }
 
+id! {
+    /// Where a body stands in a world; given out again once it has left.
+    #[doc(hidden)]
+    pub BodySlot
+}
+id! {
+    /// Where something rigid stands in a world; given out again once it has left.
+    #[doc(hidden)]
+    pub RigidSlot
+}
+
+impl BodySlot {
+    /// That of a body in no world.
+    pub(crate) const NONE: Self = Self(u32::MAX);
+}
+
 handle! {
     /// What a body in a world is known by, whoever comes or goes beside it.
-    BodyId, "body"
+    BodyId, "body", BodySlot
 }
 handle! {
     /// What something rigid in a world is known by, whoever comes or goes beside it.
-    RigidId, "rigid thing"
+    RigidId, "rigid thing", RigidSlot
 }
 
 /// A handle was used of something that is not there: it was taken out, or never was in this world. A handle of another
@@ -68,35 +88,34 @@ handle! {
 pub struct Gone {
     /// What it was the handle of.
     pub kind: &'static str,
-    /// At which place it stood.
-    pub place: u32,
+    /// In which slot it stood.
+    pub slot: u32,
 }
 
 impl fmt::Display for Gone {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { kind, place } = self;
+        let Self { kind, slot } = self;
         write!(
             f,
-            "there is no such {kind} in this world: who had place {place} was taken out"
+            "there is no such {kind} in this world: who had slot {slot} was taken out"
         )
     }
 }
 
 impl std::error::Error for Gone {}
 
-/// Things that come and go, by their handles and in the order of their places.
+/// Things that come and go, by their handles and in the order of their slots.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
     feature = "serde",
     serde(bound = "T: serde::Serialize + for<'a> serde::Deserialize<'a>")
 )]
-pub struct Arena<K, T> {
-    slots: Vec<Slot<T>>,
-    kind: PhantomData<K>,
+pub struct Arena<K: Handle, T> {
+    slots: Table<K::Slot, Slot<T>>,
 }
 
-/// A place: how many have left it, and who is there.
+/// How many have left it, and who is there.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Slot<T> {
@@ -104,12 +123,10 @@ struct Slot<T> {
     thing: Option<T>,
 }
 
-impl<K, T> Default for Arena<K, T> {
+impl<K: Handle, T> Default for Arena<K, T> {
     fn default() -> Self {
-        Self {
-            slots: Vec::new(),
-            kind: PhantomData,
-        }
+        let slots = Table::default();
+        Self { slots }
     }
 }
 
@@ -119,35 +136,35 @@ impl<K: Handle, T> Arena<K, T> {
     /// # Errors
     /// [`Gone`] when nobody has it any more.
     pub fn get(&self, id: K) -> Result<&T, Gone> {
-        let (place, generation) = id.parts();
-        let slot = self.slots.get(place as usize);
+        let (own, generation) = id.parts();
+        let slot = self.slots.get(own.index());
         let slot = slot.filter(|slot| slot.generation == generation);
         slot.and_then(|slot| slot.thing.as_ref())
-            .ok_or(gone::<K>(place))
+            .ok_or(gone::<K>(own))
     }
 
     /// As [`Arena::get`], to be changed.
     pub(crate) fn get_mut(&mut self, id: K) -> Result<&mut T, Gone> {
-        let (place, generation) = id.parts();
-        let slot = self.slots.get_mut(place as usize);
+        let (own, generation) = id.parts();
+        let slot = self.slots.get_mut(own.index());
         let slot = slot.filter(|slot| slot.generation == generation);
         slot.and_then(|slot| slot.thing.as_mut())
-            .ok_or(gone::<K>(place))
+            .ok_or(gone::<K>(own))
     }
 
-    /// All of them, in the order of their places.
+    /// All of them, in the order of their slots.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = &T> + Clone {
         self.slots.iter().filter_map(|slot| slot.thing.as_ref())
     }
 
-    /// All of them with their handles, in the order of their places.
+    /// All of them with their handles, in the order of their slots.
     pub fn entries(&self) -> impl DoubleEndedIterator<Item = (K, &T)> + Clone {
-        self.placed().map(|(place, thing)| (self.id(place), thing))
+        self.by_slot().map(|(slot, thing)| (self.id(slot), thing))
     }
 
-    /// Their handles, in the order of their places.
+    /// Their handles, in the order of their slots.
     pub fn ids(&self) -> impl Iterator<Item = K> {
-        self.placed().map(|(place, _)| self.id(place))
+        self.by_slot().map(|(slot, _)| self.id(slot))
     }
 
     /// The first of them.
@@ -170,56 +187,56 @@ impl<K: Handle, T> Arena<K, T> {
         self.first().is_none()
     }
 
-    /// Puts one into the first free place.
+    /// Puts one into the first free slot.
     pub(crate) fn insert(&mut self, thing: T) -> K {
         let free = self.slots.iter().position(|slot| slot.thing.is_none());
-        let place = free.unwrap_or(self.slots.len());
+        let own = free.map_or(self.slots.next_id(), K::Slot::of);
         if free.is_none() {
             self.slots.push(Slot {
                 generation: 0,
                 thing: None,
             });
         }
-        self.slots[place].thing = Some(thing);
-        self.id(place as u32)
+        self.slots[own].thing = Some(thing);
+        self.id(own)
     }
 
     /// Takes one out; the others stay where they are.
     pub(crate) fn remove(&mut self, id: K) -> Result<T, Gone> {
-        let (place, _) = id.parts();
+        let (own, _) = id.parts();
         self.get(id)?;
-        let slot = &mut self.slots[place as usize];
+        let slot = &mut self.slots[own];
         slot.generation = slot.generation.wrapping_add(1);
-        slot.thing.take().ok_or(gone::<K>(place))
+        slot.thing.take().ok_or(gone::<K>(own))
     }
 
-    /// How many places there are, free or not.
-    pub(crate) fn place_count(&self) -> usize {
+    /// How many slots there are, free or not.
+    pub(crate) fn slot_count(&self) -> usize {
         self.slots.len()
     }
 
-    /// Who is at each place, if anybody.
-    pub(crate) fn places(&self) -> impl Iterator<Item = Option<&T>> {
+    /// Who is in each slot, if anybody.
+    pub(crate) fn slots(&self) -> impl Iterator<Item = Option<&T>> {
         self.slots.iter().map(|slot| slot.thing.as_ref())
     }
 
-    /// All of them with their places.
-    pub(crate) fn placed(&self) -> impl DoubleEndedIterator<Item = (u32, &T)> + Clone {
-        let slots = self.slots.iter().enumerate();
-        slots.filter_map(|(place, slot)| Some((place as u32, slot.thing.as_ref()?)))
+    /// All of them with their slots.
+    pub(crate) fn by_slot(&self) -> impl DoubleEndedIterator<Item = (K::Slot, &T)> + Clone {
+        let slots = self.slots.entries();
+        slots.filter_map(|(own, slot)| Some((own, slot.thing.as_ref()?)))
     }
 
-    /// As [`Arena::placed`], to be changed.
-    pub(crate) fn placed_mut(&mut self) -> impl Iterator<Item = (u32, &mut T)> {
-        let slots = self.slots.iter_mut().enumerate();
-        slots.filter_map(|(place, slot)| Some((place as u32, slot.thing.as_mut()?)))
+    /// As [`Arena::by_slot`], to be changed.
+    pub(crate) fn by_slot_mut(&mut self) -> impl Iterator<Item = (K::Slot, &mut T)> {
+        let slots = self.slots.entries_mut();
+        slots.filter_map(|(own, slot)| Some((own, slot.thing.as_mut()?)))
     }
 
     /// As [`Arena::entries`], to be changed.
     pub(crate) fn entries_mut(&mut self) -> impl Iterator<Item = (K, &mut T)> {
-        let slots = self.slots.iter_mut().zip(0..);
-        slots.filter_map(|(slot, place)| {
-            let id = K::new(place, slot.generation);
+        let slots = self.slots.entries_mut();
+        slots.filter_map(|(own, slot)| {
+            let id = K::new(own, slot.generation);
             Some((id, slot.thing.as_mut()?))
         })
     }
@@ -229,34 +246,36 @@ impl<K: Handle, T> Arena<K, T> {
         self.slots.iter_mut().filter_map(|slot| slot.thing.as_mut())
     }
 
-    /// Who is at a place, if anybody.
-    pub(crate) fn find(&self, place: u32) -> Option<&T> {
-        self.slots.get(place as usize)?.thing.as_ref()
+    /// Who is in a slot, if anybody.
+    pub(crate) fn find(&self, slot: K::Slot) -> Option<&T> {
+        self.slots.get(slot.index())?.thing.as_ref()
     }
 
-    /// Who is at a place that is known not to be free.
+    /// Who is in a slot that is known not to be free.
     #[inline(always)]
-    pub(crate) fn at(&self, place: u32) -> &T {
-        let thing = self.slots[place as usize].thing.as_ref();
-        thing.expect("lists of the world name places that are not free")
+    pub(crate) fn at(&self, slot: K::Slot) -> &T {
+        let thing = self.slots[slot].thing.as_ref();
+        thing.expect("lists of the world name slots that are not free")
     }
 
     /// As [`Arena::at`], to be changed.
     #[inline(always)]
-    pub(crate) fn at_mut(&mut self, place: u32) -> &mut T {
-        let thing = self.slots[place as usize].thing.as_mut();
-        thing.expect("lists of the world name places that are not free")
+    pub(crate) fn at_mut(&mut self, slot: K::Slot) -> &mut T {
+        let thing = self.slots[slot].thing.as_mut();
+        thing.expect("lists of the world name slots that are not free")
     }
 
-    /// The handle of who is at a place.
-    pub(crate) fn id(&self, place: u32) -> K {
-        K::new(place, self.slots[place as usize].generation)
+    /// The handle of who is in a slot.
+    pub(crate) fn id(&self, slot: K::Slot) -> K {
+        K::new(slot, self.slots[slot].generation)
     }
 }
 
-fn gone<K: Handle>(place: u32) -> Gone {
-    let kind = K::KIND;
-    Gone { kind, place }
+fn gone<K: Handle>(slot: K::Slot) -> Gone {
+    Gone {
+        kind: K::KIND,
+        slot: slot.index() as u32,
+    }
 }
 
 impl<'a, K: Handle, T> IntoIterator for &'a Arena<K, T> {
@@ -299,7 +318,7 @@ mod tests {
         let gone = names.get(ring).unwrap_err();
         assert_eq!(
             gone.to_string(),
-            "there is no such body in this world: who had place 1 was taken out"
+            "there is no such body in this world: who had slot 1 was taken out"
         );
         assert_eq!(names.remove(ring), Err(gone));
         let all: Vec<BodyId> = names.entries().map(|(id, _)| id).collect();

@@ -3,7 +3,6 @@
 //! Each is a place in tables that go by it, and says nothing of the body it is of. Those of nodes and elements are
 //! given out again when what they were of is gone; those of pieces never are.
 
-use std::fmt;
 use std::marker::PhantomData;
 use std::ops::{Deref, DerefMut, Index, IndexMut};
 
@@ -17,12 +16,12 @@ pub trait Id: Copy {
 }
 
 macro_rules! id {
-    ($(#[$what:meta])* $name:ident) => {
+    ($(#[$what:meta])* $vis:vis $name:ident) => {
         $(#[$what])*
         #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
         #[cfg_attr(feature = "serde", serde(transparent))]
-        pub struct $name(pub u32);
+        $vis struct $name(pub u32);
 
         impl $name {
             /// Its place in a table that goes by it.
@@ -32,7 +31,7 @@ macro_rules! id {
             }
         }
 
-        impl Id for $name {
+        impl $crate::ids::Id for $name {
             #[inline(always)]
             fn of(index: usize) -> Self {
                 Self(index as u32)
@@ -44,38 +43,27 @@ macro_rules! id {
             }
         }
 
-        impl fmt::Display for $name {
-            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        impl std::fmt::Display for $name {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
                 self.0.fmt(f)
             }
         }
     };
 }
 
-/// A place of a list that goes by no ids.
-impl Id for u32 {
-    #[inline(always)]
-    fn of(index: usize) -> Self {
-        index as Self
-    }
-
-    #[inline(always)]
-    fn index(self) -> usize {
-        self as usize
-    }
-}
+pub(crate) use id;
 
 id! {
     /// A node of a body.
-    NodeId
+    pub NodeId
 }
 id! {
     /// An element of a body.
-    ElementId
+    pub ElementId
 }
 id! {
     /// A piece of a body: its number.
-    PieceId
+    pub PieceId
 }
 
 /// A list that goes by ids of one kind.
@@ -90,8 +78,14 @@ pub struct Table<I, T> {
 
 impl<I: Id, T> Table<I, T> {
     /// What it has, each with its id, ascending.
-    pub fn entries(&self) -> impl DoubleEndedIterator<Item = (I, &T)> {
+    pub fn entries(&self) -> impl DoubleEndedIterator<Item = (I, &T)> + Clone {
         let entries = self.list.iter().enumerate();
+        entries.map(|(index, entry)| (I::of(index), entry))
+    }
+
+    /// As [`Table::entries`], to be changed.
+    pub(crate) fn entries_mut(&mut self) -> impl Iterator<Item = (I, &mut T)> {
+        let entries = self.list.iter_mut().enumerate();
         entries.map(|(index, entry)| (I::of(index), entry))
     }
 
@@ -112,6 +106,12 @@ impl<I, T> From<Vec<T>> for Table<I, T> {
             list,
             ids: PhantomData,
         }
+    }
+}
+
+impl<I, T> FromIterator<T> for Table<I, T> {
+    fn from_iter<A: IntoIterator<Item = T>>(all: A) -> Self {
+        Vec::from_iter(all).into()
     }
 }
 
@@ -143,6 +143,15 @@ impl<'a, I, T> IntoIterator for &'a Table<I, T> {
 
     fn into_iter(self) -> Self::IntoIter {
         self.list.iter()
+    }
+}
+
+impl<'a, I, T> IntoIterator for &'a mut Table<I, T> {
+    type Item = &'a mut T;
+    type IntoIter = std::slice::IterMut<'a, T>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.list.iter_mut()
     }
 }
 

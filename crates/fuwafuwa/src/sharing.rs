@@ -14,6 +14,7 @@
 use crate::chains::ascending;
 use crate::dim::{Dim, FAR, Point, add, neighbourhood, points_in, voxel_around};
 use crate::grid::VoxelGrid;
+use crate::ids::id;
 use std::marker::PhantomData;
 
 /// The label of a side of a lattice point where there is no voxel.
@@ -132,6 +133,11 @@ impl Groups {
     }
 }
 
+id! {
+    /// A lattice point: its place in memory order.
+    PointId
+}
+
 /// The grouping at every lattice point of a voxel grid.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -235,11 +241,9 @@ impl<D: Dim> Sharing<D> {
                 three.copy_from_slice(&self.groups[first..first + 3]);
             }
         } else {
-            let near = neighbourhood::<D>(at, 1);
-            groups
-                .iter_mut()
-                .zip(near)
-                .for_each(|(groups, near)| *groups = self.groups(near));
+            for (groups, near) in groups.iter_mut().zip(neighbourhood::<D>(at, 1)) {
+                *groups = self.groups(near);
+            }
         }
         Around {
             groups,
@@ -249,22 +253,19 @@ impl<D: Dim> Sharing<D> {
 
     /// The lattice points next to the given ones and themselves, each once, in memory order.
     pub fn all_around(&self, points: &[Point]) -> Vec<Point> {
-        let near = points
-            .iter()
-            .flat_map(|&point| neighbourhood::<D>(point, 1));
+        let near = { points.iter() }.flat_map(|&point| neighbourhood::<D>(point, 1));
         self.each_once(near.filter(|&near| self.contains(near)))
     }
 
     /// Points of the lattice, each once, in memory order.
     pub fn each_once(&self, points: impl Iterator<Item = Point>) -> Vec<Point> {
-        let places = points.map(|at| self.index(at) as u32);
-        let places = ascending(places, self.point_count()).into_iter();
-        places.map(|place| self.point(place as i32)).collect()
+        let ids = points.map(|at| PointId(self.index(at) as u32));
+        let ids = ascending(ids, self.point_count()).into_iter();
+        ids.map(|id| self.point(id)).collect()
     }
 
-    /// The lattice point at a place in memory order.
-    fn point(&self, place: i32) -> Point {
-        let [x, y, _] = self.size;
+    fn point(&self, id: PointId) -> Point {
+        let ([x, y, _], place) = (self.size, id.index() as i32);
         [place % x, place / x % y, place / x / y]
     }
 

@@ -8,6 +8,7 @@ use crate::body::Bodies;
 use crate::contact::Hit;
 use crate::damping::PieceMotion;
 use crate::dim::Dim;
+use crate::handle::BodySlot;
 use crate::ids::{PieceId, Table};
 
 /// Pieces slower than this [m/s], on the average over their nodes, are on their way to sleep: what falls is
@@ -52,15 +53,15 @@ pub fn wake<D: Dim>(bodies: &mut Bodies<D>, hits: &[Hit]) -> Vec<Hit> {
 fn change<D: Dim>(
     bodies: &mut Bodies<D>,
     asleep: bool,
-    applies: impl Fn(u32, PieceId, &crate::piece::Piece) -> bool,
+    applies: impl Fn(BodySlot, PieceId, &crate::piece::Piece) -> bool,
 ) -> Vec<Hit> {
     let mut changed = Vec::new();
-    for (place, body) in bodies.placed_mut() {
+    for (slot, body) in bodies.by_slot_mut() {
         let pieces = body.truth.pieces.list.entries();
-        let marked = pieces.map(|(number, piece)| applies(place, number, piece));
-        let marked: Table<PieceId, bool> = marked.collect::<Vec<_>>().into();
+        let marked = pieces.map(|(number, piece)| applies(slot, number, piece));
+        let marked: Table<PieceId, bool> = marked.collect();
         let numbers = marked.ids().filter(|&piece| marked[piece]);
-        changed.extend(numbers.map(|piece| (place, piece)));
+        changed.extend(numbers.map(|piece| (slot, piece)));
         if marked.contains(&true) {
             body.set_asleep(&marked, asleep);
         }

@@ -116,7 +116,7 @@ pub fn load<D: Dim>(bytes: &[u8]) -> Result<World<D>, BadSnapshot> {
     for (id, body) in world.bodies().entries() {
         let checked = body.check();
         checked.map_err(|defect| BadSnapshot::Broken {
-            body: id.place() as usize,
+            body: id.slot().index(),
             defect: defect.to_string(),
         })?;
     }

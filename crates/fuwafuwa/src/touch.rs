@@ -20,6 +20,7 @@ mod spheres;
 use crate::body::{Bodies, Body};
 use crate::changes::Changes;
 use crate::dim::Dim;
+use crate::handle::{BodySlot, RigidSlot};
 use crate::ids::PieceId;
 use crate::rigid::Rigids;
 pub use captives::{Captive, Captives};
@@ -29,7 +30,7 @@ pub use nodes::{NodePair, NodePairs};
 pub use pair::MARGIN;
 use pair::renumber;
 pub use pairs::SpherePairs;
-pub use sphere::{ContactSphere, mean};
+pub use sphere::{ContactSphere, SphereId, mean};
 pub use spheres::Spheres;
 
 /// What may touch what. Between ticks nothing of it counts but the impulses, who met in front, and the order of the
@@ -58,31 +59,31 @@ impl Nearby {
     /// anything and anywhere.
     pub fn start_tick<D: Dim>(&mut self, bodies: &Bodies<D>, duration: f32) {
         self.nodes.start_tick();
-        let places = self.spheres.start_tick(bodies, &mut self.pairs.changed);
-        self.pairs.start_tick(places.is_some());
-        if let Some(places) = places {
-            renumber(&mut self.pairs.list, &places);
+        let numbers = self.spheres.start_tick(bodies, &mut self.pairs.changed);
+        self.pairs.start_tick(numbers.is_some());
+        if let Some(numbers) = numbers {
+            renumber(&mut self.pairs.list, &numbers);
         }
         self.captives = Captives::default();
         (self.left, self.knows_captives) = (duration, false);
     }
 
     /// A body was torn.
-    pub fn tear<D: Dim>(&mut self, place: u32, body: &Body<D>, changes: &Changes) {
-        self.nodes.tear(place, &changes.nodes);
+    pub fn tear<D: Dim>(&mut self, slot: BodySlot, body: &Body<D>, changes: &Changes) {
+        self.nodes.tear(slot, &changes.nodes);
         let changed = &mut self.pairs.changed;
-        self.spheres.tear(place, body, changes, changed);
+        self.spheres.tear(slot, body, changes, changed);
         self.captives.tear(&self.spheres);
     }
 
-    /// A body was taken out: another one may come to its place.
-    pub fn remove_body(&mut self, place: u32) {
-        let is_of_it = |&sphere: &u32| self.spheres.body_of(sphere) == place;
+    /// A body was taken out: another one may come to its slot.
+    pub fn remove_body(&mut self, slot: BodySlot) {
+        let is_of_it = |&sphere: &SphereId| self.spheres.body_of(sphere) == slot;
         self.pairs
             .list
             .retain(|pair| !pair.spheres.iter().any(is_of_it));
-        self.nodes.list.retain(|pair| pair.body != place);
-        self.spheres.remove_body(place);
+        self.nodes.list.retain(|pair| pair.body != slot);
+        self.spheres.remove_body(slot);
     }
 
     /// Forgets what was read from a file and is of nothing that is there. What a tick forgets by itself, because
@@ -93,7 +94,7 @@ impl Nearby {
         let known = self.spheres.count_keys();
         let is_known = |pair: &pair::SpherePair| {
             let [a, b] = pair.spheres;
-            a < b && (b as usize) < known
+            a < b && b.index() < known
         };
         self.pairs.list.retain(is_known);
         self.pairs.list.sort_by_key(|pair| pair.spheres);
@@ -104,12 +105,12 @@ impl Nearby {
     }
 
     /// Something rigid was taken out.
-    pub fn remove_rigid(&mut self, place: u32) {
-        self.nodes.list.retain(|pair| pair.rigid != place);
+    pub fn remove_rigid(&mut self, slot: RigidSlot) {
+        self.nodes.list.retain(|pair| pair.rigid != slot);
     }
 
     /// Pieces woke, given by body and number in ascending order.
-    pub fn wake<D: Dim>(&mut self, pieces: &[(u32, PieceId)], bodies: &Bodies<D>) {
+    pub fn wake<D: Dim>(&mut self, pieces: &[(BodySlot, PieceId)], bodies: &Bodies<D>) {
         self.nodes.wake(pieces, bodies);
         self.spheres.wake(pieces, &mut self.pairs.changed);
     }
@@ -139,7 +140,7 @@ impl Nearby {
     }
 
     /// Pieces that press on something, by body and number, some more than once.
-    pub fn pressed<D: Dim>(&self, bodies: &Bodies<D>) -> impl Iterator<Item = (u32, PieceId)> {
+    pub fn pressed<D: Dim>(&self, bodies: &Bodies<D>) -> impl Iterator<Item = (BodySlot, PieceId)> {
         let nodes = { self.nodes.list.iter() }.filter(|pair| pair.impulse.pressed > 0.0);
         let nodes = nodes.filter_map(|pair| Some((pair.body, pair.piece(bodies)?)));
         let pairs = { self.pairs.list.iter() }.filter(|pair| pair.impulse.pressed > 0.0);

@@ -8,7 +8,7 @@ use crate::damping::{PieceMotion, Slowing, motions, slow_down};
 use crate::dim::{Dim, Point};
 use crate::event::{Event, StepReport, With};
 use crate::fracture::{Failure, failures};
-use crate::handle::{BodyId, Gone};
+use crate::handle::{BodyId, BodySlot, Gone};
 use crate::ids::{PieceId, Table};
 use crate::rigid::{BadRigid, Rigids};
 use crate::shape::Vector;
@@ -238,7 +238,7 @@ impl<D: Dim> World<D> {
             let parts = changes.parted.iter();
             let events = parts.map(|&piece| Event::Parted { body: id, piece });
             self.events.extend(events);
-            self.nearby.tear(id.place(), body, &changes);
+            self.nearby.tear(id.slot(), body, &changes);
         }
     }
 
@@ -246,13 +246,13 @@ impl<D: Dim> World<D> {
     fn damp(&mut self, substep: f32) {
         let duration = TICK / DAMPING_ROUNDS as f32;
         let touching = self.touching();
-        for (place, body) in self.bodies.placed_mut() {
+        for (slot, body) in self.bodies.by_slot_mut() {
             body.refresh_awake();
             let motions = motions(body);
             let (_, rate) = body.damping(substep);
             let slowing: Vec<Slowing> = motions
                 .iter()
-                .zip(&touching[place as usize])
+                .zip(&touching[slot])
                 .map(|(motion, &touches)| {
                     slowing(motion, touches, rate, self.settings.drag, D::CORNERS)
                 })
@@ -327,7 +327,7 @@ impl<D: Dim> World<D> {
             .filter(|pair| pair.impulse.pressed > 0.0);
         let handled = handled.filter_map(|pair| Some((pair.body, pair.piece(&self.bodies)?)));
         let captives = self.nearby.captives.list.iter();
-        let captives = captives.map(|captive| &self.nearby.spheres.list[captive.sphere as usize]);
+        let captives = captives.map(|captive| &self.nearby.spheres.list[captive.sphere]);
         let captives = captives.map(|sphere| (sphere.body, sphere.piece));
         let handled: Vec<Hit> = handled.chain(captives).collect();
         let fallen = fall_asleep(&mut self.bodies, &motions, &handled, TICK);
@@ -356,15 +356,15 @@ impl<D: Dim> World<D> {
     }
 
     /// Which pieces of each body touch anything.
-    fn touching(&self) -> Vec<Vec<bool>> {
+    fn touching(&self) -> Table<BodySlot, Table<PieceId, bool>> {
         let none = |body: Option<&Body<D>>| {
             let pieces = body.map_or(0, |body| body.truth.pieces.list.len());
-            vec![false; pieces]
+            vec![false; pieces].into()
         };
-        let mut touching: Vec<Vec<bool>> = self.bodies.places().map(none).collect();
+        let mut touching: Table<_, Table<_, bool>> = self.bodies.slots().map(none).collect();
         for (body, piece) in self.nearby.pressed(&self.bodies) {
             // The lists are of the last substep: the body may be another one since.
-            if let Some(touches) = touching[body as usize].get_mut(piece.index()) {
+            if let Some(touches) = touching[body].get_mut(piece.index()) {
                 *touches = true;
             }
         }
@@ -402,7 +402,7 @@ impl<D: Dim> World<D> {
             let [a, b] = pair.both(&spheres.list);
             let (body, piece) = (self.bodies.id(b.body), b.piece);
             let with = With::Piece { body, piece };
-            let at = spheres.centres[pair.spheres[0] as usize];
+            let at = spheres.centres[pair.spheres[0]];
             let id = self.bodies.id(a.body);
             add(id, a.piece, with, pair.impulse.total, at);
         }

@@ -28,7 +28,7 @@ impl Exit {
         motion: &mut Motion,
         duration: f32,
     ) -> Option<Self> {
-        let [a, b] = [captive.sphere, captive.exit].map(|place| place as usize);
+        let [a, b] = [captive.sphere, captive.exit];
         let both = [&spheres.list[a], &spheres.list[b]];
         let length = |way: Row| inner::<D>(way, way).sqrt().max(1e-9);
         let out = both[1].outward::<D>(&bodies.at(both[1].body).state.position);

@@ -1,9 +1,10 @@
 //! The velocities that contacts push on, side by side.
 
-use super::sides::{Grip, NodeContact};
+use super::sides::{Grip, NodeContact, NodeRow};
 use crate::body::Bodies;
 use crate::dim::Dim;
-use crate::ids::NodeId;
+use crate::handle::BodySlot;
+use crate::ids::{Id, NodeId, Table};
 use crate::rigid::Rigids;
 use crate::solve::Row;
 use crate::touch::{ContactSphere, mean};
@@ -16,10 +17,10 @@ const STRETCH: usize = 16;
 /// component [1/kg]: what a push needs is in one place.
 #[derive(Clone, Debug, Default)]
 pub struct Motion {
-    /// By place of the node among those of all bodies; where nothing is touched, anything.
-    rows: Vec<Row>,
-    /// Place of the first node of each body, where a stretch begins.
-    first: Vec<u32>,
+    /// Where nothing is touched, anything.
+    rows: Table<NodeRow, Row>,
+    /// The row of the first node of each body, where a stretch begins.
+    first: Table<BodySlot, NodeRow>,
     /// For each stretch whether any of its nodes is touched: of a large body few are.
     is_touched: Vec<bool>,
 }
@@ -29,8 +30,8 @@ impl Motion {
     pub fn clear<D: Dim>(&mut self, bodies: &Bodies<D>) {
         self.first.clear();
         let mut count = 0;
-        for body in bodies.places() {
-            self.first.push(count as u32);
+        for body in bodies.slots() {
+            self.first.push(NodeRow::of(count));
             let nodes = body.map_or(0, |body| body.state.velocity.len());
             count += nodes.next_multiple_of(STRETCH);
         }
@@ -39,33 +40,35 @@ impl Motion {
         self.is_touched.resize(count / STRETCH, false);
     }
 
-    /// The place of a node of a body, which something touches, among those of all.
+    /// The row of a node of a body, which something touches.
     #[inline(always)]
-    pub fn place(&mut self, body: u32, node: NodeId) -> u32 {
-        let place = self.first[body as usize] + node.0;
-        self.is_touched[place as usize / STRETCH] = true;
-        place
+    pub fn row(&mut self, body: BodySlot, node: NodeId) -> NodeRow {
+        let row = row_of(self.first[body], node);
+        self.is_touched[row.index() / STRETCH] = true;
+        row
     }
 
-    /// The places of the corner nodes of a sphere that something touches.
+    /// The rows of the corner nodes of a sphere that something touches.
     #[inline(always)]
     pub fn grip<D: Dim>(&mut self, sphere: &ContactSphere) -> Grip {
-        let first = self.first[sphere.body as usize];
-        let grip = sphere.nodes.map(|node| first + node.0);
-        for &place in &grip[..D::CORNERS] {
-            self.is_touched[place as usize / STRETCH] = true;
+        let first = self.first[sphere.body];
+        let grip = sphere.nodes.map(|node| row_of(first, node));
+        for row in &grip[..D::CORNERS] {
+            self.is_touched[row.index() / STRETCH] = true;
         }
         grip
     }
 
     /// Takes the velocities from the bodies.
     pub fn load<D: Dim>(&mut self, bodies: &Bodies<D>) {
-        for (place, body) in bodies.placed() {
-            let first = self.first[place as usize];
+        for (slot, body) in bodies.by_slot() {
+            let first = self.first[slot].index();
             let nodes = body.state.velocity.chunks(STRETCH);
             let nodes = nodes.zip(body.state.inverse_mass.chunks(STRETCH));
-            let own = self.rows[first as usize..].chunks_mut(STRETCH).zip(nodes);
-            let touched = &self.is_touched[first as usize / STRETCH..];
+            let own = self.rows.as_mut_slice()[first..]
+                .chunks_mut(STRETCH)
+                .zip(nodes);
+            let touched = &self.is_touched[first / STRETCH..];
             for ((rows, (velocities, inverse_mass)), _) in own.zip(touched).filter(|(_, is)| **is) {
                 for (row, (velocity, &inverse_mass)) in
                     rows.iter_mut().zip(velocities.iter().zip(inverse_mass))
@@ -78,11 +81,11 @@ impl Motion {
 
     /// Gives them back.
     pub fn store<D: Dim>(&self, bodies: &mut Bodies<D>) {
-        for (place, body) in bodies.placed_mut() {
-            let first = self.first[place as usize];
-            let rows = self.rows[first as usize..].chunks(STRETCH);
+        for (slot, body) in bodies.by_slot_mut() {
+            let first = self.first[slot].index();
+            let rows = self.rows.as_slice()[first..].chunks(STRETCH);
             let own = rows.zip(body.state.velocity.chunks_mut(STRETCH));
-            let touched = &self.is_touched[first as usize / STRETCH..];
+            let touched = &self.is_touched[first / STRETCH..];
             for ((rows, velocities), _) in own.zip(touched).filter(|(_, is)| **is) {
                 for (row, velocity) in rows.iter().zip(velocities) {
                     *velocity = with_fourth(*row, 0.0);
@@ -94,7 +97,7 @@ impl Motion {
     /// How fast the first sphere moves as seen from the second.
     #[inline(always)]
     pub fn between<D: Dim>(&self, grips: &[Grip; 2]) -> Row {
-        let [first, second] = grips.each_ref().map(|grip| mean::<D>(&self.rows, grip));
+        let [first, second] = grips.each_ref().map(|grip| mean::<D, _>(&self.rows, grip));
         with_fourth(minus(first, second), 0.0)
     }
 
@@ -104,7 +107,7 @@ impl Motion {
         let share = scaled(impulse, 1.0 / D::CORNERS as f32);
         for (grip, share) in [(&grips[0], share), (&grips[1], scaled(share, -1.0))] {
             for &node in &grip[..D::CORNERS] {
-                let row = &mut self.rows[node as usize];
+                let row = &mut self.rows[node];
                 *row = plus(*row, scaled(share, row[3]));
             }
         }
@@ -113,7 +116,7 @@ impl Motion {
     /// How fast a node moves as seen from what it touches.
     #[inline(always)]
     pub fn of_node(&self, row: &NodeContact, rigids: &Rigids) -> Row {
-        let own = self.rows[row.node as usize];
+        let own = self.rows[row.node];
         let other = row
             .hand
             .map_or([0.0; 4], |hand| as_row(rigids.at(hand).velocity()));
@@ -129,13 +132,19 @@ impl Motion {
         impulse: Row,
         duration: f32,
     ) {
-        let own = &mut self.rows[row.node as usize];
+        let own = &mut self.rows[row.node];
         *own = plus(*own, scaled(impulse, own[3]));
         if let Some(hand) = row.hand {
             let hand = rigids.at_mut(hand);
             hand.push(three(scaled(impulse, -1.0)), duration);
         }
     }
+}
+
+/// The row of a node of the body that has this first one.
+#[inline(always)]
+fn row_of(first: NodeRow, node: NodeId) -> NodeRow {
+    NodeRow(first.0 + node.0)
 }
 
 #[inline(always)]

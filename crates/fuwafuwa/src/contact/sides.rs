@@ -1,32 +1,37 @@
 //! Contacts with what is on their two sides.
 
 use super::row::Contact;
+use crate::handle::RigidSlot;
+use crate::ids::id;
+
+id! {
+    /// A node among those of all bodies.
+    pub NodeRow
+}
 
 /// A node against something rigid.
 #[derive(Copy, Clone, Debug)]
 pub struct NodeContact {
     pub contact: Contact,
-    /// Place of the node among those of all bodies.
-    pub node: u32,
-    /// The place of the hand, if it is one that the node touches.
-    pub hand: Option<u32>,
+    pub node: NodeRow,
+    /// The hand, if it is one that the node touches.
+    pub hand: Option<RigidSlot>,
 }
 
 /// Two spheres against each other.
 #[derive(Copy, Clone, Debug)]
 pub struct SphereContact {
     pub contact: Contact,
-    /// Places of their nodes among those of all bodies.
     pub grips: [Grip; 2],
 }
 
 /// The corner nodes of a sphere; the first four in 2D.
-pub type Grip = [u32; 8];
+pub type Grip = [NodeRow; 8];
 
 /// A hand against something else that is rigid.
 #[derive(Copy, Clone, Debug)]
 pub struct HandContact {
     pub contact: Contact,
-    /// Places of the hand and of the other.
-    pub both: [u32; 2],
+    /// The hand and the other.
+    pub both: [RigidSlot; 2],
 }

@@ -7,11 +7,12 @@
 
 use super::bins::Bins;
 use super::pair::SpherePair;
-use super::sphere::ContactSphere;
+use super::sphere::{ContactSphere, SphereId};
 use super::spheres::Spheres;
 use crate::body::{Bodies, Body};
 use crate::dim::Dim;
-use crate::ids::{ElementId, PieceId};
+use crate::handle::BodySlot;
+use crate::ids::{ElementId, PieceId, Table};
 use crate::lanes::on_widest_lanes;
 use crate::shape::Vector;
 use crate::solve::Row;
@@ -24,19 +25,21 @@ const EXIT_REACH: f32 = 2.0;
 /// A sphere whose middle is inside another piece.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Captive {
-    /// Its place among the spheres.
-    pub sphere: u32,
+    pub sphere: SphereId,
     /// The nearest sphere of the piece around it.
-    pub exit: u32,
+    pub exit: SphereId,
 }
+
+/// A piece with somebody inside: its body and number.
+type Captor = (BodySlot, PieceId);
 
 /// Who is inside another piece.
 #[derive(Clone, Debug, Default)]
 pub struct Captives {
     /// Ascending.
     pub list: Vec<Captive>,
-    /// By sphere the body and number of the piece that it is inside.
-    captors: Vec<Option<(u32, PieceId)>>,
+    /// The piece that each sphere is inside.
+    captors: Table<SphereId, Option<Captor>>,
 }
 
 impl Captives {
@@ -48,15 +51,15 @@ impl Captives {
         if spheres.awake.is_empty() {
             return;
         }
-        let mut pieces: Vec<Vec<Extent>> = bodies.places().map(extents).collect();
+        let mut pieces: Extents = bodies.slots().map(extents).collect();
         let largest = { pieces.iter().flatten() }.map(|piece| piece.count).max();
-        let own = |pieces: &[Vec<Extent>], place: u32| {
-            let sphere = &spheres.list[place as usize];
-            pieces[sphere.body as usize][sphere.piece.index()].count
+        let own = |pieces: &Extents, sphere: SphereId| {
+            let sphere = &spheres.list[sphere];
+            pieces[sphere.body][sphere.piece].count
         };
         let small = spheres.awake.iter().copied();
-        let small: Vec<u32> = small
-            .filter(|&place| Some(own(&pieces, place)) < largest)
+        let small: Vec<SphereId> = small
+            .filter(|&sphere| Some(own(&pieces, sphere)) < largest)
             .collect();
         if small.is_empty() {
             return;
@@ -64,47 +67,47 @@ impl Captives {
         // Surface elements hold spheres that are close to their own.
         for pair in pairs {
             let [a, b] = pair.both(&spheres.list);
-            let [at, other] = pair.spheres.map(|place| spheres.centres[place as usize]);
+            let [at, other] = pair.spheres.map(|sphere| spheres.centres[sphere]);
             let (apart, reach) = (minus(at, other), a.radius + b.radius);
             if dot(apart, apart) > reach * reach {
                 continue;
             }
             for (inner, outer, at) in [(0, b, at), (1, a, other)] {
-                let place = pair.spheres[inner];
+                let sphere = pair.spheres[inner];
                 let captor = (outer.body, outer.piece);
-                let is_smaller = own(&pieces, place) < own(&pieces, pair.spheres[1 - inner]);
+                let is_smaller = own(&pieces, sphere) < own(&pieces, pair.spheres[1 - inner]);
                 let body = bodies.at(outer.body);
                 if is_smaller && body.holds(outer.element, three(at)) {
-                    self.captors[place as usize] = Some(captor);
+                    self.captors[sphere] = Some(captor);
                 }
             }
         }
         // Inner elements hold whoever is deeper inside; few pieces have anybody in their box.
         for (sphere, &centre) in spheres.list.iter().zip(&spheres.centres) {
-            let piece = &mut pieces[sphere.body as usize][sphere.piece.index()];
+            let piece = &mut pieces[sphere.body][sphere.piece];
             piece.low = [0, 1, 2, 3].map(|axis: usize| piece.low[axis].min(centre[axis]));
             piece.high = [0, 1, 2, 3].map(|axis: usize| piece.high[axis].max(centre[axis]));
         }
-        let placed = |&place: &u32| (place, own(&pieces, place), spheres.centres[place as usize]);
-        let mut placed: Vec<(u32, u32, Row)> = small.iter().map(placed).collect();
+        let placed = |&sphere: &SphereId| (sphere, own(&pieces, sphere), spheres.centres[sphere]);
+        let mut placed: Vec<(SphereId, u32, Row)> = small.iter().map(placed).collect();
         // In the order in which a box is passed along the first axis; who is nowhere is in no box.
         placed.retain(|(.., centre)| centre[0].is_finite());
         placed.sort_unstable_by(|(.., a), (.., b)| a[0].total_cmp(&b[0]));
-        let mut near: Vec<u32> = Vec::new();
+        let mut near: Vec<SphereId> = Vec::new();
         for piece in { pieces.iter_mut().flatten() }.filter(|piece| piece.has_inner) {
             piece.has_inner = false;
             let first = placed.partition_point(|(.., centre)| centre[0] < piece.low[0]);
-            let within = |&&(.., centre): &&(u32, u32, Row)| centre[0] <= piece.high[0];
-            for &(place, count, centre) in placed[first..].iter().take_while(within) {
+            let within = |&&(.., centre): &&(SphereId, u32, Row)| centre[0] <= piece.high[0];
+            for &(sphere, count, centre) in placed[first..].iter().take_while(within) {
                 if count < piece.count && piece.encloses(centre) {
                     piece.has_inner = true;
-                    near.push(place);
+                    near.push(sphere);
                 }
             }
         }
         near.sort_unstable();
         near.dedup();
-        let centres = near.iter().map(|&place| spheres.centres[place as usize]);
+        let centres = near.iter().map(|&sphere| spheres.centres[sphere]);
         let centres: Vec<Row> = centres.collect();
         for same in inner_elements(bodies, &pieces).chunk_by(|a, b| a.level == b.level) {
             let bins = Bins::new::<D>(&centres, usual_radius(same));
@@ -114,24 +117,24 @@ impl Captives {
                 on_widest_lanes!(simd => bins.near::<D, _>(simd, at, reach, |_| 0, &mut inside));
                 for &at in &inside {
                     let number = bins.numbers()[at as usize] as usize;
-                    let (place, at) = (near[number], three(centres[number]));
+                    let (sphere, at) = (near[number], three(centres[number]));
                     let body = bodies.at(inner.captor.0);
-                    if own(&pieces, place) < inner.count && body.holds(inner.element, at) {
-                        self.captors[place as usize] = Some(inner.captor);
+                    if own(&pieces, sphere) < inner.count && body.holds(inner.element, at) {
+                        self.captors[sphere] = Some(inner.captor);
                     }
                 }
             }
         }
-        let mut exits: BTreeMap<(u32, PieceId), Exits> = BTreeMap::new();
+        let mut exits: BTreeMap<Captor, Exits> = BTreeMap::new();
         for sphere in small {
-            let Some(captor) = self.captors[sphere as usize] else {
+            let Some(captor) = self.captors[sphere] else {
                 continue;
             };
             let exits = exits.entry(captor);
             let exits = exits.or_insert_with(|| Exits::of(captor, spheres, bodies));
-            match exits.nearest::<D>(spheres.centres[sphere as usize]) {
+            match exits.nearest::<D>(spheres.centres[sphere]) {
                 Some(exit) => self.list.push(Captive { sphere, exit }),
-                None => self.captors[sphere as usize] = None,
+                None => self.captors[sphere] = None,
             }
         }
     }
@@ -140,26 +143,26 @@ impl Captives {
     /// tick.
     pub fn tear(&mut self, spheres: &Spheres) {
         for captive in &self.list {
-            let exit = &spheres.list[captive.exit as usize];
-            self.captors[captive.sphere as usize] = Some((exit.body, exit.piece));
+            let exit = &spheres.list[captive.exit];
+            self.captors[captive.sphere] = Some((exit.body, exit.piece));
         }
     }
 
     /// Whether one of two spheres is inside the piece of the other.
     #[inline(always)]
-    pub fn is_inside(&self, places: [u32; 2], [a, b]: [&ContactSphere; 2]) -> bool {
-        let inside = |place: u32, other: &ContactSphere| {
-            let captor = self.captors.get(place as usize).copied().flatten();
+    pub fn is_inside(&self, spheres: [SphereId; 2], [a, b]: [&ContactSphere; 2]) -> bool {
+        let inside = |own: SphereId, other: &ContactSphere| {
+            let captor = self.captors.get(own.index()).copied().flatten();
             captor.is_some_and(|captor| captor == (other.body, other.piece))
         };
-        inside(places[0], b) || inside(places[1], a)
+        inside(spheres[0], b) || inside(spheres[1], a)
     }
 }
 
 /// The spheres of a piece that lead out.
 struct Exits {
-    /// Their places among all, ascending.
-    places: Vec<u32>,
+    /// Ascending.
+    list: Vec<SphereId>,
     centres: Vec<Row>,
     bins: Bins,
     /// How far the bins are looked through [m].
@@ -167,25 +170,25 @@ struct Exits {
 }
 
 impl Exits {
-    fn of<D: Dim>((body, piece): (u32, PieceId), spheres: &Spheres, bodies: &Bodies<D>) -> Self {
-        let all = spheres.list.iter().zip(0..);
-        let exits = all.filter(|(sphere, _)| {
+    fn of<D: Dim>((body, piece): Captor, spheres: &Spheres, bodies: &Bodies<D>) -> Self {
+        let all = spheres.list.entries();
+        let exits = all.filter(|(_, sphere)| {
             (sphere.body, sphere.piece) == (body, piece) && sphere.leads_out()
         });
-        let exits: Vec<u32> = exits.map(|(_, place)| place).collect();
-        let centres = exits.iter().map(|&place| spheres.centres[place as usize]);
+        let exits: Vec<SphereId> = exits.map(|(id, _)| id).collect();
+        let centres = exits.iter().map(|&exit| spheres.centres[exit]);
         let centres: Vec<Row> = centres.collect();
         let reach = EXIT_REACH * bodies.at(body).truth.grid.voxel_size();
         Self {
             bins: Bins::new::<D>(&centres, reach),
-            places: exits,
+            list: exits,
             centres,
             reach,
         }
     }
 
     /// The one that is nearest to a position [m], of equals the first.
-    fn nearest<D: Dim>(&self, at: Row) -> Option<u32> {
+    fn nearest<D: Dim>(&self, at: Row) -> Option<SphereId> {
         let nearer = |nearest: (f32, u32), number: u32| {
             let apart = minus(self.centres[number as usize], at);
             let found = (dot(apart, apart), number);
@@ -197,9 +200,9 @@ impl Exits {
         let near = { near.iter() }.map(|&place| self.bins.numbers()[place as usize]);
         let mut nearest = near.fold(none, nearer);
         if nearest == none {
-            nearest = (0..self.places.len() as u32).fold(none, nearer);
+            nearest = (0..self.list.len() as u32).fold(none, nearer);
         }
-        self.places.get(nearest.1 as usize).copied()
+        self.list.get(nearest.1 as usize).copied()
     }
 }
 
@@ -207,21 +210,21 @@ impl Exits {
 struct Inner {
     level: u8,
     element: ElementId,
-    /// Body and number of its piece, and how many elements that has.
-    captor: (u32, PieceId),
+    /// Its piece, and how many elements that has.
+    captor: Captor,
     count: u32,
     centre: Row,
     radius: f32,
 }
 
 /// The elements without a bare face of the pieces that count as having any, by level.
-fn inner_elements<D: Dim>(bodies: &Bodies<D>, pieces: &[Vec<Extent>]) -> Vec<Inner> {
+fn inner_elements<D: Dim>(bodies: &Bodies<D>, pieces: &Extents) -> Vec<Inner> {
     let mut found = Vec::new();
-    for (place, body) in bodies.placed() {
+    for (slot, body) in bodies.by_slot() {
         for (id, element) in body.truth.mesh.elements() {
             let level = element.cell.level;
             let piece = body.truth.pieces.of_element(id);
-            let extent = &pieces[place as usize][piece.index()];
+            let extent = &pieces[slot][piece];
             if !extent.has_inner || level == 0 && body.cache.bare[id] != 0 {
                 continue;
             }
@@ -233,7 +236,7 @@ fn inner_elements<D: Dim>(bodies: &Bodies<D>, pieces: &[Vec<Extent>]) -> Vec<Inn
             found.push(Inner {
                 level,
                 element: id,
-                captor: (place, piece),
+                captor: (slot, piece),
                 count: extent.count,
                 centre,
                 radius: furthest.fold(0.0, f32::max).sqrt(),
@@ -250,6 +253,9 @@ fn usual_radius(elements: &[Inner]) -> f32 {
     let middle = radii.len() / 2;
     *radii.select_nth_unstable_by(middle, f32::total_cmp).1
 }
+
+/// Those of the pieces of all bodies.
+type Extents = Table<BodySlot, Table<PieceId, Extent>>;
 
 /// How large a piece is.
 #[derive(Copy, Clone, Debug)]
@@ -270,9 +276,9 @@ impl Extent {
 }
 
 /// The pieces of a body, by number, without their boxes.
-fn extents<D: Dim>(body: Option<&Body<D>>) -> Vec<Extent> {
+fn extents<D: Dim>(body: Option<&Body<D>>) -> Table<PieceId, Extent> {
     let Some(body) = body else {
-        return Vec::new();
+        return Table::default();
     };
     let none = Extent {
         count: 0,
@@ -280,9 +286,9 @@ fn extents<D: Dim>(body: Option<&Body<D>>) -> Vec<Extent> {
         low: [f32::MAX; 4],
         high: [f32::MIN; 4],
     };
-    let mut extents = vec![none; body.truth.pieces.list.len()];
+    let mut extents: Table<PieceId, Extent> = vec![none; body.truth.pieces.list.len()].into();
     for (id, element) in body.truth.mesh.elements() {
-        let extent = &mut extents[body.truth.pieces.of_element(id).index()];
+        let extent = &mut extents[body.truth.pieces.of_element(id)];
         extent.count += 1;
         extent.has_inner |= element.cell.level > 0 || body.cache.bare[id] == 0;
     }
@@ -317,7 +323,7 @@ mod tests {
             .collect();
         let reach = 0.1;
         let exits = Exits {
-            places: (0..400).map(|number| 3 * number).collect(),
+            list: (0..400).map(|number| SphereId(3 * number)).collect(),
             bins: Bins::new::<Dim3>(&centres, reach),
             centres,
             reach,
@@ -331,7 +337,10 @@ mod tests {
             };
             let all = 0..exits.centres.len();
             let nearest = all.min_by(|a, b| apart(a).total_cmp(&apart(b))).unwrap();
-            assert_eq!(exits.nearest::<Dim3>(at), Some(3 * nearest as u32));
+            assert_eq!(
+                exits.nearest::<Dim3>(at),
+                Some(SphereId(3 * nearest as u32))
+            );
             let is_near = apart(&nearest) <= reach * reach;
             (near, far) = (near + u32::from(is_near), far + u32::from(!is_near));
         }
@@ -345,7 +354,7 @@ mod tests {
         let inner = |radius| Inner {
             level: 1,
             element: ElementId(0),
-            captor: (0, PieceId(0)),
+            captor: (BodySlot(0), PieceId(0)),
             count: 9,
             centre: [0.0; 4],
             radius,

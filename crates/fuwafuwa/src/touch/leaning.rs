@@ -4,9 +4,9 @@
 use super::bins::Bins;
 use super::pair::MARGIN;
 use super::sphere::ContactSphere;
-use super::spheres::NONE;
 use crate::body::{Bodies, Body};
 use crate::dim::Dim;
+use crate::handle::BodySlot;
 use crate::ids::{NodeId, PieceId};
 use crate::lanes::on_widest_lanes;
 use crate::rigid::Rigid;
@@ -16,12 +16,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::marker::PhantomData;
 
 /// A piece: its body and number.
-type Sleeper = (u32, PieceId);
+type Sleeper = (BodySlot, PieceId);
 
 /// The sleepers that lean on something rigid, by body and number in ascending order.
 pub fn leaning_on_rigid<D: Dim>(rigid: &Rigid, bodies: &Bodies<D>) -> Vec<Sleeper> {
     let mut leaning = BTreeSet::new();
-    for (place, body) in bodies.placed() {
+    for (slot, body) in bodies.by_slot() {
         let reach = MARGIN * body.truth.grid.voxel_size();
         let is_near = |node: NodeId| {
             let at = three(body.state.position[node]);
@@ -29,7 +29,7 @@ pub fn leaning_on_rigid<D: Dim>(rigid: &Rigid, bodies: &Bodies<D>) -> Vec<Sleepe
         };
         let nodes = body.truth.mesh.nodes().map(|(node, _)| node);
         let nodes = nodes.filter(|&node| is_near(node));
-        leaning.extend(nodes.map(|node| (place, body.truth.pieces.of_node(node))));
+        leaning.extend(nodes.map(|node| (slot, body.truth.pieces.of_node(node))));
     }
     Sleepers::of(bodies).with_those_on(leaning)
 }
@@ -38,7 +38,7 @@ pub fn leaning_on_rigid<D: Dim>(rigid: &Rigid, bodies: &Bodies<D>) -> Vec<Sleepe
 pub fn leaning_on_body<D: Dim>(body: &Body<D>, bodies: &Bodies<D>) -> Vec<Sleeper> {
     let sleepers = Sleepers::of(bodies);
     let mut leaning = BTreeSet::new();
-    for sphere in spheres_of(NONE, body) {
+    for sphere in spheres_of(BodySlot::NONE, body) {
         let at = sphere.mean::<D>(&body.state.position);
         leaning.extend(sleepers.touching(at, sphere.radius));
     }
@@ -58,8 +58,8 @@ struct Sleepers<D: Dim> {
 impl<D: Dim> Sleepers<D> {
     fn of(bodies: &Bodies<D>) -> Self {
         let (mut spheres, mut centres) = (Vec::new(), Vec::new());
-        for (place, body) in bodies.placed() {
-            for sphere in spheres_of(place, body).filter(|sphere| sphere.asleep) {
+        for (slot, body) in bodies.by_slot() {
+            for sphere in spheres_of(slot, body).filter(|sphere| sphere.asleep) {
                 centres.push(sphere.mean::<D>(&body.state.position));
                 spheres.push(sphere);
             }
@@ -112,7 +112,7 @@ fn reach(first: f32, second: f32) -> f32 {
     (1.0 + MARGIN) * (first + second)
 }
 
-fn spheres_of<D: Dim>(place: u32, body: &Body<D>) -> impl Iterator<Item = ContactSphere> {
+fn spheres_of<D: Dim>(slot: BodySlot, body: &Body<D>) -> impl Iterator<Item = ContactSphere> {
     let ids = body.truth.mesh.elements().map(|(id, _)| id);
-    ids.filter_map(move |id| ContactSphere::of(place, body, id))
+    ids.filter_map(move |id| ContactSphere::of(slot, body, id))
 }

@@ -1,10 +1,13 @@
 //! Who is so close to whom in their piece that a search for all pairs may leave the two out: either their body
 //! holds them at their distance, or they are lips of a crack, which are known without a search.
 
-use super::sphere::NEAR;
+use super::path::Traveller;
+use super::sphere::{NEAR, SphereId};
 use super::spheres::Spheres;
 use crate::body::Bodies;
 use crate::dim::Dim;
+use crate::handle::BodySlot;
+use crate::ids::Table;
 use crate::lanes::LANES;
 use fearless_simd::{prelude::*, u16x8, u32x8};
 
@@ -12,7 +15,7 @@ use fearless_simd::{prelude::*, u16x8, u32x8};
 #[derive(Clone, Debug, Default)]
 pub struct Neighbours {
     /// The number that the first piece of each body has among those of all.
-    first: Vec<u32>,
+    first: Table<BodySlot, u32>,
     /// Those of their pieces.
     pieces: Vec<u32>,
     /// The voxels, axis by axis.
@@ -27,32 +30,32 @@ pub struct PieceSite {
 }
 
 impl Neighbours {
-    /// Those of the spheres at these places, in their order.
-    pub fn of<D: Dim>(places: &[u32], spheres: &Spheres, bodies: &Bodies<D>) -> Self {
+    /// Those of some spheres, in their order.
+    pub fn of<D: Dim>(travellers: &[Traveller], spheres: &Spheres, bodies: &Bodies<D>) -> Self {
         let mut neighbours = Self::default();
         let mut count = 0;
-        for body in bodies.places() {
+        for body in bodies.slots() {
             neighbours.first.push(count);
             count += body.map_or(0, |body| body.truth.pieces.list.len()) as u32;
         }
         // Eight can be read from the last on.
-        neighbours.pieces.resize(places.len() + LANES, u32::MAX);
+        neighbours.pieces.resize(travellers.len() + LANES, u32::MAX);
         for column in &mut neighbours.voxels {
-            column.resize(places.len() + LANES, 0);
+            column.resize(travellers.len() + LANES, 0);
         }
-        for (at, &place) in places.iter().enumerate() {
-            let PieceSite { piece, voxel } = neighbours.site(place, spheres);
+        for (at, traveller) in travellers.iter().enumerate() {
+            let PieceSite { piece, voxel } = neighbours.site(traveller.sphere, spheres);
             neighbours.pieces[at] = piece;
             (0..3).for_each(|axis| neighbours.voxels[axis][at] = voxel[axis]);
         }
         neighbours
     }
 
-    /// A sphere, given by its place among all.
-    pub fn site(&self, place: u32, spheres: &Spheres) -> PieceSite {
-        let sphere = &spheres.list[place as usize];
+    /// That of a sphere.
+    pub fn site(&self, sphere: SphereId, spheres: &Spheres) -> PieceSite {
+        let sphere = &spheres.list[sphere];
         PieceSite {
-            piece: self.first[sphere.body as usize] + sphere.piece.0,
+            piece: self.first[sphere.body] + sphere.piece.0,
             voxel: sphere.voxel().map(|along| along as u16),
         }
     }

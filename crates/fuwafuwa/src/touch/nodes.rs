@@ -6,7 +6,8 @@ use super::impulse::Impulse;
 use super::pair::MARGIN;
 use crate::body::{Bodies, Body};
 use crate::dim::Dim;
-use crate::ids::{NodeId, PieceId};
+use crate::handle::{BodySlot, RigidSlot};
+use crate::ids::{NodeId, PieceId, Table};
 use crate::rigid::{Rigid, Rigids};
 use crate::shape::Shape;
 use crate::solve::Row;
@@ -26,10 +27,10 @@ const SQUARE: f32 = 4.0;
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NodePair {
-    /// Place among what is rigid.
-    pub rigid: u32,
-    /// Place among the bodies.
-    pub body: u32,
+    /// The slot of what is rigid.
+    pub rigid: RigidSlot,
+    /// The slot of the body.
+    pub body: BodySlot,
     /// Node id.
     pub node: NodeId,
     /// What passed between them.
@@ -52,7 +53,7 @@ pub struct NodePairs {
     /// Where each node was when it was last looked for, and as the fourth number how far it may come
     /// from there, by body and node [m].
     #[cfg_attr(feature = "serde", serde(skip))]
-    anchors: Vec<Vec<Row>>,
+    anchors: Table<BodySlot, Table<NodeId, Row>>,
     /// How far nodes may still come before one may have come too far, and how far any may at the least [m].
     #[cfg_attr(feature = "serde", serde(skip))]
     spare: f32,
@@ -64,7 +65,7 @@ pub struct NodePairs {
     leeways: Vec<Leeway>,
     /// Nodes that are gone, new or awake since: body and node.
     #[cfg_attr(feature = "serde", serde(skip))]
-    changed: Vec<(u32, NodeId)>,
+    changed: Vec<(BodySlot, NodeId)>,
 }
 
 /// How far something rigid may come, and how far it has come [m].
@@ -95,23 +96,22 @@ impl NodePairs {
     }
 
     /// Nodes of a body are gone or new.
-    pub fn tear(&mut self, body: u32, nodes: &[NodeId]) {
+    pub fn tear(&mut self, body: BodySlot, nodes: &[NodeId]) {
         self.changed.extend(nodes.iter().map(|&node| (body, node)));
     }
 
     /// Pieces woke, given by body and number in ascending order: they meet walls again.
-    pub fn wake<D: Dim>(&mut self, pieces: &[(u32, PieceId)], bodies: &Bodies<D>) {
-        for (place, body) in bodies.placed() {
-            if pieces.iter().all(|&(body, _)| body != place) {
+    pub fn wake<D: Dim>(&mut self, pieces: &[(BodySlot, PieceId)], bodies: &Bodies<D>) {
+        for (slot, body) in bodies.by_slot() {
+            if pieces.iter().all(|&(body, _)| body != slot) {
                 continue;
             }
             let woke = |node| {
-                pieces
-                    .binary_search(&(place, body.truth.pieces.of_node(node)))
-                    .is_ok()
+                let piece = body.truth.pieces.of_node(node);
+                pieces.binary_search(&(slot, piece)).is_ok()
             };
             let woken = body.cache.awake.iter().filter(|&&node| woke(node));
-            self.changed.extend(woken.map(|&node| (place, node)));
+            self.changed.extend(woken.map(|&node| (slot, node)));
         }
     }
 
@@ -152,19 +152,19 @@ impl NodePairs {
         changed.sort_unstable();
         changed.dedup();
         let mut found = Vec::new();
-        for &(place, node) in &changed {
-            self.anchor(place, node, bodies, left);
+        for &(slot, node) in &changed {
+            self.anchor(slot, node, bodies, left);
         }
-        for ((index, rigid), leeway) in rigids.placed().zip(&self.leeways) {
-            let is_near = |&&(place, node): &&(u32, NodeId)| {
-                let body = bodies.at(place);
-                let reach = self.reach(place, node, body.truth.grid.voxel_size());
+        for ((own, rigid), leeway) in rigids.by_slot().zip(&self.leeways) {
+            let is_near = |&&(slot, node): &&(BodySlot, NodeId)| {
+                let body = bodies.at(slot);
+                let reach = self.reach(slot, node, body.truth.grid.voxel_size());
                 let at = three(body.state.position[node]);
                 body.truth.mesh.is_alive(node)
                     && rigid.shape().distance(at).0 <= reach + leeway.most
             };
             let near = changed.iter().filter(is_near);
-            found.extend(near.map(|&(body, node)| (index, body, node)));
+            found.extend(near.map(|&(body, node)| (own, body, node)));
         }
         self.merge(&found, |pair| {
             let is_changed = changed.binary_search(&(pair.body, pair.node)).is_ok();
@@ -193,19 +193,19 @@ impl NodePairs {
         };
         self.leeways.clear();
         self.leeways.extend(rigids.iter().map(leeway));
-        self.anchors.resize(bodies.place_count(), Vec::new());
+        self.anchors.resize(bodies.slot_count(), Table::default());
         let mut squares = Vec::new();
-        for (place, body) in bodies.placed() {
+        for (slot, body) in bodies.by_slot() {
             for &node in &body.cache.awake {
-                self.anchor(place, node, bodies, left);
+                self.anchor(slot, node, bodies, left);
             }
-            let reach = |node| self.reach(place, node, body.truth.grid.voxel_size());
-            squares.push((place, body, Squares::of(body, reach)));
+            let reach = |node| self.reach(slot, node, body.truth.grid.voxel_size());
+            squares.push((slot, body, Squares::of(body, reach)));
         }
         let mut found = Vec::new();
         let mut near: Vec<NodeId> = Vec::new();
-        for ((index, rigid), leeway) in rigids.placed().zip(&self.leeways) {
-            for (place, body, squares) in &squares {
+        for ((own, rigid), leeway) in rigids.by_slot().zip(&self.leeways) {
+            for (slot, body, squares) in &squares {
                 near.clear();
                 squares.within(leeway.most, rigid.shape(), &mut near);
                 if rigid.is_driven() && body.cache.awake.len() < body.truth.mesh.node_count() {
@@ -224,7 +224,7 @@ impl NodePairs {
                 }
                 // What is near comes square by square.
                 near.sort_unstable();
-                found.extend(near.iter().map(|&node| (index, *place, node)));
+                found.extend(near.iter().map(|&node| (own, *slot, node)));
             }
         }
         self.merge(&found, |pair| pair.has_touched(bodies));
@@ -234,8 +234,8 @@ impl NodePairs {
     /// to spare.
     fn find_strayed<D: Dim>(&mut self, bodies: &Bodies<D>) {
         let mut spare = f32::INFINITY;
-        for (place, body) in bodies.placed() {
-            let Some(anchors) = self.anchors.get(place as usize) else {
+        for (slot, body) in bodies.by_slot() {
+            let Some(anchors) = self.anchors.get(slot.index()) else {
                 continue;
             };
             for &node in &body.cache.awake {
@@ -245,7 +245,7 @@ impl NodePairs {
                 let come = minus(body.state.position[node], [x, y, z, 0.0]);
                 let come = dot(come, come);
                 if come > most * most {
-                    self.changed.push((place, node));
+                    self.changed.push((slot, node));
                 } else {
                     let left = most - come.sqrt();
                     spare = if left < spare { left } else { spare };
@@ -256,18 +256,18 @@ impl NodePairs {
     }
 
     /// Notes where a node is, and how far it may come until the end of the tick.
-    fn anchor<D: Dim>(&mut self, place: u32, node: NodeId, bodies: &Bodies<D>, left: f32) {
-        let body = bodies.at(place);
-        let anchors = &mut self.anchors[place as usize];
+    fn anchor<D: Dim>(&mut self, slot: BodySlot, node: NodeId, bodies: &Bodies<D>, left: f32) {
+        let body = bodies.at(slot);
+        let anchors = &mut self.anchors[slot];
         anchors.resize(body.state.position.len(), [0.0; 4]);
         let [x, y, z, _] = body.state.position[node];
         let speed = length(body.state.velocity[node]);
-        anchors[node.index()] = [x, y, z, SLACK * body.truth.grid.voxel_size() + speed * left];
+        anchors[node] = [x, y, z, SLACK * body.truth.grid.voxel_size() + speed * left];
     }
 
     /// How close to a wall a node is listed [m]; `size` [m] is that of its voxels.
-    fn reach(&self, body: u32, node: NodeId, size: f32) -> f32 {
-        self.anchors[body as usize][node.index()][3] + MARGIN * size
+    fn reach(&self, body: BodySlot, node: NodeId, size: f32) -> f32 {
+        self.anchors[body][node][3] + MARGIN * size
     }
 
     /// Makes the new list of those just found and those of the old ones that stay. Pairs that were
@@ -296,7 +296,7 @@ impl NodePairs {
 }
 
 /// What a pair is known by, and sorted by: rigid thing, body and node.
-type Key = (u32, u32, NodeId);
+type Key = (RigidSlot, BodySlot, NodeId);
 
 impl NodePair {
     fn key(&self) -> Key {
@@ -400,7 +400,7 @@ mod tests {
         let body = Body::new(grid, &[Material::default()]).expect("the material is good");
         let size = body.truth.grid.voxel_size();
         let mut bodies = Bodies::default();
-        bodies.insert(body);
+        let ball = bodies.insert(body).slot();
         let wall = |normal, offset| Rigid::fixed(Shape::HalfSpace { normal, offset }, 0.0);
         let mut walls = Rigids::default();
         walls.insert(wall([0.0, 1.0, 0.0], 0.3));
@@ -411,11 +411,11 @@ mod tests {
             (seed >> 8) as usize % below
         };
         let mut pairs = NodePairs::default();
-        bodies.at_mut(0).refresh_awake();
+        bodies.at_mut(ball).refresh_awake();
         let (mut gone, mut new) = (0, 0);
         for _ in 0..60 {
             pairs.follow(&bodies, &walls, 0.001, 0.016);
-            let body = bodies.at_mut(0);
+            let body = bodies.at_mut(ball);
             let listed: BTreeSet<Key> = pairs.list.iter().map(NodePair::key).collect();
             assert_eq!(listed.len(), pairs.list.len());
             assert!(pairs.list.is_sorted_by_key(NodePair::key));
@@ -426,9 +426,9 @@ mod tests {
             );
             for (node, _) in body.truth.mesh.nodes() {
                 let at = three(body.state.position[node]);
-                for (index, wall) in walls.placed() {
+                for (own, wall) in walls.by_slot() {
                     let is_close = wall.shape().distance(at).0 <= MARGIN * size;
-                    assert!(!is_close || listed.contains(&(index, 0, node)));
+                    assert!(!is_close || listed.contains(&(own, ball, node)));
                 }
             }
             let sides = (0..4).map(|_| {
@@ -444,7 +444,7 @@ mod tests {
             gone += changes.nodes.len() - changes.nodes.iter().filter(alive).count();
             assert!(body.truth.mesh.node_count() == before || !changes.nodes.is_empty());
             body.refresh_awake();
-            pairs.tear(0, &changes.nodes);
+            pairs.tear(ball, &changes.nodes);
         }
         assert!(
             new > 50 && (gone > 0 || D::N == 2),

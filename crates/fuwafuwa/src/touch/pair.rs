@@ -1,8 +1,8 @@
 //! Two contact spheres that may touch, and lists of such pairs.
 
 use super::impulse::Impulse;
-use super::sphere::ContactSphere;
-use super::spheres::NONE;
+use super::sphere::{ContactSphere, SphereId};
+use crate::ids::Table;
 use crate::threads::{self, SHARE};
 use crate::vector::scaled;
 
@@ -13,8 +13,8 @@ pub const MARGIN: f32 = 0.3;
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SpherePair {
-    /// Places among the spheres, ascending.
-    pub spheres: [u32; 2],
+    /// Ascending.
+    pub spheres: [SphereId; 2],
     /// What passed between them.
     pub impulse: Impulse,
     /// Whether they met face to face: if one is behind the other now, it was forced there.
@@ -23,10 +23,14 @@ pub struct SpherePair {
 
 /// Makes the new list of pairs from those just found and the old ones of which neither has changed, or
 /// which touched in this tick: that is to be told. Pairs that were known keep their impulses.
-pub fn merge(list: &mut Vec<SpherePair>, found: &[Vec<[u32; 2]>], is_changed: &[bool]) {
+pub fn merge(
+    list: &mut Vec<SpherePair>,
+    found: &[Vec<[SphereId; 2]>],
+    is_changed: &Table<SphereId, bool>,
+) {
     let stays = |pair: &SpherePair| {
         let mut both = pair.spheres.iter();
-        pair.impulse.total > 0.0 || !both.any(|&place| is_changed[place as usize])
+        pair.impulse.total > 0.0 || !both.any(|&sphere| is_changed[sphere])
     };
     let mut found = by_first(found, is_changed.len());
     let merged = threads::map(shares(&mut found, list), |(found, old)| {
@@ -54,37 +58,37 @@ pub fn merge(list: &mut Vec<SpherePair>, found: &[Vec<[u32; 2]>], is_changed: &[
     *list = merged.concat();
 }
 
-/// The spheres have new places in their list: each that had one before is told its place now.
-pub fn renumber(list: &mut Vec<SpherePair>, places: &[u32]) {
+/// The spheres have new numbers: of each before it is told which it has now.
+pub fn renumber(list: &mut Vec<SpherePair>, numbers: &Table<SphereId, SphereId>) {
     list.retain_mut(|pair| {
-        let place = |old: u32| places.get(old as usize).copied().unwrap_or(NONE);
-        let [a, b] = pair.spheres.map(place);
+        let number = |old: SphereId| numbers.get(old.index()).copied().unwrap_or(SphereId::NONE);
+        let [a, b] = pair.spheres.map(number);
         pair.spheres = [a.min(b), a.max(b)];
         if a > b {
             pair.impulse.dragged = scaled(pair.impulse.dragged, -1.0);
         }
-        pair.spheres[1] != NONE
+        pair.spheres[1] != SphereId::NONE
     });
     list.sort_unstable_by_key(|pair| pair.spheres);
 }
 
 /// Both lists of pairs, which ascend by their first spheres, cut at the same ones.
 fn shares<'a>(
-    mut found: &'a mut [[u32; 2]],
+    mut found: &'a mut [[SphereId; 2]],
     mut old: &'a [SpherePair],
-) -> impl Iterator<Item = (&'a mut [[u32; 2]], &'a [SpherePair])> {
+) -> impl Iterator<Item = (&'a mut [[SphereId; 2]], &'a [SpherePair])> {
     let mut is_done = false;
     std::iter::from_fn(move || {
         if is_done {
             return None;
         }
-        let next = found.get(SHARE).map(|pair| pair[0] + 1);
-        is_done = next.is_none();
-        let next = next.unwrap_or(u32::MAX);
-        let end = found.partition_point(|pair| pair[0] < next);
+        let last = found.get(SHARE).map(|pair| pair[0]);
+        is_done = last.is_none();
+        let last = last.unwrap_or(SphereId::NONE);
+        let end = found.partition_point(|pair| pair[0] <= last);
         let own;
         (own, found) = std::mem::take(&mut found).split_at_mut(end);
-        let end = old.partition_point(|pair| pair.spheres[0] < next);
+        let end = old.partition_point(|pair| pair.spheres[0] <= last);
         let known;
         (known, old) = old.split_at(end);
         Some((own, known))
@@ -93,24 +97,24 @@ fn shares<'a>(
 
 impl SpherePair {
     /// Its spheres among all of them.
-    pub fn both<'a>(&self, spheres: &'a [ContactSphere]) -> [&'a ContactSphere; 2] {
-        self.spheres.map(|place| &spheres[place as usize])
+    pub fn both<'a>(&self, spheres: &'a Table<SphereId, ContactSphere>) -> [&'a ContactSphere; 2] {
+        self.spheres.map(|sphere| &spheres[sphere])
     }
 }
 
-/// Pairs of numbers below `count`, ascending by the first.
-fn by_first(pairs: &[Vec<[u32; 2]>], count: usize) -> Vec<[u32; 2]> {
-    let mut end = vec![0u32; count];
+/// Pairs of spheres with numbers below `count`, ascending by the first.
+fn by_first(pairs: &[Vec<[SphereId; 2]>], count: usize) -> Vec<[SphereId; 2]> {
+    let mut end: Table<SphereId, u32> = vec![0; count].into();
     for pair in pairs.iter().flatten() {
-        end[pair[0] as usize] += 1;
+        end[pair[0]] += 1;
     }
     let mut sum = 0;
     for end in &mut end {
         sum += std::mem::replace(end, sum);
     }
-    let mut sorted = vec![[0; 2]; sum as usize];
+    let mut sorted = vec![[SphereId::NONE; 2]; sum as usize];
     for pair in pairs.iter().flatten() {
-        let place = &mut end[pair[0] as usize];
+        let place = &mut end[pair[0]];
         sorted[*place as usize] = *pair;
         *place += 1;
     }
@@ -122,9 +126,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_passed_between_two_is_known_when_they_have_new_places() {
-        let pair = |spheres, pressed| SpherePair {
-            spheres,
+    fn what_passed_between_two_is_known_when_they_have_new_numbers() {
+        let pair = |spheres: [u32; 2], pressed| SpherePair {
+            spheres: spheres.map(SphereId),
             impulse: Impulse {
                 pressed,
                 dragged: [pressed; 4],
@@ -134,10 +138,12 @@ mod tests {
         };
         let mut pairs = vec![pair([0, 1], 1.0), pair([0, 2], 2.0), pair([1, 3], 3.0)];
         // The last one stands first now, and one is gone.
-        renumber(&mut pairs, &[1, NONE, 0]);
+        let numbers = vec![SphereId(1), SphereId::NONE, SphereId(0)];
+        renumber(&mut pairs, &numbers.into());
         assert_eq!(pairs.len(), 1);
         let kept = pairs[0];
-        assert_eq!((kept.spheres, kept.impulse.pressed), ([0, 1], 2.0));
+        assert_eq!(kept.spheres, [0, 1].map(SphereId));
+        assert_eq!(kept.impulse.pressed, 2.0);
         assert_eq!(kept.impulse.dragged, [-2.0; 4], "on the other one now");
     }
 }

@@ -15,9 +15,11 @@ use super::bins::Bins;
 use super::neighbours::Neighbours;
 use super::pair::{SpherePair, merge};
 use super::path::{Path, STRAY, Span, Start, Traveller, widened};
-use super::spheres::{NONE, Spheres};
+use super::sphere::{ContactSphere, SphereId};
+use super::spheres::Spheres;
 use crate::body::Bodies;
 use crate::dim::Dim;
+use crate::ids::Table;
 use crate::lanes::on_widest_lanes;
 use crate::solve::Row;
 use crate::threads::{self, SHARE};
@@ -35,6 +37,9 @@ const LONGEST_TIME: f32 = 0.1;
 const MANY: usize = 4;
 const COMPARED: usize = 12;
 
+/// The place among the loose of a sphere that the bins find.
+const BINNED: u32 = u32::MAX;
+
 /// Spheres whose pairs one thread looks for at a time.
 const LOOKS: usize = SHARE / 8;
 
@@ -44,12 +49,11 @@ const LOOKS: usize = SHARE / 8;
 pub struct SpherePairs {
     /// Ascending.
     pub list: Vec<SpherePair>,
-    /// By sphere.
     #[cfg_attr(feature = "serde", serde(skip))]
-    paths: Vec<Path>,
+    paths: Table<SphereId, Path>,
     /// Where they begin.
     #[cfg_attr(feature = "serde", serde(skip))]
-    starts: Vec<Start>,
+    starts: Table<SphereId, Start>,
     /// Where the middles of all paths are; nothing while all must be looked for.
     #[cfg_attr(feature = "serde", serde(skip))]
     bins: Option<Bins>,
@@ -68,15 +72,15 @@ pub struct SpherePairs {
     /// Spheres that bins do not find: with long paths, or with other ones than when they were sorted.
     #[cfg_attr(feature = "serde", serde(skip))]
     loose: Vec<Traveller>,
-    /// The place of each sphere among them, or [`NONE`].
+    /// The place of each sphere among them, or [`BINNED`].
     #[cfg_attr(feature = "serde", serde(skip))]
-    loose_at: Vec<u32>,
+    loose_at: Table<SphereId, u32>,
     /// Whether the list is that of the last tick still.
     #[cfg_attr(feature = "serde", serde(skip))]
     is_new_tick: bool,
     /// Spheres to be looked for again, beside those that stray.
     #[cfg_attr(feature = "serde", serde(skip))]
-    pub changed: Vec<u32>,
+    pub changed: Vec<SphereId>,
     /// Since all were looked for, and from then to the end of all paths [s].
     #[cfg_attr(feature = "serde", serde(skip))]
     elapsed: f32,
@@ -152,14 +156,14 @@ impl SpherePairs {
     /// to spare.
     fn find_strayed(&mut self, spheres: &Spheres) {
         let mut spare = f32::INFINITY;
-        for &place in &spheres.awake {
-            let Some(path) = self.paths.get(place as usize) else {
+        for &sphere in &spheres.awake {
+            let Some(path) = self.paths.get(sphere.index()) else {
                 continue;
             };
-            let strayed = minus(spheres.centres[place as usize], path.at(self.elapsed));
-            let (strayed, most) = (dot(strayed, strayed), most_stray(spheres, place));
+            let strayed = minus(spheres.centres[sphere], path.at(self.elapsed));
+            let (strayed, most) = (dot(strayed, strayed), most_stray(spheres, sphere));
             if strayed > most * most {
-                self.changed.push(place);
+                self.changed.push(sphere);
             } else {
                 let left = most - strayed.sqrt();
                 spare = if left < spare { left } else { spare };
@@ -175,12 +179,12 @@ impl SpherePairs {
     }
 
     /// Lays the path of a sphere anew from where it is.
-    fn lay<D: Dim>(&mut self, place: u32, spheres: &Spheres, bodies: &Bodies<D>) {
-        let now = spheres.centres[place as usize];
-        let start = &mut self.starts[place as usize];
+    fn lay<D: Dim>(&mut self, sphere: SphereId, spheres: &Spheres, bodies: &Bodies<D>) {
+        let now = spheres.centres[sphere];
+        let start = &mut self.starts[sphere];
         let (mut velocity, mut laid) = ([0.0; 4], Start::UNKNOWN);
-        if !spheres.list[place as usize].asleep {
-            velocity = start.expected(now, self.elapsed, spheres.velocity(place, bodies));
+        if !spheres.list[sphere].asleep {
+            velocity = start.expected(now, self.elapsed, spheres.velocity(sphere, bodies));
             laid = Start {
                 at: now,
                 time: self.elapsed,
@@ -188,20 +192,20 @@ impl SpherePairs {
         }
         *start = laid;
         let from = minus(now, scaled(velocity, self.elapsed));
-        self.paths[place as usize] = Path { from, velocity };
+        self.paths[sphere] = Path { from, velocity };
         let speed = length(velocity);
         self.pace = if speed > self.pace { speed } else { self.pace };
     }
 
     /// A sphere on its path.
-    fn traveller(&self, place: u32, spheres: &Spheres) -> Traveller {
-        let sphere = &spheres.list[place as usize];
+    fn traveller(&self, sphere: SphereId, spheres: &Spheres) -> Traveller {
+        let ContactSphere { radius, asleep, .. } = spheres.list[sphere];
         Traveller {
-            path: self.paths[place as usize],
-            sweep: self.speed(place) * self.span().half,
-            radius: sphere.radius,
-            place,
-            asleep: sphere.asleep,
+            path: self.paths[sphere],
+            sweep: self.speed(sphere) * self.span().half,
+            radius,
+            sphere,
+            asleep,
         }
     }
 
@@ -214,15 +218,16 @@ impl SpherePairs {
             .iter_mut()
             .for_each(|start| start.time -= self.elapsed);
         (self.elapsed, self.pace) = (0.0, 0.0);
-        (0..count as u32).for_each(|place| self.lay(place, spheres, bodies));
+        let all = spheres.list.ids();
+        all.for_each(|sphere| self.lay(sphere, spheres, bodies));
         self.measure(spheres);
         let bins = self.bin::<D>(spheres);
-        let neighbours = Neighbours::of(bins.numbers(), spheres, bodies);
+        let neighbours = Neighbours::of(&self.binned, spheres, bodies);
         let mut found = self.short_pairs::<D>(&bins, &neighbours);
         found.extend(self.long_pairs::<D>(&bins, &neighbours, spheres));
-        found.extend(self.lips(&bins, spheres));
+        found.extend(self.lips(spheres));
         self.bins = Some(bins);
-        merge(&mut self.list, &found, &vec![true; count]);
+        merge(&mut self.list, &found, &vec![true; count].into());
     }
 
     /// Sorts all into bins, by the middle of what is left of their paths.
@@ -231,16 +236,15 @@ impl SpherePairs {
         let middles = self.paths.iter().map(|path| path.at(self.binned_at));
         let middles: Vec<Row> = middles.collect();
         let bins = Bins::new::<D>(&middles, self.reach + 2.0 * self.short);
-        let binned = bins.numbers().iter();
-        self.binned = binned
-            .map(|&place| self.traveller(place, spheres))
-            .collect();
+        let numbers = bins.numbers().iter().copied().map(SphereId);
+        let binned = numbers.map(|sphere| self.traveller(sphere, spheres));
+        self.binned = binned.collect();
         self.loose.clear();
         self.loose_at.clear();
-        self.loose_at.resize(middles.len(), NONE);
+        self.loose_at.resize(middles.len(), BINNED);
         for traveller in &self.binned {
             if traveller.sweep > self.short {
-                self.loose_at[traveller.place as usize] = self.loose.len() as u32;
+                self.loose_at[traveller.sphere] = self.loose.len() as u32;
                 self.loose.push(*traveller);
             }
         }
@@ -258,7 +262,7 @@ impl SpherePairs {
         self.spare = self.least_stray;
         self.reach = widened(2.0 * largest);
         self.set_frame(spheres);
-        let speeds = { spheres.awake.iter() }.map(|&place| self.speed(place));
+        let speeds = { spheres.awake.iter() }.map(|&sphere| self.speed(sphere));
         let most = usual(speeds.filter(|speed| speed.is_finite()).collect());
         let longest = LONGEST_SHORT * self.reach;
         self.duration = match most * LONGEST_TIME > 2.0 * longest {
@@ -269,18 +273,18 @@ impl SpherePairs {
     }
 
     /// How fast a path goes, as seen from the frame [m/s].
-    fn speed(&self, place: u32) -> f32 {
-        length(minus(self.paths[place as usize].velocity, self.frame))
+    fn speed(&self, sphere: SphereId) -> f32 {
+        length(minus(self.paths[sphere].velocity, self.frame))
     }
 
     /// Whether the bins find it: its path is short, and the one that it had when it was sorted.
     #[inline(always)]
     fn is_binned(&self, traveller: &Traveller) -> bool {
-        self.loose_at[traveller.place as usize] == NONE
+        self.loose_at[traveller.sphere] == BINNED
     }
 
     /// The pairs of which both have short paths, but for neighbours in a piece.
-    fn short_pairs<D: Dim>(&self, bins: &Bins, neighbours: &Neighbours) -> Vec<Vec<[u32; 2]>> {
+    fn short_pairs<D: Dim>(&self, bins: &Bins, neighbours: &Neighbours) -> Vec<Vec<[SphereId; 2]>> {
         let (span, reach) = (self.span(), self.reach + 2.0 * self.short);
         threads::map(bins.shares(), |share| {
             let mut found = Vec::new();
@@ -302,17 +306,17 @@ impl SpherePairs {
     }
 
     /// The pairs of lips of a crack.
-    fn lips(&self, bins: &Bins, spheres: &Spheres) -> Vec<Vec<[u32; 2]>> {
+    fn lips(&self, spheres: &Spheres) -> Vec<Vec<[SphereId; 2]>> {
         // The place of each sphere in the order of the bins.
-        let mut order = vec![0u32; self.binned.len()];
-        for (&place, at) in bins.numbers().iter().zip(0..) {
-            order[place as usize] = at;
+        let mut order: Table<SphereId, u32> = vec![0; self.binned.len()].into();
+        for (traveller, at) in self.binned.iter().zip(0..) {
+            order[traveller.sphere] = at;
         }
         let span = self.span();
         threads::map(spheres.lips.chunks(SHARE), |share| {
             let mut found = Vec::new();
             for &lips in share {
-                let [a, b] = lips.map(|place| &self.binned[order[place as usize] as usize]);
+                let [a, b] = lips.map(|sphere| &self.binned[order[sphere] as usize]);
                 if a.meets(b, span) {
                     found.push(pair(a, b));
                 }
@@ -327,18 +331,18 @@ impl SpherePairs {
         bins: &Bins,
         neighbours: &Neighbours,
         spheres: &Spheres,
-    ) -> Vec<Vec<[u32; 2]>> {
+    ) -> Vec<Vec<[SphereId; 2]>> {
         let span = self.span();
         let middles = self.loose.iter().map(|long| long.path.at(span.middle));
         let middles: Vec<Row> = middles.collect();
         let long = Bins::new::<D>(&middles, self.reach + 2.0 * self.short);
         // Of two long paths the longer one looks for the other.
-        let rank = |long: &Traveller| (long.sweep, long.place);
+        let rank = |long: &Traveller| (long.sweep, long.sphere);
         threads::map(self.loose.chunks(LOOKS), |share| {
             let (mut found, mut near) = (Vec::new(), Vec::new());
             on_widest_lanes!(simd => for own in share {
                 let at = own.path.at(span.middle);
-                let site = neighbours.site(own.place, spheres);
+                let site = neighbours.site(own.sphere, spheres);
                 let reach = self.reach + own.sweep + self.short;
                 bins.near::<D, _>(
                     simd,
@@ -359,7 +363,7 @@ impl SpherePairs {
                 for &at in &near {
                     let other = &self.loose[long.numbers()[at as usize] as usize];
                     let first = rank(other) < rank(own);
-                    let is_neighbour = || site.is_neighbour(&neighbours.site(other.place, spheres));
+                    let is_neighbour = || site.is_neighbour(&neighbours.site(other.sphere, spheres));
                     if first && own.meets(other, span) && !is_neighbour() {
                         found.push(pair(own, other));
                     }
@@ -370,14 +374,14 @@ impl SpherePairs {
     }
 
     /// Looks again for the pairs of some, given in ascending order; those of the others stay.
-    fn find_again<D: Dim>(&mut self, changed: &[u32], spheres: &Spheres, bodies: &Bodies<D>) {
+    fn find_again<D: Dim>(&mut self, changed: &[SphereId], spheres: &Spheres, bodies: &Bodies<D>) {
         let count = spheres.list.len();
         self.make_room(count);
-        self.loose_at.resize(count, NONE);
-        let mut is_changed = vec![false; count];
-        for &place in changed {
-            self.lay(place, spheres, bodies);
-            is_changed[place as usize] = true;
+        self.loose_at.resize(count, BINNED);
+        let mut is_changed: Table<SphereId, bool> = vec![false; count].into();
+        for &sphere in changed {
+            self.lay(sphere, spheres, bodies);
+            is_changed[sphere] = true;
         }
         if changed.len() * (self.loose.len() + changed.len()) > COMPARED * count {
             self.bins = Some(self.bin::<D>(spheres));
@@ -389,17 +393,17 @@ impl SpherePairs {
         } else {
             changed
                 .iter()
-                .for_each(|&place| self.loosen(place, spheres));
+                .for_each(|&sphere| self.loosen(sphere, spheres));
         }
         let span = self.remaining();
         let bins = self.bins.as_ref().expect("all were looked for before");
         let this = &*self;
-        let found = threads::map(changed.chunks(LOOKS), |places| {
+        let found = threads::map(changed.chunks(LOOKS), |share| {
             let (mut found, mut near) = (Vec::new(), Vec::new());
-            on_widest_lanes!(simd => for &place in places {
-                let own = &this.traveller(place, spheres);
-                let is_first = |other: &Traveller| match is_changed[other.place as usize] {
-                    true => other.place > place,
+            on_widest_lanes!(simd => for &sphere in share {
+                let own = &this.traveller(sphere, spheres);
+                let is_first = |other: &Traveller| match is_changed[other.sphere] {
+                    true => other.sphere > sphere,
                     false => true,
                 };
                 // In the frame, where the others hardly move.
@@ -410,13 +414,13 @@ impl SpherePairs {
                 for &at in &near {
                     let other = &this.binned[at as usize];
                     let is_other = is_first(other) && this.is_binned(other);
-                    if is_other && own.meets(other, span) && !spheres.holds(place, other.place) {
+                    if is_other && own.meets(other, span) && !spheres.holds(sphere, other.sphere) {
                         found.push(pair(own, other));
                     }
                 }
                 for other in &this.loose {
                     let is_met = own.meets(other, span) && is_first(other);
-                    if is_met && !spheres.holds(place, other.place) {
+                    if is_met && !spheres.holds(sphere, other.sphere) {
                         found.push(pair(own, other));
                     }
                 }
@@ -429,9 +433,9 @@ impl SpherePairs {
     }
 
     /// Takes a sphere out of the bins, for it has another path now.
-    fn loosen(&mut self, place: u32, spheres: &Spheres) {
-        let traveller = self.traveller(place, spheres);
-        let at = &mut self.loose_at[place as usize];
+    fn loosen(&mut self, sphere: SphereId, spheres: &Spheres) {
+        let traveller = self.traveller(sphere, spheres);
+        let at = &mut self.loose_at[sphere];
         match self.loose.get_mut(*at as usize) {
             Some(own) => *own = traveller,
             None => {
@@ -470,16 +474,16 @@ impl SpherePairs {
     }
 }
 
-/// The places of two, ascending.
+/// Two, ascending.
 #[inline(always)]
-fn pair(a: &Traveller, b: &Traveller) -> [u32; 2] {
-    [a.place.min(b.place), a.place.max(b.place)]
+fn pair(a: &Traveller, b: &Traveller) -> [SphereId; 2] {
+    [a.sphere.min(b.sphere), a.sphere.max(b.sphere)]
 }
 
 /// How far a sphere may stray from its path [m].
 #[inline(always)]
-fn most_stray(spheres: &Spheres, place: u32) -> f32 {
-    STRAY * 2.0 * spheres.list[place as usize].radius
+fn most_stray(spheres: &Spheres, sphere: SphereId) -> f32 {
+    STRAY * 2.0 * spheres.list[sphere].radius
 }
 
 /// What all of these but a few stay below, or are.

@@ -1,6 +1,7 @@
 //! The way that a contact sphere is expected to take, and whether two of them come close.
 
 use super::pair::MARGIN;
+use super::sphere::SphereId;
 use crate::solve::Row;
 use crate::vector::{dot, minus, plus, scaled};
 
@@ -71,8 +72,7 @@ pub struct Traveller {
     /// Half the length of its path at the most, as seen from the frame [m].
     pub sweep: f32,
     pub radius: f32,
-    /// Its place among the spheres.
-    pub place: u32,
+    pub sphere: SphereId,
     pub asleep: bool,
 }
 

@@ -2,18 +2,29 @@
 
 use crate::body::{Bodies, Body};
 use crate::dim::{Dim, Point};
-use crate::ids::{ElementId, Id, NodeId, PieceId};
+use crate::handle::BodySlot;
+use crate::ids::{ElementId, Id, NodeId, PieceId, Table, id};
 use crate::solve::Row;
 use crate::vector::{plus, scaled};
 
 /// Neighbours are of one piece, and no more than so many voxels apart on any axis as it was built.
 pub const NEAR: u16 = 2;
 
+id! {
+    /// The number of a contact sphere among those of all bodies.
+    pub SphereId
+}
+
+impl SphereId {
+    /// That of none.
+    pub const NONE: Self = Self(u32::MAX);
+}
+
 /// The ball around a surface element.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct ContactSphere {
-    /// Place among the bodies.
-    pub body: u32,
+    /// The slot of its body.
+    pub body: BodySlot,
     /// Element id.
     pub element: ElementId,
     /// Piece number.
@@ -34,17 +45,17 @@ pub struct ContactSphere {
 
 /// The mean of the rows of a sphere's corner nodes.
 #[inline(always)]
-pub fn mean<D: Dim>(rows: &[Row], nodes: &[impl Id; 8]) -> Row {
-    let mut sum = rows[nodes[0].index()];
+pub fn mean<D: Dim, I: Id>(rows: &Table<I, Row>, nodes: &[I; 8]) -> Row {
+    let mut sum = rows[nodes[0]];
     for &node in &nodes[1..D::CORNERS] {
-        sum = plus(sum, rows[node.index()]);
+        sum = plus(sum, rows[node]);
     }
     scaled(sum, 1.0 / D::CORNERS as f32)
 }
 
 impl ContactSphere {
-    /// That of an element of the body at a place among all, if it is at the surface.
-    pub fn of<D: Dim>(place: u32, body: &Body<D>, id: ElementId) -> Option<Self> {
+    /// That of an element of the body in a slot, if it is at the surface.
+    pub fn of<D: Dim>(slot: BodySlot, body: &Body<D>, id: ElementId) -> Option<Self> {
         let bare = *body.cache.bare.get(id.index())?;
         if bare == 0 {
             return None;
@@ -54,7 +65,7 @@ impl ContactSphere {
         nodes[..D::CORNERS].copy_from_slice(&element.nodes);
         let piece = body.truth.pieces.of_element(id);
         Some(Self {
-            body: place,
+            body: slot,
             element: id,
             piece,
             radius: 0.5 * body.truth.grid.voxel_size(),
@@ -67,7 +78,7 @@ impl ContactSphere {
     }
 
     /// Body and element.
-    pub fn key(&self) -> (u32, ElementId) {
+    pub fn key(&self) -> (BodySlot, ElementId) {
         (self.body, self.element)
     }
 
@@ -87,8 +98,8 @@ impl ContactSphere {
 
     /// The mean of something at its corners.
     #[inline]
-    pub fn mean<D: Dim>(&self, rows: &[Row]) -> Row {
-        mean::<D>(rows, &self.nodes)
+    pub fn mean<D: Dim>(&self, rows: &Table<NodeId, Row>) -> Row {
+        mean::<D, _>(rows, &self.nodes)
     }
 
     /// Whether it is a piece of its own.
@@ -102,7 +113,7 @@ impl ContactSphere {
     }
 
     /// From its middle out of the body, through the bare faces; nothing for a crumb or a sheet.
-    pub fn outward<D: Dim>(&self, position: &[Row]) -> Row {
+    pub fn outward<D: Dim>(&self, position: &Table<NodeId, Row>) -> Row {
         let mut sum = [0.0; 4];
         for corner in 0..D::CORNERS {
             let is_bare = |axis: usize, side: usize| f32::from(self.bare >> (2 * axis + side) & 1);
@@ -113,7 +124,7 @@ impl ContactSphere {
                     if corner >> axis & 1 == 1 { out } else { -out }
                 })
                 .sum();
-            let at = position[self.nodes[corner].index()];
+            let at = position[self.nodes[corner]];
             sum = plus(sum, scaled(at, weight / D::CORNERS as f32));
         }
         sum
@@ -132,7 +143,7 @@ impl ContactSphere {
 /// Where in its body the element of a sphere is, and what it hangs together with there.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Site {
-    pub body: u32,
+    pub body: BodySlot,
     pub voxel: [i16; 3],
     /// As of the sphere.
     pub bound: u32,

@@ -1,53 +1,54 @@
 //! The contact spheres of all bodies: in the order in which they came to the surface, so that a tear
 //! moves none; followed while they move.
 
-use super::sphere::{ContactSphere, NEAR};
+use super::sphere::{ContactSphere, NEAR, SphereId};
 use crate::body::{Bodies, Body};
 use crate::changes::{Bookmark, Changes};
 use crate::dim::Dim;
-use crate::ids::{ElementId, PieceId};
+use crate::handle::BodySlot;
+use crate::ids::{ElementId, PieceId, Table};
 use crate::solve::Row;
 use crate::vector::{dot, minus};
-
-/// No place.
-pub const NONE: u32 = u32::MAX;
 
 /// The contact spheres of all bodies.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Spheres {
     /// Body and element of each: the order of the list, wherever it is made anew.
-    keys: Vec<(u32, ElementId)>,
+    keys: Table<SphereId, Key>,
     /// Those that were first by body and element, then those that came to the surface since.
     #[cfg_attr(feature = "serde", serde(skip))]
-    pub list: Vec<ContactSphere>,
-    /// The place in the list of each voxel's sphere, by body and place of the voxel; [`NONE`] inside.
+    pub list: Table<SphereId, ContactSphere>,
+    /// The sphere of each voxel, by body and place of the voxel; [`SphereId::NONE`] inside.
     #[cfg_attr(feature = "serde", serde(skip))]
-    by_voxel: Vec<Vec<u32>>,
+    by_voxel: Table<BodySlot, Vec<SphereId>>,
     /// The pairs that are lips of a crack: neighbours in one piece, and yet not held by it.
     #[cfg_attr(feature = "serde", serde(skip))]
-    pub lips: Vec<[u32; 2]>,
-    /// Up to where the body at each place has been followed.
+    pub lips: Vec<[SphereId; 2]>,
+    /// Up to where each body has been followed.
     #[cfg_attr(feature = "serde", serde(skip))]
-    followed: Vec<Bookmark>,
-    /// Places of those awake.
+    followed: Table<BodySlot, Bookmark>,
+    /// Those awake.
     #[cfg_attr(feature = "serde", serde(skip))]
-    pub awake: Vec<u32>,
+    pub awake: Vec<SphereId>,
     /// Where their middles are [m]; of sleepers as of the start of the tick.
     #[cfg_attr(feature = "serde", serde(skip))]
-    pub centres: Vec<Row>,
-    /// Places of those that contact may ask for, and who they are.
+    pub centres: Table<SphereId, Row>,
+    /// Those that contact may ask for, and of each whether it is one of them.
     #[cfg_attr(feature = "serde", serde(skip))]
-    close: Vec<u32>,
+    close: Vec<SphereId>,
     #[cfg_attr(feature = "serde", serde(skip))]
-    is_close: Vec<bool>,
+    is_close: Table<SphereId, bool>,
     /// Of those: how fast they would go on if nothing touched them [m/s], and how far they came in the
     /// last substep, squared [m²].
     #[cfg_attr(feature = "serde", serde(skip))]
-    pub velocities: Vec<Row>,
+    pub velocities: Table<SphereId, Row>,
     #[cfg_attr(feature = "serde", serde(skip))]
-    pub moved: Vec<f32>,
+    pub moved: Table<SphereId, f32>,
 }
+
+/// What a sphere is known by from one list to the next: body and element.
+type Key = (BodySlot, ElementId);
 
 impl Spheres {
     /// How many were known at the end of the last tick.
@@ -56,39 +57,39 @@ impl Spheres {
         self.keys.len()
     }
 
-    /// The place of the body of a sphere; also while they are not listed.
-    pub fn body_of(&self, sphere: u32) -> u32 {
-        self.keys[sphere as usize].0
+    /// The slot of the body of a sphere; also while they are not listed.
+    pub fn body_of(&self, sphere: SphereId) -> BodySlot {
+        self.keys[sphere].0
     }
 
-    /// A body was taken out: who comes to its place is somebody else.
-    pub fn remove_body(&mut self, place: u32) {
-        for key in self.keys.iter_mut().filter(|(body, _)| *body == place) {
-            *key = (NONE, ElementId(NONE));
+    /// A body was taken out: who comes to its slot is somebody else.
+    pub fn remove_body(&mut self, slot: BodySlot) {
+        for key in self.keys.iter_mut().filter(|(body, _)| *body == slot) {
+            *key = (BodySlot::NONE, ElementId(u32::MAX));
         }
         self.followed.clear();
     }
 
     /// A tick begins: keeps up with what tore since the last one, and adds who fell asleep to `changed`; where bodies
-    /// may be anything, lists the spheres anew, and returns then the place that each of those before has now, or
-    /// [`NONE`].
+    /// may be anything, lists the spheres anew, and returns then the number that each of those before has now, or
+    /// [`SphereId::NONE`].
     pub fn start_tick<D: Dim>(
         &mut self,
         bodies: &Bodies<D>,
-        changed: &mut Vec<u32>,
-    ) -> Option<Vec<u32>> {
-        let places = (!self.catch_up(bodies, changed)).then(|| {
+        changed: &mut Vec<SphereId>,
+    ) -> Option<Table<SphereId, SphereId>> {
+        let numbers = (!self.catch_up(bodies, changed)).then(|| {
             changed.clear();
             self.list_anew(bodies)
         });
-        let all = self.list.iter_mut().zip(&mut self.centres).zip(0..);
-        for ((sphere, centre), place) in all {
+        let all = self.list.entries_mut().zip(&mut self.centres);
+        for ((id, sphere), centre) in all {
             let body = bodies.at(sphere.body);
             let was_asleep = sphere.asleep;
             sphere.asleep = body.truth.pieces.list[sphere.piece].asleep;
             // Nobody looks after sleepers: this is where they stay.
             if sphere.asleep != was_asleep {
-                changed.push(place);
+                changed.push(id);
             }
             if sphere.asleep && !was_asleep {
                 *centre = sphere.mean::<D>(&body.state.position);
@@ -99,22 +100,21 @@ impl Spheres {
         self.is_close.fill(false);
         self.velocities.fill([0.0; 4]);
         self.moved.fill(0.0);
-        let all = 0..self.list.len() as u32;
         self.awake.clear();
-        self.awake
-            .extend(all.filter(|&place| !self.list[place as usize].asleep));
-        places
+        let all = self.list.ids();
+        self.awake.extend(all.filter(|&id| !self.list[id].asleep));
+        numbers
     }
 
     /// Keeps up with what tore between two ticks; returns false where that is not all that happened.
-    fn catch_up<D: Dim>(&mut self, bodies: &Bodies<D>, changed: &mut Vec<u32>) -> bool {
-        if self.followed.len() != bodies.place_count() {
+    fn catch_up<D: Dim>(&mut self, bodies: &Bodies<D>, changed: &mut Vec<SphereId>) -> bool {
+        if self.followed.len() != bodies.slot_count() {
             return false;
         }
-        for (place, body) in bodies.placed() {
-            match body.changes_since(&mut self.followed[place as usize]) {
+        for (slot, body) in bodies.by_slot() {
+            match body.changes_since(&mut self.followed[slot]) {
                 Some(changes) if changes == Changes::default() => {}
-                Some(changes) => self.tear(place, body, &changes, changed),
+                Some(changes) => self.tear(slot, body, &changes, changed),
                 None => return false,
             }
         }
@@ -122,32 +122,32 @@ impl Spheres {
     }
 
     /// Lists those known before that are there still, in their order, then the others by body and element.
-    fn list_anew<D: Dim>(&mut self, bodies: &Bodies<D>) -> Vec<u32> {
+    fn list_anew<D: Dim>(&mut self, bodies: &Bodies<D>) -> Table<SphereId, SphereId> {
         let known = std::mem::take(&mut self.keys);
         self.list.clear();
-        self.followed = vec![Bookmark::default(); bodies.place_count()];
-        for (place, body) in bodies.placed() {
-            self.followed[place as usize] = body.bookmark();
+        self.followed = vec![Bookmark::default(); bodies.slot_count()].into();
+        for (slot, body) in bodies.by_slot() {
+            self.followed[slot] = body.bookmark();
         }
         let none = |body: Option<&Body<D>>| {
             let size = body.map_or([0; 3], |body| body.truth.grid.size());
             let voxels = size.map(|extent| extent as usize);
-            vec![NONE; voxels.iter().product()]
+            vec![SphereId::NONE; voxels.iter().product()]
         };
-        self.by_voxel = bodies.places().map(none).collect();
-        let all = bodies.placed().flat_map(|(place, body)| {
+        self.by_voxel = bodies.slots().map(none).collect();
+        let all = bodies.by_slot().flat_map(|(slot, body)| {
             let ids = body.truth.mesh.elements().map(|(id, _)| id);
-            ids.map(move |id| (place, id))
+            ids.map(move |id| (slot, id))
         });
-        for (place, id) in known.iter().copied().chain(all) {
-            let body = bodies.find(place);
-            let sphere = body.and_then(|body| ContactSphere::of(place, body, id));
+        for (slot, id) in known.iter().copied().chain(all) {
+            let body = bodies.find(slot);
+            let sphere = body.and_then(|body| ContactSphere::of(slot, body, id));
             let Some((sphere, body)) = sphere.zip(body) else {
                 continue;
             };
-            let own = &mut self.by_voxel[place as usize][body.truth.grid.index(sphere.voxel())];
-            if *own == NONE {
-                *own = self.list.len() as u32;
+            let own = &mut self.by_voxel[slot][body.truth.grid.index(sphere.voxel())];
+            if *own == SphereId::NONE {
+                *own = self.list.next_id();
                 self.list.push(sphere);
             }
         }
@@ -160,42 +160,38 @@ impl Spheres {
         self.centres.extend(self.list.iter().map(centre));
         self.make_room();
         self.lips.clear();
-        for place in 0..self.list.len() as u32 {
-            let body = bodies.at(self.list[place as usize].body);
-            self.find_lips(place, body, |other| other > place);
+        for own in self.list.ids() {
+            let body = bodies.at(self.list[own].body);
+            self.find_lips(own, body, |other| other > own);
         }
-        let place = |&(body, id): &(u32, ElementId)| {
-            let (at, by_voxel) = (bodies.find(body)?, &self.by_voxel[body as usize]);
-            Some(
-                by_voxel[at
-                    .truth
-                    .grid
-                    .index(ContactSphere::of(body, at, id)?.voxel())],
-            )
+        let number = |&(slot, id): &Key| {
+            let (body, by_voxel) = (bodies.find(slot)?, &self.by_voxel[slot]);
+            let voxel = ContactSphere::of(slot, body, id)?.voxel();
+            Some(by_voxel[body.truth.grid.index(voxel)])
         };
-        let places = known.iter().map(|key| place(key).unwrap_or(NONE));
-        places.collect()
+        let numbers = known.iter().map(number);
+        numbers.map(|own| own.unwrap_or(SphereId::NONE)).collect()
     }
 
-    /// Keeps up with a tear of a body; adds the places of the spheres whose elements are new, or have other
+    /// Keeps up with a tear of a body; adds the spheres whose elements are new, or have other
     /// nodes or other bare faces, to `changed`.
     pub fn tear<D: Dim>(
         &mut self,
-        place: u32,
+        slot: BodySlot,
         body: &Body<D>,
         changes: &Changes,
-        changed: &mut Vec<u32>,
+        changed: &mut Vec<SphereId>,
     ) {
-        self.followed[place as usize] = body.bookmark();
+        self.followed[slot] = body.bookmark();
         let mut touched = Vec::new();
         for &id in &changes.elements {
-            let Some(sphere) = ContactSphere::of(place, body, id) else {
+            let Some(sphere) = ContactSphere::of(slot, body, id) else {
                 continue;
             };
             // What has once come to the surface stays there.
-            let own = &mut self.by_voxel[place as usize][body.truth.grid.index(sphere.voxel())];
-            if *own == NONE {
-                *own = self.list.len() as u32;
+            let own = &mut self.by_voxel[slot][body.truth.grid.index(sphere.voxel())];
+            if *own == SphereId::NONE {
+                *own = self.list.next_id();
                 if !sphere.asleep {
                     self.awake.push(*own);
                 }
@@ -203,7 +199,7 @@ impl Spheres {
                 self.list.push(sphere);
                 self.centres.push(sphere.mean::<D>(&body.state.position));
             } else {
-                self.list[*own as usize] = sphere;
+                self.list[*own] = sphere;
             }
             touched.push(*own);
         }
@@ -211,32 +207,33 @@ impl Spheres {
         touched.sort_unstable();
         touched.dedup();
         changed.extend(&touched);
-        let mut is_touched = vec![false; self.list.len()];
-        touched
-            .iter()
-            .for_each(|&own| is_touched[own as usize] = true);
-        let is_known = |lips: &[u32; 2]| lips.iter().all(|&own| !is_touched[own as usize]);
+        let mut is_touched: Table<SphereId, bool> = vec![false; self.list.len()].into();
+        touched.iter().for_each(|&own| is_touched[own] = true);
+        let is_known = |lips: &[SphereId; 2]| lips.iter().all(|&own| !is_touched[own]);
         self.lips.retain(is_known);
         if !changes.parted.is_empty() {
-            for sphere in self.list.iter_mut().filter(|sphere| sphere.body == place) {
+            for sphere in self.list.iter_mut().filter(|sphere| sphere.body == slot) {
                 sphere.piece = body.truth.pieces.of_element(sphere.element);
             }
             let list = &self.list;
-            let piece = |own: u32| (list[own as usize].body, list[own as usize].piece);
+            let piece = |own: SphereId| (list[own].body, list[own].piece);
             self.lips.retain(|&[a, b]| piece(a) == piece(b));
         }
         for own in touched {
-            self.find_lips(own, body, |other| {
-                !is_touched[other as usize] || other > own
-            });
+            self.find_lips(own, body, |other| !is_touched[other] || other > own);
         }
     }
 
     /// Adds the lips that a sphere is one of, with those others that a condition holds for.
-    fn find_lips<D: Dim>(&mut self, place: u32, body: &Body<D>, applies: impl Fn(u32) -> bool) {
-        let own = &self.list[place as usize];
+    fn find_lips<D: Dim>(
+        &mut self,
+        id: SphereId,
+        body: &Body<D>,
+        applies: impl Fn(SphereId) -> bool,
+    ) {
+        let own = &self.list[id];
         let (site, voxel, size) = (own.site(), own.voxel(), body.truth.grid.size());
-        let by_voxel = &self.by_voxel[own.body as usize];
+        let by_voxel = &self.by_voxel[own.body];
         let near = i32::from(NEAR);
         let low = [0, 1, 2].map(|axis: usize| (voxel[axis] - near).max(0));
         let high = [0, 1, 2].map(|axis: usize| (voxel[axis] + near).min(size[axis] - 1));
@@ -245,46 +242,44 @@ impl Spheres {
                 let row =
                     body.truth.grid.index([low[0], y, z])..=body.truth.grid.index([high[0], y, z]);
                 let others = by_voxel[row].iter().copied();
-                for other in others.filter(|&other| other != NONE && applies(other)) {
-                    let sphere = &self.list[other as usize];
-                    let is_held = other == place || site.is_held_to(&sphere.site());
+                for other in others.filter(|&other| other != SphereId::NONE && applies(other)) {
+                    let sphere = &self.list[other];
+                    let is_held = other == id || site.is_held_to(&sphere.site());
                     if !is_held && sphere.piece == own.piece {
-                        self.lips.push([place, other]);
+                        self.lips.push([id, other]);
                     }
                 }
             }
         }
     }
 
-    /// Wakes the spheres of pieces, given by body and number in ascending order; adds their places to
+    /// Wakes the spheres of pieces, given by body and number in ascending order; adds them to
     /// `changed`.
-    pub fn wake(&mut self, pieces: &[(u32, PieceId)], changed: &mut Vec<u32>) {
-        for (sphere, place) in self.list.iter_mut().zip(0..) {
+    pub fn wake(&mut self, pieces: &[(BodySlot, PieceId)], changed: &mut Vec<SphereId>) {
+        for (id, sphere) in self.list.entries_mut() {
             if sphere.asleep && pieces.binary_search(&(sphere.body, sphere.piece)).is_ok() {
                 sphere.asleep = false;
-                self.awake.push(place);
-                changed.push(place);
+                self.awake.push(id);
+                changed.push(id);
             }
         }
     }
 
     /// Notes which contact may ask for in the next substeps.
-    pub fn note_close(&mut self, close: impl Iterator<Item = u32>) {
+    pub fn note_close(&mut self, close: impl Iterator<Item = SphereId>) {
         let was_close = self.is_close.clone();
         self.is_close.fill(false);
-        close.for_each(|place| self.is_close[place as usize] = true);
+        close.for_each(|id| self.is_close[id] = true);
         self.close.clear();
-        let all = self
-            .is_close
-            .iter_mut()
+        let all = { self.is_close.entries_mut() }
             .zip(&self.list)
             .zip(&mut self.moved);
-        for (place, ((is_close, sphere), moved)) in all.enumerate().filter(|(_, all)| *all.0.0) {
+        for (((id, is_close), sphere), moved) in all.filter(|all| *all.0.0.1) {
             *is_close = !sphere.asleep;
             if *is_close {
-                self.close.push(place as u32);
+                self.close.push(id);
             }
-            if *is_close && !was_close[place] {
+            if *is_close && !was_close[id] {
                 *moved = 0.0;
             }
         }
@@ -306,32 +301,31 @@ impl Spheres {
 
     /// Takes the velocities of those that contact may ask for from the bodies.
     pub fn take_velocities<D: Dim>(&mut self, bodies: &Bodies<D>) {
-        for &place in &self.close {
-            self.velocities[place as usize] = self.velocity(place, bodies);
+        for &id in &self.close {
+            self.velocities[id] = self.velocity(id, bodies);
         }
     }
 
     /// How fast one moves [m/s].
-    pub fn velocity<D: Dim>(&self, place: u32, bodies: &Bodies<D>) -> Row {
-        let sphere = &self.list[place as usize];
+    pub fn velocity<D: Dim>(&self, id: SphereId, bodies: &Bodies<D>) -> Row {
+        let sphere = &self.list[id];
         sphere.mean::<D>(&bodies.at(sphere.body).state.velocity)
     }
 
     /// Whether their body itself holds two at their distance.
-    pub fn holds(&self, a: u32, b: u32) -> bool {
-        let [a, b] = [a, b].map(|place| self.list[place as usize].site());
+    pub fn holds(&self, a: SphereId, b: SphereId) -> bool {
+        let [a, b] = [a, b].map(|id| self.list[id].site());
         a.is_held_to(&b)
     }
 
-    fn follow<D: Dim>(&mut self, place: u32, bodies: &Bodies<D>) {
-        let place = place as usize;
-        let sphere = &self.list[place];
+    fn follow<D: Dim>(&mut self, id: SphereId, bodies: &Bodies<D>) {
+        let sphere = &self.list[id];
         let centre = sphere.mean::<D>(&bodies.at(sphere.body).state.position);
-        if self.is_close[place] {
-            let moved = minus(centre, self.centres[place]);
-            self.moved[place] = dot(moved, moved);
+        if self.is_close[id] {
+            let moved = minus(centre, self.centres[id]);
+            self.moved[id] = dot(moved, moved);
         }
-        self.centres[place] = centre;
+        self.centres[id] = centre;
     }
 
     fn make_room(&mut self) {

@@ -93,7 +93,7 @@ impl<D: Dim> World<D> {
     #[inline(never)]
     pub fn remove_body(&mut self, body: BodyId) -> Result<Body<D>, Gone> {
         let removed = self.bodies.remove(body)?;
-        self.nearby.remove_body(body.place());
+        self.nearby.remove_body(body.slot());
         let leaning = leaning_on_body(&removed, &self.bodies);
         self.wake(&leaning);
         Ok(removed)
@@ -106,7 +106,7 @@ impl<D: Dim> World<D> {
     #[inline(never)]
     pub fn remove_rigid(&mut self, rigid: RigidId) -> Result<Rigid, Gone> {
         let removed = self.rigids.remove(rigid)?;
-        self.nearby.remove_rigid(rigid.place());
+        self.nearby.remove_rigid(rigid.slot());
         let leaning = leaning_on_rigid(&removed, &self.bodies);
         self.wake(&leaning);
         Ok(removed)
@@ -210,7 +210,7 @@ impl<D: Dim> World<D> {
     /// Wakes all pieces of a body.
     fn wake_body(&mut self, body: BodyId) {
         let pieces = self.bodies[body].truth.pieces.list.ids();
-        let pieces: Vec<Hit> = pieces.map(|piece| (body.place(), piece)).collect();
+        let pieces: Vec<Hit> = pieces.map(|piece| (body.slot(), piece)).collect();
         self.wake(&pieces);
     }
 }

@@ -2,11 +2,14 @@ use super::*;
 use crate::body::Body;
 use crate::dim::{Dim2, Dim3};
 use crate::grid::VoxelGrid;
+use crate::handle::BodySlot;
 use crate::ids::{ElementId, PieceId, Table};
 use crate::material::Material;
 use crate::touch::pair::{MARGIN, renumber};
 use crate::touch::sphere::ContactSphere;
 
+/// The slot of the only body.
+const BALL: BodySlot = BodySlot(0);
 const SUBSTEPS: u32 = 8;
 const SUBSTEP: f32 = 1.0 / 480.0;
 
@@ -17,10 +20,10 @@ fn random(seed: &mut u32) -> f32 {
 
 /// A tick begins, as for a world.
 fn start_tick<D: Dim>(spheres: &mut Spheres, pairs: &mut SpherePairs, bodies: &Bodies<D>) {
-    let places = spheres.start_tick(bodies, &mut pairs.changed);
-    pairs.start_tick(places.is_some());
-    if let Some(places) = places {
-        renumber(&mut pairs.list, &places);
+    let numbers = spheres.start_tick(bodies, &mut pairs.changed);
+    pairs.start_tick(numbers.is_some());
+    if let Some(numbers) = numbers {
+        renumber(&mut pairs.list, &numbers);
     }
 }
 
@@ -29,8 +32,8 @@ fn compare<D: Dim>(pairs: &SpherePairs, spheres: &Spheres, bodies: &Bodies<D>, w
     assert!(pairs.list.is_sorted_by(|a, b| a.spheres < b.spheres));
     let all = &spheres.list;
     let centre = |sphere: &ContactSphere| sphere.mean::<D>(&bodies.at(sphere.body).state.position);
-    for (second, b) in all.iter().zip(0..) {
-        for (first, a) in all.iter().zip(0..b) {
+    for (b, second) in all.entries() {
+        for (a, first) in all.entries().take(b.index()) {
             let apart = minus(centre(first), centre(second));
             let reach = (1.0 + MARGIN) * (first.radius + second.radius);
             let is_close = dot(apart, apart) < reach * reach;
@@ -57,7 +60,7 @@ fn ball<D: Dim>(n: usize) -> Bodies<D> {
 /// Crumbs fly about, some much faster than others, turn round on their way, and wake.
 fn check<D: Dim>(n: usize) {
     let mut bodies = ball::<D>(n);
-    let body = bodies.at_mut(0);
+    let body = bodies.at_mut(BALL);
     body.crumble().expect("the mesh stays whole");
     let (size, count) = (body.truth.grid.voxel_size(), body.truth.pieces.list.len());
     let mut seed = 7;
@@ -68,7 +71,7 @@ fn check<D: Dim>(n: usize) {
         let most = if tick % 2 == 0 { 0.2 } else { -0.45 };
         let sleepers: Vec<bool> = (0..count).map(|_| random(&mut seed) > most).collect();
         let sleepers = sleepers.into();
-        let body = bodies.at_mut(0);
+        let body = bodies.at_mut(BALL);
         body.set_asleep(&vec![true; count].into(), false);
         body.set_asleep(&sleepers, tick % 3 == 1);
         // Up to 30 voxels a tick, most of them hardly one.
@@ -100,15 +103,15 @@ fn check<D: Dim>(n: usize) {
         start_tick(&mut spheres, &mut pairs, &bodies);
         for substep in 0..SUBSTEPS {
             if substep == 3 {
-                velocity(bodies.at_mut(0), &|piece| {
+                velocity(bodies.at_mut(BALL), &|piece| {
                     if piece.0 % 3 == 0 { -1.0 } else { 1.0 }
                 });
             }
             if substep == 5 && tick % 3 == 1 {
                 let marked: Vec<bool> = (0..count).map(|piece| piece % 2 == 0).collect();
-                bodies.at_mut(0).set_asleep(&marked.into(), false);
+                bodies.at_mut(BALL).set_asleep(&marked.into(), false);
                 let woken = (0..count as u32).step_by(2);
-                let woken: Vec<_> = woken.map(|piece| (0, PieceId(piece))).collect();
+                let woken: Vec<_> = woken.map(|piece| (BALL, PieceId(piece))).collect();
                 spheres.wake(&woken, &mut pairs.changed);
             }
             whole += u32::from(pairs.bins.is_none());
@@ -121,7 +124,7 @@ fn check<D: Dim>(n: usize) {
             );
             spheres.note_close(pairs.list.iter().flat_map(|pair| pair.spheres));
             let mut furthest = 0.0f32;
-            let body = bodies.at_mut(0);
+            let body = bodies.at_mut(BALL);
             for node in body.state.position.ids() {
                 let step = scaled(body.state.velocity[node], SUBSTEP);
                 furthest = furthest.max(length(step));
@@ -143,9 +146,9 @@ fn no_pair_is_missed() {
 }
 
 /// The lips of cracks, by element.
-fn lips(spheres: &Spheres) -> Vec<[(u32, ElementId); 2]> {
-    let key = |place: u32| spheres.list[place as usize].key();
-    let ascending = |[a, b]: [(u32, ElementId); 2]| [a.min(b), a.max(b)];
+fn lips(spheres: &Spheres) -> Vec<[(BodySlot, ElementId); 2]> {
+    let key = |sphere: SphereId| spheres.list[sphere].key();
+    let ascending = |[a, b]: [(BodySlot, ElementId); 2]| [a.min(b), a.max(b)];
     let mut lips: Vec<_> = { spheres.lips.iter() }
         .map(|lips| ascending(lips.map(key)))
         .collect();
@@ -177,10 +180,10 @@ fn check_tears<D: Dim>(n: usize) {
                 (0..D::N).for_each(|axis| at[axis] = below(n + 1) as i32);
                 (at, 1 + below((1 << D::CORNERS) - 2) as u8)
             });
-            let body = bodies.at_mut(0);
+            let body = bodies.at_mut(BALL);
             let torn = body.tear(&sides.collect::<Vec<_>>());
             let torn = torn.expect("a release leaves the mesh whole");
-            spheres.tear(0, body, &torn, &mut pairs.changed);
+            spheres.tear(BALL, body, &torn, &mut pairs.changed);
             let mut kept = spheres.list.clone();
             kept.sort_by_key(ContactSphere::key);
             let mut anew = Spheres::default();
@@ -188,14 +191,14 @@ fn check_tears<D: Dim>(n: usize) {
             assert_eq!(kept, anew.list);
             assert_eq!(lips(&spheres), lips(&anew));
             let mut rebuilt = bodies.clone();
-            rebuilt.at_mut(0).rebuild();
+            rebuilt.at_mut(BALL).rebuild();
             let mut anew = Spheres::default();
             anew.start_tick(&rebuilt, &mut Vec::new());
             assert_eq!(kept, anew.list, "what tears kept up, and a fresh look");
         }
-        for b in 0..spheres.list.len() {
-            for a in 0..b {
-                let both = [a, b].map(|place| &spheres.list[place]);
+        for (b, second) in spheres.list.entries() {
+            for first in spheres.list.iter().take(b.index()) {
+                let both = [first, second];
                 let [own, other] = both.map(ContactSphere::site);
                 let axes = own.voxel.iter().zip(other.voxel);
                 let apart = axes.map(|(own, other)| own.abs_diff(other)).max();
@@ -208,7 +211,7 @@ fn check_tears<D: Dim>(n: usize) {
             }
         }
     }
-    assert!(bodies.at(0).truth.pieces.list.len() > 10);
+    assert!(bodies.at(BALL).truth.pieces.list.len() > 10);
 }
 
 #[test]
