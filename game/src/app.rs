@@ -87,6 +87,11 @@ impl App {
         })
     }
 
+    /// What was drawn of worlds since this was asked last cost the GPU; what lies over them, egui draws.
+    pub fn take_cost(&self) -> fuwafuwa_render::Cost {
+        self.stage.take_cost()
+    }
+
     /// Takes in sticks and pads: in a round they ask for actions, in a menu they move the focus.
     fn hear_sticks(&mut self, ctx: &egui::Context, seconds: f32) {
         let changes = self.game.hear_sticks();
