@@ -1,18 +1,21 @@
 //! The game in a window for a long time: two players who do anything, on every level, through all screens, with files
 //! that are dropped and a window that is pulled about. Its clock stands ten days ahead at the start. It tells each minute
-//! how it goes, and fails when its memory grows.
+//! how it goes, and fails when its memory grows, or what a frame costs the GPU.
 //!
 //! ```text
 //! xvfb-run -a cargo run --release -p tamaire --example window_soak -- 60
 //! ```
 
-use egui::{DroppedFile, Event, Key, Modifiers, PointerButton, RawInput, ViewportCommand, pos2};
-use std::cell::Cell;
+use egui::epaint::Primitive;
+use egui::{
+    DroppedFile, Event, FullOutput, Key, Modifiers, PointerButton, RawInput, ViewportCommand, pos2,
+};
+use fuwafuwa_render::Cost;
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
-
 use std::process::ExitCode;
 use std::rc::Rc;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 use sticks::{About, Device, DeviceId, Labels, Pad, PadButton, Snapshot};
 use tamaire::app::App;
@@ -22,8 +25,8 @@ use tamaire::platform::{Files, Pads, Sound};
 
 /// How far the clock of the game is ahead [s].
 const AHEAD: f64 = 10.0 * 86_400.0;
-/// Memory settles for so many minutes, and may grow by such a share afterwards.
-const SETTLED: usize = 5;
+/// All settles for so many minutes, in which each level is played once, and may grow by such a share afterwards.
+const SETTLED: usize = 12;
 const GROWTH: f64 = 0.05;
 /// Keys that a hand on a keyboard finds.
 const KEYS: [Key; 16] = [
@@ -56,12 +59,80 @@ struct Soak {
     pad: Device,
     began: Instant,
     frames: u64,
-    /// Memory after each minute [MB].
-    memory: Vec<f64>,
+    of_egui: OfEgui,
+    figures: Rc<RefCell<[Figure; 4]>>,
     minutes: usize,
-    /// By what share it grew after it had settled.
-    growth: Rc<Cell<f64>>,
+    minute: usize,
     level: usize,
+}
+
+/// What is to stay as it is.
+#[derive(Default)]
+struct Figure {
+    name: &'static str,
+    /// In this minute.
+    samples: Vec<f64>,
+    /// The middle one of each minute before.
+    medians: Vec<f64>,
+}
+
+impl Figure {
+    fn new(name: &'static str) -> Self {
+        Self {
+            name,
+            ..Self::default()
+        }
+    }
+
+    /// Begins a minute; the middle of the one that has passed.
+    fn pass_minute(&mut self) -> f64 {
+        let median = median(std::mem::take(&mut self.samples));
+        self.medians.push(median);
+        median
+    }
+
+    /// By what share the last quarter of the time after it had settled is above the first; no number where there was none.
+    fn growth(&self) -> f64 {
+        let settled = self.medians.get(SETTLED..).unwrap_or_default();
+        let quarter = settled.len().div_ceil(4);
+        let (first, last) = (&settled[..quarter], &settled[settled.len() - quarter..]);
+        median(last.to_vec()) / median(first.to_vec()) - 1.0
+    }
+}
+
+/// The middle one; no number where there is none.
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+/// What egui asked of the GPU in the last frame.
+#[derive(Clone, Default)]
+struct OfEgui(Arc<Mutex<Cost>>);
+
+impl egui::Plugin for OfEgui {
+    fn debug_name(&self) -> &'static str {
+        "cost"
+    }
+
+    fn output_hook(&mut self, ctx: &egui::Context, output: &mut FullOutput) {
+        let shapes = ctx.tessellate(output.shapes.clone(), output.pixels_per_point);
+        let meshes = shapes.iter().filter_map(|shape| match &shape.primitive {
+            Primitive::Mesh(mesh) => Some(mesh),
+            Primitive::Callback(_) => None,
+        });
+        let meshes = meshes.map(|mesh| Cost {
+            draws: 1,
+            bytes: (size_of_val(&*mesh.vertices) + size_of_val(&*mesh.indices)) as u64,
+        });
+        let pictures = output.textures_delta.set.values().flatten();
+        let pictures = pictures.map(|change| Cost {
+            draws: 0,
+            bytes: (change.image.width() * change.image.height() * size_of::<egui::Color32>())
+                as u64,
+        });
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = meshes.chain(pictures).sum();
+    }
 }
 
 /// A file as a window tells of it.
@@ -130,6 +201,27 @@ impl Soak {
         }
     }
 
+    /// Looks at how much memory there is, and at what the last frame cost.
+    fn measure(&mut self) {
+        let of_egui = *self
+            .of_egui
+            .0
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        let cost: Cost = [self.app.take_cost(), of_egui].into_iter().sum();
+        let [resident, used, draws, bytes] = &mut *self.figures.borrow_mut();
+        if self.frames.is_multiple_of(30) {
+            for (figure, memory) in [resident, used]
+                .into_iter()
+                .zip(memory().into_iter().flatten())
+            {
+                figure.samples.push(memory);
+            }
+        }
+        draws.samples.push(cost.draws as f64);
+        bytes.samples.push(cost.bytes as f64 / 1000.0);
+    }
+
     /// What happens now and then.
     fn manage(&mut self, ctx: &egui::Context) {
         let game = &mut self.app.game;
@@ -170,10 +262,13 @@ impl Soak {
             ctx.send_viewport_cmd(ViewportCommand::InnerSize(size));
         }
         let minute = self.began.elapsed().as_secs() as usize / 60;
-        if minute > self.memory.len() {
-            let memory = resident().unwrap_or_default();
+        if minute > self.minute {
+            self.minute = minute;
+            let [resident, used, draws, bytes] = { self.figures.borrow_mut() }
+                .each_mut()
+                .map(Figure::pass_minute);
             println!(
-                "{minute:3} min: {memory:6.1} MB, {} frames, clock {:.0} s, {} own levels, {:?}",
+                "{minute:3} min: {resident:6.1} MB, {used:.1} MB of it in use, {draws} draw calls and {bytes:.1} kB a frame, {} frames, clock {:.0} s, {} own levels, {:?}",
                 self.frames,
                 game.time,
                 (0..game.levels.len())
@@ -181,7 +276,6 @@ impl Soak {
                     .count(),
                 game.screen()
             );
-            self.memory.push(memory);
         }
         if minute >= self.minutes {
             ctx.send_viewport_cmd(ViewportCommand::Close);
@@ -198,6 +292,7 @@ impl eframe::App for Soak {
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+        self.measure();
         self.manage(&ui.ctx().clone());
         self.app.ui(ui, frame);
         self.frames += 1;
@@ -205,18 +300,33 @@ impl eframe::App for Soak {
 
     fn on_exit(&mut self) {
         self.app.on_exit();
-        if let (Some(settled), Some(last)) = (self.memory.get(SETTLED), self.memory.last()) {
-            self.growth.set(last / settled - 1.0);
-        }
     }
 }
 
-/// Memory of this program [MB], where the system tells.
-fn resident() -> Option<f64> {
+/// Memory of this program [MB], where the system tells: all of it, and all but what was freed and is kept by the allocator.
+fn memory() -> Option<[f64; 2]> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmRSS:"))?;
     let kilobytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(kilobytes / 1000.0)
+    let resident = kilobytes / 1000.0;
+    Some([resident, resident - free() as f64 / 1e6])
+}
+
+/// What was freed and is kept by the allocator for the next time [bytes].
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
+fn free() -> usize {
+    /// `struct mallinfo2` of malloc.h, whose ninth field is `fordblks`.
+    #[repr(C)]
+    struct Mallinfo2([usize; 10]);
+    unsafe extern "C" {
+        safe fn mallinfo2() -> Mallinfo2;
+    }
+    mallinfo2().0[8]
+}
+
+#[cfg(not(all(target_os = "linux", target_env = "gnu")))]
+fn free() -> usize {
+    0
 }
 
 /// Files that somebody may drop: two levels, a picture, a model, and one that is nothing.
@@ -234,8 +344,9 @@ fn files(folder: &Path) -> std::io::Result<Vec<AnyFile>> {
 fn main() -> ExitCode {
     let minutes = std::env::args().nth(1).and_then(|word| word.parse().ok());
     let minutes = minutes.unwrap_or(60);
-    let growth = Rc::new(Cell::new(f64::NAN));
-    let told = growth.clone();
+    let figures = ["memory", "memory in use", "draw calls", "bytes written"].map(Figure::new);
+    let figures = Rc::new(RefCell::new(figures));
+    let told = figures.clone();
     let folder = tempfile::tempdir().expect("there is a place for files");
     let files = files(folder.path()).expect("there is a place for files");
     let kept = folder.path().join("kept");
@@ -256,6 +367,8 @@ fn main() -> ExitCode {
         Box::new(move |context| {
             let mut game = Game::new(Files::in_folder(kept), Sound::none(), Pads::none());
             game.time = AHEAD;
+            let of_egui = OfEgui::default();
+            context.egui_ctx.add_plugin(of_egui.clone());
             Ok(Box::new(Soak {
                 app: App::new(context, game)?,
                 random: fastrand::Rng::with_seed(7),
@@ -263,21 +376,23 @@ fn main() -> ExitCode {
                 pad,
                 began: Instant::now(),
                 frames: 0,
-                memory: Vec::new(),
+                of_egui,
+                figures: told,
                 minutes,
-                growth: told,
+                minute: 0,
                 level: 0,
             }))
         }),
     );
     match ended {
         Ok(()) => {
-            println!(
-                "memory grew by {:.1} % after it had settled",
-                100.0 * growth.get()
-            );
+            let growths = figures.borrow().each_ref().map(|figure| {
+                let growth = figure.growth();
+                println!("{} grew by {:.1} %", figure.name, 100.0 * growth);
+                growth
+            });
             // What was never measured is no number.
-            let is_flat = growth.get() <= GROWTH;
+            let is_flat = growths.iter().all(|growth| *growth <= GROWTH);
             ExitCode::from(u8::from(!is_flat))
         }
         Err(error) => {

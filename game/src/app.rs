@@ -21,6 +21,8 @@ use switch::Switch;
 
 /// Each screen has room enough in a window of this many points.
 const ROOM: egui::Vec2 = egui::vec2(900.0, 640.0);
+/// In so many steps a screen grows from nothing to its usual size.
+const STEPS: f32 = 32.0;
 
 /// Keys that menus understand.
 const OF_MENUS: [Key; 8] = [
@@ -83,6 +85,11 @@ impl App {
             had_focus: false,
             is_full: false,
         })
+    }
+
+    /// What was drawn of worlds since this was asked last cost the GPU; what lies over them, egui draws.
+    pub fn take_cost(&self) -> fuwafuwa_render::Cost {
+        self.stage.take_cost()
     }
 
     /// Takes in sticks and pads: in a round they ask for actions, in a menu they move the focus.
@@ -350,10 +357,36 @@ impl eframe::App for App {
 
 /// Shows letters and all else at a size that was chosen, or smaller where the window lacks room.
 fn fit(ctx: &egui::Context, text_size: f32) {
-    let room = ctx.content_rect().size() * ctx.zoom_factor() / ROOM;
-    let zoom = text_size.min(room.min_elem()).max(0.1);
+    let zoom = zoom(ctx.content_rect().size() * ctx.zoom_factor(), text_size);
     // Nothing changes its size under the mouse that drags it.
     if !ctx.input(|input| input.pointer.any_down()) {
         ctx.set_zoom_factor(zoom);
+    }
+}
+
+/// The size that was chosen, or a smaller one for which a window has room. There are few of these: egui keeps the letters of
+/// each that it has ever shown.
+fn zoom(window: egui::Vec2, text_size: f32) -> f32 {
+    // What was multiplied and divided by the last zoom is not quite the same.
+    let room = (window / ROOM).min_elem() + 1e-4;
+    text_size.min((STEPS * room).floor() / STEPS).max(0.1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_window_that_is_pulled_about_has_room_and_few_sizes() {
+        let mut zooms: Vec<f32> = Vec::new();
+        for height in 200..1000u16 {
+            let room = f32::from(height) / ROOM.y;
+            let zoom = zoom(egui::vec2(1600.0, height.into()), 1.0);
+            assert!(zoom <= room && (zoom == 1.0 || room - zoom < 1.0 / STEPS));
+            zooms.push(zoom);
+        }
+        zooms.dedup();
+        assert!(zooms.len() < 25 && zooms.is_sorted(), "{zooms:?}");
+        assert_eq!(zoom(0.999_999 * ROOM, 1.0), 1.0);
     }
 }

@@ -10,7 +10,8 @@ use crate::look::{CameraRig, Effects};
 use fuwafuwa::world::TICK;
 use fuwafuwa_painter::{PaintError, Pixmap, film, png_of};
 use fuwafuwa_render::ImageError;
-use studio::{Moment, Studio};
+use studio::Moment;
+pub use studio::Studio;
 use tamaire_play::{AnyRound, Route};
 
 /// Moments in a strip, and how many stand side by side.
@@ -73,13 +74,15 @@ pub enum FilmError {
 }
 
 impl Film {
-    /// The film of a round, as the bytes of its file; `told` hears how many ticks of how many are done.
+    /// The film of a round, as the bytes of its file; `told` hears how many ticks of how many are done. The studio is opened
+    /// where there is none yet, and serves the next film too.
     ///
     /// # Errors
     /// When something cannot be drawn.
     pub fn shoot(
         &self,
         played: &AnyRound,
+        studio: &mut Option<Studio>,
         told: &dyn Fn(usize, usize),
     ) -> Result<Vec<u8>, FilmError> {
         let is_won = played.progress().outcome.is_some();
@@ -90,10 +93,18 @@ impl Film {
                 // The first is the start, the last the end.
                 let gaps = MOMENTS.min(ticks + 1) - 1;
                 let is_shown = |tick| moments_at(ticks, gaps).any(|moment| moment == tick);
-                pass(played, ticks, told, MOMENT, is_shown, |pixels, _| {
-                    moments.push(pixels);
-                    Ok(())
-                })?;
+                pass(
+                    played,
+                    ticks,
+                    studio,
+                    told,
+                    MOMENT,
+                    is_shown,
+                    |pixels, _| {
+                        moments.push(pixels);
+                        Ok(())
+                    },
+                )?;
                 Ok(film::strip(&moments, COLUMNS)?.png()?)
             }
             Self::Animation | Self::Clip => {
@@ -104,15 +115,21 @@ impl Film {
                 let mut gif = film::Gif::default();
                 let is_shown =
                     |tick: usize| tick >= first && (tick == ticks || tick.is_multiple_of(PACE));
-                pass(played, ticks, told, print, is_shown, |pixels, tick| {
-                    gif.add(&pixels, if tick == ticks { LAST } else { HUNDREDTHS })
-                })?;
+                pass(
+                    played,
+                    ticks,
+                    studio,
+                    told,
+                    print,
+                    is_shown,
+                    |pixels, tick| gif.add(&pixels, if tick == ticks { LAST } else { HUNDREDTHS }),
+                )?;
                 Ok(gif.finish()?)
             }
             Self::Photo => {
                 let mut photo = Vec::new();
                 let is_last = |tick| tick == ticks;
-                pass(played, ticks, told, PHOTO, is_last, |pixels, _| {
+                pass(played, ticks, studio, told, PHOTO, is_last, |pixels, _| {
                     photo = png_of(&pixels)?;
                     Ok(())
                 })?;
@@ -131,12 +148,13 @@ fn moments_at(ticks: usize, gaps: usize) -> impl Iterator<Item = usize> {
 fn pass(
     played: &AnyRound,
     ticks: usize,
+    studio: &mut Option<Studio>,
     told: &dyn Fn(usize, usize),
     print: Print,
     is_shown: impl Fn(usize) -> bool,
     mut show: impl FnMut(Pixmap, usize) -> Result<(), PaintError>,
 ) -> Result<(), FilmError> {
-    let mut studio = Studio::open();
+    *studio = studio.take().or_else(Studio::open);
     if studio.is_none() {
         eprintln!(
             "tamaire: there is nothing to draw with, neither Vulkan nor OpenGL, not even in software, so bodies are shown element by element."
@@ -159,8 +177,8 @@ fn pass(
         }
         let caption = caption(&round, tick == ticks);
         let caption = print.is_captioned.then_some(caption.as_str());
-        let pixels = match &mut studio {
-            Some(studio) => {
+        let pixels = match studio {
+            Some(opened) => {
                 let moment = Moment {
                     round: &round,
                     effects: &effects,
@@ -168,8 +186,12 @@ fn pass(
                     time: tick as f64 * f64::from(TICK),
                     caption,
                 };
-                let drawn = studio.shoot(&moment, print.size)?;
-                pixels_of(&drawn, Studio::size(&moment, print.size))?
+                let drawn = opened.shoot(&moment, print.size);
+                if drawn.is_err() {
+                    // The next film may have more luck with another device.
+                    *studio = None;
+                }
+                pixels_of(&drawn?, Studio::size(&moment, print.size))?
             }
             None => plain::picture(&round, print.size, caption)?,
         };

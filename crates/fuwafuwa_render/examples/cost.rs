@@ -1,4 +1,4 @@
-//! How long a picture takes before the GPU is asked, and on it: best milliseconds.
+//! How long a picture takes before the GPU is asked, and on it, in best milliseconds, and what it asks of the GPU.
 
 use fuwafuwa::Dim2;
 use fuwafuwa_render::frame::ElementColour;
@@ -8,6 +8,8 @@ use std::error::Error;
 use std::time::Instant;
 
 const SIZE: [u32; 2] = [1280, 720];
+/// So many are drawn of each.
+const IMAGES: usize = 20;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let instance = wgpu::Instance::default();
@@ -37,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let mut geometry = Geometry::default();
             let gather = best(200, || geometry.gather(&world, &frame));
             let mut failure = None;
-            let whole = best(20, || {
+            let whole = best(IMAGES, || {
                 let image = renderer.render_to_image(&device, &queue, &world, &frame, SIZE);
                 failure = image.err();
             });
@@ -45,8 +47,10 @@ fn main() -> Result<(), Box<dyn Error>> {
                 return Err(error.into());
             }
             let vertices = geometry.vertex_count();
+            let cost = renderer.take_cost();
+            let [draws, bytes] = [cost.draws, cost.bytes].map(|sum| sum / IMAGES as u64);
             println!(
-                "{name:8} {look_name:8} {vertices:6} vertices: {gather:6.2} before the GPU, {whole:6.1} an image"
+                "{name:8} {look_name:8} {vertices:6} vertices: {gather:6.2} before the GPU, {whole:6.1} an image, {draws} draw calls, {bytes} bytes written"
             );
         }
     }

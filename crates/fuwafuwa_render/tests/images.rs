@@ -384,6 +384,37 @@ fn hands_are_in_front_of_what_is_painted_on_bodies() {
 }
 
 #[test]
+fn the_same_picture_costs_the_same_each_time() {
+    let Some((device, queue)) = device() else {
+        return;
+    };
+    let world = disc();
+    let camera = Camera::fit([0.0; 3], [1.0; 3], SIZE);
+    let mut renderer = Renderer::new(&device, TextureFormat::Rgba8Unorm);
+    let mut cost = |particles: &[Particle]| {
+        let frame = Frame {
+            particles,
+            ..Frame::new(camera, &PALETTE)
+        };
+        let image = renderer.render_to_image(&device, &queue, &world, &frame, SIZE);
+        image.expect("an image");
+        renderer.take_cost()
+    };
+    let bare = cost(&[]);
+    assert!(bare.draws > 10 && bare.bytes > 1000, "{bare:?}");
+    assert_eq!(cost(&[]), bare);
+    let speck = Particle {
+        at: [0.5; 3],
+        radius: 0.01,
+        colour: [1.0; 4],
+    };
+    let [one, ten] = [1, 10].map(|count| cost(&vec![speck; count]));
+    // However many there are, they are drawn at once.
+    assert_eq!([one.draws, ten.draws], [bare.draws; 2]);
+    assert_eq!(ten.bytes - bare.bytes, 10 * (one.bytes - bare.bytes));
+}
+
+#[test]
 fn a_renderer_can_lie_among_what_egui_keeps_for_callbacks() {
     fn is_kept<T: Send + Sync + 'static>() {}
     is_kept::<Renderer>();

@@ -377,3 +377,22 @@ fn a_renderer_can_lie_among_what_egui_keeps_for_callbacks() {
     fn is_kept<T: Send + Sync + 'static>() {}
     is_kept::<Renderer>();
 }
+
+#[test]
+fn what_stays_as_it_is_is_not_written_again() {
+    let Some((device, queue)) = device() else {
+        return;
+    };
+    let world = ball();
+    let frame = Frame::new(Camera::fit([0.0; 3], [1.0; 3], SIZE), &PALETTE);
+    let mut renderer = Renderer::new(&device, TextureFormat::Rgba8Unorm);
+    let mut cost = || {
+        let image = renderer.render_to_image(&device, &queue, &world, &frame, SIZE);
+        image.expect("an image");
+        renderer.take_cost()
+    };
+    let [first, second, third] = [(); 3].map(|()| cost());
+    assert_eq!(first.draws, second.draws);
+    assert!(second.bytes < first.bytes, "{first:?}, {second:?}");
+    assert_eq!(second, third);
+}

@@ -6,7 +6,7 @@ use super::{CameraRig, Face, Theme, View};
 use eframe::egui_wgpu::RenderState;
 use egui::{Color32, Painter, Rect, TextureId, pos2};
 use fuwafuwa::{Dim, Vector};
-use fuwafuwa_render::{Frame, Renderer, Sticker, new_image, pass_into, space};
+use fuwafuwa_render::{Cost, Frame, Renderer, Sticker, new_image, pass_into, space};
 use std::sync::Arc;
 use tamaire_play::{AnyRound, Level, Round};
 use wgpu::{FilterMode, TextureFormat, TextureUsages};
@@ -62,6 +62,13 @@ impl Maps {
             let picture = self.picture(state, level, theme);
             self.pictures.push(picture);
         }
+    }
+
+    /// What was drawn since this was asked last cost the GPU.
+    pub fn take_cost(&self) -> Cost {
+        let plane = self.renderer.as_ref().map(Renderer::take_cost);
+        let space = self.space.as_ref().map(space::Renderer::take_cost);
+        plane.into_iter().chain(space).sum()
     }
 
     fn forget(&mut self, state: &RenderState, which: impl Fn(&Arc<Level>) -> bool) {

@@ -7,8 +7,8 @@ use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait, RenderState}
 use egui::{Color32, PaintCallbackInfo, Painter, Pos2, Rect, Stroke, Ui, vec2};
 use fuwafuwa::vector::{length, minus};
 use fuwafuwa::{Dim, Dim2, Dim3, Vector};
-use fuwafuwa_render::{Ages, Frame, Particle, Renderer, Sticker, space};
-use std::sync::{Arc, Mutex, PoisonError};
+use fuwafuwa_render::{Ages, Cost, Frame, Particle, Renderer, Sticker, space};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tamaire_play::{AnyRound, Level, Round};
 
 /// Lines of a round that was played before.
@@ -40,9 +40,7 @@ impl<R: Send + 'static> CallbackTrait for Paint<R> {
         pass: &mut wgpu::RenderPass<'static>,
         _: &CallbackResources,
     ) {
-        // A panic elsewhere left at worst an unfinished picture.
-        let renderer = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        (self.1)(&renderer, pass);
+        (self.1)(&lock(&self.0), pass);
     }
 }
 
@@ -65,6 +63,16 @@ impl Stage {
     pub fn maps(&mut self, levels: &[Arc<Level>], theme: &Theme) -> &Maps {
         self.maps.make_one(&self.state, levels, theme);
         &self.maps
+    }
+
+    /// What was drawn of worlds since this was asked last cost the GPU.
+    pub fn take_cost(&self) -> Cost {
+        let plane = lock(&self.renderer).take_cost();
+        let space = self.space.as_ref().map(|space| lock(space).take_cost());
+        [plane, self.maps.take_cost()]
+            .into_iter()
+            .chain(space)
+            .sum()
     }
 
     /// Draws a round.
@@ -107,7 +115,7 @@ impl Stage {
         let new = || Arc::new(Mutex::new(space::Renderer::new(device, *target_format)));
         let shared = self.space.get_or_insert_with(new);
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let mut renderer = shared.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut renderer = lock(shared);
         renderer.prepare(device, queue, &mut encoder, round.world(), &frame, size);
         queue.submit([encoder.finish()]);
         drop(renderer);
@@ -131,7 +139,7 @@ impl Stage {
         };
         let RenderState { device, queue, .. } = &self.state;
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let mut renderer = self.renderer.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut renderer = lock(&self.renderer);
         renderer.prepare(device, queue, &mut encoder, round.world(), &frame, size);
         queue.submit([encoder.finish()]);
         let painter = ui.painter();
@@ -167,6 +175,11 @@ impl Stage {
         self.ages.follow(round.world(), seconds);
         self.time = look.time;
     }
+}
+
+/// A panic elsewhere left at worst an unfinished picture.
+fn lock<R>(renderer: &Mutex<R>) -> MutexGuard<'_, R> {
+    renderer.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// How bodies in space are opened for whom a camera shows them: from the front, or from above where it looks down.

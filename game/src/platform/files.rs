@@ -1,6 +1,6 @@
 //! What is kept between two evenings: settings, records, replays. All is written on a thread of its own.
 
-use super::pictures;
+use super::pictures::Pictures;
 use super::storage::{Entry, Kind, Nowhere, Storage};
 use super::writer::Writer;
 use crate::records::Records;
@@ -41,6 +41,7 @@ pub struct Files {
     resting: Option<(String, f32)>,
     /// How much of the picture that is being made is done [%].
     developed: Option<Arc<AtomicU32>>,
+    pictures: Pictures,
     /// Whether it was told that something failed, and nothing was written since.
     is_failing: bool,
 }
@@ -109,6 +110,7 @@ impl Files {
             usual: Settings::default(),
             resting: None,
             developed: None,
+            pictures: Pictures::default(),
             is_failing: false,
         }
     }
@@ -228,11 +230,11 @@ impl Files {
         }
         let developed = Arc::new(AtomicU32::new(0));
         self.developed = Some(developed.clone());
-        let storage = self.storage.clone();
+        let (storage, pictures) = (self.storage.clone(), self.pictures.clone());
         self.darkroom.write(move || {
             let stem = stem_of(&replay);
             let told = |share: f32| developed.store((100.0 * share) as u32, Ordering::Relaxed);
-            let picture = pictures::shoot(kind, replay, &told);
+            let picture = pictures.shoot(kind, replay, &told);
             Done::Picture(picture.and_then(|bytes| save(&*storage, kind, &stem, &bytes)))
         });
     }

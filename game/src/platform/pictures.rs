@@ -1,25 +1,38 @@
 //! Photos and clips of rounds that were played.
 
 use super::storage::Kind;
-use crate::film::Film;
-use std::sync::Arc;
+use crate::film::{Film, Studio};
+use std::sync::{Arc, Mutex, PoisonError};
 use tamaire_play::{Playback, Replay};
 
 /// Whether there are any.
 pub const ARE_THERE: bool = true;
 
-/// A picture of a round, as the bytes of its file; `told` hears the share that is done.
-pub fn shoot(kind: Kind, replay: Arc<Replay>, told: &dyn Fn(f32)) -> Result<Vec<u8>, String> {
-    let film = match kind {
-        Kind::Clip => Film::Clip,
-        _ => Film::Photo,
-    };
-    let why = |error: &dyn std::error::Error| error.to_string();
-    let mut playback = Playback::new(replay).map_err(|error| why(&error))?;
-    while !playback.is_over() {
-        playback.step().map_err(|error| why(&error))?;
+/// Makes pictures. What they are drawn with is opened for the first one and kept: a device that is closed leaves something
+/// behind in drivers and allocators.
+#[derive(Clone, Default)]
+pub struct Pictures(Arc<Mutex<Option<Studio>>>);
+
+impl Pictures {
+    /// A picture of a round, as the bytes of its file; `told` hears the share that is done.
+    pub fn shoot(
+        &self,
+        kind: Kind,
+        replay: Arc<Replay>,
+        told: &dyn Fn(f32),
+    ) -> Result<Vec<u8>, String> {
+        let film = match kind {
+            Kind::Clip => Film::Clip,
+            _ => Film::Photo,
+        };
+        let why = |error: &dyn std::error::Error| error.to_string();
+        let mut playback = Playback::new(replay).map_err(|error| why(&error))?;
+        while !playback.is_over() {
+            playback.step().map_err(|error| why(&error))?;
+        }
+        let share = |tick: usize, ticks: usize| told(tick as f32 / ticks.max(1) as f32);
+        let mut studio = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let shot = film.shoot(playback.round(), &mut studio, &share);
+        shot.map_err(|error| why(&error))
     }
-    let share = |tick: usize, ticks: usize| told(tick as f32 / ticks.max(1) as f32);
-    let shot = film.shoot(playback.round(), &share);
-    shot.map_err(|error| why(&error))
 }

@@ -1,7 +1,8 @@
 //! Buffers that grow, as far as the device lets them.
 
+use super::cost::Gpu;
 use bytemuck::Pod;
-use wgpu::{Buffer, BufferDescriptor, BufferUsages, Device, Queue};
+use wgpu::{Buffer, BufferDescriptor, BufferUsages, Device};
 
 /// A buffer on the GPU that is written anew every frame and grows when it must. What is more than a
 /// buffer of the device can hold is left out.
@@ -24,8 +25,8 @@ impl GrowingBuffer {
     }
 
     /// Writes values to its beginning.
-    pub fn write<T: Pod>(&mut self, device: &Device, queue: &Queue, values: &[T]) {
-        let most = device.limits().max_buffer_size;
+    pub fn write<T: Pod>(&mut self, gpu: Gpu<'_>, values: &[T]) {
+        let most = gpu.device.limits().max_buffer_size;
         let fit = (most / size_of::<T>() as u64).min(values.len() as u64);
         self.count = fit as u32;
         let bytes: &[u8] = bytemuck::cast_slice(&values[..fit as usize]);
@@ -34,9 +35,9 @@ impl GrowingBuffer {
         }
         if bytes.len() as u64 > self.buffer.size() {
             let size = (bytes.len() as u64).next_power_of_two().min(most);
-            self.buffer = create(device, self.label, self.usage, size);
+            self.buffer = create(gpu.device, self.label, self.usage, size);
         }
-        queue.write_buffer(&self.buffer, 0, bytes);
+        gpu.meter.write(gpu.queue, &self.buffer, 0, bytes);
     }
 
     /// How many values it holds.

@@ -1,6 +1,7 @@
 //! Vertices on the GPU: passes of their own, then the window's.
 
 pub(crate) mod buffer;
+pub(crate) mod cost;
 pub(crate) mod image;
 mod pipelines;
 pub(crate) mod program;
@@ -10,6 +11,7 @@ use crate::frame::{Camera, Frame, Look};
 use crate::geometry::Geometry;
 use buffer::{GrowingBuffer, drawable};
 use bytemuck::{Pod, Zeroable};
+use cost::{Cost, Gpu, Meter};
 use fuwafuwa::{Dim2, World};
 use pipelines::Pipelines;
 use std::ops::Range;
@@ -40,6 +42,7 @@ pub struct Renderer {
     element_indices: GrowingBuffer,
     shapes: GrowingBuffer,
     dots: GrowingBuffer,
+    meter: Meter,
 }
 
 /// What every shader knows; see `globals.wgsl`.
@@ -81,6 +84,7 @@ impl Renderer {
             element_indices: buffer("element indices", index),
             shapes: buffer("shapes", vertex),
             dots: buffer("dots", vertex),
+            meter: Meter::default(),
             pipelines,
             uniforms,
         }
@@ -120,15 +124,15 @@ impl Renderer {
         pass.set_bind_group(1, &self.targets.body, &[]);
         pass.set_vertex_buffer(0, self.shapes.all());
         pass.set_pipeline(&pipelines.arena);
-        pass.draw(0..3, 0..1);
+        self.meter.draw(pass, 0..3, 0..1);
         pass.set_pipeline(&pipelines.glow);
-        pass.draw(0..4, basket.clone());
+        self.meter.draw(pass, 0..4, basket.clone());
         if self.covered.is_some() {
             pass.set_pipeline(&pipelines.body);
-            pass.draw(0..4, 0..1);
+            self.meter.draw(pass, 0..4, 0..1);
         }
         pass.set_pipeline(&pipelines.border);
-        pass.draw(0..4, basket);
+        self.meter.draw(pass, 0..4, basket);
     }
 
     /// The second half: bars, hands and particles, which are in front.
@@ -142,11 +146,16 @@ impl Renderer {
             (&pipelines.hand, hands),
         ] {
             pass.set_pipeline(pipeline);
-            pass.draw(0..4, shapes);
+            self.meter.draw(pass, 0..4, shapes);
         }
         pass.set_vertex_buffer(0, self.dots.all());
         pass.set_pipeline(&pipelines.particle);
-        pass.draw(0..4, 0..self.dots.count());
+        self.meter.draw(pass, 0..4, 0..self.dots.count());
+    }
+
+    /// What was prepared and painted since this was asked last cost the GPU.
+    pub fn take_cost(&self) -> Cost {
+        self.meter.take()
     }
 
     /// Which shapes are bars, hands and the basket, as far as the device has room for them.
@@ -192,19 +201,23 @@ impl Renderer {
             bounds,
             ..
         } = &self.geometry;
-        self.skin_vertices.write(device, queue, &skin.vertices);
+        let gpu = Gpu {
+            device,
+            queue,
+            meter: &self.meter,
+        };
+        self.skin_vertices.write(gpu, &skin.vertices);
         let there = self.skin_vertices.count();
         let fans = drawable(&skin.fans, &skin.vertices, there);
         let bands = drawable(&skin.bands, &skin.vertices, there);
-        self.fans.write(device, queue, fans);
-        self.bands.write(device, queue, bands);
-        self.element_vertices
-            .write(device, queue, &elements.vertices);
+        self.fans.write(gpu, fans);
+        self.bands.write(gpu, bands);
+        self.element_vertices.write(gpu, &elements.vertices);
         let there = self.element_vertices.count();
         let indices = drawable(&elements.indices, &elements.vertices, there);
-        self.element_indices.write(device, queue, indices);
-        self.shapes.write(device, queue, &rigid.shapes);
-        self.dots.write(device, queue, &rigid.dots);
+        self.element_indices.write(gpu, indices);
+        self.shapes.write(gpu, &rigid.shapes);
+        self.dots.write(gpu, &rigid.dots);
 
         let camera = &frame.camera;
         let [right, up] = camera.axes();
@@ -214,7 +227,7 @@ impl Renderer {
         let (edge, thickness) = (EDGE * radius, THICKNESS * radius);
         let pixels = size[1] / camera.height;
         self.targets
-            .set_blur(queue, edge * pixels, thickness * pixels);
+            .set_blur(gpu, edge * pixels, thickness * pixels);
         let mut walls = [[0.0; 4]; crate::rigid::MOST_WALLS];
         walls[..rigid.walls.len()].copy_from_slice(&rigid.walls);
         let flag = |is: bool| f32::from(u8::from(is));
@@ -243,7 +256,8 @@ impl Renderer {
             },
             walls,
         };
-        queue.write_buffer(&self.uniforms, 0, bytemuck::bytes_of(&globals));
+        gpu.meter
+            .write(queue, &self.uniforms, 0, bytemuck::bytes_of(&globals));
     }
 
     fn draw_bodies(&self, encoder: &mut CommandEncoder) {
@@ -278,16 +292,19 @@ impl Renderer {
             for (pipeline, Range { start, end }) in steps {
                 let there = self.fans.count();
                 pass.set_pipeline(pipeline);
-                pass.draw_indexed(start.min(there)..end.min(there), 0, 0..1);
+                self.meter
+                    .draw_indexed(&mut pass, start.min(there)..end.min(there), 0..1);
             }
         }
         pass.set_pipeline(&pipelines.band);
         pass.set_index_buffer(self.bands.all(), IndexFormat::Uint32);
-        pass.draw_indexed(0..self.bands.count(), 0, 0..1);
+        self.meter
+            .draw_indexed(&mut pass, 0..self.bands.count(), 0..1);
         pass.set_pipeline(&pipelines.element);
         pass.set_vertex_buffer(0, self.element_vertices.all());
         pass.set_index_buffer(self.element_indices.all(), IndexFormat::Uint32);
-        pass.draw_indexed(0..self.element_indices.count(), 0, 0..1);
+        self.meter
+            .draw_indexed(&mut pass, 0..self.element_indices.count(), 0..1);
     }
 
     fn blur(&self, encoder: &mut CommandEncoder) {
@@ -313,7 +330,7 @@ impl Renderer {
             pass.set_pipeline(pipeline);
             pass.set_bind_group(0, &self.globals, &[]);
             pass.set_bind_group(1, from, &[]);
-            pass.draw(0..3, 0..1);
+            self.meter.draw(&mut pass, 0..3, 0..1);
         };
         let (shrink, soften) = (&pipelines.shrink, &pipelines.soften);
         let doing = [shrink, soften, soften, shrink, soften, soften];

@@ -1,5 +1,6 @@
 //! The images that bodies are drawn into, apart from the window.
 
+use super::cost::Gpu;
 use super::pipelines::{Pipelines, SKIN_FORMAT, SOFT_FORMAT, STENCIL_FORMAT};
 use super::program::SAMPLES;
 use bytemuck::{Pod, Zeroable};
@@ -133,7 +134,7 @@ impl Targets {
     }
 
     /// Tells the blurs how far to reach, in pixels of the skin.
-    pub fn set_blur(&self, queue: &Queue, narrow: f32, wide: f32) {
+    pub fn set_blur(&self, gpu: Gpu<'_>, narrow: f32, wide: f32) {
         let texel = |divisor: u32| self.size.map(|side| 1.0 / side.div_ceil(divisor) as f32);
         let shrink = |divisor: u32| Blur {
             step: texel(divisor).map(|side| 0.5 * side),
@@ -158,7 +159,9 @@ impl Targets {
             soften(WIDE, wide, 1),
         ];
         for (k, step) in steps.iter().enumerate() {
-            queue.write_buffer(&self.uniforms, k as u64 * STRIDE, bytemuck::bytes_of(step));
+            let at = k as u64 * STRIDE;
+            gpu.meter
+                .write(gpu.queue, &self.uniforms, at, bytemuck::bytes_of(step));
         }
     }
 }

@@ -1,10 +1,11 @@
 //! Vertices and triangles on the GPU, in two buffers.
 
 use crate::gpu::buffer::{GrowingBuffer, drawable};
+use crate::gpu::cost::{Gpu, Meter};
 use crate::space::skin::Skin;
 use bytemuck::Pod;
 use std::ops::Range;
-use wgpu::{BufferUsages, Device, IndexFormat, Queue, RenderPass};
+use wgpu::{BufferUsages, Device, IndexFormat, RenderPass};
 
 /// Room for vertices and triangles.
 pub(super) fn mesh_buffers(device: &Device, label: &'static str) -> [GrowingBuffer; 2] {
@@ -14,42 +15,41 @@ pub(super) fn mesh_buffers(device: &Device, label: &'static str) -> [GrowingBuff
 
 /// Writes skins; those that were not renewed have the triangles that they had.
 pub(super) fn write_skins(
-    device: &Device,
-    queue: &Queue,
+    gpu: Gpu<'_>,
     buffers: &mut Vec<[GrowingBuffer; 2]>,
     skins: &[Skin],
     renewed: &[bool],
 ) {
     buffers.truncate(skins.len());
     while buffers.len() < skins.len() {
-        buffers.push(mesh_buffers(device, "skin"));
+        buffers.push(mesh_buffers(gpu.device, "skin"));
     }
     for (place, is_new) in renewed.iter().enumerate() {
         let (skin, [vertices, indices]) = (&skins[place], &mut buffers[place]);
-        vertices.write(device, queue, skin.vertices());
+        vertices.write(gpu, skin.vertices());
         // A body that is gone leaves its buffers to the next one.
         if *is_new || indices.count() as usize != skin.indices().len() {
             let there = drawable(skin.indices(), skin.vertices(), vertices.count());
-            indices.write(device, queue, there);
+            indices.write(gpu, there);
         }
     }
 }
 
 /// Writes vertices, and as many triangles as there is room for their corners.
 pub(super) fn write_mesh<T: Pod>(
-    device: &Device,
-    queue: &Queue,
+    gpu: Gpu<'_>,
     [vertices, indices]: &mut [GrowingBuffer; 2],
     corners: &[T],
     triangles: &[u32],
 ) {
-    vertices.write(device, queue, corners);
+    vertices.write(gpu, corners);
     let there = drawable(triangles, corners, vertices.count());
-    indices.write(device, queue, there);
+    indices.write(gpu, there);
 }
 
 /// Draws it so many times; nothing where it is empty.
 pub(super) fn draw_mesh(
+    meter: &Meter,
     pass: &mut RenderPass<'_>,
     [vertices, indices]: &[GrowingBuffer; 2],
     instances: Range<u32>,
@@ -59,5 +59,5 @@ pub(super) fn draw_mesh(
     }
     pass.set_vertex_buffer(0, vertices.all());
     pass.set_index_buffer(indices.all(), IndexFormat::Uint32);
-    pass.draw_indexed(0..indices.count(), 0, instances);
+    meter.draw_indexed(pass, 0..indices.count(), instances);
 }

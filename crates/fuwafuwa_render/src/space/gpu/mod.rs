@@ -9,6 +9,7 @@ use super::geometry::Geometry;
 use super::rounded;
 use crate::frame::Frame;
 use crate::gpu::buffer::GrowingBuffer;
+use crate::gpu::cost::{Cost, Gpu, Meter};
 use crate::gpu::image::{ImageError, Step, image};
 use crate::gpu::targets::{bind, clear, new_uniforms};
 use crate::rigid::MOST_WALLS;
@@ -55,6 +56,7 @@ pub struct Renderer {
     rounded: GrowingBuffer,
     fine: [GrowingBuffer; 2],
     coarse: [GrowingBuffer; 2],
+    meter: Meter,
 }
 
 /// What every shader knows; see `space.wgsl`.
@@ -104,6 +106,7 @@ impl Renderer {
             rounded: GrowingBuffer::new(device, "rounded", BufferUsages::VERTEX),
             fine: mesh_buffers(device, "fine balls"),
             coarse: mesh_buffers(device, "coarse balls"),
+            meter: Meter::default(),
             pipelines,
         }
     }
@@ -134,7 +137,12 @@ impl Renderer {
         pass.set_pipeline(&self.pipelines.window);
         pass.set_bind_group(0, &self.globals[0], &[]);
         pass.set_bind_group(1, &self.targets.shown, &[]);
-        pass.draw(0..3, 0..1);
+        self.meter.draw(pass, 0..3, 0..1);
+    }
+
+    /// As [`crate::Renderer::take_cost`].
+    pub fn take_cost(&self) -> Cost {
+        self.meter.take()
     }
 
     /// Draws a world into an image, as [`crate::Renderer::render_to_image`] does in the plane.
@@ -164,20 +172,25 @@ impl Renderer {
             rounded,
             ..
         } = &self.geometry;
+        let gpu = Gpu {
+            device,
+            queue,
+            meter: &self.meter,
+        };
         let (skins, renewed) = (&self.geometry.skins, &self.geometry.renewed);
-        write_skins(device, queue, &mut self.skins, skins, renewed);
+        write_skins(gpu, &mut self.skins, skins, renewed);
         let (skins, renewed) = (&self.geometry.ghosts, &self.geometry.renewed_ghosts);
-        write_skins(device, queue, &mut self.ghosts, skins, renewed);
+        write_skins(gpu, &mut self.ghosts, skins, renewed);
         let (vertices, indices) = (&boxes.vertices, &boxes.indices);
-        write_mesh(device, queue, &mut self.boxes, vertices, indices);
+        write_mesh(gpu, &mut self.boxes, vertices, indices);
         let (vertices, indices) = (&stickers.vertices, &stickers.indices);
-        write_mesh(device, queue, &mut self.stickers, vertices, indices);
-        self.room.write(device, queue, room);
-        self.rounded.write(device, queue, rounded);
+        write_mesh(gpu, &mut self.stickers, vertices, indices);
+        self.room.write(gpu, room);
+        self.rounded.write(gpu, rounded);
         for (buffers, fineness) in [(&mut self.fine, FINE), (&mut self.coarse, COARSE)] {
             if buffers[0].count() == 0 {
                 let (vertices, indices) = rounded::mesh(fineness);
-                write_mesh(device, queue, buffers, &vertices, &indices);
+                write_mesh(gpu, buffers, &vertices, &indices);
             }
         }
     }
@@ -227,7 +240,8 @@ impl Renderer {
             .zip(&self.uniforms)
         {
             globals.to_clip = *to_clip;
-            queue.write_buffer(buffer, 0, bytemuck::bytes_of(&globals));
+            self.meter
+                .write(queue, buffer, 0, bytemuck::bytes_of(&globals));
         }
     }
 
@@ -243,12 +257,22 @@ impl Renderer {
             pass.set_pipeline(&pipelines.skin_shadow);
             self.draw_skins(&mut pass);
             pass.set_pipeline(&pipelines.element_shadow);
-            draw_mesh(&mut pass, &self.boxes, 0..1);
+            draw_mesh(&self.meter, &mut pass, &self.boxes, 0..1);
             pass.set_vertex_buffer(1, self.rounded.all());
             pass.set_pipeline(&pipelines.bar_shadow);
-            draw_mesh(&mut pass, &self.fine, self.there(&geometry.bars));
+            draw_mesh(
+                &self.meter,
+                &mut pass,
+                &self.fine,
+                self.there(&geometry.bars),
+            );
             pass.set_pipeline(&pipelines.crumb_shadow);
-            draw_mesh(&mut pass, &self.coarse, self.there(&geometry.crumbs));
+            draw_mesh(
+                &self.meter,
+                &mut pass,
+                &self.coarse,
+                self.there(&geometry.crumbs),
+            );
         }
     }
 
@@ -263,14 +287,14 @@ impl Renderer {
         pass.set_bind_group(0, &self.globals[0], &[]);
         pass.set_bind_group(1, &self.shadows.read, &[]);
         pass.set_pipeline(&pipelines.sky);
-        pass.draw(0..3, 0..1);
+        self.meter.draw(&mut pass, 0..3, 0..1);
         pass.set_pipeline(&pipelines.room);
         pass.set_vertex_buffer(0, self.room.all());
-        pass.draw(0..self.room.count(), 0..1);
+        self.meter.draw(&mut pass, 0..self.room.count(), 0..1);
         pass.set_pipeline(&pipelines.skin);
         self.draw_skins(&mut pass);
         pass.set_pipeline(&pipelines.element);
-        draw_mesh(&mut pass, &self.boxes, 0..1);
+        draw_mesh(&self.meter, &mut pass, &self.boxes, 0..1);
         self.draw_rounded(
             &mut pass,
             [
@@ -281,7 +305,7 @@ impl Renderer {
             ],
         );
         pass.set_pipeline(&pipelines.sticker);
-        draw_mesh(&mut pass, &self.stickers, 0..1);
+        draw_mesh(&self.meter, &mut pass, &self.stickers, 0..1);
         self.draw_rounded(
             &mut pass,
             [
@@ -294,7 +318,7 @@ impl Renderer {
         for pipeline in [&pipelines.ghost_depth, &pipelines.ghost] {
             pass.set_pipeline(pipeline);
             for buffers in &self.ghosts {
-                draw_mesh(&mut pass, buffers, 0..1);
+                draw_mesh(&self.meter, &mut pass, buffers, 0..1);
             }
         }
         let hands = (&pipelines.ghost_hand, &self.fine, &geometry.ghost_hands);
@@ -309,14 +333,14 @@ impl Renderer {
         pass.set_vertex_buffer(1, self.rounded.all());
         for (pipeline, mesh, instances) in kinds {
             pass.set_pipeline(pipeline);
-            draw_mesh(pass, mesh, self.there(instances));
+            draw_mesh(&self.meter, pass, mesh, self.there(instances));
         }
     }
 
     fn draw_skins(&self, pass: &mut RenderPass<'_>) {
         // In the element view there are none.
         for buffers in &self.skins[..self.geometry.renewed.len()] {
-            draw_mesh(pass, buffers, 0..1);
+            draw_mesh(&self.meter, pass, buffers, 0..1);
         }
     }
 
