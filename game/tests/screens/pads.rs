@@ -137,7 +137,7 @@ fn a_pad_alone_goes_everywhere() {
     assert!((before - after - 0.1).abs() < 1e-3, "{before} {after}");
 
     // Down to the end, where what has the focus is in sight.
-    for _ in 0..40 {
+    for _ in 0..60 {
         if !table.has_focus("Reset") {
             table.tap(Down);
         }
