@@ -25,8 +25,9 @@ use tamaire::platform::{Files, Pads, Sound};
 
 /// How far the clock of the game is ahead [s].
 const AHEAD: f64 = 10.0 * 86_400.0;
-/// All settles for so many minutes, in which each level is played once, and may grow by such a share afterwards.
-const SETTLED: usize = 12;
+/// All settles for so many minutes, in which each level is played and photographed once, and may grow by such a share
+/// afterwards.
+const SETTLED: usize = 15;
 const GROWTH: f64 = 0.05;
 /// Keys that a hand on a keyboard finds.
 const KEYS: [Key; 16] = [
@@ -63,7 +64,8 @@ struct Soak {
     figures: Rc<RefCell<[Figure; 4]>>,
     minutes: usize,
     minute: usize,
-    level: usize,
+    /// How many levels were begun.
+    begun: usize,
 }
 
 /// What is to stay as it is.
@@ -237,8 +239,12 @@ impl Soak {
                 3 => game.keep_replay(),
                 4 => game.keep_clip(),
                 _ => {
-                    self.level = (self.level + 1) % game.levels.len();
-                    game.start(self.level);
+                    // The first photo of each takes memory that the others use again.
+                    if self.begun < game.levels.len() {
+                        game.keep_photo();
+                    }
+                    self.begun += 1;
+                    game.start(self.begun % game.levels.len());
                     game.act(Action::Join, Seat::Stick(self.pad.id));
                 }
             }
@@ -380,7 +386,7 @@ fn main() -> ExitCode {
                 figures: told,
                 minutes,
                 minute: 0,
-                level: 0,
+                begun: 0,
             }))
         }),
     );
