@@ -318,7 +318,7 @@ impl<D: Dim> Body<D> {
         self.cache.blend.least_strength < f32::INFINITY
     }
 
-    /// The longest substep that its stiffest material bears [s]: [`COURANT`] s / c.
+    /// The longest substep that its stiffest material bears [s]: 0.6 s / c (s the voxel, c the wave).
     pub fn longest_substep(&self) -> f64 {
         let fastest = self.cache.blend.fastest_wave * self.truth.stiffness_scale.sqrt();
         COURANT * f64::from(self.truth.grid.voxel_size()) / fastest

@@ -1,9 +1,10 @@
 //! Where a round is played: a scene with a table `[game]`, in a text file that a person can write.
 
+mod room;
+
 use crate::Route;
 use fuwafuwa::hash::Hash;
-use fuwafuwa::vector::{plus, scaled};
-use fuwafuwa::{Body, Dim, Dim2, Dim3, Shape, Vector, World};
+use fuwafuwa::{Dim, Dim2, Dim3, Shape, World};
 use fuwafuwa_scenes::scene::{
     BodyText, Fetch, GameText, MAX_TEXT_BYTES, Scene, SceneError, ending_of,
 };
@@ -198,8 +199,8 @@ impl Level {
     pub fn of(id: &str, scene: Scene) -> Result<Self, LevelError> {
         let level = Self::unbuilt(id, scene)?;
         let checked = match level.scene.dim {
-            2 => check(&level.start::<Dim2>()?.0, level.arena()),
-            _ => check(&level.start::<Dim3>()?.0, level.arena()),
+            2 => room::check(&level.start::<Dim2>()?.0, level.arena()),
+            _ => room::check(&level.start::<Dim3>()?.0, level.arena()),
         };
         let wrong = |(field, reason)| LevelError::NoGame {
             id: id.into(),
@@ -353,46 +354,6 @@ fn text_in<'a>(id: &str, bytes: &'a [u8], most: u64) -> Result<&'a str, LevelErr
     }
     let text = std::str::from_utf8(bytes);
     text.map_err(|error| wrong(format!("expected a text in UTF-8: {error}")))
-}
-
-/// Checks that in the arena hands can move and bodies can be reached; else which field is wrong, and what was expected.
-fn check<D: Dim>(world: &World<D>, [low, high]: [Vector; 2]) -> Result<(), (&'static str, String)> {
-    let room = (0..D::N).map(|axis| high[axis] - low[axis]);
-    let room = room.fold(f32::INFINITY, f32::min);
-    if widest_hand(world) > 0.9 * room {
-        let reason = format!("expected hands that can move in the view, {room} m wide");
-        return Err(("hand", reason));
-    }
-    let is_within = |middle: Vector| (0..D::N).all(|k| (low[k]..=high[k]).contains(&middle[k]));
-    let mut middles = world.bodies().iter().map(middle);
-    match middles.position(|middle| !is_within(middle)) {
-        None => Ok(()),
-        Some(index) => {
-            let reason = format!(
-                "expected bodies in the view; of body {} the middle is not",
-                index + 1
-            );
-            Err(("body", reason))
-        }
-    }
-}
-
-/// The middle of the nodes of a body [m].
-fn middle<D: Dim>(body: &Body<D>) -> Vector {
-    let positions = body.mesh().nodes().map(|(id, _)| body.node_state(id).0);
-    let (sum, count) = positions.fold(([0.0; 3], 0.0), |(sum, count), at| {
-        (plus(sum, at), count + 1.0)
-    });
-    scaled(sum, 1.0 / count)
-}
-
-/// How wide the widest hand is on any axis [m].
-fn widest_hand<D: Dim>(world: &World<D>) -> f32 {
-    let widths = world.hands().flat_map(|(_, hand)| {
-        let [low, high] = hand.form().bounds();
-        (0..D::N).map(move |axis| high[axis] - low[axis])
-    });
-    widths.fold(0.0, f32::max)
 }
 
 /// What is wrong with a body that is made from a file is wrong with the file: of the level around it nobody
