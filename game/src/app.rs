@@ -111,7 +111,12 @@ impl App {
                 control,
                 Control::Pad(PadButton::South | PadButton::East) | Control::Button(0 | 1)
             );
+            let is_switch = self.game.settings.scanning.is_on() && Switch::is(control);
             if let Some(action) = self.game.controls.rebinding {
+                if is_switch {
+                    self.game.controls.rebinding = None;
+                    continue;
+                }
                 if action == Action::CutForces && is_of_menus {
                     // Nobody could go on in a menu without cutting forces.
                     continue;
@@ -121,7 +126,7 @@ impl App {
                 self.game.keep_settings();
                 continue;
             }
-            if Switch::is(control) && !in_menu && self.game.settings.scanning.step().is_some() {
+            if is_switch && !in_menu {
                 continue;
             }
             let action = self.game.settings.bindings.of_button(control);
@@ -266,6 +271,15 @@ impl App {
             else {
                 continue;
             };
+            let is_switch = game.settings.scanning.is_on() && Switch::KEYS.contains(&key);
+            if is_switch && game.controls.rebinding.take().is_some() {
+                // Who has nothing else could give nothing a key, nor leave what waits for one.
+                taken.push(key);
+                continue;
+            }
+            if is_switch && is_playing {
+                continue;
+            }
             if let Some(action) = game.controls.rebinding {
                 if action == Action::CutForces && OF_MENUS.contains(&key) && key != Key::Escape {
                     taken.push(key);

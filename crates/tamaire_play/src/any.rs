@@ -60,7 +60,7 @@ impl AnyRound {
         both!(self, round => round.progress())
     }
 
-    /// See [`Round::held`].
+    /// See [`Round::share_held`].
     pub fn share_held(&self) -> f32 {
         both!(self, round => round.share_held())
     }

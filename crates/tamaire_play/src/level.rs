@@ -147,7 +147,7 @@ impl Level {
         if let Some((_, frame)) = FRAMES.iter().find(|(made_from, _)| *made_from == ending) {
             return Self::framed(frame, id, bytes).map_err(|error| blame(id, error));
         }
-        let mut scene = Scene::read(id, text_in(id, bytes, MAX_TEXT_BYTES)?, &[])?;
+        let mut scene = plain(Scene::read(id, text_in(id, bytes, MAX_TEXT_BYTES)?, &[])?);
         scene.embed_files(fetch)?;
         forget_folders(&mut scene);
         Self::of(id, scene)
@@ -159,7 +159,7 @@ impl Level {
     /// As [`Level::read`].
     pub fn read_kept(id: &str, bytes: &[u8]) -> Result<Self, LevelError> {
         let text = text_in(id, bytes, MAX_KEPT_BYTES)?;
-        Self::of(id, Scene::read(id, text, &[])?)
+        Self::of(id, plain(Scene::read(id, text, &[])?))
     }
 
     /// It as a text that needs no file, if that can be read again.
@@ -318,6 +318,14 @@ impl Level {
         };
         Ok(known.downcast_ref().expect("a level has one dimension"))
     }
+}
+
+/// What a stranger says was made easier was not: only rounds tell so of their level.
+fn plain(mut scene: Scene) -> Scene {
+    if let Some(game) = &mut scene.game {
+        game.assists.clear();
+    }
+    scene
 }
 
 /// Whoever gets a replay has no business in the folders of who made it.

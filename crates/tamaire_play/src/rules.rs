@@ -175,7 +175,8 @@ fn own_strain<D: Dim>(world: &World<D>) -> f32 {
             let sides = minus(piece.high, piece.low);
             (0..3).map(|axis| (gravity[axis] * sides[axis]).abs()).sum()
         });
-        0.5 * heavy.fold(0.0, f32::max) * drops.fold(0.0, f32::max)
+        let softer = body.stiffness_scale() as f32;
+        0.5 * heavy.fold(0.0, f32::max) * drops.fold(0.0, f32::max) / softer
     };
     world.bodies().iter().map(of).fold(0.0, f32::max)
 }

@@ -2,7 +2,7 @@
 
 use super::presses::Presses;
 use crate::game::{Game, Screen};
-use crate::input::{Action, Scan, Seat};
+use crate::input::{Action, Seat};
 use egui::{Context, Key};
 use sticks::{Control, PadButton};
 
@@ -14,6 +14,9 @@ pub(super) struct Switch {
 }
 
 impl Switch {
+    /// The keys that are the switch.
+    pub(super) const KEYS: [Key; 2] = [Key::Space, Key::Enter];
+
     /// Whether a button of a stick or pad is the switch.
     pub(super) fn is(control: Control) -> bool {
         matches!(control, Control::Pad(PadButton::South) | Control::Button(0))
@@ -21,13 +24,14 @@ impl Switch {
 
     /// Lets time pass, for whoever plays so: in a round the hand is offered its ways, in menus the focus moves on.
     pub(super) fn pass(&mut self, game: &mut Game, presses: &Presses, ctx: &Context, seconds: f32) {
-        let Some(step) = game.settings.scanning.step() else {
-            game.controls.devices.taken = None;
+        game.controls.devices.taken = None;
+        let step = game.settings.scanning.step();
+        let Some(step) = step.filter(|_| !game.is_away) else {
             return;
         };
         let (steps, is_pressed) = (seconds / step, is_pressed(game, ctx));
         if game.screen() != Screen::Play {
-            game.controls.scan = Scan::default();
+            game.controls.scan.start();
             let before = if is_pressed { 0.0 } else { self.offered_for };
             self.offered_for = before + steps;
             if self.offered_for >= 1.0 && game.controls.rebinding.is_none() {
@@ -37,18 +41,21 @@ impl Switch {
             return;
         }
         let (is_space, stays) = (game.bout.turn().is_some(), game.settings.toggle_keys);
-        let controls = &mut game.controls;
+        let (is_played, controls) = (game.bout.session.is_played(), &mut game.controls);
         let rests = controls.scan.pass(is_pressed, stays, steps, is_space);
-        controls.devices.taken = controls.scan.taken(is_space);
-        if rests {
+        let taken = controls.scan.taken(is_space);
+        // What is only watched can be left, and nothing else.
+        if rests || !is_played && taken.is_some() {
             game.act(Action::Pause, Seat::Keys);
+        } else {
+            controls.devices.taken = taken;
         }
     }
 }
 
 fn is_pressed(game: &Game, ctx: &Context) -> bool {
     let by_key = ctx.input(|input| {
-        let mut keys = [Key::Space, Key::Enter].iter();
+        let mut keys = Switch::KEYS.iter();
         keys.any(|key| input.keys_down.contains(key))
     });
     let devices = &game.controls.devices.sticks.devices;

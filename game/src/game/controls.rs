@@ -67,7 +67,8 @@ impl Controls {
     pub(super) fn begin(&mut self, is_space: bool) {
         self.players.start();
         self.latch.release();
-        (self.scan, self.devices.taken) = (Scan::default(), None);
+        self.scan.start();
+        self.devices.taken = None;
         // In space a second finger raises the hand of the first.
         if is_space && self.players.second() == Some(Seat::Finger) {
             self.players.join(Seat::Finger);

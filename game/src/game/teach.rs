@@ -9,7 +9,7 @@ impl Game {
     /// told. Nothing in the plane, where nobody plays, and to those who have won in space. Who plays with one switch is told
     /// what that does.
     pub fn lesson(&self) -> Vec<(String, bool)> {
-        if self.settings.scanning.step().is_some() {
+        if self.settings.scanning.is_on() {
             let is_played = self.screen() == Screen::Play && self.bout.session.is_played();
             let told = self.words().how_by_switch.to_string();
             return Vec::from_iter(is_played.then_some((told, !self.controls.scan.is_known())));

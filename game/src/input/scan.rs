@@ -23,6 +23,11 @@ pub enum Scanning {
 }
 
 impl Scanning {
+    /// Whether anything is offered.
+    pub fn is_on(self) -> bool {
+        self != Self::Off
+    }
+
     /// How long an offer lasts [s], if there are any.
     pub fn step(self) -> Option<f32> {
         match self {
@@ -89,6 +94,14 @@ impl Scan {
     /// Whether anything was taken yet.
     pub fn is_known(&self) -> bool {
         self.is_known
+    }
+
+    /// Begins with the first offer, once the switch was up; what is known stays so.
+    pub fn start(&mut self) {
+        *self = Self {
+            is_known: self.is_known,
+            ..Self::default()
+        };
     }
 
     /// What of it is taken.

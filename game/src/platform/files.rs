@@ -1,4 +1,4 @@
-//! What is kept between two evenings: settings, records, replays. All is written on a thread of its own.
+//! What is kept between two evenings: settings, records, replays. All is written on a thread of its own, and pictures are made on another.
 
 use super::pictures::Pictures;
 use super::storage::{Entry, Kind, Nowhere, Storage};

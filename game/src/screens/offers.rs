@@ -16,7 +16,7 @@ const AHEAD: f32 = 0.1;
 /// Shows what is offered, and whether it is taken.
 pub(super) fn show(game: &Game, ui: &Ui) {
     let round = game.bout.round();
-    let is_offered = game.settings.scanning.step().is_some() && game.bout.session.is_played();
+    let is_offered = game.settings.scanning.is_on() && game.bout.session.is_played();
     let Some(view) = game.bout.view else {
         return;
     };

@@ -1,11 +1,12 @@
 //! What players choose.
 
+use super::doomed::{doom, is_doomed};
 use super::widgets::{Weight, button, card, choice, header, page, place_of_page, slider, veil};
 use crate::game::{Game, Screen};
 use crate::input::{Action, Scanning};
 use crate::look::Theme;
 use crate::settings::Settings;
-use crate::words::Language;
+use crate::words::{Language, Words};
 use egui::{RichText, Ui, vec2};
 use tamaire_play::Assist;
 use tamaire_sound::Menu;
@@ -85,13 +86,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 let toggles = &mut chosen.toggle_keys;
                 choice(ui, &theme, said.toggle_keys, toggles, &options);
                 choice(ui, &theme, said.dwell, &mut chosen.dwell, &options);
-                let speeds = [
-                    (Scanning::Off, said.off),
-                    (Scanning::Slow, "2 s"),
-                    (Scanning::Medium, "1.2 s"),
-                    (Scanning::Quick, "0.7 s"),
-                ];
-                choice(ui, &theme, said.scanning, &mut chosen.scanning, &speeds);
+                scanning(ui, &theme, said, &mut chosen.scanning);
             });
             section(ui, &theme, said.assists_section, |ui| {
                 for assist in [Assist::WiderBasket, Assist::Unbreakable] {
@@ -146,6 +141,10 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                     // No force comes up unasked, and what was measured stays as it is.
                     haptics: chosen.haptics.min(usual.haptics),
                     calibrations: std::mem::take(&mut chosen.calibrations),
+                    // Who needs these could not go on without.
+                    scanning: chosen.scanning,
+                    toggle_keys: chosen.toggle_keys,
+                    dwell: chosen.dwell,
                     ..usual
                 };
             }
@@ -161,6 +160,29 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     } else if back {
         game.blip(Menu::Back);
         game.go_back();
+    }
+}
+
+/// How fast what can be done is offered to one switch. Off is asked for twice: with nothing but the switch there is no way back.
+fn scanning(ui: &mut Ui, theme: &Theme, said: &Words, chosen: &mut Scanning) {
+    const OFF: &str = "scanning";
+    let before = *chosen;
+    let off = match is_doomed(ui, OFF) {
+        true => said.surely,
+        false => said.off,
+    };
+    let speeds = [
+        (Scanning::Off, off),
+        (Scanning::Slow, "2 s"),
+        (Scanning::Medium, "1.2 s"),
+        (Scanning::Quick, "0.7 s"),
+    ];
+    if choice(ui, theme, said.scanning, chosen, &speeds) && !chosen.is_on() {
+        let is_asked_twice = is_doomed(ui, OFF);
+        if !is_asked_twice {
+            *chosen = before;
+        }
+        doom(ui, (!is_asked_twice).then_some(OFF));
     }
 }
 

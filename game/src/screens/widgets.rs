@@ -313,9 +313,11 @@ pub fn header(ui: &mut Ui, theme: &Theme, back: &str, text: &str) -> Response {
 /// The same with a button at the right end that asks for a file, where files can be picked.
 pub fn header_to_open(ui: &mut Ui, game: &mut Game, text: &str) -> Response {
     let (theme, said) = (game.theme(), game.words());
+    let can_pick = HAS_DIALOG && !game.settings.scanning.is_on();
     let (back, opens) = header_with(ui, &theme, said.back, text, |ui| {
         let size = vec2(150.0, 48.0);
-        HAS_DIALOG && button(ui, &theme, said.open, size, Weight::Other).clicked()
+        // The system's dialog takes more than one switch.
+        can_pick && button(ui, &theme, said.open, size, Weight::Other).clicked()
     });
     if opens {
         game.ask_for_file();

@@ -67,7 +67,7 @@ pub(super) const WORDS: Words = Words {
     toggle_keys: "Keys stay down until pressed again",
     dwell: "Resting the mouse presses a button",
     scanning: "One switch: all in turn",
-    how_by_switch: "Space does what the arrow shows, while held",
+    how_by_switch: "The switch does what the arrow shows",
     assists_section: "Help, from the next round on",
     assist: |assist| match assist {
         Assist::WiderBasket => "Wider basket",

@@ -68,7 +68,7 @@ pub(super) const WORDS: Words = Words {
     toggle_keys: "キーは もういちど おすまで おしたまま",
     dwell: "マウスを とめると ボタンを おす",
     scanning: "スイッチひとつで じゅんばんに",
-    how_by_switch: "スペース：やじるしのほうへ（おしているあいだ）",
+    how_by_switch: "スイッチ：やじるしのほうへ",
     assists_section: "おたすけ（つぎの ラウンドから）",
     assist: |assist| match assist {
         Assist::WiderBasket => "かごを ひろく",

@@ -2,11 +2,10 @@
 
 use crate::window::*;
 use egui::Key;
-use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
 use std::collections::BTreeSet;
 use tamaire::game::Screen;
-use tamaire::input::{Offer, Scanning};
+use tamaire::input::{Action, Offer, Scanning};
 use tamaire::platform::Files;
 use tamaire_play::{Assist, Route};
 
@@ -149,9 +148,38 @@ fn in_space_the_switch_raises_and_lowers_the_hand() {
     tap(&mut window);
     frames(&mut window, 10);
     assert!(height(&mut window) < raised);
-    assert!(
-        window
-            .query_by_role_and_label(Role::Button, "Play")
-            .is_none()
-    );
+}
+
+#[test]
+fn one_switch_is_caught_nowhere() {
+    let mut window = window(Files::nowhere());
+    game(&mut window).settings.scanning = Scanning::Quick;
+    // It means nothing else, and leaves what waits for a key.
+    for action in Action::ALL {
+        game(&mut window).go(Screen::Settings);
+        frames(&mut window, 2);
+        let before = game(&mut window).settings.bindings.clone();
+        game(&mut window).controls.rebinding = Some(action);
+        tap(&mut window);
+        let game = game(&mut window);
+        assert_eq!(game.controls.rebinding, None, "{action:?}");
+        assert_eq!(game.settings.bindings, before, "{action:?}");
+    }
+    // It switches itself off only where it is asked twice, and resetting keeps it.
+    let first = window.get_by_label("One switch: all in turn: Off");
+    first.scroll_to_me();
+    frames(&mut window, 3);
+    window.get_by_label("One switch: all in turn: Off").click();
+    frames(&mut window, 2);
+    assert!(game(&mut window).settings.scanning.is_on());
+    click(&mut window, "Reset");
+    assert!(game(&mut window).settings.scanning.is_on());
+    // It leaves a round that is only watched.
+    game(&mut window).start(0);
+    frames(&mut window, 5);
+    let replay = game(&mut window).bout.round().replay();
+    game(&mut window).watch(replay.into()).unwrap();
+    frames(&mut window, 1);
+    tap(&mut window);
+    assert_ne!(screen(&window), Screen::Play);
 }

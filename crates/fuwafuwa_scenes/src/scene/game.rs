@@ -24,6 +24,7 @@ pub struct GameText {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub routes: Vec<RouteText>,
     /// What was made easier in it, so that what is won in it can be told from what is won without help.
+    /// The game writes it down with a round; in the file of a level it counts for nothing.
     #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
     pub assists: BTreeSet<AssistText>,
     /// What else one may try.

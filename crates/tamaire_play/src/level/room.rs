@@ -14,7 +14,12 @@ pub(super) fn check<D: Dim>(
         let reason = format!("expected hands that can move in the view, {room} m wide");
         return Err(("hand", reason));
     }
-    let is_within = |middle: Vector| (0..D::N).all(|k| (low[k]..=high[k]).contains(&middle[k]));
+    // What is above may fall in.
+    let fall = world.settings().gravity;
+    let is_out = |middle: Vector, k: usize| {
+        middle[k] < low[k] && fall[k] <= 0.0 || middle[k] > high[k] && fall[k] >= 0.0
+    };
+    let is_within = |middle: Vector| !(0..D::N).any(|k| is_out(middle, k));
     let mut middles = world.bodies().iter().map(middle);
     match middles.position(|middle| !is_within(middle)) {
         None => Ok(()),
