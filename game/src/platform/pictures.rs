@@ -32,7 +32,12 @@ impl Pictures {
         }
         let share = |tick: usize, ticks: usize| told(tick as f32 / ticks.max(1) as f32);
         let mut studio = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let shot = film.shoot(playback.round(), &mut studio, &share);
+        let was_open = studio.is_some();
+        let mut shot = film.shoot(playback.round(), &mut studio, &share);
+        if shot.is_err() && was_open && studio.is_none() {
+            // Its device was lost since the last picture.
+            shot = film.shoot(playback.round(), &mut studio, &share);
+        }
         shot.map_err(|error| why(&error))
     }
 }
