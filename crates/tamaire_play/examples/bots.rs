@@ -129,15 +129,7 @@ fn endings(level: &Arc<Level>, kind: BotKind, from: u64, to: u64) -> Vec<Ending>
 
 fn play(level: &Arc<Level>, kind: BotKind, seed: u64) -> Option<Outcome> {
     let mut round = AnyRound::new(level.clone());
-    let mut bot = Bot::new(kind, seed);
-    for _ in 0..MINUTE {
-        let frame = round.ask(&mut bot);
-        round.step(frame);
-        if round.progress().outcome.is_some() {
-            break;
-        }
-    }
-    round.progress().outcome
+    round.play(&mut Bot::new(kind, seed), MINUTE)
 }
 
 fn tell_rounds(id: &str, endings: &[Ending]) -> io::Result<()> {

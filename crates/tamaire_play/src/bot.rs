@@ -4,7 +4,7 @@
 mod map;
 mod sight;
 
-use crate::{AnyRound, InputFrame, Round};
+use crate::{AnyRound, InputFrame, Outcome, Round};
 use fuwafuwa::vector::{length, minus, plus, scaled};
 use fuwafuwa::world::TICK;
 use fuwafuwa::{Dim, Vector};
@@ -96,6 +96,18 @@ impl AnyRound {
             Self::Plane(round) => bot.frame(round),
             Self::Space(round) => bot.frame(round),
         }
+    }
+
+    /// Lets a bot play until it is won, for so many ticks at most; how it was won, if it was.
+    pub fn play(&mut self, bot: &mut Bot, ticks: usize) -> Option<Outcome> {
+        for _ in 0..ticks {
+            let frame = self.ask(bot);
+            self.step(frame);
+            if self.progress().outcome.is_some() {
+                break;
+            }
+        }
+        self.progress().outcome
     }
 }
 

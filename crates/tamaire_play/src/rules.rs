@@ -81,6 +81,7 @@ impl Outcome {
 
 impl Progress {
     pub(crate) fn of<D: Dim>(world: &World<D>) -> Self {
+        let views = views_of(world);
         Self {
             mass: total_mass(world),
             inside: 0.0,
@@ -95,8 +96,8 @@ impl Progress {
             relaxed: false,
             outcome: None,
             bodies: world.bodies().len(),
-            squeezed: SQUEEZED + own_strain(world),
-            whole: greatest(&views_of(world)),
+            squeezed: SQUEEZED + own_strain(world, &views),
+            whole: greatest(&views),
         }
     }
 
@@ -165,20 +166,20 @@ fn greatest(views: &[Vec<PieceView>]) -> f32 {
 
 /// The mean strain of the body that its own weight strains most: of a column as high as it is, of its heaviest
 /// and softest material, whose foot bears ρ g h and whose top nothing.
-fn own_strain<D: Dim>(world: &World<D>) -> f32 {
+fn own_strain<D: Dim>(world: &World<D>, views: &[Vec<PieceView>]) -> f32 {
     let gravity = world.settings().gravity;
-    let of = |body: &Body<D>| {
+    let of = |(body, pieces): (&Body<D>, &Vec<PieceView>)| {
         let materials = body.materials().iter();
         let heavy = materials.map(|m| m.density / m.elasticity.young as f32);
-        let pieces = body.piece_views().into_iter();
-        let drops = pieces.map(|piece| {
+        let drops = pieces.iter().map(|piece| {
             let sides = minus(piece.high, piece.low);
             (0..3).map(|axis| (gravity[axis] * sides[axis]).abs()).sum()
         });
         let softer = body.stiffness_scale() as f32;
         0.5 * heavy.fold(0.0, f32::max) * drops.fold(0.0, f32::max) / softer
     };
-    world.bodies().iter().map(of).fold(0.0, f32::max)
+    let bodies = world.bodies().iter().zip(views);
+    bodies.map(of).fold(0.0, f32::max)
 }
 
 fn total_mass<D: Dim>(world: &World<D>) -> f32 {

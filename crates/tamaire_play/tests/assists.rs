@@ -12,15 +12,7 @@ const MINUTE: usize = 60 * 60;
 fn squeezed(level: &Level, assists: &[Assist], seed: u64) -> Option<Outcome> {
     let easy = level.assisted(&BTreeSet::from_iter(assists.iter().copied()));
     let mut round = AnyRound::new(Arc::new(easy.unwrap()));
-    let mut bot = Bot::new(BotKind::Squeeze, seed);
-    for _ in 0..MINUTE {
-        let frame = round.ask(&mut bot);
-        round.step(frame);
-        if round.progress().outcome.is_some() {
-            break;
-        }
-    }
-    round.progress().outcome
+    round.play(&mut Bot::new(BotKind::Squeeze, seed), MINUTE)
 }
 
 #[test]
