@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Makes the font of the game again: a part of M PLUS Rounded 1c, as TrueType.
+"""Makes the fonts of the game again: parts of M PLUS Rounded 1c, as TrueType.
 
     pip install fonttools==4.68.0 brotli==1.2.1
     python3 game/fonts/make.py
 
-Takes the font from npm (`npm pack`), where it lies in some 120 slices. The part has Latin letters, kana,
-punctuation, the symbols below, the kanji of kanji.txt, and every other character that the sources and
-data of the game have in them. The same input gives the same bytes.
+Takes the font from npm (`npm pack`), where it lies in some 120 slices. One part has Latin letters, the symbols
+below and what the title says in each language; the other kana, the kanji of kanji.txt, and every other character
+that the sources and data of the game have in them, which a browser fetches when it is wanted. The same input
+gives the same bytes.
 """
 
 import subprocess
@@ -29,10 +30,14 @@ SOURCES = ["game", "crates/tamaire_*"]
 SUFFIXES = {".rs", ".toml"}
 
 SYMBOLS = "←→↑↓↔↕⇧⏎●○◎■□▲△▼▽▶◀◆◇★☆♥♡♪✓※♂♀①②③④⑤⑥⑦⑧⑨∞≠≤≥−√"
-RANGES = [
-    (0x20, 0x7E),  # Latin
+# What is read before a language is chosen.
+TITLE = "玉入れ日本語"
+LATIN = [
+    (0x20, 0x7E),
     (0xA0, 0xFF),
     (0x2010, 0x2027),  # dashes, quotation marks, ellipsis
+]
+JAPANESE = [
     (0x3000, 0x30FF),  # punctuation, hiragana, katakana
     (0xFF01, 0xFF5E),  # wide Latin, as Japanese keyboards write it
 ]
@@ -51,8 +56,8 @@ def named():
     return characters - set("\r\n\t")
 
 
-def ranges():
-    return {chr(code) for first, last in RANGES for code in range(first, last + 1)}
+def within(ranges):
+    return {chr(code) for first, last in ranges for code in range(first, last + 1)}
 
 
 def slices(folder, weight):
@@ -77,9 +82,8 @@ def add(font, character, other):
             table.cmap[ord(character)] = name
 
 
-def make(folder, weight, must):
-    """Writes the font of this weight; the characters of `must` that are nowhere in it."""
-    characters = must | ranges()
+def make(folder, weight, part, characters):
+    """Writes a part of the font of this weight; the characters that are in it."""
     font, *others = slices(folder, weight)
     for table in ("vhea", "vmtx"):
         del font[table]
@@ -99,11 +103,11 @@ def make(folder, weight, must):
     subsetter.subset(font)
     font.flavor = None
 
-    file = HERE / f"MPLUSRounded1c-{WEIGHTS[weight]}.ttf"
+    file = HERE / f"MPLUSRounded1c-{WEIGHTS[weight]}-{part}.ttf"
     font.save(file)
     there = {chr(code) for code in font.getBestCmap()}
     print(f"{file.name}: {file.stat().st_size} bytes, {len(there)} characters")
-    return must - there
+    return there
 
 
 def main():
@@ -115,8 +119,12 @@ def main():
             files.extractall(folder, filter="data")
         (HERE / "OFL.txt").write_bytes(Path(folder, "package/LICENSE").read_bytes())
         must = named()
-        absent = [make(Path(folder, "package/files"), weight, must) for weight in WEIGHTS]
-    if absent := set().union(*absent):
+        latin = within(LATIN) | set(SYMBOLS + TITLE)
+        parts = {"latin": latin, "japanese": (must | within(JAPANESE)) - latin}
+        for weight in WEIGHTS:
+            files = Path(folder, "package/files")
+            must -= set().union(*(make(files, weight, *part) for part in parts.items()))
+    if absent := must:
         sys.exit("M PLUS Rounded 1c does not have: " + " ".join(sorted(absent)))
 
 

@@ -326,12 +326,7 @@ impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
         if self.gpu.is_lost() {
-            // Nothing is drawn any more; the round may be watched later.
-            if self.game.is_in_round() {
-                self.game.keep_replay();
-                self.game.go(Screen::Title);
-                self.game.files.close();
-            }
+            self.game.rescue();
             return ctx.send_viewport_cmd(egui::ViewportCommand::Close);
         }
         self.fill_screen(&ctx);
@@ -361,6 +356,12 @@ impl eframe::App for App {
         );
         self.presses.waiting().in_order = is_list && self.game.controls.rebinding.is_none();
         ctx.request_repaint();
+    }
+
+    /// Browsers hand it out so.
+    #[cfg(target_family = "wasm")]
+    fn as_any_mut(&mut self) -> Option<&mut dyn std::any::Any> {
+        Some(self)
     }
 
     /// Some systems end the program with its last window, and nothing is dropped.

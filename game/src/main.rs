@@ -1,4 +1,4 @@
-//! The program. A browser has no command line: it comes in through the library.
+//! The program. A browser has no command line: the page comes in through [`tamaire::browser`].
 
 #[cfg(not(target_family = "wasm"))]
 fn main() -> std::process::ExitCode {
@@ -6,4 +6,7 @@ fn main() -> std::process::ExitCode {
 }
 
 #[cfg(target_family = "wasm")]
-fn main() {}
+fn main() {
+    // What the page calls is linked in with this.
+    let _ = tamaire::browser::Running::start;
+}

@@ -6,6 +6,7 @@ mod packages;
 mod shell;
 mod task;
 mod wasm;
+mod web;
 
 use packages::{IfMissing, Purpose, has_display};
 use shell::{FAILED, Failure, cargo, execute, show};
@@ -40,6 +41,7 @@ fn main() -> ExitCode {
             run_all(CHECK).and_then(|()| run_all(TEST))
         }
         Task::Wasm(if_missing) => wasm::run(if_missing),
+        Task::Web(web, if_missing) => web::run(web, if_missing),
         Task::Kernel(if_missing) => kernel::run(if_missing),
         Task::Soak(words) => soak(&words),
         Task::Fuzz(words) => fuzz::run(&words),

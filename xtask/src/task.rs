@@ -1,6 +1,7 @@
 //! What can be asked for on the command line.
 
 use crate::packages::IfMissing;
+use crate::web::Web;
 
 pub const USAGE: &str = "\
 usage: cargo xtask <task>
@@ -12,6 +13,10 @@ tasks:
   wasm             the golden scenes on wasm32 under Node: the same bits as natively? And does the
                    game compile for a browser?
   wasm --install   the same; what is missing comes from Debian's packages
+  web              the game for a browser: a folder that any web server can hand out
+  web --serve      the same, handed out on this machine
+  web --test       the same, played in Chromium and Firefox
+                   with --install after any of them what is missing comes from Debian's packages
   kernel           sticks and their motors against the force feedback of a real kernel, in QEMU
   kernel --install the same; what is missing comes from Debian's or Ubuntu's packages
   soak [MINUTES [LEVEL …]]
@@ -25,7 +30,8 @@ tasks:
 On Debian and Ubuntu, `play`, `test` and `check` install the system packages that are missing, as
 root or through sudo, after asking if there is a terminal. With --no-install they only name them.
 
-exit status: 0 passed, 1 failed, 2 no such task, 3 this machine lacks what `wasm` or `kernel` needs;
+exit status: 0 passed, 1 failed, 2 no such task, 3 this machine lacks what `wasm`, `web` or `kernel`
+needs;
 `play` hands on that of the game";
 
 #[derive(Debug, PartialEq)]
@@ -35,6 +41,7 @@ pub enum Task {
     Test(IfMissing),
     Check(IfMissing),
     Wasm(IfMissing),
+    Web(Web, IfMissing),
     Kernel(IfMissing),
     /// With how long to play, and which levels.
     Soak(Vec<String>),
@@ -72,6 +79,7 @@ impl Task {
             ["check", "--no-install"] => Task::Check(IfMissing::Say),
             ["wasm"] => Task::Wasm(IfMissing::Say),
             ["wasm", "--install"] => Task::Wasm(IfMissing::Install),
+            ["web", ..] => web(&words[1..])?,
             ["kernel"] => Task::Kernel(IfMissing::Say),
             ["kernel", "--install"] => Task::Kernel(IfMissing::Install),
             ["soak", ..] => Task::Soak(own[1..].to_vec()),
@@ -87,6 +95,20 @@ impl Task {
             ));
         }
         Ok(task)
+    }
+}
+
+/// `web`, from what stands behind it.
+fn web(words: &[&str]) -> Result<Task, String> {
+    let (web, rest) = match words {
+        ["--serve", rest @ ..] => (Web::Serve, rest),
+        ["--test", rest @ ..] => (Web::Test, rest),
+        rest => (Web::Build, rest),
+    };
+    match rest {
+        [] => Ok(Task::Web(web, IfMissing::Say)),
+        ["--install"] => Ok(Task::Web(web, IfMissing::Install)),
+        _ => Err(format!("there is no task `web {}`", words.join(" "))),
     }
 }
 
@@ -111,6 +133,12 @@ mod tests {
         check("test --no-install", Ok(Task::Test(IfMissing::Say)));
         check("wasm", Ok(Task::Wasm(IfMissing::Say)));
         check("wasm --install", Ok(Task::Wasm(IfMissing::Install)));
+        check("web", Ok(Task::Web(Web::Build, IfMissing::Say)));
+        check(
+            "web --test --install",
+            Ok(Task::Web(Web::Test, IfMissing::Install)),
+        );
+        check("web --fast", Err("there is no task `web --fast`"));
         check("kernel", Ok(Task::Kernel(IfMissing::Say)));
         check("kernel --install", Ok(Task::Kernel(IfMissing::Install)));
         check("soak", Ok(Task::Soak(Vec::new())));

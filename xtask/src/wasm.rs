@@ -11,7 +11,7 @@ use std::env;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-const TARGET: &str = "wasm32-unknown-unknown";
+pub const TARGET: &str = "wasm32-unknown-unknown";
 /// Where Debian puts its compiler. The one on the path is usually another.
 const DEBIAN_RUSTC: &str = "/usr/bin/rustc";
 /// The oldest Rust that this workspace promises to build with.
@@ -19,19 +19,7 @@ const OLDEST: &str = env!("CARGO_PKG_RUST_VERSION");
 
 /// Builds the golden scenes, runs them, and fails where one ends in other bits than it must.
 pub fn run(if_missing: IfMissing) -> Result<(), Failure> {
-    let mut found = find_compiler();
-    if if_missing == IfMissing::Install && found.is_err() {
-        // Fresh machines have stale lists, or none. An update that fails may leave good ones.
-        apt_get(&["update", "--quiet"]);
-        // Twice, because which linker fits is known only once the compiler is there.
-        for _ in 0..2 {
-            match &found {
-                Err(lacks) if install(lacks) => found = find_compiler(),
-                _ => break,
-            }
-        }
-    }
-    let compiler = found.map_err(|lacks| cannot(&lacks, if_missing))?;
+    let compiler = compiler(if_missing, "the golden scenes were NOT run on wasm32")?;
     let module = build(&compiler)?;
     let native_times = native_times()?;
     execute(
@@ -48,8 +36,26 @@ pub fn run(if_missing: IfMissing) -> Result<(), Failure> {
     )
 }
 
+/// The compiler to use, and Node beside it; `undone` says what did not happen where there is none.
+pub fn compiler(if_missing: IfMissing, undone: &str) -> Result<Compiler, Failure> {
+    let mut found = find_compiler();
+    if if_missing == IfMissing::Install && found.is_err() {
+        // Fresh machines have stale lists, or none. An update that fails may leave good ones.
+        apt_get(&["update", "--quiet"]);
+        // Twice, because which linker fits is known only once the compiler is there.
+        for _ in 0..2 {
+            match &found {
+                Err(lacks) if install(lacks) => found = find_compiler(),
+                _ => break,
+            }
+        }
+    }
+    found.map_err(|lacks| cannot(undone, &lacks, if_missing))
+}
+
+/// What compiles for wasm32.
 #[derive(Debug, PartialEq)]
-enum Compiler {
+pub enum Compiler {
     /// The toolchain in use has the standard library for wasm32.
     Ready,
     /// Debian's, with this linker.
@@ -169,12 +175,12 @@ fn native_times() -> Result<Vec<String>, Failure> {
 }
 
 /// Where wasm32 is built: beside the native build.
-fn folder() -> PathBuf {
+pub fn folder() -> PathBuf {
     target().join("wasm")
 }
 
 /// A call of cargo that builds for wasm32 with this compiler.
-fn cargo_for_wasm(compiler: &Compiler, words: &[&str]) -> Command {
+pub fn cargo_for_wasm(compiler: &Compiler, words: &[&str]) -> Command {
     let mut command = cargo();
     command
         .args(words)
@@ -201,14 +207,14 @@ fn cargo_for_wasm(compiler: &Compiler, words: &[&str]) -> Command {
     command
 }
 
-fn cannot(lacks: &[Lack], if_missing: IfMissing) -> Failure {
+fn cannot(undone: &str, lacks: &[Lack], if_missing: IfMissing) -> Failure {
     let advice = match if_missing {
-        IfMissing::Say => "On Debian, `cargo xtask wasm --install` installs that.",
+        IfMissing::Say => "On Debian, the same with `--install` installs that.",
         IfMissing::Install => "What Debian's packages offer here is not enough, see above.",
     };
     Failure {
         message: format!(
-            "the golden scenes were NOT run on wasm32:\n{}\n{advice}\n\
+            "{undone}:\n{}\n{advice}\n\
              Elsewhere: `rustup target add {TARGET}`, and Node on the path.",
             list_lacks(lacks)
         ),
@@ -264,7 +270,7 @@ mod tests {
     fn a_compiler_that_is_too_old_is_refused_with_both_versions() {
         let old = DESCRIPTION.replace("1.96", "1.85");
         let lacks = find_debian(Some(&old), |_| true, |_| true).unwrap_err();
-        let failure = cannot(&lacks, IfMissing::Say);
+        let failure = cannot("", &lacks, IfMissing::Say);
         let said = |word| failure.message.contains(word);
         assert!(said("1.85.0") && said(OLDEST), "{}", failure.message);
         assert_eq!(failure.code, CANNOT);

@@ -1,7 +1,8 @@
 //! Devices, as seen from here.
 
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// What is played ends by itself after this time, unless it is told again: the second deadman. Kernels stop the forces of
 /// a process that dies, not of one that hangs.

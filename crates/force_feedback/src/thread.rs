@@ -1,22 +1,25 @@
-//! The one thread that owns all sinks, and how the game speaks to it.
+//! Who owns all sinks, a thread or where there is none the caller, and how the game speaks to it.
 
 use crate::{Ability, Feel, Felt, Mail, Output, Settings, Sink, State, Stop, Watchdog};
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// How often a second the devices may be updated. Slower is felt as steps; most devices take no more.
 pub const RATES: RangeInclusive<u32> = 125..=250;
 /// What stays the same is told again after this time, well before [`LENGTH`](crate::LENGTH) is over.
 const AGAIN: Duration = Duration::from_millis(200);
 
-/// Owns the thread and through it all sinks. Dropping it stops everything and waits for that.
+/// Owns all sinks, or the thread that does. Dropping it stops everything and waits for that.
 #[must_use = "nothing is felt any more when it is dropped"]
 pub struct Force {
     shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
+    /// Those that no thread owns.
+    outlets: Vec<Outlet>,
 }
 
 /// Leads to one device. Dropping it, as a panic does, is to let go of the device.
@@ -83,20 +86,34 @@ impl Force {
     /// # Errors
     /// The system has no thread left.
     pub fn start(rate: u32) -> std::io::Result<Self> {
-        let shared = Arc::new(Shared {
-            start: Instant::now(),
-            desk: Mutex::default(),
-            news: Condvar::new(),
-        });
+        let mut force = Self::without_thread();
         let period = Duration::from_secs(1) / rate.clamp(*RATES.start(), *RATES.end());
-        let on_thread = shared.clone();
+        let on_thread = force.shared.clone();
         let thread = std::thread::Builder::new()
             .name("force".into())
             .spawn(move || on_thread.run(period))?;
-        Ok(Self {
-            shared,
-            thread: Some(thread),
-        })
+        force.thread = Some(thread);
+        Ok(force)
+    }
+
+    /// The same where there are no threads, as in a browser: devices are updated by [`Force::update`] alone.
+    pub fn without_thread() -> Self {
+        Self {
+            shared: Arc::new(Shared {
+                start: Instant::now(),
+                desk: Mutex::default(),
+                news: Condvar::new(),
+            }),
+            thread: None,
+            outlets: Vec::new(),
+        }
+    }
+
+    /// Updates the devices once, where no thread does.
+    pub fn update(&mut self) {
+        if self.thread.is_none() {
+            self.shared.update(self.shared.desk(), &mut self.outlets);
+        }
     }
 
     /// Takes a device over.
@@ -249,43 +266,49 @@ impl Shared {
             let waited = self
                 .news
                 .wait_timeout_while(self.desk(), wait, |desk| !desk.is_urgent);
-            let (mut desk, _) = waited.unwrap_or_else(PoisonError::into_inner);
+            let (desk, _) = waited.unwrap_or_else(PoisonError::into_inner);
             if desk.is_closing {
                 return;
             }
-            desk.is_urgent = false;
-            outlets.append(&mut desk.arrivals);
-            let watchdog = desk.watchdog;
-            // A post that has gone leaves a stop behind, and its outlet is dropped outside the lock.
-            let posts: Vec<Option<Post>> = outlets
-                .iter()
-                .map(|outlet| {
-                    let post = desk.posts.get_mut(&outlet.key)?;
-                    let copy = *post;
-                    post.tear = 0.0;
-                    Some(copy)
-                })
-                .collect();
-            drop(desk);
-
-            let now = self.start.elapsed();
-            let mut posts = posts.into_iter();
-            let mut reports = Vec::new();
-            outlets.retain_mut(|outlet| {
-                let post = posts.next().flatten();
-                let report = post.map(|post| outlet.update(&watchdog, &post, now));
-                reports.extend(report.map(|report| (outlet.key, report)));
-                post.is_some()
-            });
-            let mut desk = self.desk();
-            for (key, report) in reports {
-                if let Some(post) = desk.posts.get_mut(&key) {
-                    post.report = report;
-                }
-            }
+            let now = self.update(desk, &mut outlets);
             // What was missed is not made up for.
             next = (next + period).max(now);
         }
+    }
+
+    /// Updates all devices, as of now.
+    fn update(&self, mut desk: MutexGuard<'_, Desk>, outlets: &mut Vec<Outlet>) -> Duration {
+        desk.is_urgent = false;
+        outlets.append(&mut desk.arrivals);
+        let watchdog = desk.watchdog;
+        // A post that has gone leaves a stop behind, and its outlet is dropped outside the lock.
+        let posts: Vec<Option<Post>> = outlets
+            .iter()
+            .map(|outlet| {
+                let post = desk.posts.get_mut(&outlet.key)?;
+                let copy = *post;
+                post.tear = 0.0;
+                Some(copy)
+            })
+            .collect();
+        drop(desk);
+
+        let now = self.start.elapsed();
+        let mut posts = posts.into_iter();
+        let mut reports = Vec::new();
+        outlets.retain_mut(|outlet| {
+            let post = posts.next().flatten();
+            let report = post.map(|post| outlet.update(&watchdog, &post, now));
+            reports.extend(report.map(|report| (outlet.key, report)));
+            post.is_some()
+        });
+        let mut desk = self.desk();
+        for (key, report) in reports {
+            if let Some(post) = desk.posts.get_mut(&key) {
+                post.report = report;
+            }
+        }
+        now
     }
 }
 

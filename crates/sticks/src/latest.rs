@@ -27,7 +27,7 @@ impl Latest {
             .clone()
     }
 
-    #[cfg(all(feature = "sdl", not(target_family = "wasm")))]
+    #[cfg(any(feature = "sdl", target_family = "wasm"))]
     pub fn set(&self, snapshot: Snapshot) {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Arc::new(snapshot);
     }

@@ -41,7 +41,10 @@ mod haptic;
 mod held;
 #[cfg(all(feature = "sdl", not(target_family = "wasm")))]
 mod owner;
-#[cfg(not(all(feature = "sdl", not(target_family = "wasm"))))]
+#[cfg(target_family = "wasm")]
+#[path = "browser.rs"]
+mod owner;
+#[cfg(not(any(feature = "sdl", target_family = "wasm")))]
 #[path = "nobody.rs"]
 mod owner;
 #[cfg(all(feature = "sdl", not(target_family = "wasm")))]
@@ -67,6 +70,8 @@ pub use feel::{Navigator, Repeat, radial_dead_zone};
 #[cfg(all(feature = "haptic", not(target_family = "wasm")))]
 pub use haptic::Haptic;
 pub use latest::NoSticks;
+#[cfg(all(feature = "haptic", target_family = "wasm"))]
+pub use owner::Haptic;
 #[cfg(all(
     any(test, feature = "virtual"),
     feature = "sdl",
@@ -83,7 +88,7 @@ pub struct Sticks {
 
 impl Sticks {
     /// Starts to look for devices, which takes some ms; those that are there already appear within the first snapshot.
-    /// No device is no error. Where SDL is left out, as in the browser, none is ever found.
+    /// No device is no error. Where SDL is left out none is ever found; a browser shows pads once one of their buttons was pressed.
     pub fn open() -> Result<Sticks, NoSticks> {
         let latest = Latest::default();
         Ok(Sticks {
@@ -95,6 +100,8 @@ impl Sticks {
     /// What all devices say now; at most 2 ms old, 100 ms while no device is there, unless a driver holds SDL up. Costs a
     /// lock and a count.
     pub fn snapshot(&self) -> Arc<Snapshot> {
+        #[cfg(target_family = "wasm")]
+        self.owner.look();
         self.latest.get()
     }
 }

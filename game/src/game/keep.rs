@@ -1,6 +1,6 @@
 //! What is kept, and what is told of it.
 
-use super::Game;
+use super::{Game, Screen};
 use crate::platform::{Damage, Entry, Kind, News};
 use std::sync::Arc;
 use tamaire_play::{Replay, ReplayError};
@@ -14,6 +14,15 @@ impl Game {
     /// Keeps the round as it was played so far.
     pub fn keep_replay(&mut self) {
         self.files.save_replay(self.bout.round().replay());
+    }
+
+    /// Nothing is drawn any more: a round that is played is kept, to be watched later, and all else is written.
+    pub fn rescue(&mut self) {
+        if self.is_in_round() {
+            self.keep_replay();
+            self.go(Screen::Title);
+            self.files.close();
+        }
     }
 
     /// Takes a photo of how the round ended.

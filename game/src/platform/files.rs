@@ -90,6 +90,19 @@ impl Files {
         files.speaking(&sys_locale::get_locale().unwrap_or_default())
     }
 
+    /// What the browser keeps for this page, and nothing where it refuses to.
+    #[cfg(target_family = "wasm")]
+    pub fn usual() -> Self {
+        let host = super::here::host();
+        let files = match host.refusal() {
+            None => Self::on(super::here::Kept::default()),
+            Some(_) => Self::on(Nowhere {
+                reason: Some("the browser keeps nothing for this page"),
+            }),
+        };
+        files.speaking(&host.language())
+    }
+
     /// A folder of one's own.
     #[cfg(not(target_family = "wasm"))]
     pub fn in_folder(folder: impl Into<std::path::PathBuf>) -> Self {
@@ -255,6 +268,11 @@ impl Files {
         }
         let mut done = self.writer.results();
         done.extend(self.darkroom.results());
+        let late = self
+            .storage
+            .take_failure()
+            .map(|error| Done::Note(Err(error)));
+        done.extend(late);
         self.news(done)
     }
 

@@ -44,11 +44,13 @@ impl Forces {
         }
     }
 
-    /// The thread, unless the system has none to give: then nothing is felt.
+    /// The thread, unless the system has none to give: then nothing is felt. A browser does without.
     fn force(&mut self) -> Option<&Force> {
-        // A browser has neither threads nor a clock for them.
-        if self.force.is_none() && !cfg!(target_family = "wasm") {
-            self.force = Force::start(RATE).ok();
+        if self.force.is_none() {
+            self.force = match cfg!(target_family = "wasm") {
+                true => Some(Force::without_thread()),
+                false => Force::start(RATE).ok(),
+            };
             if let (Some(force), true) = (&self.force, self.is_cut) {
                 force.emergency_stop();
             }
@@ -57,12 +59,15 @@ impl Forces {
     }
 
     /// Tells each device what there is to feel, or why there is nothing.
-    pub fn tell(&self, wish: impl Fn(DeviceId) -> Result<State, Stop>) {
+    pub fn tell(&mut self, wish: impl Fn(DeviceId) -> Result<State, Stop>) {
         for (&id, line) in &self.lines {
             match wish(id) {
                 Ok(state) => line.feel(state),
                 Err(why) => line.stop(why),
             }
+        }
+        if let Some(force) = &mut self.force {
+            force.update();
         }
     }
 

@@ -1,4 +1,4 @@
-//! What somebody named on the command line or dropped onto the window.
+//! What somebody named on the command line, dropped onto the window or the page, or picked.
 
 use fuwafuwa_scenes::scene::{Fetch, ending_of};
 use tamaire_play::level::LevelError;
@@ -106,8 +106,49 @@ mod on_disk {
     }
 }
 
-/// What was dropped onto the window: a browser hands it over later, and nobody waits for that yet.
 #[cfg(target_family = "wasm")]
-pub fn dropped(_: &egui::Context) -> Vec<Given> {
-    Vec::new()
+pub use on_page::{dropped, read_together};
+
+#[cfg(target_family = "wasm")]
+mod on_page {
+    use super::Given;
+    use crate::platform::here::{GivenFile, host};
+    use js_sys::Array;
+    use std::collections::BTreeMap;
+    use std::io;
+    use tamaire_play::level::LevelError;
+    use wasm_bindgen::JsCast;
+
+    /// What was dropped onto the page.
+    pub fn dropped(_: &egui::Context) -> Vec<Given> {
+        host()
+            .take_dropped()
+            .map_or(Vec::new(), |files| read_together(&files))
+    }
+
+    /// What can be played of files that came together. A level finds what it names among them; pictures and models that
+    /// came with levels are for those.
+    pub fn read_together(files: &Array) -> Vec<Given> {
+        let files = files.iter().map(JsCast::unchecked_into::<GivenFile>);
+        let files = files.map(|file| (file.name(), (file.contents(), file.length())));
+        let files: BTreeMap<String, _> = files.collect();
+        let fetch = |name: &str| {
+            let found = files.get(name).and_then(|(bytes, _)| bytes.clone());
+            found.ok_or_else(|| io::ErrorKind::NotFound.into())
+        };
+        let is_level = |name: &str| name.ends_with(".toml");
+        let has_levels = files.keys().any(|name| is_level(name));
+        let is_part = |name: &str| name.ends_with(".png") || name.ends_with(".vox");
+        let own = files
+            .iter()
+            .filter(|(name, _)| !(has_levels && is_part(name)));
+        own.map(|(name, (bytes, length))| match bytes {
+            Some(bytes) => Given::read(name, bytes, &fetch),
+            None => {
+                let reason = format!("it cannot be read, or is too long ({length} bytes)");
+                Given::Level(Err(LevelError::Unreadable(name.to_string(), reason)))
+            }
+        })
+        .collect()
+    }
 }

@@ -2,11 +2,9 @@
 //! sticks can be read and felt. Nothing else in the game knows on which it runs.
 
 mod clock;
+#[cfg(not(target_family = "wasm"))]
 mod date;
 #[cfg(not(target_family = "wasm"))]
-mod dialog;
-#[cfg(target_family = "wasm")]
-#[path = "no_dialog.rs"]
 mod dialog;
 mod files;
 #[cfg(not(target_family = "wasm"))]
@@ -14,6 +12,9 @@ mod folder;
 mod forces;
 mod given;
 mod gpu;
+#[cfg(target_family = "wasm")]
+#[path = "web/mod.rs"]
+mod here;
 #[cfg(not(target_family = "wasm"))]
 mod pictures;
 #[cfg(target_family = "wasm")]
@@ -28,6 +29,9 @@ mod sticks;
 mod storage;
 mod writer;
 
+#[cfg(target_family = "wasm")]
+use here::{date, dialog};
+
 pub use clock::Clock;
 pub use date::local as local_date;
 pub use dialog::{Dialog, IS_THERE as HAS_DIALOG};
@@ -37,6 +41,8 @@ pub use given::{Given, Picked, dropped};
 #[cfg(not(target_family = "wasm"))]
 pub use given::{level_at, replay_in};
 pub use gpu::GpuWatch;
+#[cfg(target_family = "wasm")]
+pub use here::{Host, set_host};
 pub use pictures::ARE_THERE as HAS_PICTURES;
 pub use sound::Sound;
 pub use sticks::Pads;

@@ -54,7 +54,7 @@ impl Pads {
     /// Takes hold of one to be felt; nothing where that was left out of the build.
     pub fn haptic(&self, device: DeviceId) -> Box<dyn Sink> {
         match &self.0 {
-            #[cfg(all(feature = "haptic", not(target_family = "wasm")))]
+            #[cfg(feature = "haptic")]
             Source::Sticks(sticks) => Box::new(sticks.haptic(device)),
             Source::Told(_, notes) if notes.contains_key(&device) => {
                 Box::new(notes[&device].clone())

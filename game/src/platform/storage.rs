@@ -73,6 +73,11 @@ pub trait Storage: Send + Sync {
 
     /// Where that is, for people to read.
     fn location(&self, kind: Kind, name: &str) -> String;
+
+    /// Why something is not kept that was changed before, where that is known only later; told once.
+    fn take_failure(&self) -> Option<io::Error> {
+        None
+    }
 }
 
 /// Keeps nothing.

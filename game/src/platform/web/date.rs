@@ -1,0 +1,14 @@
+//! When something was, as the browser's clock has it.
+
+use js_sys::Date;
+use std::time::SystemTime;
+
+/// A time of day where the visitor is: year, month, day, hour, minute.
+pub fn local(time: SystemTime) -> String {
+    let since = time.duration_since(SystemTime::UNIX_EPOCH);
+    let milliseconds = since.unwrap_or_default().as_millis() as f64;
+    let date = Date::new(&milliseconds.into());
+    let (year, month, day) = (date.get_full_year(), date.get_month() + 1, date.get_date());
+    let (hours, minutes) = (date.get_hours(), date.get_minutes());
+    format!("{year:04}-{month:02}-{day:02} {hours:02}:{minutes:02}")
+}

@@ -1,0 +1,128 @@
+//! What the game keeps in the browser. All of it lies in memory too, because the browser's own store is slower to answer
+//! than a frame may last; other tabs tell what they change.
+
+use super::host;
+use crate::platform::storage::{Change, Entry, Kind, Storage};
+use std::collections::BTreeMap;
+use std::io;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, SystemTime};
+
+/// The kinds that stay in the browser, and how their keys begin. Photos and clips are handed to the visitor.
+const KINDS: [(Kind, &str); 4] = [
+    (Kind::Note, "note"),
+    (Kind::Level, "level"),
+    (Kind::Replay, "replay"),
+    (Kind::Best, "best"),
+];
+
+/// The browser's store.
+#[derive(Default)]
+pub struct Kept(Mutex<BTreeMap<String, Thing>>);
+
+struct Thing {
+    bytes: Vec<u8>,
+    written: SystemTime,
+}
+
+impl Kept {
+    /// What is kept now, here and in other tabs.
+    fn now(&self) -> MutexGuard<'_, BTreeMap<String, Thing>> {
+        let mut things = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let host = host();
+        while let Some(changed) = host.take_change() {
+            let since = Duration::from_millis(changed.written().max(0.0) as u64);
+            let written = SystemTime::UNIX_EPOCH + since;
+            match changed.bytes() {
+                Some(bytes) => things.insert(changed.key(), Thing { bytes, written }),
+                None => things.remove(&changed.key()),
+            };
+        }
+        things
+    }
+}
+
+impl Storage for Kept {
+    fn list(&self, kind: Kind) -> io::Result<Vec<Entry>> {
+        let Some(beginning) = beginning(kind) else {
+            return Ok(Vec::new());
+        };
+        let things = self.now();
+        let entries = things.iter().filter_map(|(key, thing)| {
+            let name = key.strip_prefix(&beginning)?.to_string();
+            Some(Entry {
+                name,
+                written: thing.written,
+            })
+        });
+        Ok(entries.collect())
+    }
+
+    fn read(&self, kind: Kind, name: &str) -> io::Result<Option<Vec<u8>>> {
+        let Some(beginning) = beginning(kind) else {
+            return Ok(None);
+        };
+        let things = self.now();
+        let bytes = things.get(&(beginning + name)).map(|thing| &thing.bytes);
+        match bytes.is_some_and(|bytes| bytes.len() as u64 > kind.most_bytes()) {
+            true => Err(io::ErrorKind::FileTooLarge.into()),
+            false => Ok(bytes.cloned()),
+        }
+    }
+
+    fn change(&self, kind: Kind, name: &str, change: &mut Change) -> io::Result<()> {
+        let Some(beginning) = beginning(kind) else {
+            if let Some(bytes) = change(None) {
+                host().download(&self.location(kind, name), media(kind), &bytes);
+            }
+            return Ok(());
+        };
+        let (key, mut things) = (beginning + name, self.now());
+        if let Some(bytes) = change(things.get(&key).map(|thing| &*thing.bytes)) {
+            let milliseconds = js_sys::Date::now();
+            host().keep(&key, &bytes, milliseconds);
+            let written = SystemTime::UNIX_EPOCH + Duration::from_millis(milliseconds as u64);
+            things.insert(key, Thing { bytes, written });
+        }
+        Ok(())
+    }
+
+    fn remove(&self, kind: Kind, name: &str) -> io::Result<()> {
+        let key = beginning(kind).map(|beginning| beginning + name);
+        let removed = key.filter(|key| self.now().remove(key).is_some());
+        let key = removed.ok_or(io::ErrorKind::NotFound)?;
+        host().remove(&key);
+        Ok(())
+    }
+
+    fn location(&self, kind: Kind, name: &str) -> String {
+        format!("{name}.{}", ending(kind))
+    }
+
+    fn take_failure(&self) -> Option<io::Error> {
+        host().take_failure().map(io::Error::other)
+    }
+}
+
+/// How the keys of a kind begin; nothing where it does not stay in the browser.
+fn beginning(kind: Kind) -> Option<String> {
+    let (_, word) = KINDS.iter().find(|(known, _)| *known == kind)?;
+    Some(format!("{word}/"))
+}
+
+fn ending(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Note | Kind::Level => "toml",
+        Kind::Replay | Kind::Best => "tamaire",
+        Kind::Photo => "png",
+        Kind::Clip => "gif",
+    }
+}
+
+fn media(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Photo => "image/png",
+        Kind::Clip => "image/gif",
+        _ => "text/plain",
+    }
+}

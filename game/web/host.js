@@ -1,0 +1,238 @@
+// What the page does for the game (game/src/platform/web/host.rs asks for it): keeps things, hands out files, takes them in.
+
+const STORE = "things";
+/** Most bytes of a file that is read: the game reads no more of any kind. */
+const MOST_BYTES = 1 << 26;
+
+/** @typedef {{key: string, bytes: Uint8Array | undefined, written: number}} Changed */
+/** @typedef {{name: string, bytes: Uint8Array | undefined, length: number}} GivenFile */
+
+export class Host {
+  /** Why nothing can be kept, if so. @type {string | undefined} */
+  refusal;
+  /** @type {IDBDatabase | undefined} */
+  #database;
+  /** Tells other tabs what changed. @type {BroadcastChannel | undefined} */
+  #others;
+  /** @type {Changed[]} */
+  #changes = [];
+  /** @type {string | undefined} */
+  #failure;
+  /** Whether it was told that something is not kept, and nothing was kept since. */
+  #isFailing = false;
+  /** @type {GivenFile[][]} */
+  #dropped = [];
+  /** @type {GivenFile[][]} */
+  #picked = [];
+  #isPicking = false;
+  /** @type {string | undefined} */
+  #link;
+
+  /** The page, with all that it kept. It opens also where the browser keeps nothing. */
+  static async open() {
+    const host = new Host();
+    host.#hearLinks();
+    host.#takeDrops();
+    try {
+      await host.#openStore();
+    } catch (error) {
+      host.refusal = String(error);
+    }
+    return host;
+  }
+
+  /** The language that the visitor prefers. */
+  get language() {
+    return navigator.language ?? "";
+  }
+
+  /** The language that the game speaks. @param {string} language */
+  set spoken(language) {
+    if (document.documentElement.lang !== language) {
+      document.documentElement.lang = language;
+    }
+  }
+
+  // ---- what is kept ----
+
+  async #openStore() {
+    const asked = indexedDB.open("tamaire", 1);
+    asked.onupgradeneeded = () => asked.result.createObjectStore(STORE);
+    const database = await answer(asked);
+    // Another tab with a newer version wants to change how things are kept.
+    database.onversionchange = () => database.close();
+    const store = database.transaction(STORE).objectStore(STORE);
+    const [keys, things] = await Promise.all([
+      answer(store.getAllKeys()),
+      answer(store.getAll()),
+    ]);
+    this.#changes = keys.map((key, place) => ({ key: String(key), ...things[place] }));
+    this.#database = database;
+    if ("BroadcastChannel" in globalThis) {
+      this.#others = new BroadcastChannel("tamaire");
+      this.#others.onmessage = ({ data }) => this.#changes.push(data);
+    }
+    // What a browser keeps for pages that are visited often it does not throw away when its disk is full.
+    navigator.storage?.persist?.().catch(() => {});
+  }
+
+  /** The next thing that was kept before, or in another tab. */
+  takeChange() {
+    return this.#changes.shift();
+  }
+
+  /** @param {string} key @param {Uint8Array} bytes @param {number} written */
+  keep(key, bytes, written) {
+    // They lie in the game's memory, which moves on.
+    const thing = { bytes: bytes.slice(), written };
+    this.#write({ key, ...thing }, (store) => store.put(thing, key));
+  }
+
+  /** @param {string} key */
+  remove(key) {
+    this.#write({ key, bytes: undefined, written: 0 }, (store) => store.delete(key));
+  }
+
+  /** @param {Changed} changed @param {(store: IDBObjectStore) => IDBRequest} change */
+  #write(changed, change) {
+    try {
+      const transaction = /** @type {IDBDatabase} */ (this.#database).transaction(STORE, "readwrite");
+      transaction.oncomplete = () => {
+        this.#isFailing = false;
+        this.#others?.postMessage(changed);
+      };
+      transaction.onabort = () => this.#fail(transaction.error);
+      change(transaction.objectStore(STORE));
+    } catch (error) {
+      this.#fail(error);
+    }
+  }
+
+  /** @param {unknown} error */
+  #fail(error) {
+    if (!this.#isFailing) {
+      this.#isFailing = true;
+      this.#failure = String(error);
+    }
+  }
+
+  /** Why something is not kept, once. */
+  takeFailure() {
+    const failure = this.#failure;
+    this.#failure = undefined;
+    return failure;
+  }
+
+  // ---- files ----
+
+  /** @param {string} name @param {string} media @param {Uint8Array} bytes */
+  download(name, media, bytes) {
+    const address = URL.createObjectURL(new Blob([bytes.slice()], { type: media }));
+    const link = document.createElement("a");
+    link.href = address;
+    link.download = name;
+    link.click();
+    // The browser begins to read it after this.
+    setTimeout(() => URL.revokeObjectURL(address), 60_000);
+  }
+
+  /** @param {string} endings */
+  pick(endings) {
+    if (this.#isPicking) {
+      return;
+    }
+    this.#isPicking = true;
+    const input = document.createElement("input");
+    input.type = "file";
+    input.accept = endings;
+    input.multiple = true;
+    const end = async () => {
+      this.#picked.push(await read(input.files));
+      this.#isPicking = false;
+    };
+    input.addEventListener("change", end);
+    input.addEventListener("cancel", end);
+    input.click();
+  }
+
+  takePicked() {
+    return this.#picked.shift();
+  }
+
+  #takeDrops() {
+    // What is dropped beside the canvas must not take the place of the page.
+    addEventListener("dragover", (event) => event.preventDefault());
+    addEventListener(
+      "drop",
+      async (event) => {
+        event.preventDefault();
+        this.#dropped.push(await read(event.dataTransfer?.files));
+      },
+      { capture: true },
+    );
+  }
+
+  takeDropped() {
+    return this.#dropped.shift();
+  }
+
+  // ---- the address ----
+
+  #hearLinks() {
+    const take = () => {
+      const link = location.hash.slice(1);
+      if (link) {
+        this.#link = link;
+        // It is opened once, not again with each reload.
+        history.replaceState(null, "", location.pathname + location.search);
+      }
+    };
+    take();
+    addEventListener("hashchange", take);
+  }
+
+  takeLink() {
+    const link = this.#link;
+    this.#link = undefined;
+    return link;
+  }
+
+  get address() {
+    return location.origin + location.pathname;
+  }
+
+  // ---- the screen ----
+
+  /** @param {boolean} wanted */
+  fillScreen(wanted) {
+    const done = wanted
+      ? document.documentElement.requestFullscreen?.()
+      : document.fullscreenElement && document.exitFullscreen();
+    // Browsers refuse it without a press, and some telephones always.
+    Promise.resolve(done).catch(() => {});
+  }
+}
+
+/** @template T @param {IDBRequest<T>} request @returns {Promise<T>} */
+function answer(request) {
+  return new Promise((resolve, reject) => {
+    request.onsuccess = () => resolve(request.result);
+    request.onerror = () => reject(request.error);
+  });
+}
+
+/** @param {FileList | null | undefined} files @returns {Promise<GivenFile[]>} */
+function read(files) {
+  const one = async (/** @type {File} */ file) => {
+    const given = { name: file.name, bytes: undefined, length: file.size };
+    if (file.size > MOST_BYTES) {
+      return given;
+    }
+    try {
+      return { ...given, bytes: new Uint8Array(await file.arrayBuffer()) };
+    } catch {
+      return given;
+    }
+  };
+  return Promise.all([...(files ?? [])].map(one));
+}

@@ -1,0 +1,37 @@
+// Keeps the whole game in the browser: it opens without a network, and a newer one is fetched while this one is played.
+
+// Written by the build.
+const VERSION = "@VERSION@";
+const FILES = ["@FILES@"];
+
+const NAME = `tamaire-${VERSION}`;
+
+self.addEventListener("install", (event) => {
+  event.waitUntil(caches.open(NAME).then((cache) => cache.addAll(FILES)));
+});
+
+self.addEventListener("message", ({ data }) => {
+  if (data === "take over") {
+    self.skipWaiting();
+  }
+});
+
+self.addEventListener("activate", (event) => {
+  const others = async () => {
+    const names = (await caches.keys()).filter((name) => name.startsWith("tamaire-") && name !== NAME);
+    await Promise.all(names.map((name) => caches.delete(name)));
+  };
+  event.waitUntil(others());
+});
+
+self.addEventListener("fetch", (event) => {
+  if (event.request.method !== "GET" || new URL(event.request.url).origin !== location.origin) {
+    return;
+  }
+  const answer = async () => {
+    const cache = await caches.open(NAME);
+    const found = await cache.match(event.request, { ignoreSearch: event.request.mode === "navigate" });
+    return found ?? fetch(event.request);
+  };
+  event.respondWith(answer());
+});

@@ -1,0 +1,224 @@
+//! The game for a browser: a folder of files that any web server can hand out.
+//!
+//! cargo compiles the game and its sound for wasm32, wasm-bindgen makes the glue between the game and the page
+//! (`game/web`), and `xtask/web/pack.mjs` the folder. wasm-bindgen's program has to be of the very version that the game
+//! was compiled with, so it is built here too.
+
+use crate::packages::{IfMissing, Lack, apt_get, install_arguments, list_lacks};
+use crate::shell::{CANNOT, FAILED, Failure, answers, cargo, execute, output_of, root, target};
+use crate::wasm::{self, TARGET, cargo_for_wasm};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// What to do with the game for a browser.
+#[derive(Debug, PartialEq, Clone, Copy)]
+pub enum Web {
+    /// Build it.
+    Build,
+    /// And hand it out on this machine.
+    Serve,
+    /// And play it in browsers.
+    Test,
+}
+
+/// The browsers that play it: Debian's packages, and their programs.
+const BROWSERS: [(&str, &str); 2] = [("chromium", "chromium"), ("firefox-esr", "firefox-esr")];
+
+/// Builds the game for a browser, and serves or tests it.
+pub fn run(web: Web, if_missing: IfMissing) -> Result<(), Failure> {
+    if web == Web::Test {
+        provide_browsers(if_missing)?;
+    }
+    build(if_missing)?;
+    let site = folder().join("site");
+    match web {
+        Web::Build => Ok(()),
+        Web::Serve => node("serve.mjs", &[&site], "the server ended"),
+        Web::Test => node(
+            "test/all.mjs",
+            &[&site],
+            "a browser did not play as it must, see above",
+        ),
+    }
+}
+
+/// Where the tools, the stages and the folder of files are.
+fn folder() -> PathBuf {
+    root().join(target()).join("web")
+}
+
+fn build(if_missing: IfMissing) -> Result<(), Failure> {
+    let compiler = wasm::compiler(if_missing, "the game was NOT built for a browser")?;
+    let (stage, modules) = (
+        folder().join("stage"),
+        root().join(wasm::folder()).join(TARGET),
+    );
+    for words in [
+        [
+            "rustc",
+            "--profile",
+            "web",
+            "--package",
+            "tamaire",
+            "--bin",
+            "tamaire",
+        ]
+        .as_slice(),
+        &[
+            "rustc",
+            "--profile",
+            "web",
+            "--package",
+            "tamaire_worklet",
+            "--crate-type",
+            "cdylib",
+        ],
+    ] {
+        execute(
+            &mut cargo_for_wasm(&compiler, words),
+            "what differs in a browser belongs into game/src/platform and behind features of its crates",
+        )?;
+    }
+    let mut bind = Command::new(wasm_bindgen()?);
+    bind.args(["--target", "web", "--no-typescript", "--out-dir"])
+        .arg(&stage)
+        .arg(modules.join("web/tamaire.wasm"));
+    execute(
+        &mut bind,
+        "the glue between the game and the page could not be made",
+    )?;
+    let sound = modules.join("web/tamaire_worklet.wasm");
+    let licences = folder().join("licences.txt");
+    fs::copy(sound, stage.join("sound.wasm"))
+        .and_then(|_| fs::write(&licences, licence_texts()?))
+        .map_err(|error| Failure {
+            message: format!("{}: {error}", folder().display()),
+            code: FAILED,
+        })?;
+    provide_node_modules()?;
+    let (page, site) = (root().join("game/web"), folder().join("site"));
+    node(
+        "pack.mjs",
+        &[&stage, &page, &licences, &site],
+        "the folder could not be packed",
+    )
+}
+
+/// The texts that must come along with what is inside.
+fn licence_texts() -> std::io::Result<String> {
+    let read = |name: &str| fs::read_to_string(root().join(name));
+    let parts = [
+        "LICENSE-MIT",
+        "LICENSE-APACHE",
+        "THIRD-PARTY.md",
+        "game/fonts/OFL.txt",
+    ];
+    let texts = parts
+        .iter()
+        .map(|name| Ok(format!("==== {name} ====\n\n{}\n", read(name)?)));
+    texts.collect()
+}
+
+/// wasm-bindgen's program, of the version that the game is compiled with.
+fn wasm_bindgen() -> Result<PathBuf, Failure> {
+    let lock = fs::read_to_string(root().join("Cargo.lock")).unwrap_or_default();
+    let version = locked(&lock, "wasm-bindgen").ok_or_else(|| Failure {
+        message: "Cargo.lock names no wasm-bindgen".to_string(),
+        code: FAILED,
+    })?;
+    let tools = folder().join("tools");
+    let program = tools.join("bin/wasm-bindgen");
+    let found = output_of(&program.to_string_lossy(), &["--version"]);
+    if found.is_none_or(|found| found.trim() != format!("wasm-bindgen {version}")) {
+        let mut install = cargo();
+        install
+            .args([
+                "install",
+                "wasm-bindgen-cli",
+                "--version",
+                version,
+                "--root",
+            ])
+            .arg(&tools)
+            .env("CARGO_TARGET_DIR", folder().join("tools-target"));
+        execute(&mut install, "wasm-bindgen's program could not be built")?;
+    }
+    Ok(program)
+}
+
+/// The version of a package in a lock file.
+fn locked<'a>(lock: &'a str, package: &str) -> Option<&'a str> {
+    let after = lock
+        .split_once(&format!("name = \"{package}\"\nversion = \""))?
+        .1;
+    after.split_once('"').map(|(version, _)| version)
+}
+
+/// npm's packages, as the lock file names them.
+fn provide_node_modules() -> Result<(), Failure> {
+    let here = root().join("xtask/web");
+    let stamp = |path: &str| {
+        fs::metadata(here.join(path))
+            .and_then(|data| data.modified())
+            .ok()
+    };
+    if stamp("node_modules/.package-lock.json") > stamp("package-lock.json") {
+        return Ok(());
+    }
+    let mut install = Command::new("npm");
+    install
+        .args(["ci", "--no-audit", "--no-fund", "--prefix"])
+        .arg(&here);
+    execute(&mut install, "npm could not fetch what packs the page")
+}
+
+fn node(script: &str, words: &[&Path], hint: &str) -> Result<(), Failure> {
+    let script = Path::new("xtask/web").join(script);
+    execute(Command::new("node").arg(script).args(words), hint)
+}
+
+fn provide_browsers(if_missing: IfMissing) -> Result<(), Failure> {
+    let lacks = || -> Vec<Lack> {
+        let missing = BROWSERS.iter().filter(|(_, program)| !answers(program));
+        missing
+            .map(|(package, program)| {
+                Lack::new(format!("there is no {program} on the path"), *package)
+            })
+            .collect()
+    };
+    let missing = lacks();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    if if_missing == IfMissing::Install {
+        apt_get(&["update", "--quiet"]);
+        apt_get(&install_arguments(
+            missing.iter().map(|lack| lack.package.as_str()),
+        ));
+    }
+    let missing = lacks();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    Err(Failure {
+        message: format!(
+            "the game was NOT played in browsers:\n{}",
+            list_lacks(&missing)
+        ),
+        code: CANNOT,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_version_of_a_package_is_that_of_its_whole_name() {
+        let lock = "name = \"wasm-bindgen-futures\"\nversion = \"0.4.80\"\n\n\
+                    name = \"wasm-bindgen\"\nversion = \"0.2.130\"\n";
+        assert_eq!(locked(lock, "wasm-bindgen"), Some("0.2.130"));
+        assert_eq!(locked(lock, "wasm"), None);
+    }
+}

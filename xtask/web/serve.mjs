@@ -1,0 +1,72 @@
+// A web server for the packed folder, as any static host is one: brotli, and a year for what is named by its contents.
+// usage: node serve.mjs FOLDER [PORT]
+import { createServer } from "node:http";
+import { readFileSync } from "node:fs";
+import { extname, join, normalize } from "node:path";
+import { fileURLToPath } from "node:url";
+import { brotli } from "./compress.mjs";
+
+const MEDIA = {
+  ".html": "text/html; charset=utf-8",
+  ".css": "text/css; charset=utf-8",
+  ".js": "text/javascript; charset=utf-8",
+  ".wasm": "application/wasm",
+  ".webmanifest": "application/manifest+json",
+  ".svg": "image/svg+xml",
+  ".png": "image/png",
+  ".ttf": "font/ttf",
+  ".txt": "text/plain; charset=utf-8",
+};
+
+/**
+ * @param {string} folder
+ * @param {number} port 0 for any that is free
+ * @returns {Promise<{address: string, sent: {path: string, bytes: number}[], close(): Promise<void>}>}
+ */
+export function serve(folder, port = 0) {
+  /** @type {Map<string, Buffer>} */
+  const compressed = new Map();
+  /** @type {{path: string, bytes: number}[]} */
+  const sent = [];
+  const server = createServer((request, response) => {
+    const { pathname } = new URL(request.url ?? "/", "http://here");
+    const path = normalize(decodeURIComponent(pathname)).replace(/\/$/, "/index.html");
+    let bytes;
+    try {
+      bytes = readFileSync(join(folder, path));
+    } catch {
+      response.writeHead(404).end();
+      return;
+    }
+    const isForEver = /^\/[0-9a-f]{12}\//.test(path);
+    const headers = {
+      "Content-Type": MEDIA[extname(path)] ?? "application/octet-stream",
+      "Cache-Control": isForEver ? "public, max-age=31536000, immutable" : "no-cache",
+    };
+    if (extname(path) !== ".png" && /\bbr\b/.test(String(request.headers["accept-encoding"]))) {
+      if (!compressed.has(path)) {
+        compressed.set(path, brotli(bytes));
+      }
+      bytes = /** @type {Buffer} */ (compressed.get(path));
+      headers["Content-Encoding"] = "br";
+    }
+    sent.push({ path, bytes: bytes.length });
+    response.writeHead(200, { ...headers, "Content-Length": bytes.length }).end(bytes);
+  });
+  return new Promise((resolve, reject) => {
+    server.on("error", reject);
+    server.listen(port, "localhost", () => {
+      const { port } = /** @type {import("node:net").AddressInfo} */ (server.address());
+      const close = () => {
+        server.closeAllConnections();
+        return new Promise((done) => server.close(() => done(undefined)));
+      };
+      resolve({ address: `http://localhost:${port}/`, sent, close });
+    });
+  });
+}
+
+if (process.argv[1] === fileURLToPath(import.meta.url)) {
+  const { address } = await serve(process.argv[2], Number(process.argv[3] ?? 8000));
+  console.log(`tamaire plays at ${address} until this ends (Ctrl+C)`);
+}
