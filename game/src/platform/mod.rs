@@ -22,7 +22,7 @@ mod pictures;
 #[cfg(not(target_family = "wasm"))]
 mod sound;
 #[cfg(target_family = "wasm")]
-#[path = "silence.rs"]
+#[path = "web_sound.rs"]
 mod sound;
 mod sticks;
 mod storage;
