@@ -9,7 +9,7 @@ mod switch;
 use crate::game::{Game, Screen};
 use crate::input::{Action, Means, Seat};
 use crate::look::{Stage, dress};
-use crate::platform::{GpuWatch, dropped};
+use crate::platform::{GpuWatch, dropped, fill_screen, speak};
 use crate::screens;
 use dwell::Dwell;
 use egui::{Event, Key};
@@ -179,7 +179,7 @@ impl App {
         let wanted = self.game.settings.full_screen;
         if wanted != self.is_full {
             self.is_full = wanted;
-            ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(wanted));
+            fill_screen(ctx, wanted);
         }
     }
 
@@ -330,6 +330,11 @@ impl eframe::App for App {
             return ctx.send_viewport_cmd(egui::ViewportCommand::Close);
         }
         self.fill_screen(&ctx);
+        speak(
+            &ctx,
+            self.game.settings.language,
+            self.game.is_own(self.game.levels.len() - 1),
+        );
         fit(&ctx, self.game.settings.text_size);
         let seconds = ctx.input(|input| input.stable_dt).min(0.1);
         self.hear_sticks(&ctx, seconds);

@@ -1,5 +1,7 @@
 // What the page does for the game (game/src/platform/web/host.rs asks for it): keeps things, hands out files, takes them in.
 
+import { Speaker } from "./sound.js";
+
 const STORE = "things";
 /** Most bytes of a file that is read: the game reads no more of any kind. */
 const MOST_BYTES = 1 << 26;
@@ -27,6 +29,11 @@ export class Host {
   #isPicking = false;
   /** @type {string | undefined} */
   #link;
+  /** @type {Speaker | undefined} */
+  #speaker;
+  #wantsLetters = false;
+  /** @type {Uint8Array | undefined} */
+  #letters;
 
   /** The page, with all that it kept. It opens also where the browser keeps nothing. */
   static async open() {
@@ -61,19 +68,28 @@ export class Host {
     const database = await answer(asked);
     // Another tab with a newer version wants to change how things are kept.
     database.onversionchange = () => database.close();
-    const store = database.transaction(STORE).objectStore(STORE);
-    const [keys, things] = await Promise.all([
-      answer(store.getAllKeys()),
-      answer(store.getAll()),
-    ]);
-    this.#changes = keys.map((key, place) => ({ key: String(key), ...things[place] }));
     this.#database = database;
+    await this.#readStore();
     if ("BroadcastChannel" in globalThis) {
       this.#others = new BroadcastChannel("tamaire");
       this.#others.onmessage = ({ data }) => this.#changes.push(data);
     }
     // What a browser keeps for pages that are visited often it does not throw away when its disk is full.
     navigator.storage?.persist?.().catch(() => {});
+  }
+
+  async #readStore() {
+    const store = this.#database?.transaction(STORE).objectStore(STORE);
+    if (store) {
+      const [keys, things] = await Promise.all([answer(store.getAllKeys()), answer(store.getAll())]);
+      this.#changes = keys.map((key, place) => ({ key: String(key), ...things[place] }));
+    }
+  }
+
+  /** For a game that begins anew: it knows nothing yet. */
+  async again() {
+    this.#wantsLetters = false;
+    await this.#readStore();
   }
 
   /** The next thing that was kept before, or in another tab. */
@@ -201,7 +217,38 @@ export class Host {
     return location.origin + location.pathname;
   }
 
+  // ---- sound ----
+
+  get speaker() {
+    this.#speaker ??= new Speaker();
+    return this.#speaker;
+  }
+
   // ---- the screen ----
+
+  /** Fetches the letters of Japanese, once. */
+  async wantLetters() {
+    if (this.#wantsLetters) {
+      return;
+    }
+    this.#wantsLetters = true;
+    try {
+      const response = await fetch(new URL("japanese.ttf", import.meta.url));
+      if (!response.ok) {
+        throw new Error(String(response.status));
+      }
+      this.#letters = new Uint8Array(await response.arrayBuffer());
+    } catch {
+      // Offline, before all was kept: it is tried again.
+      setTimeout(() => (this.#wantsLetters = false), 5_000);
+    }
+  }
+
+  takeLetters() {
+    const letters = this.#letters;
+    this.#letters = undefined;
+    return letters;
+  }
 
   /** @param {boolean} wanted */
   fillScreen(wanted) {

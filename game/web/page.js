@@ -119,6 +119,7 @@ async function begin(host, game) {
 async function beginAgain(host, game, since) {
   await new Promise((resolve) => setTimeout(resolve, 500));
   try {
+    await host.again();
     await begin(host, game);
   } catch {
     if (performance.now() - since < PATIENCE) {

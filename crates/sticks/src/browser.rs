@@ -2,7 +2,7 @@
 //! browser shows a pad only after one of its buttons was pressed.
 
 use crate::latest::{Latest, NoSticks};
-use crate::{About, Button, Device, DeviceId, Labels, Pad, PadButton, Snapshot};
+use crate::{About, Button, Device, DeviceId, Labels, PadButton, Snapshot};
 use js_sys::Array;
 use std::sync::{Arc, Mutex, PoisonError};
 use wasm_bindgen::JsCast;

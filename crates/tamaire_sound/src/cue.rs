@@ -4,6 +4,7 @@ use crate::part::clean;
 
 /// Something that happened, and sounds once. Values that are no numbers count as nothing.
 #[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Cue {
     /// A body pressed on something rigid. May be sent every tick that it does: only a sudden rise is heard.
     Thud {
@@ -34,6 +35,7 @@ pub enum Cue {
 
 /// How a round was won.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Route {
     /// The body went in whole.
     Squeeze,
@@ -45,6 +47,7 @@ pub enum Route {
 
 /// What was done in a menu.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Menu {
     /// Another entry is chosen.
     Move,

@@ -4,6 +4,7 @@
 //! - [`Soundscape`] is what lasts: hands that press and slip, squash, time held in the basket.
 //! - [`Cue`] is what happens at a moment: a thud, a tear, a crumb, a menu, a win.
 //! - [`Synth`] makes samples of both. It is a pure computation: the same calls, the same samples.
+//! - [`Message`] says all that to a synth elsewhere, as bytes (feature `serde`).
 //! - [`Speaker`] plays them on the machine's sound device (feature `output`).
 //!
 //! ```
@@ -34,10 +35,14 @@ mod music;
 mod master;
 mod synth;
 
+#[cfg(feature = "serde")]
+mod message;
 #[cfg(feature = "output")]
 mod speaker;
 
 pub use cue::{Cue, Menu, Route};
+#[cfg(feature = "serde")]
+pub use message::Message;
 pub use soundscape::{Hush, Press, Soundscape, Volumes};
 #[cfg(feature = "output")]
 pub use speaker::{NoSound, Speaker};

@@ -4,6 +4,7 @@ use crate::part::clean;
 
 /// What lasts. To be told anew each frame: after half a second without news it falls silent.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Soundscape {
     /// What the hands of up to two players do.
     pub presses: [Press; 2],
@@ -19,6 +20,7 @@ pub struct Soundscape {
 
 /// A hand on a body.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Press {
     /// How hard it presses [N]; about 400. Louder and higher with more.
     pub force: f32,
@@ -30,6 +32,7 @@ pub struct Press {
 
 /// What is to be silent for a while.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Hush {
     /// Nothing.
     #[default]
@@ -42,6 +45,7 @@ pub enum Hush {
 
 /// How loud, each from 0 to 1.
 #[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Volumes {
     /// All of it.
     pub master: f32,

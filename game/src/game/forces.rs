@@ -39,6 +39,7 @@ impl Game {
         if let Some((id, size)) = self.trial.as_mut().and_then(Trial::take_tear) {
             self.forces.tear(id, size);
         }
+        self.forces.update();
     }
 
     fn pass_trial(&mut self, seconds: f32) {

@@ -18,7 +18,7 @@ mod theme;
 
 pub use camera::{CameraRig, View};
 pub use confetti::Confetti;
-pub use dress::dress;
+pub use dress::{add_letters, dress};
 pub use effects::Effects;
 pub use face::{Face, Mood};
 pub use feelings::Feeling;

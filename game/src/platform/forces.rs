@@ -59,13 +59,17 @@ impl Forces {
     }
 
     /// Tells each device what there is to feel, or why there is nothing.
-    pub fn tell(&mut self, wish: impl Fn(DeviceId) -> Result<State, Stop>) {
+    pub fn tell(&self, wish: impl Fn(DeviceId) -> Result<State, Stop>) {
         for (&id, line) in &self.lines {
             match wish(id) {
                 Ok(state) => line.feel(state),
                 Err(why) => line.stop(why),
             }
         }
+    }
+
+    /// Passes on what was told, where no thread does.
+    pub fn update(&mut self) {
         if let Some(force) = &mut self.force {
             force.update();
         }

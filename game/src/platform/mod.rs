@@ -21,16 +21,15 @@ mod pictures;
 #[path = "no_pictures.rs"]
 mod pictures;
 #[cfg(not(target_family = "wasm"))]
-mod sound;
-#[cfg(target_family = "wasm")]
-#[path = "silence.rs"]
+mod screen;
+#[cfg(not(target_family = "wasm"))]
 mod sound;
 mod sticks;
 mod storage;
 mod writer;
 
 #[cfg(target_family = "wasm")]
-use here::{date, dialog};
+use here::{date, dialog, screen, sound};
 
 pub use clock::Clock;
 pub use date::local as local_date;
@@ -44,6 +43,7 @@ pub use gpu::GpuWatch;
 #[cfg(target_family = "wasm")]
 pub use here::{Host, set_host};
 pub use pictures::ARE_THERE as HAS_PICTURES;
+pub use screen::{fill_screen, speak};
 pub use sound::Sound;
 pub use sticks::Pads;
 pub use storage::{Change, Entry, Kind, Nowhere, Storage};

@@ -51,6 +51,22 @@ extern "C" {
     #[wasm_bindgen(method, setter)]
     pub(crate) fn set_spoken(this: &Host, language: &str);
 
+    /// What sounds come out of; the same one when the game begins anew.
+    #[wasm_bindgen(method, getter)]
+    pub(crate) fn speaker(this: &Host) -> Speaker;
+    /// Asks for the letters of Japanese; they come through [`Host::take_letters`], unless the page cannot fetch them.
+    #[wasm_bindgen(method, js_name = wantLetters)]
+    pub(crate) fn want_letters(this: &Host);
+    #[wasm_bindgen(method, js_name = takeLetters)]
+    pub(crate) fn take_letters(this: &Host) -> Option<Vec<u8>>;
+
+    /// `game/web/sound.js`
+    pub(crate) type Speaker;
+    #[wasm_bindgen(method)]
+    pub(crate) fn tell(this: &Speaker, bytes: &[u8]);
+    #[wasm_bindgen(method)]
+    pub(crate) fn trouble(this: &Speaker) -> Option<String>;
+
     /// Something that was kept.
     pub(crate) type Changed;
     #[wasm_bindgen(method, getter)]

@@ -5,6 +5,8 @@ pub mod date;
 pub mod dialog;
 mod host;
 mod kept;
+pub mod screen;
+pub mod sound;
 
 pub(crate) use host::{GivenFile, host};
 pub use host::{Host, set_host};

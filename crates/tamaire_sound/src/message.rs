@@ -1,0 +1,236 @@
+//! What a game tells a synth that is elsewhere, such as in an audio worklet of a browser: one thing
+//! after the other in postcard's format, so that whoever hears it needs no memory for it.
+
+use crate::cue::Cue;
+use crate::soundscape::{Soundscape, Volumes};
+use crate::synth::Synth;
+use serde::{Deserialize, Serialize};
+
+/// A cue of the world is dropped where less is left [bytes]: the rest is kept for menus and
+/// jingles, which are few and must not be lost.
+const FOR_MENUS: usize = 512;
+
+/// A menu or a jingle is dropped where less is left [bytes]: several times what a soundscape takes.
+const FOR_WHAT_LASTS: usize = 128;
+
+/// Longer than any one thing that is told [bytes].
+const LONGEST: usize = 64;
+
+/// Written by one side and read by the other, which must be of the same build.
+#[derive(Deserialize, Serialize)]
+enum News {
+    Soundscape(Soundscape),
+    Volumes(Volumes),
+    Cue(Cue),
+}
+
+/// What a synth is to be told, gathered over a frame.
+#[derive(Default)]
+pub struct Message(Vec<u8>);
+
+impl Message {
+    /// None is longer [bytes]; what does not fit is dropped.
+    pub const MOST_BYTES: usize = 4096;
+
+    /// As [`Synth::hear`].
+    pub fn hear(&mut self, soundscape: &Soundscape) {
+        self.put(&News::Soundscape(*soundscape), 0);
+    }
+
+    /// As [`Synth::set_volumes`].
+    pub fn set_volumes(&mut self, volumes: &Volumes) {
+        self.put(&News::Volumes(*volumes), 0);
+    }
+
+    /// As [`Synth::play`].
+    pub fn play(&mut self, cue: Cue) {
+        let kept_free = match cue {
+            Cue::Thud { .. } | Cue::Tear { .. } | Cue::Crumb { .. } => FOR_MENUS,
+            Cue::Won(_) | Cue::Menu(_) => FOR_WHAT_LASTS,
+        };
+        self.put(&News::Cue(cue), kept_free);
+    }
+
+    /// What [`Synth::take`] takes.
+    pub fn bytes(&self) -> &[u8] {
+        &self.0
+    }
+
+    /// Begins the next one.
+    pub fn clear(&mut self) {
+        self.0.clear();
+    }
+
+    fn put(&mut self, news: &News, kept_free: usize) {
+        let mut longest = [0; LONGEST];
+        let bytes = postcard::to_slice(news, &mut longest).expect("longer than any news");
+        if self.0.len() + bytes.len() + kept_free <= Self::MOST_BYTES {
+            self.0.extend_from_slice(bytes);
+        }
+    }
+}
+
+impl Synth {
+    /// Takes a [`Message`]. From where its bytes mean nothing the rest is ignored. Allocates nothing.
+    pub fn take(&mut self, mut message: &[u8]) {
+        while let Ok((news, rest)) = postcard::take_from_bytes(message) {
+            match news {
+                News::Soundscape(soundscape) => self.hear(&soundscape),
+                News::Volumes(volumes) => self.set_volumes(&volumes),
+                News::Cue(cue) => self.play(cue),
+            }
+            message = rest;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cue::{Menu, Route};
+    use crate::soundscape::{Hush, Press};
+
+    const PRESS: Press = Press {
+        force: 600.0,
+        slip: 0.5,
+        x: -0.3,
+    };
+
+    const SOUNDSCAPE: Soundscape = Soundscape {
+        presses: [PRESS, Press { x: 0.8, ..PRESS }],
+        squash: 0.4,
+        hold: 0.7,
+        music: true,
+        hush: Hush::Nothing,
+    };
+
+    const VOLUMES: Volumes = Volumes {
+        master: 0.9,
+        effects: 0.7,
+        music: 0.5,
+        interface: 0.3,
+    };
+
+    const CUES: [Cue; 9] = [
+        Cue::Thud {
+            impulse: 30.0,
+            x: -1.0,
+        },
+        Cue::Tear {
+            energy: 10.0,
+            x: 1.0,
+        },
+        Cue::Crumb { speed: 2.0, x: 0.0 },
+        Cue::Won(Route::Squeeze),
+        Cue::Won(Route::Shave),
+        Cue::Won(Route::Mix),
+        Cue::Menu(Menu::Move),
+        Cue::Menu(Menu::Confirm),
+        Cue::Menu(Menu::Back),
+    ];
+
+    fn everything() -> Message {
+        let mut message = Message::default();
+        message.hear(&SOUNDSCAPE);
+        message.set_volumes(&VOLUMES);
+        CUES.into_iter().for_each(|cue| message.play(cue));
+        message
+    }
+
+    fn heard(mut synth: Synth) -> Vec<f32> {
+        let mut samples = vec![0.0; 4000];
+        synth.render(&mut samples);
+        assert!(samples.iter().all(|sample| sample.abs() <= 1.0));
+        samples
+    }
+
+    fn after(message: &[u8]) -> Vec<f32> {
+        let mut synth = Synth::new(48_000);
+        synth.take(message);
+        heard(synth)
+    }
+
+    #[test]
+    fn a_message_says_what_calls_say() {
+        let mut synth = Synth::new(48_000);
+        synth.hear(&SOUNDSCAPE);
+        synth.set_volumes(&VOLUMES);
+        CUES.into_iter().for_each(|cue| synth.play(cue));
+        assert_eq!(after(everything().bytes()), heard(synth));
+    }
+
+    #[test]
+    fn all_that_there_is_to_tell_is_told_as_it_was() {
+        let hushes = [Hush::Nothing, Hush::World, Hush::Everything];
+        let mut message = Message::default();
+        for hush in hushes {
+            message.hear(&Soundscape { hush, ..SOUNDSCAPE });
+        }
+        let mut rest = message.bytes();
+        for hush in hushes {
+            let Ok((News::Soundscape(told), after)) = postcard::take_from_bytes(rest) else {
+                panic!("no soundscape in {rest:?}");
+            };
+            assert_eq!(told, Soundscape { hush, ..SOUNDSCAPE });
+            rest = after;
+        }
+        assert!(rest.is_empty());
+        for cue in CUES {
+            message.clear();
+            message.play(cue);
+            let told = postcard::from_bytes(message.bytes());
+            assert!(
+                matches!(told, Ok(News::Cue(told)) if told == cue),
+                "{cue:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_message_that_is_cut_short_says_what_it_had_said_by_then() {
+        let message = everything();
+        for length in 0..message.bytes().len() {
+            after(&message.bytes()[..length]);
+        }
+        assert!(after(&message.bytes()[..3]).iter().all(|k| *k == 0.0));
+        let mut more = message.bytes().to_vec();
+        more.extend([255; 50]);
+        assert_eq!(after(&more), after(message.bytes()));
+    }
+
+    #[test]
+    fn any_bytes_are_taken() {
+        let message = everything();
+        for place in 0..message.bytes().len() {
+            for byte in 0..=255 {
+                let mut bytes = message.bytes().to_vec();
+                bytes[place] = byte;
+                let mut synth = Synth::new(8_000);
+                synth.take(&bytes);
+                let mut samples = [0.0; 64];
+                synth.render(&mut samples);
+                assert!(samples.iter().all(|sample| sample.abs() <= 1.0));
+            }
+        }
+        for byte in 0..=255 {
+            after(&[byte; Message::MOST_BYTES]);
+        }
+    }
+
+    #[test]
+    fn a_flood_of_tears_leaves_room_for_the_win_and_for_what_lasts() {
+        let mut flood = Message::default();
+        let tear = CUES[1];
+        (0..10_000).for_each(|_| flood.play(tear));
+        let tears = flood.bytes().len();
+        let win = Cue::Won(Route::Shave);
+        (0..10_000).for_each(|_| flood.play(win));
+        assert!(flood.bytes().len() > tears, "a win fits");
+        flood.hear(&SOUNDSCAPE);
+        flood.set_volumes(&VOLUMES);
+        assert!(flood.bytes().len() <= Message::MOST_BYTES);
+        let last = flood.bytes().len() - 17;
+        let told = postcard::from_bytes(&flood.bytes()[last..]);
+        assert!(matches!(told, Ok(News::Volumes(told)) if told == VOLUMES));
+    }
+}

@@ -1,0 +1,24 @@
+//! What only the page can do to what is seen.
+
+use super::host;
+use crate::look::add_letters;
+use crate::words::Language;
+
+/// Makes the page as large as was chosen.
+pub fn fill_screen(_: &egui::Context, wanted: bool) {
+    host().fill_screen(wanted);
+}
+
+/// Sees to it that a language can be written, and read aloud.
+pub fn speak(context: &egui::Context, language: Language, has_own_levels: bool) {
+    let host = host();
+    let is_japanese = language == Language::Japanese;
+    host.set_spoken(if is_japanese { "ja" } else { "en" });
+    // Names that somebody gave may be written in anything.
+    if is_japanese || has_own_levels {
+        host.want_letters();
+    }
+    if let Some(letters) = host.take_letters() {
+        add_letters(context, letters);
+    }
+}
