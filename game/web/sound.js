@@ -6,6 +6,12 @@ const GESTURES = ["pointerdown", "pointerup", "touchend", "keydown", "click", "g
 
 const beside = (/** @type {string} */ file) => new URL(file, import.meta.url);
 
+/** What a browser or a page lacks to play. */
+function lack() {
+  if (!isSecureContext) return "sound needs a page that came by https";
+  if (!globalThis.AudioContext || !globalThis.AudioWorkletNode) return "this browser has no audio worklets";
+}
+
 export class Speaker {
   /** @type {Promise<WebAssembly.Module> | undefined} */
   #module;
@@ -14,20 +20,17 @@ export class Speaker {
   /** @type {AudioWorkletNode | undefined} */
   #node;
   /** @type {string | undefined} */
-  #trouble;
+  #trouble = lack();
 
   constructor() {
-    if (!globalThis.AudioContext || !globalThis.AudioWorkletNode) {
-      this.#trouble = isSecureContext ? "this browser has no audio worklets" : "sound needs a page that came by https";
-      return;
-    }
+    if (this.#trouble) return;
     this.#module = WebAssembly.compileStreaming(fetch(beside("sound.wasm")));
-    this.#module.catch((error) => this.#fail(error));
+    this.#module.catch((error) => this.#fail(`sound.wasm: ${error.message}`));
     for (const gesture of GESTURES) {
       addEventListener(gesture, () => this.#wake(), { capture: true, passive: true });
     }
     document.addEventListener("visibilitychange", () => {
-      if (document.hidden) this.#context?.suspend();
+      if (document.hidden) this.#context?.suspend().catch(() => {});
       else if (this.#context) this.#wake();
     });
     // There may have been a gesture while the game was loading.
@@ -60,13 +63,13 @@ export class Speaker {
       this.#context ??= this.#begin();
       if (this.#context.state !== "running") this.#context.resume().catch(() => {});
     } catch (error) {
-      this.#fail(error);
+      this.#fail(`the sound device: ${error}`);
     }
   }
 
   #begin() {
     const context = new AudioContext();
-    this.#join(context).catch((error) => this.#fail(error));
+    this.#join(context).catch((error) => this.#fail(`worklet.js: ${error.message}`));
     return context;
   }
 
@@ -81,9 +84,9 @@ export class Speaker {
     this.#node = node;
   }
 
-  /** @param {unknown} error */
-  #fail(error) {
-    this.#trouble ??= error instanceof Error ? error.message : String(error);
+  /** @param {string} trouble */
+  #fail(trouble) {
+    this.#trouble ??= trouble;
     this.#context?.close().catch(() => {});
   }
 }

@@ -4,20 +4,31 @@
 /** As many frames as a browser asks for at a time. */
 const FRAMES = 128;
 
+/**
+ * @typedef {object} Exports Of crates/tamaire_worklet.
+ * @property {WebAssembly.Memory} memory
+ * @property {(rate: number) => void} sound_begin
+ * @property {() => number} sound_message
+ * @property {() => number} sound_message_room
+ * @property {(length: number) => void} sound_take
+ * @property {(frames: number) => number} sound_render
+ */
+
 class Synth extends AudioWorkletProcessor {
   /** @param {{processorOptions: {module: WebAssembly.Module}}} options */
   constructor({ processorOptions }) {
     super();
-    const { memory, sound_begin, sound_message, sound_message_room, sound_take, sound_render } =
-      new WebAssembly.Instance(processorOptions.module).exports;
-    sound_begin(sampleRate);
-    const room = new Uint8Array(memory.buffer, sound_message(), sound_message_room());
+    const { exports } = new WebAssembly.Instance(processorOptions.module);
+    const synth = /** @type {Exports} */ (/** @type {unknown} */ (exports));
+    synth.sound_begin(sampleRate);
+    const { buffer } = synth.memory;
+    const message = new Uint8Array(buffer, synth.sound_message(), synth.sound_message_room());
     this.port.onmessage = ({ data }) => {
-      room.set(data.subarray(0, room.length));
-      sound_take(data.length);
+      message.set(data.subarray(0, message.length));
+      synth.sound_take(data.length);
     };
-    this.render = sound_render;
-    this.samples = new Float32Array(memory.buffer, sound_render(0), 2 * FRAMES);
+    this.render = synth.sound_render;
+    this.samples = new Float32Array(buffer, synth.sound_render(0), 2 * FRAMES);
   }
 
   /**

@@ -58,8 +58,8 @@ fn tell(tick: usize, message: &mut Message) {
         180..280 => message.play(Cue::Tear { energy: 1.0, x }),
         420 => message.play(Cue::Won(Route::Squeeze)),
         60 | 500 => message.play(Cue::Menu(Menu::Confirm)),
-        _ if tick % 30 == 0 => message.play(Cue::Thud { impulse: 20.0, x }),
-        _ if tick % 7 == 0 => message.play(Cue::Crumb { speed: 1.0, x }),
+        _ if tick.is_multiple_of(30) => message.play(Cue::Thud { impulse: 20.0, x }),
+        _ if tick.is_multiple_of(7) => message.play(Cue::Crumb { speed: 1.0, x }),
         _ => {}
     }
 }

@@ -1,6 +1,9 @@
 //! The synth of tamaire as a WebAssembly module, for an audio worklet of a browser. It is a module of its own
 //! because a worklet shares no memory with the game, and needs a hundredth of its code.
 //!
+//! `cargo rustc --release -p tamaire_worklet --crate-type cdylib --target wasm32-unknown-unknown -- -Cstrip=symbols`
+//! builds it, `game/web/test/module.mjs` plays it under Node.
+//!
 //! A [`Worklet`] has room for what it is told and for what it plays; `game/web/worklet.js` fills the one and
 //! empties the other through the [`exports`].
 #![deny(unsafe_code)]
