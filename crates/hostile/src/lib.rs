@@ -53,6 +53,11 @@ pub const DOORS: &[Door] = &[
         enter: doors::replay,
     },
     Door {
+        name: "link",
+        seeds: seeds::links,
+        enter: doors::link,
+    },
+    Door {
         name: "recording",
         seeds: seeds::recordings,
         enter: doors::recording,

@@ -1,11 +1,13 @@
 //! Good bytes for each door, and small: what is large is tested where it is read.
 
+use base64::Engine;
+use base64::prelude::BASE64_URL_SAFE_NO_PAD as BASE64;
 use fuwafuwa::{Dim, Dim2, Dim3, snapshot};
 use fuwafuwa_scenes::{Recording, Scene, scene};
 use png::{BitDepth, ColorType};
 use std::sync::Arc;
 use tamaire_play::level::{NAMED, NAMED_3D};
-use tamaire_play::{AnyRound, InputFrame, Level};
+use tamaire_play::{AnyRound, InputFrame, Level, Replay};
 
 pub const CAT: &[u8] = include_bytes!("../../tamaire_play/levels/cat.png");
 pub const PUDDING: &[u8] = include_bytes!("../../tamaire_play/levels/pudding.vox");
@@ -56,6 +58,27 @@ pub fn models() -> Vec<Vec<u8>> {
 }
 
 pub fn replays() -> Vec<Vec<u8>> {
+    let texts = small_rounds().into_iter().map(|round| round.text());
+    texts.map(String::into_bytes).collect()
+}
+
+pub fn links() -> Vec<Vec<u8>> {
+    let levels = small_levels().into_iter().map(|level| level.link());
+    let rounds = small_rounds().into_iter().map(|round| round.link());
+    levels
+        .chain(rounds)
+        .map(|link| sent(&link.expect("it is short")))
+        .collect()
+}
+
+/// What [`crate::DOORS`] takes of a link.
+fn sent(link: &str) -> Vec<u8> {
+    let bytes = BASE64.decode(&link[2..link.len() - 1]);
+    let bytes = bytes.expect("a link is made of base64url");
+    [&link.as_bytes()[..1], &bytes[4..]].concat()
+}
+
+fn small_rounds() -> Vec<Replay> {
     let played = |level: Level| {
         let mut round = AnyRound::new(Arc::new(level));
         for tick in 0..61 {
@@ -63,7 +86,7 @@ pub fn replays() -> Vec<Vec<u8>> {
             let frame = InputFrame::towards([away, 0.5, 0.0]);
             round.step(frame.with(1, [-away, 0.5, 0.0]));
         }
-        round.replay().text().into_bytes()
+        round.replay()
     };
     let few = ["classic", "twins", "donut", "classic-3d"];
     let levels = small_levels().into_iter();

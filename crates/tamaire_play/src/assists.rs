@@ -26,7 +26,8 @@ impl Level {
     }
 }
 
-fn assisted(scene: &Scene, assists: &BTreeSet<Assist>) -> Scene {
+/// See [`Level::assisted`].
+pub(crate) fn assisted(scene: &Scene, assists: &BTreeSet<Assist>) -> Scene {
     let mut scene = scene.clone();
     for &assist in assists {
         let game = scene.game.as_mut();

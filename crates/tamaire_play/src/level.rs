@@ -167,7 +167,7 @@ impl Level {
     /// # Errors
     /// [`LevelError::Unreadable`] when it is too long.
     pub fn text_to_keep(&self) -> Result<String, LevelError> {
-        let text = self.text();
+        let text = text_of(&self.scene);
         text_in(&self.id, text.as_bytes(), MAX_KEPT_BYTES)?;
         Ok(text)
     }
@@ -289,11 +289,7 @@ impl Level {
 
     /// A number that two levels share only if they are the same.
     pub fn hash(&self) -> u64 {
-        Hash::of(self.text().as_bytes())
-    }
-
-    fn text(&self) -> String {
-        toml::to_string(&self.scene).expect("a scene that was read can be written")
+        hash_of(&self.scene)
     }
 
     /// Its world at the start, and its basket.
@@ -320,8 +316,17 @@ impl Level {
     }
 }
 
+/// See [`Level::hash`].
+pub(crate) fn hash_of(scene: &Scene) -> u64 {
+    Hash::of(text_of(scene).as_bytes())
+}
+
+pub(crate) fn text_of(scene: &Scene) -> String {
+    toml::to_string(scene).expect("a scene that was read can be written")
+}
+
 /// What a stranger says was made easier was not: only rounds tell so of their level.
-fn plain(mut scene: Scene) -> Scene {
+pub(crate) fn plain(mut scene: Scene) -> Scene {
     if let Some(game) = &mut scene.game {
         game.assists.clear();
     }

@@ -2,7 +2,7 @@
 //!
 //! The way through, each module using only those above it:
 //! [`input`] what players do in a tick → [`level`] where they do it → [`assists`] the same made easier → [`rules`] what
-//! counts as won, and how → [`round`] one go at a level → [`any`] the same, whatever its dimension → [`replay`] the same again → [`bot`] players that are programs.
+//! counts as won, and how → [`round`] one go at a level → [`any`] the same, whatever its dimension → [`replay`] the same again → [`link`] the same behind an address → [`bot`] players that are programs.
 //!
 //! A window, a bot and a replay play alike: they hand one [`InputFrame`] a tick to [`Round::step`]
 //! and look at what came of it. A round in the plane is a `Round<Dim2>`, one in space a `Round<Dim3>`;
@@ -36,6 +36,7 @@ pub mod assists;
 pub mod bot;
 pub mod input;
 pub mod level;
+pub mod link;
 pub mod replay;
 pub mod round;
 pub mod rules;
@@ -47,6 +48,7 @@ pub use fuwafuwa_scenes::scene::{
 };
 pub use input::{InputFrame, PLAYERS};
 pub use level::Level;
+pub use link::{Link, LinkError};
 pub use replay::{Playback, Replay, ReplayError};
 pub use round::Round;
 pub use rules::{Outcome, Progress};

@@ -1,0 +1,412 @@
+//! Rounds and levels that travel behind an address. `--nocapture` shows how long they are.
+
+use fastrand::Rng;
+use std::collections::BTreeSet;
+use std::sync::Arc;
+use tamaire_play::level::{NAMED, NAMED_3D};
+use tamaire_play::link::{MAX_LENGTH, address};
+use tamaire_play::{
+    AnyRound, Assist, Bot, BotKind, InputFrame, Level, Link, LinkError, Playback, Replay,
+    ReplayError,
+};
+
+/// A usual round of Classic has no more characters.
+const USUAL: usize = 2_000;
+
+fn open(id: &str) -> Arc<Level> {
+    Arc::new(Level::open(id).unwrap())
+}
+
+fn changed(id: &str, from: &str, to: &str) -> Arc<Level> {
+    let (_, text) = NAMED.iter().find(|(known, _)| *known == id).unwrap();
+    assert!(text.contains(from), "{from}");
+    let text = text.replace(from, to);
+    let nothing = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+    Arc::new(Level::read("mine.toml", text.as_bytes(), &nothing).unwrap())
+}
+
+/// What a bot plays, for so many ticks at most.
+fn played(level: &Arc<Level>, kind: BotKind, seed: u64, ticks: usize) -> Replay {
+    let mut round = AnyRound::new(level.clone());
+    round.play(&mut Bot::new(kind, seed), ticks);
+    round.replay()
+}
+
+fn read_round(text: &str) -> Replay {
+    match Link::read(text).unwrap() {
+        Link::Round(replay) => replay,
+        Link::Level(level) => panic!("a level: {}", level.id),
+    }
+}
+
+fn read_level(text: &str) -> Level {
+    match Link::read(text).unwrap() {
+        Link::Level(level) => level,
+        Link::Round(replay) => panic!("a round in {}", replay.level),
+    }
+}
+
+fn watch(replay: Replay) -> Result<(), ReplayError> {
+    let mut playback = Playback::new(Arc::new(replay))?;
+    while !playback.is_over() {
+        playback.step()?;
+    }
+    Ok(())
+}
+
+fn frames(replay: &Replay) -> Vec<InputFrame> {
+    (0..replay.ticks()).map(|tick| replay.frame(tick)).collect()
+}
+
+/// That a round comes back from its link, which it returns.
+fn check(replay: &Replay) -> String {
+    let link = replay.link().unwrap();
+    let read = read_round(&link);
+    assert_eq!(frames(&read), frames(replay));
+    assert_eq!(read.outcome, replay.outcome);
+    assert_eq!((&read.game, &read.level), (&replay.game, &replay.level));
+    assert_eq!(read.level().unwrap(), replay.level().unwrap());
+    assert_eq!(read.link().unwrap(), link);
+    link
+}
+
+fn tell(what: &str, ticks: usize, link: &str) {
+    let (seconds, length) = (ticks as f32 / 60.0, link.len());
+    let rate = length as f32 / seconds;
+    println!("{what:>24} {seconds:5.1} s {length:6} characters, {rate:5.1} a second");
+}
+
+#[test]
+fn a_usual_round_of_classic_fits_into_a_message_and_can_be_watched() {
+    let classic = open("classic");
+    for (name, kind) in [("squeeze", BotKind::Squeeze), ("shave", BotKind::Shave)] {
+        for seed in 1..=4 {
+            let replay = played(&classic, kind, seed, 3600);
+            assert!(replay.outcome.is_some());
+            let link = check(&replay);
+            tell(&format!("{name} {seed}"), replay.ticks(), &link);
+            assert!(link.len() <= USUAL, "{name} {seed}: {}", link.len());
+            if seed == 1 {
+                watch(read_round(&link)).unwrap();
+            }
+        }
+    }
+}
+
+/// Minimum-jerk strokes [Flash 1985] and rests, with a tremor of some 9 Hz: where a hand is that plays by mouse, read so many
+/// times a second and rounded to a whole number of `grain`, 1/8192 m as all frames are or coarser.
+fn hand(seed: u64, seconds: usize, rate: f32, grain: f32) -> Vec<InputFrame> {
+    const STEPS: usize = 1000;
+    let mut random = Rng::with_seed(seed);
+    let mut noise = move || (0..12).map(|_| random.f32()).sum::<f32>() - 6.0;
+    let mut random = Rng::with_seed(seed + 1000);
+    let mut way: Vec<[f32; 2]> = Vec::new();
+    let mut here = [-1.4_f32, 0.0];
+    while way.len() < seconds * STEPS {
+        let rests = random.f32() < 0.35;
+        let there = [3.0 * random.f32() - 1.5, 1.8 * random.f32() - 0.9];
+        let far = (there[0] - here[0]).hypot(there[1] - here[1]);
+        let (there, duration) = match rests {
+            true => (here, 0.1 + 0.5 * random.f32()),
+            false => (there, 0.25 + far * (0.25 + 0.75 * random.f32())),
+        };
+        let bend = [0.1 * noise(), 0.1 * noise()].map(|k| if rests { 0.0 } else { k });
+        let steps = (duration * STEPS as f32) as usize;
+        way.extend((0..steps).map(|step| {
+            let s = step as f32 / steps as f32;
+            let share = s * s * s * (10.0 - 15.0 * s + 6.0 * s * s);
+            let aside = 16.0 * (s - s * s) * (s - s * s);
+            [0, 1].map(|k| here[k] + share * (there[k] - here[k]) + aside * bend[k])
+        }));
+        here = there;
+    }
+    // A resonator that noise keeps going.
+    let (pull, decay) = (
+        2.0 * (std::f32::consts::TAU * 9.0 / STEPS as f32).cos(),
+        0.99,
+    );
+    let mut tremor = [[0.0_f32; 2]; 2];
+    for place in &mut way {
+        for axis in 0..2 {
+            let [last, before] = tremor[axis];
+            let next = pull * decay * last - decay * decay * before + 1e-5 * noise();
+            tremor[axis] = [next, last];
+            place[axis] += next;
+        }
+    }
+    let frame = |tick: usize| {
+        // A mouse tells where it was when it was last read.
+        let read = (tick as f32 / 60.0 * rate).floor() / rate;
+        let [x, y] = way[(read * STEPS as f32) as usize];
+        let rounded = |k: f32| (k * 8192.0 / grain).round() * grain / 8192.0;
+        InputFrame::towards([rounded(x), rounded(y), 0.0])
+    };
+    (0..60 * seconds).map(frame).collect()
+}
+
+fn played_by_hand(frames: Vec<InputFrame>) -> Replay {
+    let mut round = AnyRound::new(open("classic"));
+    for frame in frames {
+        round.step(frame);
+    }
+    assert_eq!(round.progress().outcome, None);
+    round.replay()
+}
+
+#[test]
+fn what_a_hand_plays_comes_back_bit_by_bit() {
+    let rows = [
+        (20, 125.0, 8.0, 80.0),
+        (20, 125.0, 1.0, 135.0),
+        (30, 60.0, 1.0, 135.0),
+        (30, 125.0, 1.0, 135.0),
+        (30, 1000.0, 1.0, 135.0),
+        (60, 125.0, 1.0, 135.0),
+        (30, 125.0, 8.0, 80.0),
+        (30, 30.0, 8.0, 80.0),
+    ];
+    for (seconds, rate, grain, most) in rows {
+        let replay = played_by_hand(hand(1, seconds, rate, grain));
+        let link = check(&replay);
+        tell(
+            &format!("hand, {rate} Hz, {grain}/8192 m"),
+            replay.ticks(),
+            &link,
+        );
+        let length = link.len() as f32 / seconds as f32;
+        assert!(length < most, "{rate} Hz: {length} characters a second");
+    }
+}
+
+#[test]
+fn two_hands_that_come_and_go_come_back() {
+    for id in ["classic", "classic-3d"] {
+        let mut round = AnyRound::new(open(id));
+        let mut random = Rng::with_seed(7);
+        for tick in 0..90 {
+            let mut frame = InputFrame::default();
+            let place = [0; 3].map(|_: i32| 100.0 * random.f32() - 50.0);
+            if tick > 3 && tick % 7 < 5 {
+                frame = frame.with(0, place);
+            }
+            if tick > 20 && tick % 5 < 4 {
+                frame = frame.with(1, place.map(|k| -k));
+            }
+            round.step(frame);
+        }
+        let replay = round.replay();
+        watch(read_round(&check(&replay))).unwrap();
+    }
+    let mut unplayed = AnyRound::new(open("classic")).replay();
+    assert_eq!(unplayed.ticks(), 0);
+    unplayed.game = "0.1.0".into();
+    assert!(check(&unplayed).len() < 60);
+}
+
+#[test]
+fn levels_that_come_along_travel_by_name() {
+    for (id, _) in NAMED.iter().chain(&NAMED_3D) {
+        let level = open(id);
+        let link = level.link().unwrap();
+        assert!(link.len() < 50, "{id}: {}", link.len());
+        assert_eq!(read_level(&link), *level);
+    }
+}
+
+#[test]
+fn a_round_with_help_says_so_when_it_arrives() {
+    let all = BTreeSet::from([Assist::WiderBasket, Assist::Unbreakable]);
+    for level in [
+        open("classic"),
+        changed("classic", "drag = 1.0", "drag = 0.9"),
+    ] {
+        let easy = Arc::new(level.assisted(&all).unwrap());
+        let replay = played(&easy, BotKind::Squeeze, 1, 61);
+        let read = read_round(&check(&replay));
+        assert!(read.is_of(&easy) && !read.is_of(&level));
+        assert_eq!(read.level().unwrap().game().assists, all);
+        watch(read).unwrap();
+    }
+}
+
+#[test]
+fn a_level_of_ones_own_comes_along() {
+    let level = changed("classic", "drag = 1.0", "drag = 0.9");
+    let link = level.link().unwrap();
+    println!("a level of one's own: {} characters", link.len());
+    assert!(link.len() < USUAL);
+    let read = read_level(&link);
+    assert_eq!((read.id.as_str(), read.scene()), ("mine", level.scene()));
+    let replay = played(&level, BotKind::Squeeze, 1, 130);
+    watch(read_round(&check(&replay))).unwrap();
+
+    // By the name of one that comes along.
+    let mut other = (*level).clone();
+    other.id = "classic".into();
+    assert_eq!(read_level(&other.link().unwrap()), other);
+}
+
+#[test]
+fn pictures_and_models_come_along_if_they_fit() {
+    let nothing = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+    let made_of = |id: &str, bytes: &[u8]| Level::read(id, bytes, &nothing).unwrap();
+    let cat = made_of("a/tom.png", include_bytes!("../levels/cat.png"));
+    let link = cat.link().unwrap();
+    println!("a level of a picture: {} characters", link.len());
+    assert_eq!(read_level(&link).scene(), cat.scene());
+    assert_eq!(read_level(&link).id, "tom");
+
+    // Noise cannot be made shorter.
+    let level = Arc::new(made_of("noise.png", &noise(128)));
+    let replay = played(&level, BotKind::Idle, 1, 1);
+    for refused in [level.link(), replay.link()] {
+        let Err(LinkError::TooLong { found }) = refused else {
+            panic!("{refused:?}");
+        };
+        assert!(found > MAX_LENGTH, "{found}");
+    }
+    let large = made_of("noise.png", &noise(256)).link();
+    let large = large.unwrap_err().to_string();
+    assert!(
+        large.contains("for a link, expected 131072 bytes at most, found"),
+        "{large}"
+    );
+}
+
+/// A picture without any order.
+fn noise(side: u32) -> Vec<u8> {
+    let mut random = Rng::with_seed(1);
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, side, side);
+    encoder.set_color(png::ColorType::Rgb);
+    let pixels: Vec<u8> = (0..3 * side * side).map(|_| random.u8(..128)).collect();
+    let mut writer = encoder.write_header().unwrap();
+    writer.write_image_data(&pixels).unwrap();
+    writer.finish().unwrap();
+    bytes
+}
+
+#[test]
+fn an_address_is_read_whole_or_from_its_sign_on() {
+    let link = open("donut").link().unwrap();
+    let at = |page: &str| address(page, &link);
+    assert_eq!(
+        at("https://example.org/"),
+        format!("https://example.org/#{link}")
+    );
+    assert_eq!(at("https://example.org/#r1old"), at("https://example.org/"));
+    let texts = [
+        link.clone(),
+        format!("#{link}"),
+        format!(" \n#{link}\r\n"),
+        at("https://example.org/play?language=ja"),
+        format!("\t{} ", at("file:///tmp/play.html")),
+    ];
+    for text in texts {
+        assert_eq!(read_level(&text).id, "donut", "{text}");
+    }
+}
+
+#[test]
+fn what_did_not_arrive_as_it_was_sent_is_refused() {
+    let classic = open("classic");
+    let links = [
+        played(&classic, BotKind::Squeeze, 1, 130).link().unwrap(),
+        classic.link().unwrap(),
+        changed("classic", "drag = 1.0", "drag = 0.9")
+            .link()
+            .unwrap(),
+    ];
+    let other = |letter: u8| if letter == b'A' { 'B' } else { 'A' };
+    for link in &links {
+        for at in 0..link.len() {
+            let (before, after) = link.split_at(at);
+            assert!(Link::read(before).is_err(), "cut at {at}");
+            let wrong = format!("{before}{}{}", other(after.as_bytes()[0]), &after[1..]);
+            assert!(Link::read(&wrong).is_err(), "changed at {at}");
+            let lost = format!("{before}{}", &after[1..]);
+            assert!(Link::read(&lost).is_err(), "one lost at {at}");
+        }
+        for more in ["z", "AAAA", ".", "ü", "🙂z"] {
+            assert!(Link::read(&format!("{link}{more}")).is_err(), "{more}");
+        }
+    }
+}
+
+#[test]
+fn what_is_no_link_is_told_so() {
+    let link = open("classic").link().unwrap();
+    let long = format!("r1{}z", "A".repeat(MAX_LENGTH));
+    for (text, expected) in [
+        ("", "no link"),
+        ("#", "no link"),
+        ("https://example.org/play", "no link"),
+        ("https://example.org/#readme", "no link"),
+        ("r", "no link"),
+        ("ü1", "no link"),
+        ("r1", "end of this link is missing"),
+        ("r1z", "was changed on its way"),
+        ("r1💾z", "was changed on its way"),
+        (&link[..link.len() - 1], "end of this link is missing"),
+        (&link.replace("l1", "r1"), "was changed on its way"),
+        (&link.replace("l1", "l2"), "by a newer tamaire"),
+        (&long, "16000 characters at most, and this one has 16003"),
+    ] {
+        let error = Link::read(text).unwrap_err().to_string();
+        assert!(error.contains(expected), "{text}: {error}");
+    }
+}
+
+#[test]
+fn a_round_that_goes_another_way_is_found_out_when_it_is_watched() {
+    let replay = played(&open("classic"), BotKind::Squeeze, 1, 130);
+    let text = replay.text();
+    let lie = |from: &str, to: &str| {
+        assert!(text.contains(from), "{from}");
+        let lie = Replay::read(&text.replacen(from, to, 1)).unwrap();
+        let error = watch(read_round(&lie.link().unwrap())).unwrap_err();
+        error.to_string()
+    };
+    let moved = lie("frames = [[-11378, 0, 0]", "frames = [[11378, 0, 0]");
+    assert!(moved.contains("another way at second 1"), "{moved}");
+    let first = &replay.hashes[0][12..];
+    let hash = lie(&format!("{first}\""), "0123\"");
+    assert!(hash.contains("another way at second 1"), "{hash}");
+    let outcome = "\n[outcome]\nticks = 130\nroute = \"mix\"\nkept = 1.0\ninside = 1.0\npieces = 1\nlost = 0\n\n[scene]";
+    let won = lie("\n[scene]", outcome);
+    assert!(won.contains("does not end as it says"), "{won}");
+}
+
+#[test]
+fn a_round_that_came_as_a_link_can_be_kept() {
+    let replay = played(&open("classic"), BotKind::Squeeze, 1, 130);
+    let read = read_round(&replay.link().unwrap());
+    assert_eq!(read.hashes[0], replay.hashes[0][12..]);
+    let kept = Replay::read(&read.text_to_keep().unwrap()).unwrap();
+    assert_eq!(kept, read);
+    assert_eq!(kept.link().unwrap(), replay.link().unwrap());
+    watch(kept).unwrap();
+}
+
+#[test]
+fn what_could_not_be_read_again_makes_no_link() {
+    let text = played(&open("classic"), BotKind::Idle, 1, 61).text();
+    let refused = |from: &str, to: &str| {
+        let replay = Replay::read(&text.replacen(from, to, 1)).unwrap();
+        replay.link().unwrap_err().to_string()
+    };
+    let level = refused("drag = 1.0", "drag = 0.5");
+    assert!(
+        level.contains("level in this replay was changed"),
+        "{level}"
+    );
+    let game = format!("game = \"{}", "z".repeat(MAX_LENGTH));
+    let long = refused("game = \"", &game);
+    assert!(long.contains("16000 characters at most"), "{long}");
+    let hash = Replay::read(&text.replacen("hashes = [\"", "hashes = [\"g", 1));
+    let hash = hash.unwrap_err().to_string();
+    assert!(
+        hash.contains("hash 0: expected 4 to 16 hexadecimal"),
+        "{hash}"
+    );
+}
