@@ -21,6 +21,8 @@ use switch::Switch;
 
 /// Each screen has room enough in a window of this many points.
 const ROOM: egui::Vec2 = egui::vec2(900.0, 640.0);
+/// And in one of so many that is held upright.
+const TALL_ROOM: egui::Vec2 = egui::vec2(600.0, 760.0);
 /// In so many steps a screen grows from nothing to its usual size.
 const STEPS: f32 = 32.0;
 
@@ -52,6 +54,8 @@ pub struct App {
     /// Whether the window ever had the focus, and whether it was asked to fill the screen.
     had_focus: bool,
     is_full: bool,
+    /// How large points are, as compared with those of the system.
+    pub zoom: f32,
 }
 
 /// The window has no GPU, not even one in software.
@@ -84,6 +88,7 @@ impl App {
             screen_before,
             had_focus: false,
             is_full: false,
+            zoom: 1.0,
         })
     }
 
@@ -319,6 +324,16 @@ impl App {
         for given in dropped(ctx) {
             game.open(given);
         }
+        let pasted = events.iter().filter_map(|event| match event {
+            Event::Paste(text) => Some(text),
+            _ => None,
+        });
+        for link in pasted {
+            game.open_link(link);
+        }
+        if let Some(copied) = game.copied.take() {
+            ctx.copy_text(copied);
+        }
     }
 }
 
@@ -336,6 +351,7 @@ impl eframe::App for App {
             self.game.is_own(self.game.levels.len() - 1),
         );
         fit(&ctx, self.game.settings.text_size);
+        self.zoom = ctx.zoom_factor();
         let seconds = ctx.input(|input| input.stable_dt).min(0.1);
         self.hear_sticks(&ctx, seconds);
         self.hear_window(&ctx);
@@ -388,7 +404,9 @@ fn fit(ctx: &egui::Context, text_size: f32) {
 /// each that it has ever shown.
 fn zoom(window: egui::Vec2, text_size: f32) -> f32 {
     // What was multiplied and divided by the last zoom is not quite the same.
-    let room = (window / ROOM).min_elem() + 1e-4;
+    let is_tall = window.x < window.y;
+    let room = if is_tall { TALL_ROOM } else { ROOM };
+    let room = (window / room).min_elem() + 1e-4;
     text_size.min((STEPS * room).floor() / STEPS).max(0.1)
 }
 

@@ -16,7 +16,8 @@ use std::time::{Duration, Instant};
 #[derive(Parser)]
 #[command(version, after_help = AFTER_HELP)]
 struct Arguments {
-    /// A level (.toml), a picture or a model to make a body of (.png, .vox) or a replay (.tamaire)
+    /// A level (.toml), a picture or a model to make a body of (.png, .vox), a replay (.tamaire), or a link to a round or a
+    /// level (https://…#r1…)
     #[arg(conflicts_with_all = ["level", "replay"])]
     file: Option<PathBuf>,
     /// No sound

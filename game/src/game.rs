@@ -7,6 +7,7 @@ mod forces;
 mod heard;
 mod keep;
 mod lesson;
+mod links;
 mod notices;
 mod screen;
 mod shelf;
@@ -56,6 +57,10 @@ pub struct Game {
     pub dialog: Dialog,
     /// The rounds that were kept.
     pub shelf: Shelf,
+    /// The round that came by a link, and its level.
+    pub offered: Option<(Arc<Replay>, Arc<Level>)>,
+    /// What is to be put on the clipboard.
+    pub copied: Option<String>,
     /// What the player should know.
     pub notices: Notices,
     /// Seconds since the game began.
@@ -98,6 +103,8 @@ impl Game {
             chosen: 0,
             dialog: Dialog::default(),
             shelf: Shelf::default(),
+            offered: None,
+            copied: None,
             notices: Notices::default(),
             time: 0.0,
             clock: Clock::of_machine(),
@@ -296,6 +303,7 @@ impl Game {
                     self.tell_of_replay(&name, &error);
                 }
             }
+            Given::Link(link) => self.open_link(&link),
         }
     }
 
@@ -350,6 +358,7 @@ impl Game {
             .iter()
             .cloned()
             .chain(self.shelf.levels())
+            .chain(self.offered.iter().map(|(_, level)| level.clone()))
             .collect()
     }
 

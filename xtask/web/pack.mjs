@@ -4,8 +4,8 @@
 //   STAGE: what wasm-bindgen made, and sound.wasm; PAGE: game/web; LICENCES: a text; OUT: the folder, made anew
 import { execFileSync } from "node:child_process";
 import { createHash } from "node:crypto";
-import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
-import { join } from "node:path";
+import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { dirname, join } from "node:path";
 import { brotli } from "./compress.mjs";
 
 const [stage, page, licences, out] = process.argv.slice(2);
@@ -50,7 +50,9 @@ for (const [name, bytes] of [...files, ...NAMED.map((name) => [name, readFileSyn
 }
 const version = hash.digest("hex").slice(0, 12);
 
-rmSync(out, { recursive: true, force: true });
+for (const folder of [out, `${out}.br`]) {
+  rmSync(folder, { recursive: true, force: true });
+}
 mkdirSync(join(out, version), { recursive: true });
 for (const [name, bytes] of files) {
   writeFileSync(join(out, version, name), bytes);
@@ -68,7 +70,15 @@ change("sw.js", (text) => text.replace("@VERSION@", version).replace('"@FILES@"'
 
 console.log(`${out}: version ${version}`);
 const all = [...NAMED, "licences.txt", ...[...files.keys()].map((name) => `${version}/${name}`)];
-const rows = all.map((name) => [name, statSync(join(out, name)).size, brotli(readFileSync(join(out, name))).length]);
+const rows = all.map((name) => {
+  const bytes = readFileSync(join(out, name));
+  const small = brotli(bytes);
+  // serve.mjs hands it out; compressing takes longer than a visit.
+  const beside = join(`${out}.br`, name);
+  mkdirSync(dirname(beside), { recursive: true });
+  writeFileSync(beside, small);
+  return [name, bytes.length, small.length];
+});
 rows.sort((a, b) => b[2] - a[2]);
 console.log("     bytes    brotli");
 for (const [name, bytes, small] of rows) {

@@ -1,10 +1,9 @@
 // A web server for the packed folder, as any static host is one: brotli, and a year for what is named by its contents.
-// usage: node serve.mjs FOLDER [PORT]
+// usage: node serve.mjs FOLDER [PORT]   what is compressed lies in FOLDER.br
 import { createServer } from "node:http";
 import { readFileSync } from "node:fs";
 import { extname, join, normalize } from "node:path";
 import { fileURLToPath } from "node:url";
-import { brotli } from "./compress.mjs";
 
 const MEDIA = {
   ".html": "text/html; charset=utf-8",
@@ -24,16 +23,15 @@ const MEDIA = {
  * @returns {Promise<{address: string, sent: {path: string, bytes: number}[], close(): Promise<void>}>}
  */
 export function serve(folder, port = 0) {
-  /** @type {Map<string, Buffer>} */
-  const compressed = new Map();
   /** @type {{path: string, bytes: number}[]} */
   const sent = [];
   const server = createServer((request, response) => {
     const { pathname } = new URL(request.url ?? "/", "http://here");
     const path = normalize(decodeURIComponent(pathname)).replace(/\/$/, "/index.html");
+    const isBrotli = extname(path) !== ".png" && /\bbr\b/.test(String(request.headers["accept-encoding"]));
     let bytes;
     try {
-      bytes = readFileSync(join(folder, path));
+      bytes = readFileSync(join(isBrotli ? `${folder}.br` : folder, path));
     } catch {
       response.writeHead(404).end();
       return;
@@ -43,11 +41,7 @@ export function serve(folder, port = 0) {
       "Content-Type": MEDIA[extname(path)] ?? "application/octet-stream",
       "Cache-Control": isForEver ? "public, max-age=31536000, immutable" : "no-cache",
     };
-    if (extname(path) !== ".png" && /\bbr\b/.test(String(request.headers["accept-encoding"]))) {
-      if (!compressed.has(path)) {
-        compressed.set(path, brotli(bytes));
-      }
-      bytes = /** @type {Buffer} */ (compressed.get(path));
+    if (isBrotli) {
       headers["Content-Encoding"] = "br";
     }
     sent.push({ path, bytes: bytes.length });

@@ -38,6 +38,6 @@ pub use frame::{Basket, Camera, Frame, Look, Mark, Particle, Sticker};
 pub use geometry::Geometry;
 pub use gpu::Renderer;
 pub use gpu::cost::Cost;
-pub use gpu::image::{ImageError, Step, image, pass_into};
+pub use gpu::image::{ImageError, Step, image, image_later, pass_into};
 pub use gpu::targets::new_image;
 pub use palette::{Colour, Palette};

@@ -6,7 +6,7 @@ use eframe::egui_wgpu::{
     WgpuSetupCreateNew,
 };
 use egui::{Align2, FontId, RawInput, Rect, Ui, Vec2, vec2};
-use fuwafuwa_render::{ImageError, Step, image};
+use fuwafuwa_render::{ImageError, Step, image_later};
 use pollster::block_on;
 use tamaire_play::AnyRound;
 use wgpu::Backends;
@@ -69,7 +69,11 @@ impl Studio {
     ///
     /// # Errors
     /// When it is too large for the device, or when that fails.
-    pub fn shoot(&mut self, moment: &Moment, size: [u32; 2]) -> Result<Vec<u8>, ImageError> {
+    pub async fn shoot(
+        &mut self,
+        moment: &Moment<'_>,
+        size: [u32; 2],
+    ) -> Result<Vec<u8>, ImageError> {
         let size_in_pixels = Self::size(moment, size);
         let points = |size: [u32; 2]| {
             Rect::from_min_size(egui::Pos2::ZERO, Vec2::from(size.map(|side| side as f32)))
@@ -101,7 +105,7 @@ impl Studio {
                 renderer.write().update_texture(device, queue, id, &change);
             }
         }
-        let drawn = image(
+        let drawn = image_later(
             device,
             queue,
             (*target_format, size_in_pixels),

@@ -52,6 +52,13 @@ impl Game {
         }
     }
 
+    /// Hands a round that was kept to the player as a file.
+    pub fn hand_out(&mut self, saved: &Entry) {
+        if let Err(error) = self.files.hand_out(&saved.name) {
+            self.tell(News::Failed(error.to_string()));
+        }
+    }
+
     /// Deletes a round that was kept.
     pub fn delete(&mut self, saved: &Entry) {
         if let Err(error) = self.files.delete(&saved.name) {

@@ -15,6 +15,8 @@ pub enum Screen {
     Paused,
     /// How it went.
     Result,
+    /// A round that came by a link: to watch or to race?
+    Offered,
     /// What players choose.
     Settings,
     /// What sticks and pads can do and what they are made to do.
@@ -27,8 +29,8 @@ impl Screen {
         use Screen::*;
         match self {
             Title => false,
-            Levels | Replays => other == Title,
-            Play => matches!(other, Title | Levels | Replays),
+            Levels | Replays | Offered => other == Title,
+            Play => matches!(other, Title | Levels | Replays | Offered),
             Paused | Result => other == Play,
             Settings => matches!(other, Title | Paused),
             Forces => other == Settings,

@@ -342,6 +342,19 @@ impl Files {
         self.round(Kind::Best, &name_of_best(level)).ok()
     }
 
+    /// Whether replays can be handed to the player as files.
+    pub fn hands_out(&self) -> bool {
+        self.storage.hands_out()
+    }
+
+    /// Hands a replay to the player as a file.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn hand_out(&self, name: &str) -> io::Result<()> {
+        self.storage.hand_out(Kind::Replay, name)
+    }
+
     /// The replays that are kept, the newest first.
     pub fn replays(&self) -> Vec<Entry> {
         let mut found = self.storage.list(Kind::Replay).unwrap_or_default();

@@ -10,6 +10,8 @@ pub enum Given {
     Level(Result<Box<Level>, LevelError>),
     /// A replay, and where it lies, for people to read.
     Replay(String, Result<Box<Replay>, ReplayError>),
+    /// The address of a round or a level.
+    Link(String),
 }
 
 /// What came of asking for a file.
@@ -53,6 +55,9 @@ mod on_disk {
         /// A replay, a level, a picture or a model in a file, or a level that comes along, by its name.
         pub fn at(path: &Path) -> Self {
             let location = path.to_string_lossy();
+            if location.contains('#') && !path.exists() {
+                return Self::Link(location.into());
+            }
             match is_replay(&location) {
                 true => Self::Replay(location.into(), replay_in(path).map(Box::new)),
                 false => Self::Level(level_at(&location).map(Box::new)),
@@ -119,11 +124,13 @@ mod on_page {
     use tamaire_play::level::LevelError;
     use wasm_bindgen::JsCast;
 
-    /// What was dropped onto the page.
+    /// What was dropped onto the page, or stands behind its address.
     pub fn dropped(_: &egui::Context) -> Vec<Given> {
-        host()
-            .take_dropped()
-            .map_or(Vec::new(), |files| read_together(&files))
+        let host = host();
+        let files = host.take_dropped();
+        let mut given = files.map_or(Vec::new(), |files| read_together(&files));
+        given.extend(host.take_link().map(Given::Link));
+        given
     }
 
     /// What can be played of files that came together. A level finds what it names among them; pictures and models that

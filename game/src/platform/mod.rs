@@ -43,7 +43,7 @@ pub use gpu::GpuWatch;
 #[cfg(target_family = "wasm")]
 pub use here::{Host, set_host};
 pub use pictures::ARE_THERE as HAS_PICTURES;
-pub use screen::{fill_screen, speak};
+pub use screen::{address_of_page, fill_screen, speak};
 pub use sound::Sound;
 pub use sticks::Pads;
 pub use storage::{Change, Entry, Kind, Nowhere, Storage};

@@ -7,5 +7,10 @@ pub fn fill_screen(context: &egui::Context, wanted: bool) {
     context.send_viewport_cmd(egui::ViewportCommand::Fullscreen(wanted));
 }
 
+/// The address of the page that opens links; a program has none, and opens what stands behind it.
+pub fn address_of_page() -> String {
+    String::new()
+}
+
 /// Every language can be written.
 pub fn speak(_: &egui::Context, _: Language, _: bool) {}

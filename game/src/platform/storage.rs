@@ -74,6 +74,19 @@ pub trait Storage: Send + Sync {
     /// Where that is, for people to read.
     fn location(&self, kind: Kind, name: &str) -> String;
 
+    /// Whether what is kept can be handed to the player as a file: where it is no file already.
+    fn hands_out(&self) -> bool {
+        false
+    }
+
+    /// Hands it to the player as a file, where that can be done.
+    ///
+    /// # Errors
+    /// As [`Storage::read`].
+    fn hand_out(&self, _: Kind, _: &str) -> io::Result<()> {
+        Err(io::ErrorKind::Unsupported.into())
+    }
+
     /// Why something is not kept that was changed before, where that is known only later; told once.
     fn take_failure(&self) -> Option<io::Error> {
         None

@@ -7,6 +7,7 @@ mod forces;
 mod hud;
 mod icons;
 mod levels;
+mod offered;
 mod offers;
 mod paused;
 mod play;
@@ -36,6 +37,7 @@ pub fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
         Screen::Play => play::show(game, ui),
         Screen::Paused => paused::show(game, ui),
         Screen::Result => result::show(game, ui),
+        Screen::Offered => offered::show(game, stage, ui),
         Screen::Settings => settings::show(game, ui),
         Screen::Forces => forces::show(game, ui),
         Screen::Replays => replays::show(game, stage, ui),

@@ -13,10 +13,11 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
         card(ui, &theme, |ui| {
             title(ui, &theme, said.paused);
             ui.add_space(14.0);
-            let options: [(&str, Act); 5] = [
+            let options: [(&str, Act); 6] = [
                 (said.go_on, |game| game.go(Screen::Play)),
                 (said.again, Game::retry),
                 (said.save, Game::keep_replay),
+                (said.link_to_level, Game::copy_link_to_level),
                 (said.settings, |game| game.go(Screen::Settings)),
                 (said.levels, |game| game.go(Screen::Levels)),
             ];
@@ -26,7 +27,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 } else {
                     Weight::Other
                 };
-                let response = button(ui, &theme, text, vec2(300.0, 54.0), weight);
+                let response = button(ui, &theme, text, vec2(300.0, 50.0), weight);
                 if index == 0 {
                     super::play::focus_first(ui, &response);
                 }

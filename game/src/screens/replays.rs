@@ -12,6 +12,10 @@ use tamaire_sound::Menu;
 /// Size of a button, and of the little picture.
 const BUTTON: Vec2 = vec2(118.0, 44.0);
 const PICTURE: Vec2 = vec2(111.0, 74.0);
+/// As many buttons stand in a row.
+const COLUMNS: usize = 3;
+/// Room for what is known of a round, beside buttons.
+const LEAST_TEXT: f32 = 200.0;
 /// Between two things in a row.
 const GAP: f32 = 10.0;
 
@@ -21,6 +25,8 @@ enum Wish {
     Watch,
     Race,
     Clip,
+    Link,
+    Download,
     Delete,
 }
 
@@ -44,12 +50,10 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
             }
             for kept in game.shelf.iter() {
                 card(ui, &theme, |ui| {
-                    ui.horizontal(|ui| {
-                        ui.spacing_mut().item_spacing.x = GAP;
-                        if let Some(wish) = show_one(ui, game, maps, kept) {
-                            wanted = Some((kept.entry.clone(), wish));
-                        }
-                    });
+                    ui.spacing_mut().item_spacing = vec2(GAP, GAP);
+                    if let Some(wish) = show_one(ui, game, maps, kept) {
+                        wanted = Some((kept.entry.clone(), wish));
+                    }
                 });
                 ui.add_space(8.0);
             }
@@ -65,6 +69,8 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
             Wish::Watch => game.open_kept(name, Game::watch),
             Wish::Race => game.open_kept(name, Game::race),
             Wish::Clip => game.open_kept(name, Game::keep_clip_of),
+            Wish::Link => game.open_kept(name, Game::copy_link_of),
+            Wish::Download => game.hand_out(&entry),
             Wish::Delete if is_doomed(ui, name) => game.delete(&entry),
             Wish::Delete => {}
         }
@@ -72,12 +78,29 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     }
 }
 
-/// A replay in a row: what it is, and what can be done with it.
+/// A replay: what it is, and beside it, or below where there is no room, what can be done with it.
 fn show_one(ui: &mut Ui, game: &Game, maps: &Maps, kept: &Kept) -> Option<Wish> {
-    let (theme, said) = (game.theme(), game.words());
+    let all = ui.available_width();
+    let beside = COLUMNS as f32 * (BUTTON.x + GAP);
+    let is_wide = all >= PICTURE.x + 2.0 * GAP + LEAST_TEXT + beside;
+    let text = all - PICTURE.x - GAP - if is_wide { beside } else { 0.0 };
+    let mut wanted = None;
+    ui.horizontal(|ui| {
+        picture(ui, game, maps, kept, text);
+        if is_wide {
+            ui.vertical(|ui| wanted = buttons(ui, game, kept));
+        }
+    });
+    if !is_wide {
+        wanted = buttons(ui, game, kept);
+    }
+    wanted
+}
+
+/// The level in little, and beside it, so wide, what is known of the round.
+fn picture(ui: &mut Ui, game: &Game, maps: &Maps, kept: &Kept, text: f32) {
+    let theme = game.theme();
     let found = kept.found.as_ref().and_then(Option::as_ref);
-    let count = if HAS_PICTURES { 4.0 } else { 3.0 };
-    let room = ui.available_width() - PICTURE.x - count * (BUTTON.x + GAP) - GAP;
     let (rect, _) = ui.allocate_exact_size(PICTURE, Sense::hover());
     ui.painter().rect_filled(rect, 12.0, theme.paper);
     if let Some(found) = found {
@@ -86,8 +109,13 @@ fn show_one(ui: &mut Ui, game: &Game, maps: &Maps, kept: &Kept) -> Option<Wish> 
     let frame = Stroke::new(4.0, theme.card);
     ui.painter()
         .rect_stroke(rect.expand(2.0), 13.0, frame, StrokeKind::Middle);
-    let (rect, response) = ui.allocate_exact_size(vec2(room, PICTURE.y), Sense::hover());
+    let (rect, response) = ui.allocate_exact_size(vec2(text, PICTURE.y), Sense::hover());
     tell(ui, game, kept, found, rect, &response);
+}
+
+/// What can be done with it, in rows.
+fn buttons(ui: &mut Ui, game: &Game, kept: &Kept) -> Option<Wish> {
+    let (theme, said) = (game.theme(), game.words());
     let delete = match is_doomed(ui, &kept.entry.name) {
         true => said.surely,
         false => said.delete,
@@ -95,17 +123,26 @@ fn show_one(ui: &mut Ui, game: &Game, maps: &Maps, kept: &Kept) -> Option<Wish> 
     let all = [
         (said.watch, Wish::Watch),
         (said.race, Wish::Race),
-        (said.clip, Wish::Clip),
         (delete, Wish::Delete),
+        (said.link, Wish::Link),
+        (said.clip, Wish::Clip),
+        (said.download, Wish::Download),
     ];
-    let here = all
-        .into_iter()
-        .filter(|(_, wish)| HAS_PICTURES || !matches!(wish, Wish::Clip));
+    let is_here = |wish: &Wish| match wish {
+        Wish::Clip => HAS_PICTURES,
+        Wish::Download => game.files.hands_out(),
+        _ => true,
+    };
+    let here: Vec<_> = all.into_iter().filter(|(_, wish)| is_here(wish)).collect();
     let mut wanted = None;
-    for (text, wish) in here {
-        if button(ui, &theme, text, BUTTON, Weight::Other).clicked() {
-            wanted = Some(wish);
-        }
+    for row in here.chunks(COLUMNS) {
+        ui.horizontal(|ui| {
+            for &(text, wish) in row {
+                if button(ui, &theme, text, BUTTON, Weight::Other).clicked() {
+                    wanted = Some(wish);
+                }
+            }
+        });
     }
     wanted
 }

@@ -146,18 +146,29 @@ fn buttons(ui: &mut Ui, theme: &Theme, said: &Words) -> Option<Act> {
     if again.clicked() {
         wanted = Some(Game::retry);
     }
-    let rows: [[(&str, Act); 2]; 3] = [
-        [(said.next, next), (said.race, race)],
-        [(said.save, Game::keep_replay), (said.levels, to_levels)],
-        [(said.photo, Game::keep_photo), (said.clip, Game::keep_clip)],
+    let save: (&str, Act) = (said.save, Game::keep_replay);
+    let keep: &[(&str, Act)] = match HAS_PICTURES {
+        true => &[
+            save,
+            (said.photo, Game::keep_photo),
+            (said.clip, Game::keep_clip),
+        ],
+        false => &[save],
+    };
+    let rows: [&[(&str, Act)]; 3] = [
+        &[(said.next, next), (said.race, race)],
+        keep,
+        &[(said.link, Game::copy_link), (said.levels, to_levels)],
     ];
-    for row in rows.into_iter().take(if HAS_PICTURES { 3 } else { 2 }) {
+    for row in rows {
         ui.add_space(GAP + 2.0);
         let size = vec2(width, SMALL);
         ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Min), |ui| {
             ui.spacing_mut().item_spacing.x = GAP;
-            for (text, act) in row {
-                if button(ui, theme, text, vec2(200.0, SMALL), Weight::Other).clicked() {
+            let count = row.len() as f32;
+            let size = vec2((width - (count - 1.0) * GAP) / count, SMALL);
+            for &(text, act) in row {
+                if button(ui, theme, text, size, Weight::Other).clicked() {
                     wanted = Some(act);
                 }
             }

@@ -4,6 +4,7 @@ use super::Words;
 use crate::input::{Action, Means};
 use force_feedback::{Ability, Stop};
 use tamaire_play::level::LevelError;
+use tamaire_play::link::{LinkError, MAX_LENGTH};
 use tamaire_play::{Assist, ReplayError, Route};
 
 pub(super) const WORDS: Words = Words {
@@ -59,6 +60,12 @@ pub(super) const WORDS: Words = Words {
     surely: "ほんとに？",
     take_out: "はずす",
     saved: "のこしました",
+    link: "リンクをコピー",
+    link_to_level: "このステージのリンク",
+    link_copied: "リンクをコピーしました。どこにでも はりつけられます。",
+    link_error,
+    offered: "だれかの リプレイが とどきました",
+    download: "ダウンロード",
     no_replays: "まだありません。かったあとにのこすか、ファイルをここへ。",
     open: "ひらく…",
     what_opens: "レベル・絵・モデル・リプレイ",
@@ -255,6 +262,23 @@ fn replay_error(error: &ReplayError) -> String {
         ReplayError::OutcomeDiffers => {
             "このリプレイは書きかえられています。けっかが ちがいます。".into()
         }
+    }
+}
+
+fn link_error(error: &LinkError) -> String {
+    match error {
+        LinkError::Other => "これは tamaire のリンクではありません。".into(),
+        LinkError::Newer => "新しいバージョンの tamaire で作られたリンクです。".into(),
+        LinkError::CutShort => "リンクの終わりが ありません。".into(),
+        LinkError::Damaged => "リンクが とちゅうで かわったか、ぜんぶ とどいていません。".into(),
+        LinkError::TooLong { found } => {
+            format!("リンクにするには長すぎます（{found}文字。{MAX_LENGTH}文字まで）。")
+        }
+        LinkError::LevelDiffers(level) => {
+            format!("「{level}」は、リンクが作られたときと ちがうステージです。")
+        }
+        LinkError::Round(round) => replay_error(round),
+        LinkError::Level(level) => level_error(level),
     }
 }
 

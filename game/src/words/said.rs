@@ -3,6 +3,7 @@
 use crate::input::{Action, Means};
 use force_feedback::{Ability, Calibration, Stop};
 use tamaire_play::level::LevelError;
+use tamaire_play::link::LinkError;
 use tamaire_play::{Assist, Outcome, ReplayError, Route, Wish};
 
 /// What the game says.
@@ -30,6 +31,12 @@ pub struct Words {
     pub surely: &'static str,
     pub take_out: &'static str,
     pub saved: &'static str,
+    pub link: &'static str,
+    pub link_to_level: &'static str,
+    pub link_copied: &'static str,
+    pub link_error: fn(&LinkError) -> String,
+    pub offered: &'static str,
+    pub download: &'static str,
     pub no_replays: &'static str,
     pub open: &'static str,
     pub what_opens: &'static str,

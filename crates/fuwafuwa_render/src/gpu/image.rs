@@ -5,6 +5,9 @@ use super::targets::{clear, new_texture};
 use crate::frame::Frame;
 use fuwafuwa::{Dim2, World};
 use std::fmt;
+use std::future::poll_fn;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::task::{Poll, Waker};
 use wgpu::*;
 
 /// Why there is no image.
@@ -92,71 +95,137 @@ pub enum Step<'a> {
 pub fn image(
     device: &Device,
     queue: &Queue,
-    (format, size): (TextureFormat, [u32; 2]),
-    mut draw: impl FnMut(Step<'_>),
+    of: (TextureFormat, [u32; 2]),
+    draw: impl FnMut(Step<'_>),
 ) -> Result<Vec<u8>, ImageError> {
-    let plain = format.remove_srgb_suffix();
-    if !matches!(plain, TextureFormat::Rgba8Unorm | TextureFormat::Bgra8Unorm) {
-        return Err(ImageError::Format(format));
-    }
-    let size = size.map(|side| side.max(1));
-    let row = (4 * u64::from(size[0])).next_multiple_of(COPY_BYTES_PER_ROW_ALIGNMENT.into());
-    let length = row * u64::from(size[1]);
-    let limits = device.limits();
-    let (side, bytes) = (limits.max_texture_dimension_2d, limits.max_buffer_size);
-    if size[0].max(size[1]) > side || length > bytes {
-        return Err(ImageError::Size { size, side, bytes });
-    }
-    let extent = Extent3d {
-        width: size[0],
-        height: size[1],
-        depth_or_array_layers: 1,
-    };
-    let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC;
-    let texture = new_texture(device, "image", size, 1, format, usage);
-    let view = texture.create_view(&TextureViewDescriptor::default());
-    let buffer = device.create_buffer(&BufferDescriptor {
-        label: Some("image"),
-        size: length,
-        usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
-    let mut encoder = device.create_command_encoder(&CommandEncoderDescriptor::default());
-    draw(Step::Before(&mut encoder));
-    let mut pass = pass_into(&mut encoder, &view);
-    draw(Step::Inside(&mut pass));
-    drop(pass);
-    let into = TexelCopyBufferInfo {
-        buffer: &buffer,
-        layout: TexelCopyBufferLayout {
-            offset: 0,
-            bytes_per_row: Some(row as u32),
-            rows_per_image: None,
-        },
-    };
-    encoder.copy_texture_to_buffer(texture.as_image_copy(), into, extent);
-    queue.submit([encoder.finish()]);
-
-    let (sender, receiver) = std::sync::mpsc::channel();
-    buffer.map_async(MapMode::Read, .., move |result| {
-        // Nobody listens any more when waiting failed.
-        let _ = sender.send(result);
-    });
+    let drawn = Drawn::of(device, queue, of, draw)?;
     device
         .poll(PollType::wait_indefinitely())
         .map_err(ImageError::Poll)?;
-    let mapped = receiver.recv().expect("a finished device calls back");
-    mapped.map_err(ImageError::Map)?;
-    let bytes = buffer.get_mapped_range(..).map_err(ImageError::Range)?;
-    let rows = bytes.chunks(row as usize);
-    let mut image: Vec<u8> = rows
-        .flat_map(|row| &row[..4 * size[0] as usize])
-        .copied()
-        .collect();
-    if plain == TextureFormat::Bgra8Unorm {
-        image.chunks_exact_mut(4).for_each(|pixel| pixel.swap(0, 2));
+    let mapped = drawn.answer().result.take();
+    // A finished device has called back, but for those of browsers.
+    drawn.pixels(mapped.unwrap_or(Err(BufferAsyncError)))
+}
+
+/// The same where nobody may wait, as in a browser: it is there once the device was used for something else.
+///
+/// # Errors
+/// As [`Renderer::render_to_image`].
+pub async fn image_later(
+    device: &Device,
+    queue: &Queue,
+    of: (TextureFormat, [u32; 2]),
+    draw: impl FnMut(Step<'_>),
+) -> Result<Vec<u8>, ImageError> {
+    let drawn = Drawn::of(device, queue, of, draw)?;
+    let mapped = poll_fn(|context| {
+        let mut answer = drawn.answer();
+        answer.waker = Some(context.waker().clone());
+        answer.result.take().map_or(Poll::Pending, Poll::Ready)
+    });
+    let mapped = mapped.await;
+    drawn.pixels(mapped)
+}
+
+/// An image on its way from the device.
+struct Drawn {
+    buffer: Buffer,
+    size: [u32; 2],
+    /// Bytes from one row to the next.
+    row: usize,
+    is_bgra: bool,
+    answer: Arc<Mutex<Answer>>,
+}
+
+/// Whether it has arrived, and who waits for that.
+#[derive(Default)]
+struct Answer {
+    result: Option<Result<(), BufferAsyncError>>,
+    waker: Option<Waker>,
+}
+
+impl Drawn {
+    fn of(
+        device: &Device,
+        queue: &Queue,
+        (format, size): (TextureFormat, [u32; 2]),
+        mut draw: impl FnMut(Step<'_>),
+    ) -> Result<Self, ImageError> {
+        let plain = format.remove_srgb_suffix();
+        if !matches!(plain, TextureFormat::Rgba8Unorm | TextureFormat::Bgra8Unorm) {
+            return Err(ImageError::Format(format));
+        }
+        let size = size.map(|side| side.max(1));
+        let row = (4 * u64::from(size[0])).next_multiple_of(COPY_BYTES_PER_ROW_ALIGNMENT.into());
+        let length = row * u64::from(size[1]);
+        let limits = device.limits();
+        let (side, bytes) = (limits.max_texture_dimension_2d, limits.max_buffer_size);
+        if size[0].max(size[1]) > side || length > bytes {
+            return Err(ImageError::Size { size, side, bytes });
+        }
+        let extent = Extent3d {
+            width: size[0],
+            height: size[1],
+            depth_or_array_layers: 1,
+        };
+        let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC;
+        let texture = new_texture(device, "image", size, 1, format, usage);
+        let view = texture.create_view(&TextureViewDescriptor::default());
+        let buffer = device.create_buffer(&BufferDescriptor {
+            label: Some("image"),
+            size: length,
+            usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let mut encoder = device.create_command_encoder(&CommandEncoderDescriptor::default());
+        draw(Step::Before(&mut encoder));
+        let mut pass = pass_into(&mut encoder, &view);
+        draw(Step::Inside(&mut pass));
+        drop(pass);
+        let into = TexelCopyBufferInfo {
+            buffer: &buffer,
+            layout: TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(row as u32),
+                rows_per_image: None,
+            },
+        };
+        encoder.copy_texture_to_buffer(texture.as_image_copy(), into, extent);
+        queue.submit([encoder.finish()]);
+
+        let answer = Arc::new(Mutex::new(Answer::default()));
+        let there = answer.clone();
+        buffer.map_async(MapMode::Read, .., move |result| {
+            let mut answer = there.lock().unwrap_or_else(PoisonError::into_inner);
+            answer.result = Some(result);
+            answer.waker.take().map(Waker::wake);
+        });
+        Ok(Self {
+            buffer,
+            size,
+            row: row as usize,
+            is_bgra: plain == TextureFormat::Bgra8Unorm,
+            answer,
+        })
     }
-    Ok(image)
+
+    fn answer(&self) -> MutexGuard<'_, Answer> {
+        self.answer.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn pixels(self, mapped: Result<(), BufferAsyncError>) -> Result<Vec<u8>, ImageError> {
+        mapped.map_err(ImageError::Map)?;
+        let bytes = self.buffer.get_mapped_range(..).map_err(ImageError::Range)?;
+        let rows = bytes.chunks(self.row);
+        let mut image: Vec<u8> = rows
+            .flat_map(|row| &row[..4 * self.size[0] as usize])
+            .copied()
+            .collect();
+        if self.is_bgra {
+            image.chunks_exact_mut(4).for_each(|pixel| pixel.swap(0, 2));
+        }
+        Ok(image)
+    }
 }
 
 /// A pass that fills an image, clear at first: what renderers paint into where there is no window.

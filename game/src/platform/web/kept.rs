@@ -99,6 +99,16 @@ impl Storage for Kept {
         format!("{name}.{}", ending(kind))
     }
 
+    fn hands_out(&self) -> bool {
+        true
+    }
+
+    fn hand_out(&self, kind: Kind, name: &str) -> io::Result<()> {
+        let bytes = self.read(kind, name)?.ok_or(io::ErrorKind::NotFound)?;
+        host().download(&self.location(kind, name), media(kind), &bytes);
+        Ok(())
+    }
+
     fn take_failure(&self) -> Option<io::Error> {
         host().take_failure().map(io::Error::other)
     }

@@ -9,6 +9,11 @@ pub fn fill_screen(_: &egui::Context, wanted: bool) {
     host().fill_screen(wanted);
 }
 
+/// The address of the page, which opens links.
+pub fn address_of_page() -> String {
+    host().address()
+}
+
 /// Sees to it that a language can be written, and read aloud.
 pub fn speak(context: &egui::Context, language: Language, has_own_levels: bool) {
     let host = host();

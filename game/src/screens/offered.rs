@@ -1,0 +1,88 @@
+//! A round that came by a link: to watch it, or to race it.
+
+use super::icons;
+use super::widgets::{Act, Weight, button, card, column, fitted, veil};
+use crate::game::Game;
+use crate::look::Stage;
+use egui::{Rect, Sense, Stroke, StrokeKind, Ui, vec2};
+use std::sync::Arc;
+use tamaire_play::{Replay, ReplayError};
+use tamaire_sound::Menu;
+
+/// Size of the picture of its level, and of a button [points].
+const PICTURE: egui::Vec2 = vec2(300.0, 200.0);
+const BUTTON: egui::Vec2 = vec2(300.0, 54.0);
+
+pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
+    veil(ui, 130);
+    let (theme, said) = (game.theme(), game.words());
+    let Some((replay, level)) = game.offered.clone() else {
+        return game.go_back();
+    };
+    let maps = stage.maps(&game.pictured(), &theme);
+    let mut wanted: Option<Act> = None;
+    column(ui, 400.0, 0.5, |ui| {
+        card(ui, &theme, |ui| {
+            let line = |ui: &mut Ui, text: &str, size: f32, ink| {
+                let galley = fitted(ui.painter(), text, size, BUTTON.x, ink);
+                ui.label(galley);
+            };
+            line(ui, said.offered, 26.0, theme.accent);
+            ui.add_space(8.0);
+            let (rect, _) = ui.allocate_exact_size(PICTURE, Sense::hover());
+            ui.painter().rect_filled(rect, 18.0, theme.paper);
+            maps.draw(ui.painter(), rect, &level);
+            let frame = Stroke::new(5.0, theme.card);
+            ui.painter()
+                .rect_stroke(rect.expand(2.5), 20.0, frame, StrokeKind::Middle);
+            let name = game.settings.language.of(&level.game().name);
+            line(ui, name, 24.0, theme.ink);
+            let seconds = replay.ticks() as f32 * fuwafuwa::world::TICK;
+            let how = match replay.outcome {
+                Some(outcome) => format!("{} {seconds:.1} s", (said.route)(outcome.route)),
+                None => format!("{seconds:.1} s"),
+            };
+            if let Some(outcome) = replay.outcome {
+                let at = Rect::from_min_size(rect.left_top(), vec2(44.0, 44.0)).center();
+                icons::route(ui.painter(), &theme, at, 14.0, outcome.route, true);
+            }
+            line(ui, &how, 19.0, theme.faint);
+            ui.add_space(12.0);
+            let options: [(&str, Act); 3] = [
+                (said.watch, |game| take(game, Game::watch)),
+                (said.race, |game| take(game, Game::race)),
+                (said.back, Game::go_back),
+            ];
+            for (index, (text, act)) in options.into_iter().enumerate() {
+                let weight = match index {
+                    0 => Weight::Main,
+                    _ => Weight::Other,
+                };
+                let response = button(ui, &theme, text, BUTTON, weight);
+                if index == 0 {
+                    super::play::focus_first(ui, &response);
+                }
+                if response.clicked() {
+                    wanted = Some(act);
+                }
+                ui.add_space(10.0);
+            }
+        });
+    });
+    if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+        wanted = Some(Game::go_back);
+    }
+    if let Some(act) = wanted {
+        game.blip(Menu::Confirm);
+        act(game);
+    }
+}
+
+fn take(game: &mut Game, act: fn(&mut Game, Arc<Replay>) -> Result<(), ReplayError>) {
+    let Some((replay, _)) = game.offered.take() else {
+        return;
+    };
+    if let Err(error) = act(game, replay) {
+        game.notify((game.words().replay_error)(&error));
+    }
+}
