@@ -25,8 +25,7 @@ use tamaire::platform::{Files, Pads, Sound};
 
 /// How far the clock of the game is ahead [s].
 const AHEAD: f64 = 10.0 * 86_400.0;
-/// All settles for so many minutes, in which each level is played and photographed once, and may grow by such a share
-/// afterwards.
+/// All settles for so many minutes, and until each level was played and photographed once; it may grow by such a share afterwards.
 const SETTLED: usize = 15;
 const GROWTH: f64 = 0.05;
 /// Keys that a hand on a keyboard finds.
@@ -74,7 +73,7 @@ struct Figure {
     name: &'static str,
     /// In this minute.
     samples: Vec<f64>,
-    /// The middle one of each minute before.
+    /// The middle one of each minute since all had settled.
     medians: Vec<f64>,
 }
 
@@ -87,17 +86,19 @@ impl Figure {
     }
 
     /// Begins a minute; the middle of the one that has passed.
-    fn pass_minute(&mut self) -> f64 {
+    fn pass_minute(&mut self, has_settled: bool) -> f64 {
         let median = median(std::mem::take(&mut self.samples));
-        self.medians.push(median);
+        if has_settled {
+            self.medians.push(median);
+        }
         median
     }
 
     /// By what share the last quarter of the time after it had settled is above the first; no number where there was none.
     fn growth(&self) -> f64 {
-        let settled = self.medians.get(SETTLED..).unwrap_or_default();
-        let quarter = settled.len().div_ceil(4);
-        let (first, last) = (&settled[..quarter], &settled[settled.len() - quarter..]);
+        let quarter = self.medians.len().div_ceil(4);
+        let last = self.medians.len() - quarter;
+        let (first, last) = (&self.medians[..quarter], &self.medians[last..]);
         median(last.to_vec()) / median(first.to_vec()) - 1.0
     }
 }
@@ -232,7 +233,8 @@ impl Soak {
         plugged.retain(|_| !self.began.elapsed().as_secs().is_multiple_of(60));
         game.controls.pads = Pads::of(Snapshot { devices: plugged });
         if self.frames % 400 == 399 {
-            match self.random.u32(..12) {
+            let is_first = self.begun < game.levels.len();
+            match if is_first { 5 } else { self.random.u32(..12) } {
                 0 => game.go(Screen::Title),
                 1 => game.go(Screen::Replays),
                 2 => game.go(Screen::Settings),
@@ -240,7 +242,7 @@ impl Soak {
                 4 => game.keep_clip(),
                 _ => {
                     // The first photo of each takes memory that the others use again.
-                    if self.begun < game.levels.len() {
+                    if is_first {
                         game.keep_photo();
                     }
                     self.begun += 1;
@@ -270,17 +272,19 @@ impl Soak {
         let minute = self.began.elapsed().as_secs() as usize / 60;
         if minute > self.minute {
             self.minute = minute;
+            let has_settled = minute > SETTLED && self.begun > game.levels.len();
             let [resident, used, draws, bytes] = { self.figures.borrow_mut() }
                 .each_mut()
-                .map(Figure::pass_minute);
+                .map(|figure| figure.pass_minute(has_settled));
             println!(
-                "{minute:3} min: {resident:6.1} MB, {used:.1} MB of it in use, {draws} draw calls and {bytes:.1} kB a frame, {} frames, clock {:.0} s, {} own levels, {:?}",
+                "{minute:3} min: {resident:6.1} MB, {used:.1} MB of it in use, {draws} draw calls and {bytes:.1} kB a frame, {} frames, clock {:.0} s, {} own levels, {:?}{}",
                 self.frames,
                 game.time,
                 (0..game.levels.len())
                     .filter(|&place| game.is_own(place))
                     .count(),
-                game.screen()
+                game.screen(),
+                if has_settled { "" } else { ", settling" }
             );
         }
         if minute >= self.minutes {

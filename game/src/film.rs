@@ -197,6 +197,9 @@ fn pass(
         };
         show(pixels, tick)?;
     }
+    if let Some(opened) = studio {
+        opened.rest();
+    }
     Ok(())
 }
 

@@ -8,8 +8,9 @@ use eframe::egui_wgpu::{
 use egui::{Align2, FontId, RawInput, Rect, Ui, Vec2, vec2};
 use fuwafuwa_render::{ImageError, Step, image_later};
 use pollster::block_on;
+use std::sync::Arc;
 use tamaire_play::AnyRound;
-use wgpu::Backends;
+use wgpu::{Backends, DeviceDescriptor, MemoryHints, PollType};
 
 /// Height of the paper below a picture that has a caption, and of the letters on it [px].
 const CAPTION: f32 = 34.0;
@@ -123,6 +124,13 @@ impl Studio {
         }
         drawn
     }
+
+    /// Gives back the images that it draws into until the next picture: after a photo of the plane they take 20 MB.
+    pub fn rest(&self) {
+        self.stage.forget_images();
+        // What is no longer used goes when the device is asked how it does. One that has failed tells so at the next picture.
+        let _polled = self.state.device.poll(PollType::Poll);
+    }
 }
 
 /// What egui needs to draw with one of some interfaces; none where there is no adapter for any.
@@ -133,6 +141,12 @@ fn state_of(backends: Backends) -> Option<RenderState> {
     if setup.instance_descriptor.backends.is_empty() {
         return None;
     }
+    // Images in blocks of 128 MB would leave these to the allocator, which keeps them, touched, for as long as the device.
+    let described = setup.device_descriptor;
+    setup.device_descriptor = Arc::new(move |adapter| DeviceDescriptor {
+        memory_hints: MemoryHints::MemoryUsage,
+        ..described(adapter)
+    });
     let wgpu_setup = WgpuSetup::CreateNew(setup);
     let instance = block_on(wgpu_setup.new_instance());
     let configuration = WgpuConfiguration {
@@ -183,7 +197,6 @@ fn draw(ui: &Ui, rect: Rect, moment: &Moment, stage: &mut Stage, theme: &Theme) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::sync::Arc;
     use tamaire_play::Level;
 
     const SIZE: [u32; 2] = [480, 300];

@@ -75,6 +75,15 @@ impl Stage {
             .sum()
     }
 
+    /// Gives back the images that worlds are drawn into: for who draws nothing for a while.
+    pub fn forget_images(&self) {
+        let device = &self.state.device;
+        lock(&self.renderer).forget_images(device);
+        if let Some(space) = &self.space {
+            lock(space).forget_images(device);
+        }
+    }
+
     /// Draws a round.
     pub fn draw(&mut self, ui: &Ui, round: &AnyRound, look: &Look) {
         match round {

@@ -117,6 +117,11 @@ impl Renderer {
         self.paint_rigid(pass);
     }
 
+    /// Gives back the images that it draws into, which are as large as the last picture; the next one makes new ones.
+    pub fn forget_images(&mut self, device: &Device) {
+        self.targets = Targets::new(device, &self.pipelines, [1, 1]);
+    }
+
     /// The first half of [`Renderer::paint`]: the floor, the basket and the bodies. What is on these is painted next.
     pub fn paint_bodies(&self, pass: &mut RenderPass<'static>) {
         let (pipelines, [_, _, basket]) = (&self.pipelines, self.kinds());

@@ -140,6 +140,11 @@ impl Renderer {
         self.meter.draw(pass, 0..3, 0..1);
     }
 
+    /// As [`crate::Renderer::forget_images`].
+    pub fn forget_images(&mut self, device: &Device) {
+        self.targets = Targets::new(device, &self.pipelines, [1, 1]);
+    }
+
     /// As [`crate::Renderer::take_cost`].
     pub fn take_cost(&self) -> Cost {
         self.meter.take()
