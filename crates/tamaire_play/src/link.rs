@@ -26,7 +26,7 @@
 //!
 //! A fragment is a letter for what it is, a digit for the format, bytes in base64url [RFC 4648, §5] and a `z`: after a `-` or a
 //! `_` at its end many programs that find addresses in a text would stop too early. The bytes are a checksum and what postcard
-//! makes of [`SentRound`] or [`SentLevel`]. Of a level that comes along only the name and a hash travel.
+//! makes of `SentRound` or `SentLevel`. Of a level that comes along only the name and a hash travel.
 
 mod coder;
 mod frames;
@@ -37,9 +37,10 @@ use crate::replay::{MAX_NAME, VERSION};
 use crate::round::MAX_TICKS;
 use crate::{Assist, Level, Outcome, Replay, ReplayError};
 use base64::Engine;
-use base64::prelude::BASE64_URL_SAFE_NO_PAD as BASE64;
+use base64::prelude::{BASE64_STANDARD, BASE64_URL_SAFE_NO_PAD as BASE64};
 use fuwafuwa::hash::Hash;
 use fuwafuwa_scenes::Scene;
+use fuwafuwa_scenes::scene::BodyText;
 use miniz_oxide::{deflate, inflate};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -47,7 +48,7 @@ use std::collections::BTreeSet;
 /// Most characters of a fragment, the `#` aside: browsers and chat programs bear as many.
 pub const MAX_LENGTH: usize = 16_000;
 
-/// Most bytes of the text of a scene in one: an honest one that fits is shorter.
+/// Most bytes of a scene in one before they are deflated: an honest one that fits is smaller.
 const MAX_SCENE_BYTES: usize = 1 << 17;
 /// The format of a fragment.
 const FORMAT: char = '1';
@@ -232,7 +233,7 @@ enum Content {
         /// Half of its hash.
         hash: u32,
     },
-    /// The text of its scene, deflated.
+    /// A [`WholeScene`], deflated.
     Whole(Vec<u8>),
 }
 
@@ -268,26 +269,45 @@ impl SentLevel {
                 let differs = || LinkError::LevelDiffers(self.id.clone());
                 is_same.then_some(scene).ok_or_else(differs)
             }
-            Content::Whole(deflated) => {
-                let text = inflate::decompress_to_vec_with_limit(deflated, MAX_SCENE_BYTES);
-                let text = text.ok().and_then(|text| String::from_utf8(text).ok());
-                let text = text.ok_or(LinkError::Damaged)?;
-                let scene = Scene::read(&self.id, &text, &[]);
-                Ok(scene.map_err(LevelError::Scene)?)
-            }
+            Content::Whole(deflated) => inflated(&self.id, deflated),
         }
     }
 }
 
-/// The text of a scene, if it can be read again.
+/// The text of a scene without the files that its bodies are made from, and those: their bytes are told in less room than
+/// their letters.
+type WholeScene = (String, Vec<Option<Vec<u8>>>);
+
 fn deflated(id: &str, scene: &Scene) -> Result<Vec<u8>, LinkError> {
-    let text = text_of(scene);
-    let found = text.len();
+    let mut scene = scene.clone();
+    let files = scene.body.iter_mut().map(take_file).collect();
+    let whole: WholeScene = (text_of(&scene), files);
+    let bytes = postcard::to_stdvec(&whole).expect("a vector takes all");
+    let found = bytes.len();
     if found > MAX_SCENE_BYTES {
         let reason = format!("for a link, expected {MAX_SCENE_BYTES} bytes at most, found {found}");
         return Err(LevelError::Unreadable(id.into(), reason).into());
     }
-    Ok(deflate::compress_to_vec(text.as_bytes(), EFFORT))
+    Ok(deflate::compress_to_vec(&bytes, EFFORT))
+}
+
+fn inflated(id: &str, deflated: &[u8]) -> Result<Scene, LinkError> {
+    let bytes = inflate::decompress_to_vec_with_limit(deflated, MAX_SCENE_BYTES);
+    let (text, files): WholeScene = all(&bytes.map_err(|_| LinkError::Damaged)?)?;
+    let mut scene = Scene::read(id, &text, &[]).map_err(LevelError::Scene)?;
+    for (body, file) in scene.body.iter_mut().zip(files) {
+        body.content = file
+            .map(|bytes| BASE64_STANDARD.encode(bytes))
+            .or(body.content.take());
+    }
+    Ok(scene)
+}
+
+/// Takes out the bytes of the file that a body is made from; what is no base64 stays.
+fn take_file(body: &mut BodyText) -> Option<Vec<u8>> {
+    let bytes = BASE64_STANDARD.decode(body.content.as_ref()?).ok()?;
+    body.content = None;
+    Some(bytes)
 }
 
 /// The last four hexadecimal digits of a hash.
@@ -354,8 +374,10 @@ mod tests {
         SentLevel::of("classic", Level::open("classic").unwrap().scene()).unwrap()
     }
 
-    fn whole(text: &[u8]) -> SentLevel {
-        let content = Content::Whole(deflate::compress_to_vec(text, EFFORT));
+    fn whole(text: &str) -> SentLevel {
+        let whole: WholeScene = (text.into(), Vec::new());
+        let bytes = postcard::to_stdvec(&whole).unwrap();
+        let content = Content::Whole(deflate::compress_to_vec(&bytes, EFFORT));
         let id = "mine".into();
         SentLevel { id, content }
     }
@@ -372,10 +394,12 @@ mod tests {
     fn what_a_stranger_packed_well_is_checked_all_the_same() {
         let damaged = LinkError::Damaged.to_string();
         // Eight megabytes.
-        let bomb = whole(&vec![b' '; 8 << 20]);
+        let bomb = whole(&" ".repeat(8 << 20));
         assert_eq!(refusal(LEVEL, &bomb), damaged);
         assert_eq!(refusal(ROUND, &(VERSION, round(bomb, 1, vec![0]))), damaged);
-        assert_eq!(refusal(LEVEL, &whole(b"\xff")), damaged);
+        let mut noise = whole("");
+        noise.content = Content::Whole(vec![0xff; 9]);
+        assert_eq!(refusal(LEVEL, &noise), damaged);
         assert_eq!(
             refusal(LEVEL, &(classic(), 1_u8)),
             damaged,
@@ -396,7 +420,7 @@ mod tests {
         long.id = "z".repeat(MAX_NAME + 1);
         assert_eq!(refusal(LEVEL, &long), damaged);
 
-        let text = refusal(LEVEL, &whole(b"dim = 2\nbody = 1"));
+        let text = refusal(LEVEL, &whole("dim = 2\nbody = 1"));
         assert!(text.contains("line 2"), "{text}");
         let mut few = round(classic(), 61, vec![0]);
         few.hashes.pop();
@@ -406,6 +430,15 @@ mod tests {
         unknown.id = "clasic".into();
         let unknown = refusal(LEVEL, &unknown);
         assert!(unknown.contains("no level or file \"clasic\""), "{unknown}");
+    }
+
+    #[test]
+    fn what_would_not_be_read_is_not_sent() {
+        let mut scene = Level::open("cat").unwrap().scene().clone();
+        scene.body[0].content = Some("AAAA".repeat(MAX_SCENE_BYTES / 3));
+        let error = SentLevel::of("mine", &scene).unwrap_err().to_string();
+        let expected = "mine: for a link, expected 131072 bytes at most, found 13";
+        assert!(error.starts_with(expected), "{error}");
     }
 
     #[test]
@@ -444,9 +477,9 @@ mod tests {
     fn the_most_that_fits_into_a_level_is_read_soon() {
         let (_, classic) = crate::level::NAMED[0];
         let ball = "[[obstacle]]\nball = { centre = [9.0, 9.0, 9.0], radius = 0.1 }\n";
-        let room = MAX_SCENE_BYTES - classic.len();
+        let room = MAX_SCENE_BYTES - classic.len() - 9;
         let text = [classic, &ball.repeat(room / ball.len())].concat();
-        let refused = refusal(LEVEL, &whole(text.as_bytes()));
+        let refused = refusal(LEVEL, &whole(&text));
         assert!(refused.contains("expected 256 at most"), "{refused}");
     }
 }

@@ -55,7 +55,7 @@ impl Range {
     /// The last number that stands for a one.
     fn split(self, chance: &Chance) -> u32 {
         let width = u64::from(self.high - self.low);
-        self.low + (width * u64::from(chance.one) >> 16) as u32
+        self.low + ((width * u64::from(chance.one)) >> 16) as u32
     }
 
     fn narrow(&mut self, split: u32, bit: bool) {

@@ -192,3 +192,44 @@ impl Differences {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame(goals: [Option<[i16; 3]>; 2]) -> InputFrame {
+        InputFrame { goals }
+    }
+
+    #[test]
+    fn any_frames_come_back() {
+        let ends = [i16::MIN, i16::MAX, 0, -1, 1];
+        let wild = ends
+            .iter()
+            .flat_map(|&a| ends.map(|b| [a, b, a.wrapping_sub(b)]));
+        let wild: Vec<InputFrame> = wild.map(|goal| frame([Some(goal), None])).collect();
+        let coarse = [
+            frame([None, Some([-4096, 8192, i16::MIN])]),
+            frame([None; 2]),
+        ];
+        for frames in [&[][..], &wild, &coarse] {
+            let bytes = write(frames);
+            assert_eq!(read(&bytes, frames.len()).as_deref(), Some(frames));
+        }
+        assert_eq!(write(&coarse)[0] >> 1, 12, "all are multiples of 4096");
+    }
+
+    /// Else links that were sent can be read no more: then `FORMAT` has to change.
+    #[test]
+    fn the_same_frames_are_the_same_bytes_for_ever() {
+        let goal = |tick: i16| [tick * tick - 900, 91 * (tick % 40), tick & 3];
+        let frames: Vec<InputFrame> = (0..60)
+            .map(|tick| frame([Some(goal(tick)), (tick > 9).then(|| goal(60 - tick))]))
+            .collect();
+        let bytes = write(&frames);
+        assert_eq!(
+            (bytes.len(), fuwafuwa::hash::Hash::of(&bytes)),
+            (44, 10_900_569_288_131_132_139)
+        );
+    }
+}
