@@ -72,6 +72,8 @@ impl App {
         dress(&context.egui_ctx);
         let state = context.wgpu_render_state.as_ref().ok_or(NoGpu)?;
         let (stage, gpu) = (Stage::new(state), GpuWatch::of(state));
+        #[cfg(target_family = "wasm")]
+        crate::film::lend(state);
         let screen_before = game.screen();
         let navigators = Vec::new();
         let presses = Presses::default();

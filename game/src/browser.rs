@@ -1,9 +1,12 @@
 //! The way in through a browser: the page hands over a canvas and itself, and says when it goes away.
 
+mod labels;
+
 use crate::app::App;
 use crate::game::Game;
 use crate::platform::{Files, Host, Pads, Sound, set_host};
 use eframe::{WebOptions, WebRunner};
+use labels::Labels;
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 use web_sys::HtmlCanvasElement;
@@ -12,6 +15,8 @@ use web_sys::HtmlCanvasElement;
 #[wasm_bindgen]
 pub struct Running {
     runner: WebRunner,
+    context: egui::Context,
+    labels: Labels,
 }
 
 #[wasm_bindgen]
@@ -22,21 +27,33 @@ impl Running {
     /// Why there is nothing to draw with.
     pub async fn start(canvas: HtmlCanvasElement, host: Host) -> Result<Running, JsValue> {
         set_host(host);
-        let runner = WebRunner::new();
-        let create = |context: &eframe::CreationContext<'_>| {
+        let (runner, labels) = (WebRunner::new(), Labels::default());
+        let kept = std::rc::Rc::new(std::cell::OnceCell::new());
+        let (known, plugin) = (kept.clone(), labels.clone());
+        let create = move |context: &eframe::CreationContext<'_>| {
+            context.egui_ctx.add_plugin(plugin);
+            // It is made once.
+            let _ = known.set(context.egui_ctx.clone());
             let game = Game::new(Files::usual(), Sound::open(), Pads::open());
             Ok(Box::new(App::new(context, game)?) as Box<dyn eframe::App>)
         };
         runner
             .start(canvas, WebOptions::default(), Box::new(create))
             .await?;
-        Ok(Self { runner })
+        let context = kept.get().cloned().unwrap_or_default();
+        Ok(Self {
+            runner,
+            context,
+            labels,
+        })
     }
 
     /// How things stand, for whoever looks on: a test, or an exhibit.
     pub fn report(&self) -> Option<Report> {
+        // From the next frame on what stands there has names.
+        self.context.enable_accesskit();
         let app = self.runner.app_mut::<App>()?;
-        let (game, round) = (&app.game, app.game.bout.round());
+        let (game, round, seen) = (&app.game, app.game.bout.round(), self.labels.seen());
         let [hand, origin, right] = match game.bout.view {
             None => [[f32::NAN; 2]; 3],
             Some(view) => {
@@ -61,6 +78,12 @@ impl Running {
                         .is_some_and(|record| !record.best.is_empty())
                 })
                 .map(|level| level.id.clone())
+                .collect(),
+            labels: { seen.iter() }
+                .map(|(name, rect)| {
+                    let at = rect.center() * app.zoom;
+                    format!("{} {} {name}", at.x, at.y)
+                })
                 .collect(),
             notices: game
                 .notices
@@ -104,6 +127,8 @@ pub struct Report {
     pub is_won: bool,
     /// The levels in which there is a record.
     pub won: Vec<String>,
+    /// What can be pressed: where, and its name.
+    pub labels: Vec<String>,
     /// What the player is being told.
     pub notices: Vec<String>,
     /// Where the first hand is.

@@ -3,10 +3,20 @@
 //! The round is played a second time: the same input gives the same world, and drawing disturbs
 //! no timing. It is drawn as in a window; where there is nothing to draw with, element by element.
 
+#[cfg(not(target_family = "wasm"))]
+mod device;
+#[cfg(target_family = "wasm")]
+#[path = "film/lent.rs"]
+mod device;
+#[cfg(not(target_family = "wasm"))]
 mod plain;
 mod studio;
 
 use crate::look::{CameraRig, Effects};
+use crate::platform::Breath;
+#[cfg(target_family = "wasm")]
+pub use device::lend;
+use eframe::egui_wgpu::RendererOptions;
 use fuwafuwa::world::TICK;
 use fuwafuwa_painter::{PaintError, Pixmap, film, png_of};
 use fuwafuwa_render::ImageError;
@@ -71,6 +81,10 @@ pub enum FilmError {
     /// A picture as in the window failed.
     #[error(transparent)]
     Draw(#[from] ImageError),
+    /// A browser draws nothing without one.
+    #[cfg(target_family = "wasm")]
+    #[error("there is nothing to draw with")]
+    NoGpu,
 }
 
 impl Film {
@@ -79,7 +93,7 @@ impl Film {
     ///
     /// # Errors
     /// When something cannot be drawn.
-    pub fn shoot(
+    pub async fn shoot(
         &self,
         played: &AnyRound,
         studio: &mut Option<Studio>,
@@ -93,18 +107,11 @@ impl Film {
                 // The first is the start, the last the end.
                 let gaps = MOMENTS.min(ticks + 1) - 1;
                 let is_shown = |tick| moments_at(ticks, gaps).any(|moment| moment == tick);
-                pass(
-                    played,
-                    ticks,
-                    studio,
-                    told,
-                    MOMENT,
-                    is_shown,
-                    |pixels, _| {
-                        moments.push(pixels);
-                        Ok(())
-                    },
-                )?;
+                let show = |pixels, _| {
+                    moments.push(pixels);
+                    Ok(())
+                };
+                pass(played, ticks, studio, told, MOMENT, is_shown, show).await?;
                 Ok(film::strip(&moments, COLUMNS)?.png()?)
             }
             Self::Animation | Self::Clip => {
@@ -115,24 +122,20 @@ impl Film {
                 let mut gif = film::Gif::default();
                 let is_shown =
                     |tick: usize| tick >= first && (tick == ticks || tick.is_multiple_of(PACE));
-                pass(
-                    played,
-                    ticks,
-                    studio,
-                    told,
-                    print,
-                    is_shown,
-                    |pixels, tick| gif.add(&pixels, if tick == ticks { LAST } else { HUNDREDTHS }),
-                )?;
+                let show = |pixels: Pixmap, tick| {
+                    gif.add(&pixels, if tick == ticks { LAST } else { HUNDREDTHS })
+                };
+                pass(played, ticks, studio, told, print, is_shown, show).await?;
                 Ok(gif.finish()?)
             }
             Self::Photo => {
                 let mut photo = Vec::new();
                 let is_last = |tick| tick == ticks;
-                pass(played, ticks, studio, told, PHOTO, is_last, |pixels, _| {
+                let show = |pixels: Pixmap, _| {
                     photo = png_of(&pixels)?;
                     Ok(())
-                })?;
+                };
+                pass(played, ticks, studio, told, PHOTO, is_last, show).await?;
                 Ok(photo)
             }
         }
@@ -145,7 +148,7 @@ fn moments_at(ticks: usize, gaps: usize) -> impl Iterator<Item = usize> {
 }
 
 /// Plays a round again for some ticks; those that are to be shown are.
-fn pass(
+async fn pass(
     played: &AnyRound,
     ticks: usize,
     studio: &mut Option<Studio>,
@@ -162,8 +165,10 @@ fn pass(
     }
     let mut round = AnyRound::new(played.level().clone());
     let (mut effects, mut camera) = (Effects::default(), CameraRig::default());
+    let mut breath = Breath::default();
     for tick in 0..=ticks {
         told(tick, ticks);
+        breath.take().await;
         if tick > 0 {
             let frame = played.frames().get(tick - 1).copied();
             round.step(frame.unwrap_or_default());
@@ -186,14 +191,17 @@ fn pass(
                     time: tick as f64 * f64::from(TICK),
                     caption,
                 };
-                let drawn = opened.shoot(&moment, print.size);
+                let drawn = opened.shoot(&moment, print.size).await;
                 if drawn.is_err() {
                     // The next film may have more luck with another device.
                     *studio = None;
                 }
                 pixels_of(&drawn?, Studio::size(&moment, print.size))?
             }
+            #[cfg(not(target_family = "wasm"))]
             None => plain::picture(&round, print.size, caption)?,
+            #[cfg(target_family = "wasm")]
+            None => return Err(FilmError::NoGpu),
         };
         show(pixels, tick)?;
     }
@@ -201,6 +209,14 @@ fn pass(
         opened.rest();
     }
     Ok(())
+}
+
+/// What is to be drawn the same by everybody.
+fn renderer_options() -> RendererOptions {
+    RendererOptions {
+        dithering: false,
+        ..RendererOptions::default()
+    }
 }
 
 /// What was drawn, as the films of the painter take it.

@@ -210,10 +210,11 @@ fn tell(played: &Played, by: report::Player, options: &Options) -> Result<String
 /// A film of a round, with a bar for whoever waits.
 fn shoot(film: Film, played: &Played) -> Result<Vec<u8>, FilmError> {
     let bar = progress("filming", 0);
-    film.shoot(&played.round, &mut None, &|tick, ticks| {
+    let told = |tick: usize, ticks: usize| {
         bar.set_length(ticks as u64);
         bar.set_position(tick as u64);
-    })
+    };
+    pollster::block_on(film.shoot(&played.round, &mut None, &told))
 }
 
 /// Where films and photos are to go.

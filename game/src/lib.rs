@@ -17,7 +17,6 @@ pub mod attract;
 pub mod browser;
 #[cfg(not(target_family = "wasm"))]
 pub mod desktop;
-#[cfg(not(target_family = "wasm"))]
 pub mod film;
 pub mod game;
 pub mod haptics;

@@ -226,6 +226,11 @@ export class Host {
 
   // ---- the screen ----
 
+  /** Waits for the next frame; a page that is hidden has none. */
+  breathe() {
+    return new Promise((resolve) => setTimeout(resolve, 0));
+  }
+
   /** Fetches the letters of Japanese, once. */
   async wantLetters() {
     if (this.#wantsLetters) {

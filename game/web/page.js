@@ -141,6 +141,9 @@ async function isRenewed() {
   return true;
 }
 
+/** How things stand, for whoever looks on. */
+Object.defineProperty(globalThis, "tamaire", { value: { report: () => running?.report?.() } });
+
 async function main() {
   if (!hasLanes()) {
     return tell(said.noWasm);

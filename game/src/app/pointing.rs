@@ -55,7 +55,13 @@ pub(super) fn point(game: &mut Game, ctx: &Context, fingers: &Fingers) {
             [x, goal[1], z]
         }
     };
-    game.controls.devices.pointer = Some(position);
+    game.controls.devices.pointer = Some(position.map(in_steps));
+}
+
+/// A coordinate in steps of 1/1024 m [m]: finer than what a pixel shows, and half as long in a link.
+fn in_steps(at: f32) -> f32 {
+    const STEPS: f32 = 1024.0;
+    (at * STEPS).round() / STEPS
 }
 
 /// How high what the first hand begins above is [m]: the floor, or a shelf. It stays the same when the hand comes past

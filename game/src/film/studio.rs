@@ -1,16 +1,12 @@
 //! The window's own pictures without a window: egui, the stage and both renderers, drawn into images.
 
+use super::device;
 use crate::look::{CameraRig, Effects, Hint, Look, Stage, Theme, dress};
-use eframe::egui_wgpu::{
-    RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguration, WgpuSetup,
-    WgpuSetupCreateNew,
-};
+use eframe::egui_wgpu::{RenderState, ScreenDescriptor};
 use egui::{Align2, FontId, RawInput, Rect, Ui, Vec2, vec2};
-use fuwafuwa_render::{ImageError, Step, image_later};
-use pollster::block_on;
-use std::sync::Arc;
+use fuwafuwa_render::{ImageError, Step};
 use tamaire_play::AnyRound;
-use wgpu::{Backends, DeviceDescriptor, MemoryHints, PollType};
+use wgpu::PollType;
 
 /// Height of the paper below a picture that has a caption, and of the letters on it [px].
 const CAPTION: f32 = 34.0;
@@ -42,18 +38,18 @@ pub struct Moment<'a> {
 impl Studio {
     /// A studio; none where there is nothing to draw with, not even software.
     pub fn open() -> Option<Self> {
-        // OpenGL comes last: where there is no display its driver complains to the terminal.
-        let state = [Backends::PRIMARY, Backends::GL]
-            .into_iter()
-            .find_map(state_of)?;
+        device::open().map(Self::of)
+    }
+
+    fn of(state: RenderState) -> Self {
         let context = egui::Context::default();
         dress(&context);
-        Some(Self {
+        Self {
             stage: Stage::new(&state),
             state,
             context,
             theme: Theme::of(false),
-        })
+        }
     }
 
     /// The size of the picture of a moment that is so large without its caption [px].
@@ -106,19 +102,17 @@ impl Studio {
                 renderer.write().update_texture(device, queue, id, &change);
             }
         }
-        let drawn = image_later(
-            device,
-            queue,
-            (*target_format, size_in_pixels),
-            |step| match step {
-                Step::Before(encoder) => {
-                    renderer
-                        .write()
-                        .update_buffers(device, queue, encoder, &shapes, &screen);
-                }
-                Step::Inside(pass) => renderer.read().render(pass, &shapes, &screen),
-            },
-        );
+        let target = (*target_format, size_in_pixels);
+        let draw = |step: Step<'_>| match step {
+            Step::Before(encoder) => {
+                { renderer.write() }.update_buffers(device, queue, encoder, &shapes, &screen);
+            }
+            Step::Inside(pass) => renderer.read().render(pass, &shapes, &screen),
+        };
+        #[cfg(not(target_family = "wasm"))]
+        let drawn = fuwafuwa_render::image(device, queue, target, draw);
+        #[cfg(target_family = "wasm")]
+        let drawn = fuwafuwa_render::image_later(device, queue, target, draw).await;
         for id in output.textures_delta.free.drain() {
             renderer.write().free_texture(&id);
         }
@@ -131,39 +125,6 @@ impl Studio {
         // What is no longer used goes when the device is asked how it does. One that has failed tells so at the next picture.
         let _polled = self.state.device.poll(PollType::Poll);
     }
-}
-
-/// What egui needs to draw with one of some interfaces; none where there is no adapter for any.
-fn state_of(backends: Backends) -> Option<RenderState> {
-    let mut setup = WgpuSetupCreateNew::without_display_handle();
-    // Somebody may have chosen by `WGPU_BACKEND`.
-    setup.instance_descriptor.backends &= backends;
-    if setup.instance_descriptor.backends.is_empty() {
-        return None;
-    }
-    // Images in blocks of 128 MB would leave these to the allocator, which keeps them, touched, for as long as the device.
-    let described = setup.device_descriptor;
-    setup.device_descriptor = Arc::new(move |adapter| DeviceDescriptor {
-        memory_hints: MemoryHints::MemoryUsage,
-        ..described(adapter)
-    });
-    let wgpu_setup = WgpuSetup::CreateNew(setup);
-    let instance = block_on(wgpu_setup.new_instance());
-    let configuration = WgpuConfiguration {
-        wgpu_setup,
-        ..WgpuConfiguration::default()
-    };
-    let options = RendererOptions {
-        dithering: false,
-        ..RendererOptions::default()
-    };
-    block_on(RenderState::create(
-        &configuration,
-        &instance,
-        None,
-        options,
-    ))
-    .ok()
 }
 
 /// Draws a moment, and below `rect` what is said of it.
@@ -226,7 +187,7 @@ mod tests {
                 caption: Some("hello"),
             };
             let [width, height] = Studio::size(&moment, SIZE);
-            let picture = studio.shoot(&moment, SIZE).expect("it is small");
+            let picture = pollster::block_on(studio.shoot(&moment, SIZE)).expect("it is small");
             assert_eq!(picture.len() as u32, 4 * width * height);
             assert!(picture.chunks(4).all(|pixel| pixel[3] == 255), "{id}");
             let (world, below) = (0..300, 300..height as usize);

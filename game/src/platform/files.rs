@@ -244,10 +244,10 @@ impl Files {
         let developed = Arc::new(AtomicU32::new(0));
         self.developed = Some(developed.clone());
         let (storage, pictures) = (self.storage.clone(), self.pictures.clone());
-        self.darkroom.write(move || {
+        self.darkroom.develop(move || async move {
             let stem = stem_of(&replay);
             let told = |share: f32| developed.store((100.0 * share) as u32, Ordering::Relaxed);
-            let picture = pictures.shoot(kind, replay, &told);
+            let picture = pictures.shoot(kind, replay, told).await;
             Done::Picture(picture.and_then(|bytes| save(&*storage, kind, &stem, &bytes)))
         });
     }

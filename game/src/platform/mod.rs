@@ -1,6 +1,8 @@
 //! What differs between a desktop and a browser: where things are kept, how sound comes out, which
 //! sticks can be read and felt. Nothing else in the game knows on which it runs.
 
+#[cfg(not(target_family = "wasm"))]
+mod breath;
 mod clock;
 #[cfg(not(target_family = "wasm"))]
 mod date;
@@ -15,10 +17,6 @@ mod gpu;
 #[cfg(target_family = "wasm")]
 #[path = "web/mod.rs"]
 mod here;
-#[cfg(not(target_family = "wasm"))]
-mod pictures;
-#[cfg(target_family = "wasm")]
-#[path = "no_pictures.rs"]
 mod pictures;
 #[cfg(not(target_family = "wasm"))]
 mod screen;
@@ -29,8 +27,9 @@ mod storage;
 mod writer;
 
 #[cfg(target_family = "wasm")]
-use here::{date, dialog, screen, sound};
+use here::{breath, date, dialog, screen, sound};
 
+pub use breath::Breath;
 pub use clock::Clock;
 pub use date::local as local_date;
 pub use dialog::{Dialog, IS_THERE as HAS_DIALOG};
@@ -42,7 +41,6 @@ pub use given::{level_at, replay_in};
 pub use gpu::GpuWatch;
 #[cfg(target_family = "wasm")]
 pub use here::{Host, set_host};
-pub use pictures::ARE_THERE as HAS_PICTURES;
 pub use screen::{address_of_page, fill_screen, speak};
 pub use sound::Sound;
 pub use sticks::Pads;

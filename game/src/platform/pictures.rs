@@ -1,12 +1,10 @@
 //! Photos and clips of rounds that were played.
 
+use super::breath::Breath;
 use super::storage::Kind;
 use crate::film::{Film, Studio};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tamaire_play::{Playback, Replay};
-
-/// Whether there are any.
-pub const ARE_THERE: bool = true;
 
 /// Makes pictures. What they are drawn with is opened for the first one and kept: a device that is closed leaves something
 /// behind in drivers and allocators.
@@ -15,11 +13,11 @@ pub struct Pictures(Arc<Mutex<Option<Studio>>>);
 
 impl Pictures {
     /// A picture of a round, as the bytes of its file; `told` hears the share that is done.
-    pub fn shoot(
+    pub async fn shoot(
         &self,
         kind: Kind,
         replay: Arc<Replay>,
-        told: &dyn Fn(f32),
+        told: impl Fn(f32),
     ) -> Result<Vec<u8>, String> {
         let film = match kind {
             Kind::Clip => Film::Clip,
@@ -27,17 +25,25 @@ impl Pictures {
         };
         let why = |error: &dyn std::error::Error| error.to_string();
         let mut playback = Playback::new(replay).map_err(|error| why(&error))?;
+        let mut breath = Breath::default();
         while !playback.is_over() {
             playback.step().map_err(|error| why(&error))?;
+            breath.take().await;
         }
         let share = |tick: usize, ticks: usize| told(tick as f32 / ticks.max(1) as f32);
-        let mut studio = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        // One picture is made at a time.
+        let mut studio = self.studio().take();
         let was_open = studio.is_some();
-        let mut shot = film.shoot(playback.round(), &mut studio, &share);
+        let mut shot = film.shoot(playback.round(), &mut studio, &share).await;
         if shot.is_err() && was_open && studio.is_none() {
             // Its device was lost since the last picture.
-            shot = film.shoot(playback.round(), &mut studio, &share);
+            shot = film.shoot(playback.round(), &mut studio, &share).await;
         }
+        *self.studio() = studio;
         shot.map_err(|error| why(&error))
+    }
+
+    fn studio(&self) -> MutexGuard<'_, Option<Studio>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -45,6 +45,23 @@ impl<T: Send + 'static> Writer<T> {
         }
     }
 
+    /// Does this too, which may have to wait for a device.
+    #[cfg(not(target_family = "wasm"))]
+    pub fn develop<W: Future<Output = T>>(&mut self, job: impl FnOnce() -> W + Send + 'static) {
+        self.write(move || pollster::block_on(job()));
+    }
+
+    /// Does this between frames: it may have to wait for a device.
+    #[cfg(target_family = "wasm")]
+    pub fn develop<W: Future<Output = T>>(&mut self, job: impl FnOnce() -> W + 'static) {
+        self.open += 1;
+        let teller = self.teller.clone();
+        wasm_bindgen_futures::spawn_local(async move {
+            // The game may have begun anew.
+            let _ = teller.send(job().await);
+        });
+    }
+
     /// What came of what was done, without waiting.
     pub fn results(&mut self) -> Vec<T> {
         let results: Vec<T> = self.results.try_iter().collect();

@@ -5,7 +5,7 @@ use super::icons;
 use super::widgets::{Weight, button, card, fitted, header_to_open, page, place_of_page, veil};
 use crate::game::{Found, Game, Kept};
 use crate::look::{Maps, Stage};
-use crate::platform::{Entry, HAS_PICTURES, local_date};
+use crate::platform::{Entry, local_date};
 use egui::{Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, vec2};
 use tamaire_sound::Menu;
 
@@ -128,11 +128,7 @@ fn buttons(ui: &mut Ui, game: &Game, kept: &Kept) -> Option<Wish> {
         (said.clip, Wish::Clip),
         (said.download, Wish::Download),
     ];
-    let is_here = |wish: &Wish| match wish {
-        Wish::Clip => HAS_PICTURES,
-        Wish::Download => game.files.hands_out(),
-        _ => true,
-    };
+    let is_here = |wish: &Wish| !matches!(wish, Wish::Download) || game.files.hands_out();
     let here: Vec<_> = all.into_iter().filter(|(_, wish)| is_here(wish)).collect();
     let mut wanted = None;
     for row in here.chunks(COLUMNS) {

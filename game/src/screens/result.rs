@@ -4,7 +4,6 @@ use super::icons;
 use super::widgets::{Act, Weight, button, card, column, fitted, veil};
 use crate::game::{Game, Screen};
 use crate::look::Theme;
-use crate::platform::HAS_PICTURES;
 use crate::words::Words;
 use egui::{Align, Layout, Role, Sense, Ui, Vec2, WidgetInfo, pos2, vec2};
 use std::sync::Arc;
@@ -146,18 +145,13 @@ fn buttons(ui: &mut Ui, theme: &Theme, said: &Words) -> Option<Act> {
     if again.clicked() {
         wanted = Some(Game::retry);
     }
-    let save: (&str, Act) = (said.save, Game::keep_replay);
-    let keep: &[(&str, Act)] = match HAS_PICTURES {
-        true => &[
-            save,
+    let rows: [&[(&str, Act)]; 3] = [
+        &[(said.next, next), (said.race, race)],
+        &[
+            (said.save, Game::keep_replay),
             (said.photo, Game::keep_photo),
             (said.clip, Game::keep_clip),
         ],
-        false => &[save],
-    };
-    let rows: [&[(&str, Act)]; 3] = [
-        &[(said.next, next), (said.race, race)],
-        keep,
         &[(said.link, Game::copy_link), (said.levels, to_levels)],
     ];
     for row in rows {

@@ -215,7 +215,10 @@ impl Drawn {
 
     fn pixels(self, mapped: Result<(), BufferAsyncError>) -> Result<Vec<u8>, ImageError> {
         mapped.map_err(ImageError::Map)?;
-        let bytes = self.buffer.get_mapped_range(..).map_err(ImageError::Range)?;
+        let bytes = self
+            .buffer
+            .get_mapped_range(..)
+            .map_err(ImageError::Range)?;
         let rows = bytes.chunks(self.row);
         let mut image: Vec<u8> = rows
             .flat_map(|row| &row[..4 * self.size[0] as usize])

@@ -54,6 +54,9 @@ extern "C" {
     /// What sounds come out of; the same one when the game begins anew.
     #[wasm_bindgen(method, getter)]
     pub(crate) fn speaker(this: &Host) -> Speaker;
+    /// Resolves in the next frame, and also where no frames are drawn.
+    #[wasm_bindgen(method)]
+    pub(crate) fn breathe(this: &Host) -> js_sys::Promise;
     /// Asks for the letters of Japanese; they come through [`Host::take_letters`], unless the page cannot fetch them.
     #[wasm_bindgen(method, js_name = wantLetters)]
     pub(crate) fn want_letters(this: &Host);

@@ -1,6 +1,7 @@
 //! What a browser has in place of folders, a system's dialog and its clock. The page hands in a [`Host`]; nothing here
 //! makes elements of its own.
 
+pub mod breath;
 pub mod date;
 pub mod dialog;
 mod host;

@@ -1,0 +1,44 @@
+//! What pictures are drawn with: a device of their own.
+
+use super::renderer_options;
+use eframe::egui_wgpu::{RenderState, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+use pollster::block_on;
+use std::sync::Arc;
+use wgpu::{Backends, DeviceDescriptor, MemoryHints};
+
+/// What egui needs to draw; none where there is nothing to draw with, not even software.
+pub fn open() -> Option<RenderState> {
+    // OpenGL comes last: where there is no display its driver complains to the terminal.
+    [Backends::PRIMARY, Backends::GL]
+        .into_iter()
+        .find_map(state_of)
+}
+
+/// What egui needs to draw with one of some interfaces; none where there is no adapter for any.
+fn state_of(backends: Backends) -> Option<RenderState> {
+    let mut setup = WgpuSetupCreateNew::without_display_handle();
+    // Somebody may have chosen by `WGPU_BACKEND`.
+    setup.instance_descriptor.backends &= backends;
+    if setup.instance_descriptor.backends.is_empty() {
+        return None;
+    }
+    // Images in blocks of 128 MB would leave these to the allocator, which keeps them, touched, for as long as the device.
+    let described = setup.device_descriptor;
+    setup.device_descriptor = Arc::new(move |adapter| DeviceDescriptor {
+        memory_hints: MemoryHints::MemoryUsage,
+        ..described(adapter)
+    });
+    let wgpu_setup = WgpuSetup::CreateNew(setup);
+    let instance = block_on(wgpu_setup.new_instance());
+    let configuration = WgpuConfiguration {
+        wgpu_setup,
+        ..WgpuConfiguration::default()
+    };
+    block_on(RenderState::create(
+        &configuration,
+        &instance,
+        None,
+        renderer_options(),
+    ))
+    .ok()
+}
