@@ -403,3 +403,24 @@ fn a_pad_hums_with_the_force_and_ticks_with_a_tear() {
     assert!(heard[400].1 > 0.7, "{:?}", heard[400]);
     assert_eq!(heard[400 + 16].1, 0.0, "60 ms later it is over");
 }
+
+#[test]
+fn without_a_thread_whoever_updates_is_enough() {
+    let mut force = Force::without_thread();
+    let recording = Recording::default();
+    let line = force.add(Box::new(recording.clone()), Settings::default());
+    let start = Instant::now();
+    let mut played = Vec::new();
+    while played.iter().all(|played: &Played| played.output.is_zero()) {
+        assert!(start.elapsed() < PATIENCE, "nothing is felt");
+        line.feel(PUSH);
+        force.update();
+        played.extend(recording.take());
+        std::thread::sleep(16 * MS);
+    }
+    line.stop(Stop::Paused);
+    force.update();
+    let last = recording.take().pop().expect("a stop is told");
+    assert!(last.output.is_zero(), "{last:?}");
+    assert_eq!(line.report().silent, Some(Stop::Paused));
+}

@@ -158,6 +158,7 @@ fn draw(ui: &Ui, rect: Rect, moment: &Moment, stage: &mut Stage, theme: &Theme) 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::Arc;
     use tamaire_play::Level;
 
     const SIZE: [u32; 2] = [480, 300];

@@ -2,7 +2,7 @@
 
 /// Lets others go on.
 #[derive(Default)]
-pub struct Breath;
+pub struct Breath(());
 
 impl Breath {
     /// They do anyway.

@@ -1,7 +1,7 @@
 //! How it went, and a dare to try the other way.
 
 use super::icons;
-use super::widgets::{Act, Weight, button, card, column, fitted, veil};
+use super::widgets::{Act, Weight, button, card, column_beside, fitted, veil};
 use crate::game::{Game, Screen};
 use crate::look::Theme;
 use crate::words::Words;
@@ -28,7 +28,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     let basket = level.game().basket.as_ref();
     let is_right = basket.is_some_and(|basket| basket.centre[0] > 0.0);
     let across = if is_right { 0.05 } else { 0.95 };
-    let mut wanted = column(ui, WIDE, across, |ui| {
+    let mut wanted = column_beside(ui, WIDE, (across, false), |ui| {
         card(ui, &theme, |ui| {
             ui.spacing_mut().item_spacing = Vec2::ZERO;
             headline(ui, &theme, said, outcome.route);

@@ -1,6 +1,6 @@
 //! The name of the game over a body that plays by itself.
 
-use super::widgets::{Weight, button, column, veil, words};
+use super::widgets::{Weight, button, column_beside, veil, words};
 use crate::game::{Game, Screen};
 use crate::words::Language;
 use egui::{Color32, Rect, Sense, Ui, vec2};
@@ -18,7 +18,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
         6.0 * (1.6 * game.time).sin() as f32
     };
     let mut wanted = None;
-    column(ui, 340.0, ACROSS, |ui| {
+    column_beside(ui, 340.0, (ACROSS, true), |ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(340.0, 190.0), Sense::hover());
         let top = rect.center_top() + vec2(0.0, 66.0 + bob);
         for (by, colour) in [(5.0, Color32::from_black_alpha(40)), (0.0, theme.accent)] {

@@ -411,6 +411,27 @@ pub fn page(ui: &mut Ui, name: &str, width: f32, contents: impl FnOnce(&mut Ui))
     }
 }
 
+/// A [`column`] that hides little of the world: `across` from 0 = at the left to 1 = at the right, but in a window that is
+/// held upright, where the world lies across the middle, above or below that.
+pub fn column_beside<R>(
+    ui: &mut Ui,
+    width: f32,
+    (across, is_above): (f32, bool),
+    contents: impl FnOnce(&mut Ui) -> R,
+) -> R {
+    let mut part = ui.max_rect();
+    if part.width() > part.height() {
+        return column(ui, width, across, contents);
+    }
+    match is_above {
+        true => part.max.y -= 0.6 * part.height(),
+        false => part.min.y += 0.58 * part.height(),
+    }
+    let part = egui::UiBuilder::new().max_rect(part);
+    ui.scope_builder(part, |ui| column(ui, width, 0.5, contents))
+        .inner
+}
+
 /// A column of so many points, upright in the middle of the screen, and what is in it; `across` from
 /// 0 = at the left to 1 = at the right. Where there is not room enough it scrolls.
 pub fn column<R>(ui: &mut Ui, width: f32, across: f32, contents: impl FnOnce(&mut Ui) -> R) -> R {

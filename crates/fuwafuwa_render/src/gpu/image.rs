@@ -198,7 +198,9 @@ impl Drawn {
         buffer.map_async(MapMode::Read, .., move |result| {
             let mut answer = there.lock().unwrap_or_else(PoisonError::into_inner);
             answer.result = Some(result);
-            answer.waker.take().map(Waker::wake);
+            if let Some(waker) = answer.waker.take() {
+                waker.wake();
+            }
         });
         Ok(Self {
             buffer,

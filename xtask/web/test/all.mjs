@@ -1,0 +1,39 @@
+// Plays the packed game in real browsers.
+// usage: node all.mjs SITE [TEST …]
+import { serve } from "../serve.mjs";
+import * as game from "./game.mjs";
+import { checkSilence, checkSound } from "./sound.mjs";
+import { launch } from "./visit.mjs";
+
+const [folder, ...wanted] = process.argv.slice(2);
+const site = await serve(folder);
+
+/** Each with a browser of its own, which knows nothing yet. @type {[string, "chromium" | "firefox", (browser: any) => Promise<void>][]} */
+const TESTS = [
+  ...["first", "play", "touch", "offline", "forbidden", "full", "links", "drops", "lost", "pictures"].map((name) => [
+    name,
+    "chromium",
+    (browser) => game[name](browser, site),
+  ]),
+  ["sound", "chromium", (browser) => checkSound(browser, site.address)],
+  ["silence", "chromium", (browser) => checkSilence(browser, site.address)],
+  ["play", "firefox", (browser) => game.play(browser, site)],
+];
+
+let failed = 0;
+for (const [name, kind, test] of TESTS) {
+  if (wanted.length && !wanted.includes(name) && !wanted.includes(`${name}-${kind}`)) continue;
+  const start = performance.now();
+  const browser = await launch(kind);
+  try {
+    await test(browser);
+    console.log(`ok    ${kind}: ${name} (${((performance.now() - start) / 1000).toFixed(0)} s)`);
+  } catch (error) {
+    failed++;
+    console.log(`FAILED ${kind}: ${name}\n${error.stack ?? error}`);
+  } finally {
+    await browser.close();
+  }
+}
+await site.close();
+process.exitCode = failed ? 1 : 0;

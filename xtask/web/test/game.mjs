@@ -1,0 +1,235 @@
+// The game in a browser, as somebody plays it: with the mouse, with a finger, offline, with nothing kept, from a link …
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { Visit, seconds } from "./visit.mjs";
+
+const PHONES = /** @type {[number, number][]} */ ([[390, 844], [844, 390]]);
+const LEVELS = new URL("../../../crates/tamaire_play/levels/", import.meta.url);
+
+/** @typedef {{address: string, sent: {path: string, bytes: number}[]}} Site */
+/** @typedef {import("puppeteer-core").Browser} Browser */
+
+/** What comes over the wire until somebody can play, and how long that takes. @param {Browser} browser @param {Site} site */
+export async function first(browser, site) {
+  for (const [visit, what] of [["cold", "the first visit"], ["warm", "the second"]]) {
+    site.sent.length = 0;
+    const page = await browser.newPage();
+    const start = performance.now();
+    await page.goto(site.address);
+    await page.waitForFunction(() => globalThis.tamaire?.report(), { polling: 50, timeout: 120_000 });
+    const took = performance.now() - start;
+    const bytes = site.sent.reduce((sum, { bytes }) => sum + bytes, 0);
+    console.log(`${what}: ${(bytes / 1e6).toFixed(2)} MB over the wire, ${(took / 1000).toFixed(1)} s until it plays (${visit})`);
+    assert(bytes <= 2.2e6, `${bytes} bytes until the game plays`);
+    await seconds(5);
+    await page.close();
+  }
+}
+
+/** Title, round, win, result; the record is there after a reload. @param {Browser} browser @param {Site} site */
+export async function play(browser, site) {
+  const visit = await Visit.begin(browser, site.address);
+  await start(visit, "click");
+  await visit.win(async (x, y) => visit.page.mouse.move(x, y));
+  await visit.sees("Result");
+  await visit.click("Save replay");
+  await visit.hears("Saved");
+  await visit.page.reload();
+  await visit.comes();
+  const { won } = await visit.report();
+  assert.deepEqual(won, ["classic"], "the record is kept");
+  await visit.click("Replays");
+  await visit.click("Watch");
+  await visit.sees("Play");
+  visit.isQuiet();
+  await visit.page.close();
+}
+
+/** The same with a finger, upright and across. @param {Browser} browser @param {Site} site */
+export async function touch(browser, site) {
+  for (const size of PHONES) {
+    const visit = await Visit.begin(browser, site.address, { size, isTouch: true });
+    await start(visit, "tap");
+    const finger = visit.page.touchscreen;
+    await finger.touchStart(...(await visit.at(-1.4, 0)));
+    await visit.win((x, y) => finger.touchMove(x, y));
+    await finger.touchEnd();
+    await visit.sees("Result");
+    const { scroll, zoom } = await visit.page.evaluate(() => ({ scroll: scrollY, zoom: visualViewport?.scale }));
+    assert.deepEqual([scroll, zoom], [0, 1], "the page stays where it is");
+    visit.isQuiet();
+    await visit.page.close();
+  }
+}
+
+/** @param {Visit} visit @param {"click" | "tap"} how */
+async function start(visit, how) {
+  await visit[how]("Play");
+  await visit.sees("Levels");
+  await visit[how]("Classic");
+  await visit.sees("Play");
+}
+
+/** Without a network, once it was there. @param {Browser} browser @param {Site} site */
+export async function offline(browser, site) {
+  const visit = await Visit.begin(browser, site.address);
+  await visit.page.waitForFunction(async () => (await navigator.serviceWorker.ready).active?.state === "activated");
+  await visit.page.setOfflineMode(true);
+  site.sent.length = 0;
+  await visit.page.reload();
+  await visit.comes();
+  await start(visit, "click");
+  assert.deepEqual(site.sent, []);
+  visit.isQuiet();
+  await visit.page.close();
+}
+
+/** Where the browser keeps nothing. @param {Browser} browser @param {Site} site */
+export async function forbidden(browser, site) {
+  const before = () => Object.defineProperty(globalThis, "indexedDB", { get: () => { throw new DOMException("refused", "SecurityError"); } });
+  const visit = await Visit.begin(browser, site.address, { before });
+  await visit.hears("the browser keeps nothing for this page");
+  await start(visit, "click");
+  visit.isQuiet();
+  await visit.page.close();
+}
+
+/** Where there is no room any more. @param {Browser} browser @param {Site} site */
+export async function full(browser, site) {
+  const before = () => {
+    IDBObjectStore.prototype.put = () => {
+      throw new DOMException("the quota is used up", "QuotaExceededError");
+    };
+  };
+  const visit = await Visit.begin(browser, site.address, { before });
+  await start(visit, "click");
+  await visit.press("Escape");
+  await visit.click("Save replay");
+  await visit.hears("quota");
+  await visit.click("Go on");
+  await visit.sees("Play");
+  visit.isQuiet();
+  await visit.page.close();
+}
+
+/** A round goes from one visitor to another. @param {Browser} browser @param {Site} site */
+export async function links(browser, site) {
+  const visit = await Visit.begin(browser, site.address);
+  await visit.page.evaluate(() => {
+    globalThis.copied = "";
+    // A headless browser has no clipboard.
+    navigator.clipboard.writeText = async (text) => void (globalThis.copied = text);
+  });
+  await start(visit, "click");
+  await visit.until((report) => report.ticks > 30, "half a second passes");
+  await visit.press("Escape");
+  await visit.click("Link to this level");
+  await visit.hears("The link is copied");
+  const level = await visit.page.evaluate(() => globalThis.copied);
+  assert.match(level, /^http:\/\/localhost:\d+\/#l1/);
+  await visit.click("Save replay");
+  await visit.hears("Saved");
+  await visit.click("Levels");
+  await visit.click("Back");
+  await visit.click("Replays");
+  await visit.click("Copy link");
+  await visit.until((report) => report.notices.some((text) => text.includes("The link is copied")), "a copied link");
+  await visit.page.waitForFunction(() => globalThis.copied.includes("#r1"));
+  const round = await visit.page.evaluate(() => globalThis.copied);
+  visit.isQuiet();
+
+  const other = await Visit.begin(browser, round);
+  await other.sees("Offered");
+  assert.equal(await other.page.evaluate(() => location.hash), "", "a reload does not open it again");
+  await other.click("Race it");
+  await other.sees("Play");
+  // The same tab, another link.
+  await other.page.evaluate((link) => void (location.hash = link), level.split("#")[1]);
+  await other.until((report) => report.screen === "Play" && report.ticks < 20, "the level of the link");
+  for (const broken of [round.split("#")[1].slice(0, -9), "r1AAAA", "x", "%00%ff", "r9" + round.slice(-40)]) {
+    await other.page.evaluate((link) => void (location.hash = link), broken);
+    await other.hears("link");
+  }
+  other.isQuiet();
+  await visit.page.close();
+  await other.page.close();
+}
+
+/** Files that are dropped onto the page. @param {Browser} browser @param {Site} site */
+export async function drops(browser, site) {
+  const visit = await Visit.begin(browser, site.address);
+  for (const [name, is] of /** @type {[string, (report: any) => boolean][]} */ ([
+    ["cat.png", (report) => report.screen === "Play" && report.level === "cat.png"],
+    ["pudding.vox", (report) => report.screen === "Play" && report.level === "pudding.vox"],
+  ])) {
+    await drop(visit, name, [...readFileSync(new URL(name, LEVELS))]);
+    await visit.until(is, `${name} is played`);
+  }
+  await drop(visit, "broken.png", [1, 2, 3]);
+  await visit.hears("broken.png");
+  await drop(visit, "broken.tamaire", [255, 0]);
+  await visit.hears("broken.tamaire");
+  // What was dropped stays.
+  await visit.page.reload();
+  await visit.comes();
+  await visit.click("Play");
+  await visit.place("cat");
+  visit.isQuiet();
+  await visit.page.close();
+}
+
+/** @param {Visit} visit @param {string} name @param {number[]} bytes */
+function drop(visit, name, bytes) {
+  return visit.page.evaluate(
+    (name, bytes) => {
+      const dataTransfer = new DataTransfer();
+      dataTransfer.items.add(new File([new Uint8Array(bytes)], name));
+      document.querySelector("canvas")?.dispatchEvent(new DragEvent("drop", { dataTransfer, bubbles: true, cancelable: true }));
+    },
+    name,
+    bytes,
+  );
+}
+
+/** The GPU goes, and comes back. @param {Browser} browser @param {Site} site */
+export async function lost(browser, site) {
+  const visit = await Visit.begin(browser, site.address);
+  await start(visit, "click");
+  await visit.until((report) => report.ticks > 10, "the round goes on");
+  await visit.page.evaluate(() => document.querySelector("canvas")?.getContext("webgl2")?.getExtension("WEBGL_lose_context")?.loseContext());
+  await visit.sees("Title");
+  await visit.click("Replays");
+  await visit.place("Watch");
+  assert.equal((await visit.page.$$("canvas")).length, 1);
+  visit.isQuiet(/CONTEXT_LOST|context lost/i);
+  await visit.page.close();
+}
+
+/** What is made is downloaded. @param {Browser} browser @param {Site} site */
+export async function pictures(browser, site) {
+  const visit = await Visit.begin(browser, site.address);
+  await visit.page.evaluate(() => {
+    globalThis.downloads = [];
+    const click = HTMLAnchorElement.prototype.click;
+    HTMLAnchorElement.prototype.click = function () {
+      if (!this.download) return click.call(this);
+      fetch(this.href).catch(() => {});
+      globalThis.downloads.push(this.download);
+    };
+  });
+  await start(visit, "click");
+  await visit.until((report) => report.ticks > 30, "half a second passes");
+  await visit.press("Escape");
+  await visit.click("Save replay");
+  await visit.hears("Saved");
+  await visit.click("Levels");
+  await visit.click("Back");
+  await visit.click("Replays");
+  await visit.click("Clip");
+  await visit.hears("classic-1.gif");
+  await visit.click("Download");
+  await visit.page.waitForFunction(() => globalThis.downloads.length === 2);
+  assert.deepEqual(await visit.page.evaluate(() => globalThis.downloads), ["classic-1.gif", "classic-1.tamaire"]);
+  visit.isQuiet(/blob:/);
+  await visit.page.close();
+}

@@ -1,0 +1,172 @@
+// A visit to the page in a browser: what a test looks at, and what it presses.
+import assert from "node:assert/strict";
+import { existsSync } from "node:fs";
+import puppeteer from "puppeteer-core";
+
+/** How long anything may take on a busy machine [ms]. It is no limit that is tested. */
+const PATIENCE = 120_000;
+
+const CHROMIUM = [
+  "--no-sandbox",
+  // There may be no GPU.
+  "--use-angle=swiftshader",
+  "--enable-unsafe-swiftshader",
+  "--ignore-gpu-blocklist",
+  "--autoplay-policy=document-user-activation-required",
+];
+
+export const BROWSERS = {
+  chromium: { executablePath: "chromium", args: CHROMIUM },
+  firefox: { browser: "firefox", executablePath: "firefox-esr" },
+};
+
+/** @param {"chromium" | "firefox"} kind @param {string} [language] */
+export function launch(kind, language = "en-US") {
+  const { executablePath, ...options } = BROWSERS[kind];
+  return puppeteer.launch({
+    ...options,
+    args: [...(options.args ?? []), ...(kind === "chromium" ? [`--lang=${language}`, `--accept-lang=${language}`] : [])],
+    extraPrefsFirefox: { "intl.accept_languages": language },
+    env: { ...process.env, LANGUAGE: language },
+    executablePath: find(executablePath),
+    protocolTimeout: PATIENCE,
+    timeout: PATIENCE,
+  });
+}
+
+/** Where a program is. @param {string} program */
+function find(program) {
+  const folders = (process.env.PATH ?? "").split(":");
+  const found = folders.map((folder) => `${folder}/${program}`).find((file) => existsSync(file));
+  assert(found, `there is no ${program} on the path`);
+  return found;
+}
+
+export const seconds = (/** @type {number} */ count) => new Promise((resolve) => setTimeout(resolve, 1000 * count));
+
+export class Visit {
+  /** What the console complained about. @type {string[]} */
+  complaints = [];
+
+  /** @param {import("puppeteer-core").Page} page */
+  constructor(page) {
+    this.page = page;
+    page.on("console", (message) => {
+      if (["error", "warn", "warning"].includes(message.type())) {
+        this.complaints.push(message.text());
+      }
+    });
+    page.on("pageerror", (error) => this.complaints.push(String(error)));
+  }
+
+  /**
+   * @param {import("puppeteer-core").Browser | import("puppeteer-core").BrowserContext} browser
+   * @param {string} address
+   * @param {{size?: [number, number], isTouch?: boolean, before?: () => void}} [options]
+   */
+  static async begin(browser, address, { size: [width, height] = [1280, 800], isTouch = false, before } = {}) {
+    const visit = new Visit(await browser.newPage());
+    await visit.page.setViewport({ width, height, isMobile: isTouch, hasTouch: isTouch });
+    if (before) {
+      await visit.page.evaluateOnNewDocument(before);
+    }
+    await visit.page.goto(address, { timeout: PATIENCE });
+    await visit.comes();
+    return visit;
+  }
+
+  /** The game is there. */
+  async comes() {
+    await this.until((report) => report?.labels.length > 0, "the game comes");
+  }
+
+  /** How things stand. @returns {Promise<any>} */
+  report() {
+    return this.page.evaluate(() => {
+      const report = globalThis.tamaire?.report();
+      if (!report) return undefined;
+      const labels = report.labels.map((label) => {
+        const [x, y, ...name] = label.split(" ");
+        return { x: Number(x), y: Number(y), name: name.join(" ") };
+      });
+      const { screen, level, language, ticks, is_won, won, notices } = report;
+      const places = [report.hand, report.origin, report.right].map((place) => [...place]);
+      report.free();
+      return { screen, level, language, ticks, is_won, won, notices, labels, places };
+    });
+  }
+
+  /** @param {(report: any) => boolean} is @param {string} what */
+  async until(is, what) {
+    const start = performance.now();
+    let report;
+    do {
+      report = await this.report().catch(() => undefined);
+      if (is(report)) return report;
+      await seconds(0.1);
+    } while (performance.now() - start < PATIENCE);
+    assert.fail(`never: ${what}\nlast: ${JSON.stringify(report)}\nconsole: ${this.complaints.join("\n")}`);
+  }
+
+  /** @param {string} screen */
+  sees(screen) {
+    return this.until((report) => report?.screen === screen, `the screen ${screen}`);
+  }
+
+  /** @param {string} text */
+  hears(text) {
+    return this.until((report) => report?.notices.some((notice) => notice.includes(text)), `the words “${text}”`);
+  }
+
+  /** Where something stands that can be pressed. @param {string} name */
+  async place(name) {
+    const is = (/** @type {any} */ label) => label.name === name;
+    const report = await this.until((report) => report?.labels.some(is), `something named “${name}”`);
+    return report.labels.find(is);
+  }
+
+  /** @param {string} name */
+  async click(name) {
+    const { x, y } = await this.place(name);
+    await this.page.mouse.move(x, y);
+    await this.page.mouse.click(x, y, { delay: 120 });
+  }
+
+  /** @param {string} name */
+  async tap(name) {
+    const { x, y } = await this.place(name);
+    await this.page.touchscreen.touchStart(x, y);
+    await seconds(0.15);
+    await this.page.touchscreen.touchEnd();
+  }
+
+  /** @param {import("puppeteer-core").KeyInput} key */
+  async press(key) {
+    await this.page.keyboard.press(key, { delay: 120 });
+  }
+
+  /** A place of the world on the page [m]. @param {number} x @param {number} y */
+  async at(x, y) {
+    const { places: [, origin, right] } = await this.report();
+    const metre = right[0] - origin[0];
+    return [origin[0] + metre * x, origin[1] - metre * y];
+  }
+
+  /** Plays Classic until it is won: the body is pushed into the basket. @param {(x: number, y: number) => Promise<void>} point */
+  async win(point) {
+    let x = -1.4;
+    for (let push = 0; push < 4000; push++) {
+      const report = await this.report();
+      if (report.is_won || report.screen === "Result") return;
+      await point(...(await this.at(x, 0)));
+      x = Math.min(x + 0.03, 1.2);
+    }
+    assert.fail("the round was not won");
+  }
+
+  /** Nothing was complained about but this. @param {RegExp} [but] */
+  isQuiet(but = /$^/) {
+    const complaints = this.complaints.filter((text) => !but.test(text));
+    assert.deepEqual(complaints, [], "the console complained");
+  }
+}
