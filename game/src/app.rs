@@ -68,12 +68,14 @@ impl App {
     ///
     /// # Errors
     /// When the window has no GPU, not even one in software.
-    pub fn new(context: &eframe::CreationContext, game: Game) -> Result<Self, NoGpu> {
+    pub fn new(context: &eframe::CreationContext, mut game: Game) -> Result<Self, NoGpu> {
         dress(&context.egui_ctx);
         let state = context.wgpu_render_state.as_ref().ok_or(NoGpu)?;
         let (stage, gpu) = (Stage::new(state), GpuWatch::of(state));
         #[cfg(target_family = "wasm")]
         crate::film::lend(state);
+        // Browsers fill the screen only when they are asked by a press.
+        game.settings.full_screen &= !cfg!(target_family = "wasm");
         let screen_before = game.screen();
         let navigators = Vec::new();
         let presses = Presses::default();

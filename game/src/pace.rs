@@ -54,6 +54,11 @@ impl Pace {
         false
     }
 
+    /// What a tick costs [s], as far as is known.
+    pub fn cost(&self) -> f64 {
+        self.cost
+    }
+
     /// A tick was played, and cost so much [s].
     pub fn note(&mut self, cost: f64) {
         self.ticks += 1;

@@ -2,6 +2,7 @@
 
 use crate::pace::Pace;
 use crate::platform::Clock;
+use fuwafuwa::world::TICK;
 use std::sync::Arc;
 use tamaire_play::{AnyRound, InputFrame, Level, Playback, Replay, ReplayError};
 
@@ -90,6 +91,11 @@ impl Session {
     /// Why a replay or a ghost was stopped, once.
     pub fn take_complaint(&mut self) -> Option<ReplayError> {
         self.complaint.take()
+    }
+
+    /// What share of its speed the round can reach on this machine, as far as is known: 1 where ticks cost less than they last.
+    pub fn bearable(&self) -> f64 {
+        (f64::from(TICK) / self.pace.cost()).min(1.0)
     }
 
     /// What has passed and was not played yet is not made up for.

@@ -181,9 +181,10 @@ async function main() {
   const flush = () => document.visibilityState === "hidden" && running?.flush();
   document.addEventListener("visibilitychange", flush);
   addEventListener("pagehide", () => running?.flush());
-  if (navigator.serviceWorker) {
-    navigator.serviceWorker.register(PARTS.worker).catch((error) => console.warn(String(error)));
-  }
+  // The first seconds belong to the game.
+  setTimeout(() => {
+    navigator.serviceWorker?.register(new URL(PARTS.worker, import.meta.url)).catch((error) => console.warn(String(error)));
+  }, 3000);
 }
 
 main();

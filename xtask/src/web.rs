@@ -22,8 +22,13 @@ pub enum Web {
     Test,
 }
 
-/// The browsers that play it: Debian's packages, and their programs.
-const BROWSERS: [(&str, &str); 2] = [("chromium", "chromium"), ("firefox-esr", "firefox-esr")];
+/// What plays it: programs, and the packages of Debian that have them.
+const BROWSERS: [(&str, &str); 4] = [
+    ("chromium", "chromium"),
+    ("firefox-esr", "firefox-esr"),
+    ("xvfb", "xvfb-run"),
+    ("xauth", "xauth"),
+];
 
 /// Builds the game for a browser, and serves or tests it.
 pub fn run(web: Web, if_missing: IfMissing) -> Result<(), Failure> {
@@ -35,11 +40,13 @@ pub fn run(web: Web, if_missing: IfMissing) -> Result<(), Failure> {
     match web {
         Web::Build => Ok(()),
         Web::Serve => node("serve.mjs", &[&site], "the server ended"),
-        Web::Test => node(
-            "test/all.mjs",
-            &[&site],
-            "a browser did not play as it must, see above",
-        ),
+        Web::Test => {
+            // Firefox draws in software only where there is a display.
+            let mut play = Command::new("xvfb-run");
+            play.args(["--auto-servernum", "node", "xtask/web/test/all.mjs"])
+                .arg(&site);
+            execute(&mut play, "a browser did not play as it must, see above")
+        }
     }
 }
 
@@ -90,34 +97,22 @@ fn build(if_missing: IfMissing) -> Result<(), Failure> {
     )?;
     let sound = modules.join("web/tamaire_worklet.wasm");
     let licences = folder().join("licences.txt");
-    fs::copy(sound, stage.join("sound.wasm"))
-        .and_then(|_| fs::write(&licences, licence_texts()?))
-        .map_err(|error| Failure {
-            message: format!("{}: {error}", folder().display()),
-            code: FAILED,
-        })?;
+    fs::copy(sound, stage.join("sound.wasm")).map_err(|error| Failure {
+        message: format!("{}: {error}", folder().display()),
+        code: FAILED,
+    })?;
     provide_node_modules()?;
+    node(
+        "licences.mjs",
+        &[&licences],
+        "the licences could not be gathered",
+    )?;
     let (page, site) = (root().join("game/web"), folder().join("site"));
     node(
         "pack.mjs",
         &[&stage, &page, &licences, &site],
         "the folder could not be packed",
     )
-}
-
-/// The texts that must come along with what is inside.
-fn licence_texts() -> std::io::Result<String> {
-    let read = |name: &str| fs::read_to_string(root().join(name));
-    let parts = [
-        "LICENSE-MIT",
-        "LICENSE-APACHE",
-        "THIRD-PARTY.md",
-        "game/fonts/OFL.txt",
-    ];
-    let texts = parts
-        .iter()
-        .map(|name| Ok(format!("==== {name} ====\n\n{}\n", read(name)?)));
-    texts.collect()
 }
 
 /// wasm-bindgen's program, of the version that the game is compiled with.

@@ -43,6 +43,7 @@ impl Game {
         if self.screen() == Screen::Replays {
             self.shelf.look_into_one(&self.files, &self.levels);
         }
+        self.tell_if_slow();
         self.celebrate(seconds);
         self.learn(seconds);
         self.drive_forces(seconds);
@@ -136,6 +137,18 @@ impl Game {
         }
     }
 
+    /// After two seconds of a round it is known whether this machine can bear it; if not that is told, once.
+    fn tell_if_slow(&mut self) {
+        const LEAST_TICKS: u64 = 120;
+        const LEAST: f64 = 0.8;
+        let share = self.bout.session.bearable();
+        let is_known = self.bout.round().ticks() >= LEAST_TICKS;
+        if share < LEAST && is_known && self.screen() == Screen::Play && !self.bout.is_known_slow {
+            self.bout.is_known_slow = true;
+            self.notify((self.words().slow)(share));
+        }
+    }
+
     /// Notes a win once, lets the body beam for a moment, then shows the result.
     fn celebrate(&mut self, seconds: f32) {
         let Some(outcome) = self.bout.round().progress().outcome else {
@@ -198,6 +211,17 @@ mod tests {
         let mut slow = game(0.04);
         for _ in 0..5 {
             assert_eq!(ticks_in(&mut slow, 0.05), 1);
+        }
+    }
+
+    #[test]
+    fn a_machine_that_cannot_bear_a_level_is_told_of_once() {
+        for (tick, expect) in [(0.001, 0), (0.015, 0), (0.03, 1)] {
+            let mut game = game(tick);
+            (0..400).for_each(|_| game.pass(0.02));
+            let said = (game.words().slow)(game.bout.session.bearable());
+            let count = game.notices.iter().filter(|notice| notice.text == said);
+            assert_eq!(count.count(), expect, "{tick} s a tick");
         }
     }
 

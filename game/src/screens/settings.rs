@@ -99,15 +99,13 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 }
             });
             section(ui, &theme, said.look_section, |ui| {
-                if !cfg!(target_family = "wasm") {
-                    choice(
-                        ui,
-                        &theme,
-                        said.full_screen,
-                        &mut chosen.full_screen,
-                        &options,
-                    );
-                }
+                choice(
+                    ui,
+                    &theme,
+                    said.full_screen,
+                    &mut chosen.full_screen,
+                    &options,
+                );
                 choice(
                     ui,
                     &theme,
@@ -133,6 +131,12 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 );
             });
             controls(ui, game, &mut chosen);
+            if cfg!(target_family = "wasm")
+                && button(ui, &theme, said.licences, vec2(240.0, 48.0), Weight::Other).clicked()
+            {
+                let address = "licences.txt".to_string();
+                ui.ctx().open_url(egui::OpenUrl::new_tab(address));
+            }
             ui.add_space(8.0);
             if button(ui, &theme, said.reset, vec2(240.0, 48.0), Weight::Other).clicked() {
                 let usual = Settings::default();

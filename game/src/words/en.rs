@@ -58,6 +58,13 @@ pub(super) const WORDS: Words = Words {
     surely: "Really?",
     take_out: "Take out",
     saved: "Saved",
+    slow: |share| {
+        format!(
+            "This level is much for this device: it goes at {:.0} % of its speed.",
+            100.0 * share
+        )
+    },
+    licences: "Licences",
     link: "Copy link",
     link_to_level: "Link to this level",
     link_copied: "The link is copied: paste it wherever you like.",

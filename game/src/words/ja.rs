@@ -60,6 +60,13 @@ pub(super) const WORDS: Words = Words {
     surely: "ほんとに？",
     take_out: "はずす",
     saved: "のこしました",
+    slow: |share| {
+        format!(
+            "この きかいには重いステージです。{:.0} %の はやさで うごきます。",
+            100.0 * share
+        )
+    },
+    licences: "ライセンス",
     link: "リンクをコピー",
     link_to_level: "このステージのリンク",
     link_copied: "リンクをコピーしました。どこにでも はりつけられます。",

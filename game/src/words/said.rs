@@ -31,6 +31,8 @@ pub struct Words {
     pub surely: &'static str,
     pub take_out: &'static str,
     pub saved: &'static str,
+    pub slow: fn(f64) -> String,
+    pub licences: &'static str,
     pub link: &'static str,
     pub link_to_level: &'static str,
     pub link_copied: &'static str,

@@ -125,6 +125,7 @@ export async function links(browser, site) {
   await visit.press("Escape");
   await visit.click("Link to this level");
   await visit.hears("The link is copied");
+  await visit.page.waitForFunction(() => globalThis.copied);
   const level = await visit.page.evaluate(() => globalThis.copied);
   assert.match(level, /^http:\/\/localhost:\d+\/#l1/);
   await visit.click("Save replay");

@@ -4,7 +4,7 @@ import { existsSync } from "node:fs";
 import puppeteer from "puppeteer-core";
 
 /** How long anything may take on a busy machine [ms]. It is no limit that is tested. */
-const PATIENCE = 120_000;
+const PATIENCE = 90_000;
 
 const CHROMIUM = [
   "--no-sandbox",
@@ -26,7 +26,8 @@ export function launch(kind, language = "en-US") {
   return puppeteer.launch({
     ...options,
     args: [...(options.args ?? []), ...(kind === "chromium" ? [`--lang=${language}`, `--accept-lang=${language}`] : [])],
-    extraPrefsFirefox: { "intl.accept_languages": language },
+    // Firefox takes no GPU in software unasked.
+    extraPrefsFirefox: { "intl.accept_languages": language, "webgl.force-enabled": true },
     env: { ...process.env, LANGUAGE: language },
     executablePath: find(executablePath),
     protocolTimeout: PATIENCE,
@@ -120,9 +121,16 @@ export class Visit {
 
   /** Where something stands that can be pressed. @param {string} name */
   async place(name) {
-    const is = (/** @type {any} */ label) => label.name === name;
-    const report = await this.until((report) => report?.labels.some(is), `something named “${name}”`);
-    return report.labels.find(is);
+    const find = (/** @type {any} */ report) => report?.labels.find((label) => label.name === name);
+    let before;
+    // Where it stays: what comes up moves at first.
+    const report = await this.until((report) => {
+      const now = find(report);
+      const stays = now && before && now.x === before.x && now.y === before.y;
+      before = now;
+      return stays;
+    }, `something named “${name}”`);
+    return find(report);
   }
 
   /** @param {string} name */
