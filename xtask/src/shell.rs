@@ -64,6 +64,12 @@ pub fn output_of(program: &str, arguments: &[&str]) -> Option<String> {
     output.status.success().then_some(text)
 }
 
+/// Whether there is such a program, for those that do not answer.
+pub fn is_on_path(program: &str) -> bool {
+    let path = env::var_os("PATH").unwrap_or_default();
+    env::split_paths(&path).any(|folder| folder.join(program).is_file())
+}
+
 /// Whether the program runs at all.
 pub fn answers(program: &str) -> bool {
     Command::new(program)

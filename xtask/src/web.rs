@@ -5,7 +5,7 @@
 //! was compiled with, so it is built here too.
 
 use crate::packages::{IfMissing, Lack, apt_get, install_arguments, list_lacks};
-use crate::shell::{CANNOT, FAILED, Failure, answers, cargo, execute, output_of, root, target};
+use crate::shell::{CANNOT, FAILED, Failure, cargo, execute, is_on_path, output_of, root, target};
 use crate::wasm::{self, TARGET, cargo_for_wasm};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -175,7 +175,7 @@ fn node(script: &str, words: &[&Path], hint: &str) -> Result<(), Failure> {
 
 fn provide_browsers(if_missing: IfMissing) -> Result<(), Failure> {
     let lacks = || -> Vec<Lack> {
-        let missing = BROWSERS.iter().filter(|(_, program)| !answers(program));
+        let missing = BROWSERS.iter().filter(|(_, program)| !is_on_path(program));
         missing
             .map(|(package, program)| {
                 Lack::new(format!("there is no {program} on the path"), *package)

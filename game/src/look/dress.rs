@@ -28,7 +28,11 @@ pub fn dress(context: &Context) {
     context.set_fonts(fonts);
     context.set_theme(egui::Theme::Light);
     // The text size is a setting.
-    context.options_mut(|options| options.zoom_with_keyboard = false);
+    context.options_mut(|options| {
+        options.zoom_with_keyboard = false;
+        // Who presses a button for long means it too, and so does one whose machine is slow.
+        options.input_options.max_click_duration = f64::INFINITY;
+    });
     context.all_styles_mut(|style| {
         style.interaction.selectable_labels = false;
         style.spacing.item_spacing = vec2(10.0, 6.0);

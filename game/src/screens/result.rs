@@ -147,12 +147,12 @@ fn buttons(ui: &mut Ui, theme: &Theme, said: &Words) -> Option<Act> {
     }
     let rows: [&[(&str, Act)]; 3] = [
         &[(said.next, next), (said.race, race)],
+        &[(said.save, Game::keep_replay), (said.link, Game::copy_link)],
         &[
-            (said.save, Game::keep_replay),
             (said.photo, Game::keep_photo),
             (said.clip, Game::keep_clip),
+            (said.levels, to_levels),
         ],
-        &[(said.link, Game::copy_link), (said.levels, to_levels)],
     ];
     for row in rows {
         ui.add_space(GAP + 2.0);

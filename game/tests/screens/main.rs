@@ -8,6 +8,7 @@ mod hostile;
 mod kept;
 mod models;
 mod own;
+mod links;
 mod pads;
 mod pictures;
 mod shelf;

@@ -117,6 +117,8 @@ fn a_pad_alone_goes_everywhere() {
     table.tap(Down);
     assert!(table.has_focus("Save replay"));
     table.tap(Down);
+    assert!(table.has_focus("Link to this level"));
+    table.tap(Down);
     table.tap(South);
     assert!(matches!(table.screen(), Screen::Settings));
     assert!(table.has_focus("Back"));

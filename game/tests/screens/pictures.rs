@@ -82,6 +82,23 @@ fn every_screen() {
     own_level(&mut window);
 }
 
+#[test]
+fn on_a_telephone_that_is_held_upright() {
+    let mut window = open(Files::nowhere(), vec2(390.0, 844.0), 1.0);
+    drive(game(&mut window), BotKind::Idle, |game| game.time < 2.0);
+    pictures(&mut window, "upright_title");
+    game(&mut window).go(Screen::Settings);
+    pictures(&mut window, "upright_settings");
+    game(&mut window).start(0);
+    window.hover_at(pos2(10.0, 10.0));
+    win(&mut window);
+    pictures(&mut window, "upright_result");
+    let link = game(&mut window).bout.round().replay().link();
+    game(&mut window).open_link(&link.expect("a bot's round is short"));
+    frames(&mut window, 3);
+    pictures(&mut window, "upright_offered");
+}
+
 /// One that was dropped stands at the end of the list.
 fn own_level(window: &mut Window) {
     let cat = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/tamaire_play/levels/cat.png");

@@ -155,7 +155,10 @@ export class Visit {
 
   /** A place of the world on the page [m]. @param {number} x @param {number} y */
   async at(x, y) {
-    const { places: [, origin, right] } = await this.report();
+    const { places: [, origin, right] } = await this.until(
+      (report) => report?.places.flat().every(Number.isFinite),
+      "a world that is seen",
+    );
     const metre = right[0] - origin[0];
     return [origin[0] + metre * x, origin[1] - metre * y];
   }
