@@ -25,6 +25,8 @@ pub enum Purpose {
     Drawing,
     /// To compile the fuzzer.
     Fuzzing,
+    /// To play the game in browsers.
+    Browsing,
 }
 
 /// How to see that a package is there.
@@ -64,7 +66,7 @@ const fn package(
 /// this program would not have been linked.
 #[rustfmt::skip]
 const PACKAGES: &[Package] = {
-    use Purpose::{Build, Drawing, Fuzzing, Window};
+    use Purpose::{Browsing, Build, Drawing, Fuzzing, Window};
     use Seen::{Installed, Program};
     &[
         package("cmake", Program("cmake"), &[Build], "configures SDL, which reads sticks and pads"),
@@ -72,6 +74,12 @@ const PACKAGES: &[Package] = {
         package("pkg-config", Program("pkg-config"), &[Build], "finds ALSA"),
         package("libasound2-dev", Installed, &[Build], "ALSA, for sound"),
         package("g++", Program("g++"), &[Fuzzing], "compiles libFuzzer"),
+        package("chromium", Program("chromium"), &[Browsing], "plays the game"),
+        package("firefox-esr", Program("firefox-esr"), &[Browsing], "plays it too"),
+        package("xvfb", Installed, &[Browsing], "a display, without which Firefox draws in no software"),
+        package("xauth", Installed, &[Browsing], "opens that display"),
+        package("libegl1", Installed, &[Browsing], "what Firefox draws with"),
+        package("libgl1-mesa-dri", Installed, &[Browsing], "OpenGL, without a GPU too"),
         package("libx11-6", Installed, &[Window], "X11 windows"),
         package("libx11-xcb1", Installed, &[Window], "X11 windows"),
         package("libxcursor1", Installed, &[Window], "the mouse pointer in X11 windows"),

@@ -4,7 +4,7 @@
 //! (`game/web`), and `xtask/web/pack.mjs` the folder. wasm-bindgen's program has to be of the very version that the game
 //! was compiled with, so it is built here too.
 
-use crate::packages::{IfMissing, Lack, apt_get, install_arguments, list_lacks};
+use crate::packages::{self, IfMissing, Purpose};
 use crate::shell::{CANNOT, FAILED, Failure, cargo, execute, is_on_path, output_of, root, target};
 use crate::wasm::{self, TARGET, cargo_for_wasm};
 use std::fs;
@@ -21,14 +21,6 @@ pub enum Web {
     /// And play it in browsers.
     Test,
 }
-
-/// What plays it: programs, and the packages of Debian that have them.
-const BROWSERS: [(&str, &str); 4] = [
-    ("chromium", "chromium"),
-    ("firefox-esr", "firefox-esr"),
-    ("xvfb", "xvfb-run"),
-    ("xauth", "xauth"),
-];
 
 /// Builds the game for a browser, and serves or tests it.
 pub fn run(web: Web, if_missing: IfMissing) -> Result<(), Failure> {
@@ -173,36 +165,24 @@ fn node(script: &str, words: &[&Path], hint: &str) -> Result<(), Failure> {
     execute(Command::new("node").arg(script).args(words), hint)
 }
 
+/// Sees to it that there is what plays the game, as far as that goes.
 fn provide_browsers(if_missing: IfMissing) -> Result<(), Failure> {
-    let lacks = || -> Vec<Lack> {
-        let missing = BROWSERS.iter().filter(|(_, program)| !is_on_path(program));
-        missing
-            .map(|(package, program)| {
-                Lack::new(format!("there is no {program} on the path"), *package)
-            })
-            .collect()
-    };
-    let missing = lacks();
-    if missing.is_empty() {
-        return Ok(());
+    packages::provide(&[Purpose::Browsing], if_missing);
+    let programs = ["chromium", "firefox-esr", "xvfb-run"];
+    let missing: Vec<&str> = programs
+        .into_iter()
+        .filter(|program| !is_on_path(program))
+        .collect();
+    match missing[..] {
+        [] => Ok(()),
+        _ => Err(Failure {
+            message: format!(
+                "the game was NOT played in browsers: no {} on the path",
+                missing.join(", ")
+            ),
+            code: CANNOT,
+        }),
     }
-    if if_missing == IfMissing::Install {
-        apt_get(&["update", "--quiet"]);
-        apt_get(&install_arguments(
-            missing.iter().map(|lack| lack.package.as_str()),
-        ));
-    }
-    let missing = lacks();
-    if missing.is_empty() {
-        return Ok(());
-    }
-    Err(Failure {
-        message: format!(
-            "the game was NOT played in browsers:\n{}",
-            list_lacks(&missing)
-        ),
-        code: CANNOT,
-    })
 }
 
 #[cfg(test)]

@@ -9,7 +9,18 @@ use egui::{Response, Ui};
 pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     let screen = ui.max_rect();
     let level = game.bout.round().level().clone();
-    let view = game.bout.camera.view(screen, &level);
+    let mut view = game.bout.camera.view(screen, &level);
+    // In a window that is held upright the result lies below, and the plane makes room for it.
+    let is_below = game.screen() == Screen::Result && screen.width() < screen.height();
+    let duration = if game.settings.reduced_motion {
+        0.0
+    } else {
+        0.3
+    };
+    let share = ui
+        .ctx()
+        .animate_bool_with_time(ui.id().with("room below"), is_below, duration);
+    view.centre[1] -= 0.1 * share * view.height();
     game.bout.view = Some(view);
     let theme = game.theme();
     // The first level shows the way until it has been won once.

@@ -36,9 +36,9 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 let best = format!("★ {}", said.new_best);
                 line(ui, &best, 21.0, theme.good);
             }
-            ui.add_space(14.0);
+            ui.add_space(8.0);
             numbers(ui, &theme, said, &outcome);
-            ui.add_space(12.0);
+            ui.add_space(8.0);
             match help_of(&level, said) {
                 None => wishes(ui, &theme, said, &outcome, &level.game().wish),
                 Some(help) => {
@@ -46,7 +46,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                     ui.add_space(GAP);
                 }
             }
-            ui.add_space(14.0);
+            ui.add_space(8.0);
             if level.routes().contains(&other(outcome.route)) {
                 line(ui, (said.other_way)(outcome.route), 23.0, theme.accent);
                 ui.add_space(GAP);

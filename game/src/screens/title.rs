@@ -62,7 +62,15 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
 /// In a corner, for whoever cannot read the rest.
 fn switch_language(game: &mut Game, ui: &mut Ui) {
     let size = vec2(128.0, 40.0);
-    let at = ui.max_rect().right_top() + vec2(-size.x - 72.0, 52.0);
+    let corner = ui.max_rect().right_top();
+    // Upright there is the title below.
+    let is_upright = ui.max_rect().width() < ui.max_rect().height();
+    let inwards = if is_upright {
+        vec2(-16.0, 14.0)
+    } else {
+        vec2(-72.0, 52.0)
+    };
+    let at = corner + inwards - vec2(size.x, 0.0);
     let rect = Rect::from_min_size(at, size);
     let theme = game.theme();
     let spoken = game.settings.language;

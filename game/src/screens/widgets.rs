@@ -19,6 +19,9 @@ pub const PAPER: Color32 = Color32::from_rgb(255, 248, 238);
 /// What goes on above or below fades over so many points.
 const FADE: f32 = 56.0;
 
+/// In a row of so many points there is room for a name and what it is side by side.
+const LEAST_ROW: f32 = 560.0;
+
 /// Height of the letters on a button, as a share of its own.
 const LETTERS: f32 = 0.42;
 
@@ -284,12 +287,22 @@ pub fn choice<T: Copy + PartialEq>(
 
 /// The name of something to the left, and what it is to the right.
 fn row<R>(ui: &mut Ui, theme: &Theme, name: &str, contents: impl FnOnce(&mut Ui) -> R) -> R {
-    ui.horizontal(|ui| {
-        let width = 0.4 * ui.available_width();
-        let (rect, _) = ui.allocate_exact_size(vec2(width, 44.0), Sense::hover());
+    let all = ui.available_width();
+    // Where there is little room it stands above.
+    let is_above = all < LEAST_ROW;
+    let width = if is_above { all } else { 0.4 * all };
+    let head = |ui: &mut Ui, height: f32| {
+        let (rect, _) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
         let galley = fitted(ui.painter(), name, 21.0, width - 8.0, theme.ink);
         let at = rect.left_center() - vec2(0.0, 0.5 * galley.size().y);
         ui.painter().galley(at, galley, theme.ink);
+    };
+    if is_above {
+        head(ui, 30.0);
+        return ui.horizontal_wrapped(contents).inner;
+    }
+    ui.horizontal(|ui| {
+        head(ui, 44.0);
         contents(ui)
     })
     .inner
@@ -425,7 +438,7 @@ pub fn column_beside<R>(
     }
     match is_above {
         true => part.max.y -= 0.6 * part.height(),
-        false => part.min.y += 0.58 * part.height(),
+        false => part.min.y += 0.53 * part.height(),
     }
     let part = egui::UiBuilder::new().max_rect(part);
     ui.scope_builder(part, |ui| column(ui, width, 0.5, contents))

@@ -169,7 +169,12 @@ fn a_round_waits_while_the_window_is_not_looked_at() {
 
 #[test]
 fn every_button_fits_into_the_smallest_window_with_the_largest_letters() {
-    let sizes = [[900.0, 640.0], [640.0, 400.0], [390.0, 844.0], [844.0, 390.0]];
+    let sizes = [
+        [900.0, 640.0],
+        [640.0, 400.0],
+        [390.0, 844.0],
+        [844.0, 390.0],
+    ];
     for size in sizes.map(egui::Vec2::from) {
         let mut window = open(Files::nowhere(), size, 0.5);
         game(&mut window).settings.text_size = 1.6;

@@ -71,7 +71,13 @@ fn what_is_no_link_is_told_in_each_language() {
     for (language, _) in Language::ALL {
         let mut window = window(Files::nowhere());
         game(&mut window).settings.language = language;
-        for text in ["hello", "#r1AAAA", "#r9AAAAz", "#l1zzzz", "https://example.org/#"] {
+        for text in [
+            "hello",
+            "#r1AAAA",
+            "#r9AAAAz",
+            "#l1zzzz",
+            "https://example.org/#",
+        ] {
             game(&mut window).notices.clear();
             paste(&mut window, text);
             assert_eq!(screen(&window), Screen::Title);

@@ -95,7 +95,8 @@ fn on_a_telephone_that_is_held_upright() {
     pictures(&mut window, "upright_result");
     let link = game(&mut window).bout.round().replay().link();
     game(&mut window).open_link(&link.expect("a bot's round is short"));
-    frames(&mut window, 3);
+    // The map of each level takes a frame.
+    frames(&mut window, 20);
     pictures(&mut window, "upright_offered");
 }
 
