@@ -90,6 +90,7 @@ impl Running {
                 .iter()
                 .map(|notice| notice.text.clone())
                 .collect(),
+            memory: (core::arch::wasm32::memory_size(0) << 16) as u32,
             hand: hand.into(),
             origin: origin.into(),
             right: right.into(),
@@ -131,6 +132,8 @@ pub struct Report {
     pub labels: Vec<String>,
     /// What the player is being told.
     pub notices: Vec<String>,
+    /// How much memory the game has taken [bytes].
+    pub memory: u32,
     /// Where the first hand is.
     pub hand: Vec<f32>,
     /// Where the middle of the world is.

@@ -15,7 +15,9 @@ const here = import.meta.dirname;
 const FEATURES = ["simd", "bulk-memory", "sign-ext", "mutable-globals", "nontrapping-float-to-int", "reference-types", "multivalue"];
 
 /** Files of the page that keep their names, because others know them by these. */
-const NAMED = ["index.html", "sw.js", "manifest.webmanifest", "icon.svg", "icon-192.png", "icon-512.png", "preview.png"];
+const NAMED = ["index.html", "sw.js", "manifest.webmanifest", "icon.svg", "icon-192.png", "icon-512.png"];
+/** What others show of the page. */
+const PREVIEW = join(here, "../../docs/game-squeezed.png");
 
 function optimised(/** @type {string} */ name) {
   const file = join(stage, `${name}.opt.wasm`);
@@ -61,15 +63,16 @@ for (const name of NAMED) {
   cpSync(join(page, name), join(out, name));
 }
 cpSync(licences, join(out, "licences.txt"));
+cpSync(PREVIEW, join(out, "preview.png"));
 const change = (/** @type {string} */ name, /** @type {(text: string) => string} */ how) =>
   writeFileSync(join(out, name), how(readFileSync(join(out, name), "utf8")));
 change("index.html", (text) => text.replaceAll(/"(page\.(?:css|js))"/g, `"${version}/$1"`));
-const kept = ["./", ...NAMED.filter((name) => name !== "sw.js" && name !== "index.html" && name !== "preview.png")];
+const kept = ["./", ...NAMED.filter((name) => name !== "sw.js" && name !== "index.html")];
 kept.push("licences.txt", ...[...files.keys()].map((name) => `${version}/${name}`));
 change("sw.js", (text) => text.replace("@VERSION@", version).replace('"@FILES@"', kept.map((name) => JSON.stringify(name)).join(", ")));
 
 console.log(`${out}: version ${version}`);
-const all = [...NAMED, "licences.txt", ...[...files.keys()].map((name) => `${version}/${name}`)];
+const all = [...NAMED, "licences.txt", "preview.png", ...[...files.keys()].map((name) => `${version}/${name}`)];
 const rows = all.map((name) => {
   const bytes = readFileSync(join(out, name));
   const small = brotli(bytes);

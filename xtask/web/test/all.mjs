@@ -10,7 +10,7 @@ const site = await serve(folder);
 
 /** Each with a browser of its own, which knows nothing yet. @type {[string, "chromium" | "firefox", (browser: any) => Promise<void>][]} */
 const TESTS = [
-  ...["first", "play", "touch", "offline", "forbidden", "full", "links", "drops", "lost", "pictures"].map((name) => [
+  ...["first", "play", "touch", "offline", "forbidden", "full", "links", "drops", "lost", "pictures", "pad", "tabs"].map((name) => [
     name,
     "chromium",
     (browser) => game[name](browser, site),

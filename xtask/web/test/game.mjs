@@ -235,3 +235,68 @@ export async function pictures(browser, site) {
   visit.isQuiet(/blob:/);
   await visit.page.close();
 }
+
+/** A pad presses, moves and rumbles. @param {Browser} browser @param {Site} site */
+export async function pad(browser, site) {
+  const before = () => {
+    globalThis.effects = [];
+    const buttons = Array.from({ length: 17 }, () => ({ pressed: false, value: 0 }));
+    const vibrationActuator = {
+      playEffect: async (kind, { strongMagnitude, weakMagnitude }) => {
+        globalThis.effects.push([kind, strongMagnitude, weakMagnitude]);
+        return "complete";
+      },
+      reset: async () => "complete",
+    };
+    const id = "Pad (STANDARD GAMEPAD Vendor: 045e Product: 02ea)";
+    globalThis.pad = { id, index: 0, connected: true, mapping: "standard", axes: [0, 0, 0, 0], buttons, vibrationActuator };
+    navigator.getGamepads = () => [null, globalThis.pad];
+  };
+  const visit = await Visit.begin(browser, site.address, { before });
+  const press = async (/** @type {number} */ button) => {
+    for (const pressed of [true, false]) {
+      await visit.page.evaluate((button, pressed) => void (globalThis.pad.buttons[button] = { pressed, value: +pressed }), button, pressed);
+      await seconds(0.5);
+    }
+  };
+  await press(0);
+  await visit.sees("Levels");
+  await press(0);
+  await visit.sees("Play");
+  await visit.page.evaluate(() => void (globalThis.pad.axes = [0.5, 0, 0, 0]));
+  await visit.page.waitForFunction(() => globalThis.effects.some(([, strong, weak]) => strong + weak > 0.01), { timeout: 90_000 });
+  const effects = await visit.page.evaluate(() => globalThis.effects);
+  assert(effects.every(([kind, ...both]) => kind === "dual-rumble" && both.every((one) => one >= 0 && one <= 1)), JSON.stringify(effects));
+  await press(9);
+  await visit.sees("Paused");
+  // Pulled out, it is silent and not missed.
+  await visit.page.evaluate(() => void (globalThis.pad.connected = false));
+  await seconds(1);
+  visit.isQuiet();
+  await visit.page.close();
+}
+
+/** What one tab keeps the other finds. @param {Browser} browser @param {Site} site */
+export async function tabs(browser, site) {
+  const one = await Visit.begin(browser, site.address);
+  const other = await Visit.begin(browser, site.address);
+  await one.page.bringToFront();
+  await start(one, "click");
+  await one.press("Escape");
+  await one.click("Save replay");
+  await one.hears("Saved");
+  await other.page.bringToFront();
+  await other.click("Replays");
+  await other.place("Watch");
+  await other.click("Delete");
+  await other.click("Really?");
+  await one.page.bringToFront();
+  await one.click("Levels");
+  await one.click("Back");
+  await one.click("Replays");
+  await one.until((report) => report.screen === "Replays" && !report.labels.some(({ name }) => name === "Watch"), "an empty list");
+  one.isQuiet();
+  other.isQuiet();
+  await one.page.close();
+  await other.page.close();
+}

@@ -90,10 +90,10 @@ export class Visit {
         const [x, y, ...name] = label.split(" ");
         return { x: Number(x), y: Number(y), name: name.join(" ") };
       });
-      const { screen, level, language, ticks, is_won, won, notices } = report;
+      const { screen, level, language, ticks, is_won, won, notices, memory } = report;
       const places = [report.hand, report.origin, report.right].map((place) => [...place]);
       report.free();
-      return { screen, level, language, ticks, is_won, won, notices, labels, places };
+      return { screen, level, language, ticks, is_won, won, notices, memory, labels, places };
     });
   }
 
