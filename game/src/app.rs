@@ -9,7 +9,7 @@ mod switch;
 use crate::game::{Game, Screen};
 use crate::input::{Action, Means, Seat};
 use crate::look::{Stage, dress};
-use crate::platform::{GpuWatch, dropped, fill_screen, speak};
+use crate::platform::{GpuWatch, begin_anew, dropped, fill_screen, is_full_by_itself, speak};
 use crate::screens;
 use dwell::Dwell;
 use egui::{Event, Key};
@@ -51,9 +51,10 @@ pub struct App {
     dwell: Dwell,
     switch: Switch,
     screen_before: Screen,
-    /// Whether the window ever had the focus, and whether it was asked to fill the screen.
+    /// Whether the window ever had the focus, whether it was asked to fill the screen, and whether a page did.
     had_focus: bool,
     is_full: bool,
+    was_full: bool,
     /// How large points are, as compared with those of the system.
     pub zoom: f32,
 }
@@ -92,6 +93,7 @@ impl App {
             screen_before,
             had_focus: false,
             is_full: false,
+            was_full: false,
             zoom: 1.0,
         })
     }
@@ -185,6 +187,11 @@ impl App {
 
     /// Makes the window as large as was chosen.
     fn fill_screen(&mut self, ctx: &egui::Context) {
+        if let Some(is_full) = is_full_by_itself().filter(|is_full| *is_full != self.was_full) {
+            // By a key or a gesture of the browser.
+            (self.was_full, self.is_full) = (is_full, is_full);
+            self.game.settings.full_screen = is_full;
+        }
         let wanted = self.game.settings.full_screen;
         if wanted != self.is_full {
             self.is_full = wanted;
@@ -306,7 +313,8 @@ impl App {
             if is_playing && game.settings.toggle_keys {
                 game.controls.latch.press(key, &game.settings.bindings);
             }
-            if key == Key::F11 && action.is_none() {
+            // A browser has this key for itself.
+            if key == Key::F11 && action.is_none() && !cfg!(target_family = "wasm") {
                 game.settings.full_screen ^= true;
                 game.keep_settings();
             }
@@ -335,9 +343,6 @@ impl App {
         for link in pasted {
             game.open_link(link);
         }
-        if let Some(copied) = game.copied.take() {
-            ctx.copy_text(copied);
-        }
     }
 }
 
@@ -346,13 +351,14 @@ impl eframe::App for App {
         let ctx = ui.ctx().clone();
         if self.gpu.is_lost() {
             self.game.rescue();
+            begin_anew();
             return ctx.send_viewport_cmd(egui::ViewportCommand::Close);
         }
         self.fill_screen(&ctx);
         speak(
             &ctx,
             self.game.settings.language,
-            self.game.is_own(self.game.levels.len() - 1),
+            self.game.has_strange_names(),
         );
         fit(&ctx, self.game.settings.text_size);
         self.zoom = ctx.zoom_factor();
@@ -373,6 +379,10 @@ impl eframe::App for App {
             });
         }
         screens::show(&mut self.game, &mut self.stage, ui);
+        // Some browsers take it only in the frame of the press.
+        if let Some(copied) = self.game.copied.take() {
+            ctx.copy_text(copied);
+        }
         self.press_by_resting(&ctx, seconds);
         // What stands in these is of many widths.
         let is_list = matches!(

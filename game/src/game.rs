@@ -369,6 +369,11 @@ impl Game {
             .position(|known| level.is_version_of(known))
     }
 
+    /// Whether there are names that somebody gave, in whatever letters.
+    pub fn has_strange_names(&self) -> bool {
+        self.offered.is_some() || self.is_own(self.levels.len() - 1)
+    }
+
     /// Whether a level does not come along.
     pub fn is_own(&self, index: usize) -> bool {
         index >= NAMED.len() + NAMED_3D.len()

@@ -20,13 +20,12 @@ export class Host {
   #changes = [];
   /** @type {string | undefined} */
   #failure;
-  /** Whether it was told that something is not kept, and nothing was kept since. */
-  #isFailing = false;
+  /** Called when the game cannot go on drawing. @type {() => void} */
+  onLost = () => {};
   /** @type {GivenFile[][]} */
   #dropped = [];
   /** @type {GivenFile[][]} */
   #picked = [];
-  #isPicking = false;
   /** @type {string | undefined} */
   #link;
   /** @type {Speaker | undefined} */
@@ -63,17 +62,20 @@ export class Host {
   // ---- what is kept ----
 
   async #openStore() {
+    // What another tab changes meanwhile comes after what is read.
+    if (!this.#others && "BroadcastChannel" in globalThis) {
+      this.#others = new BroadcastChannel("tamaire");
+      this.#others.onmessage = ({ data }) => this.#changes.push(data);
+    }
     const asked = indexedDB.open("tamaire", 1);
     asked.onupgradeneeded = () => asked.result.createObjectStore(STORE);
     const database = await answer(asked);
     // Another tab with a newer version wants to change how things are kept.
     database.onversionchange = () => database.close();
+    // Browsers close it in the background, too.
+    database.onclose = () => (this.#database = undefined);
     this.#database = database;
     await this.#readStore();
-    if ("BroadcastChannel" in globalThis) {
-      this.#others = new BroadcastChannel("tamaire");
-      this.#others.onmessage = ({ data }) => this.#changes.push(data);
-    }
     // What a browser keeps for pages that are visited often it does not throw away when its disk is full.
     navigator.storage?.persist?.().catch(() => {});
   }
@@ -82,14 +84,18 @@ export class Host {
     const store = this.#database?.transaction(STORE).objectStore(STORE);
     if (store) {
       const [keys, things] = await Promise.all([answer(store.getAllKeys()), answer(store.getAll())]);
-      this.#changes = keys.map((key, place) => ({ key: String(key), ...things[place] }));
+      this.#changes.unshift(...keys.map((key, place) => ({ key: String(key), ...things[place] })));
     }
   }
 
   /** For a game that begins anew: it knows nothing yet. */
   async again() {
     this.#wantsLetters = false;
-    await this.#readStore();
+    try {
+      await (this.#database ? this.#readStore() : this.#openStore());
+    } catch (error) {
+      this.#fail(error);
+    }
   }
 
   /** The next thing that was kept before, or in another tab. */
@@ -110,13 +116,13 @@ export class Host {
   }
 
   /** @param {Changed} changed @param {(store: IDBObjectStore) => IDBRequest} change */
-  #write(changed, change) {
+  async #write(changed, change) {
     try {
+      if (!this.#database) {
+        await this.#openStore();
+      }
       const transaction = /** @type {IDBDatabase} */ (this.#database).transaction(STORE, "readwrite");
-      transaction.oncomplete = () => {
-        this.#isFailing = false;
-        this.#others?.postMessage(changed);
-      };
+      transaction.oncomplete = () => this.#others?.postMessage(changed);
       transaction.onabort = () => this.#fail(transaction.error);
       change(transaction.objectStore(STORE));
     } catch (error) {
@@ -126,10 +132,7 @@ export class Host {
 
   /** @param {unknown} error */
   #fail(error) {
-    if (!this.#isFailing) {
-      this.#isFailing = true;
-      this.#failure = String(error);
-    }
+    this.#failure = String(error);
   }
 
   /** Why something is not kept, once. */
@@ -154,20 +157,11 @@ export class Host {
 
   /** @param {string} endings */
   pick(endings) {
-    if (this.#isPicking) {
-      return;
-    }
-    this.#isPicking = true;
     const input = document.createElement("input");
     input.type = "file";
     input.accept = endings;
     input.multiple = true;
-    const end = async () => {
-      this.#picked.push(await read(input.files));
-      this.#isPicking = false;
-    };
-    input.addEventListener("change", end);
-    input.addEventListener("cancel", end);
+    input.addEventListener("change", async () => this.#picked.push(await read(input.files)));
     input.click();
   }
 
@@ -199,8 +193,6 @@ export class Host {
       const link = location.hash.slice(1);
       if (link) {
         this.#link = link;
-        // It is opened once, not again with each reload.
-        history.replaceState(null, "", location.pathname + location.search);
       }
     };
     take();
@@ -209,7 +201,11 @@ export class Host {
 
   takeLink() {
     const link = this.#link;
-    this.#link = undefined;
+    if (link) {
+      this.#link = undefined;
+      // It is opened once, not again with each reload.
+      history.replaceState(null, "", location.pathname + location.search);
+    }
     return link;
   }
 
@@ -226,9 +222,19 @@ export class Host {
 
   // ---- the screen ----
 
+  /** The game cannot go on drawing. */
+  lost() {
+    // Not in the middle of a frame.
+    setTimeout(() => this.onLost(), 0);
+  }
+
+  get isFull() {
+    return Boolean(document.fullscreenElement);
+  }
+
   /** Waits for the next frame; a page that is hidden has none. */
   breathe() {
-    return new Promise((resolve) => setTimeout(resolve, 0));
+    return new Promise((resolve) => (document.hidden ? setTimeout(resolve, 0) : requestAnimationFrame(resolve)));
   }
 
   /** Fetches the letters of Japanese, once. */

@@ -7,7 +7,7 @@ import { PARTS } from "./parts.js";
 const WORDS = {
   en: {
     loading: "Loading",
-    noWasm: "This browser is too old for the game: it lacks WebAssembly with SIMD. Chrome or Edge 91, Firefox 89, Safari 16.4 or newer have it.",
+    noWasm: "This browser is too old for the game: it lacks WebAssembly with SIMD. Chrome or Edge 97, Firefox 102, Safari 16.4 or newer have it.",
     noWebgl: "The game draws with WebGL 2, and this browser does not offer it. Turn on hardware acceleration in the browser's settings, or try another browser.",
     offline: "The game could not be loaded. Are you offline?",
     broken: "Something in the game broke down. What was won and kept is safe.",
@@ -17,7 +17,7 @@ const WORDS = {
   },
   ja: {
     loading: "よみこみ中",
-    noWasm: "このブラウザは古いため遊べません（WebAssembly SIMD が必要です）。Chrome・Edge 91、Firefox 89、Safari 16.4 以降で開いてください。",
+    noWasm: "このブラウザは古いため遊べません（WebAssembly SIMD が必要です）。Chrome・Edge 97、Firefox 102、Safari 16.4 以降で開いてください。",
     noWebgl: "このゲームは WebGL 2 で絵をかきますが、このブラウザでは使えません。設定でハードウェアアクセラレーションをオンにするか、ほかのブラウザで開いてください。",
     offline: "よみこめませんでした。インターネットにつながっていますか？",
     broken: "ゲームが止まってしまいました。記録はのこっています。",
@@ -35,7 +35,7 @@ const [front, bar, done, told, again] = ["front", "bar", "done", "told", "again"
 /** For how long a lost GPU is waited for [ms]. */
 const PATIENCE = 30_000;
 
-/** @type {{flush(): void, end(): void} | undefined} */
+/** @type {{flush(): void, end(): void, report(): any} | undefined} */
 let running;
 
 document.documentElement.lang = language;
@@ -53,7 +53,8 @@ function tell(text, { canTry = false } = {}) {
 /** The smallest module with a wide lane. */
 function hasLanes() {
   const module = [0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11];
-  return typeof WebAssembly === "object" && WebAssembly.validate(new Uint8Array(module));
+  const hasStreams = typeof TransformStream === "function";
+  return hasStreams && typeof WebAssembly === "object" && WebAssembly.validate(new Uint8Array(module));
 }
 
 function hasWebgl() {
@@ -87,61 +88,77 @@ function show(share) {
   told.textContent = `${said.loading} ${((share * PARTS.bytes) / 1e6).toFixed(1)} / ${(PARTS.bytes / 1e6).toFixed(1)} MB`;
 }
 
+const rest = (/** @type {number} */ milliseconds) => new Promise((resolve) => setTimeout(resolve, milliseconds));
+
 /** Begins on a canvas of its own. @param {Host} host @param {any} game */
 async function begin(host, game) {
   const canvas = document.createElement("canvas");
   document.body.append(canvas);
   // Browsers show their menu on a long press.
   canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-  canvas.addEventListener(
-    "webglcontextlost",
-    (event) => {
-      event.preventDefault();
-      tell(said.lost);
-      running?.end();
+  let isLost = false;
+  const lose = () => {
+    isLost = true;
+    // Who is just beginning sees it there.
+    if (running) {
+      running.end();
       running = undefined;
       canvas.remove();
-      beginAgain(host, game, performance.now());
-    },
-    { once: true },
-  );
+      beginAgain(host, game);
+    }
+  };
+  canvas.addEventListener("webglcontextlost", lose, { once: true });
+  // Something failed on it that the game cannot go on from.
+  host.onLost = lose;
+  let begun;
   try {
-    running = await game.Running.start(canvas, host);
+    begun = await game.Running.start(canvas, host);
+    if (isLost) {
+      begun.end();
+      throw new Error("the graphics were lost at once");
+    }
   } catch (error) {
     canvas.remove();
     throw error;
   }
+  running = begun;
   front.hidden = true;
   canvas.focus({ preventScroll: true });
 }
 
-/** Begins on a new canvas, once the browser has something to draw with. @param {Host} host @param {any} game @param {number} since */
-async function beginAgain(host, game, since) {
-  await new Promise((resolve) => setTimeout(resolve, 500));
-  try {
-    await host.again();
-    await begin(host, game);
-  } catch {
-    if (performance.now() - since < PATIENCE) {
-      beginAgain(host, game, since);
-    } else {
-      tell(said.gone, { canTry: true });
+/** Begins on a new canvas, once the browser has something to draw with. @param {Host} host @param {any} game */
+async function beginAgain(host, game) {
+  tell(said.lost);
+  for (const since = performance.now(); performance.now() - since < PATIENCE; ) {
+    await rest(500);
+    try {
+      await host.again();
+      return await begin(host, game);
+    } catch (error) {
+      console.info(String(error));
     }
   }
+  tell(said.gone, { canTry: true });
 }
 
 /** A newer version that waits takes over while nothing is played. Whether the page is loaded anew. */
 async function isRenewed() {
-  const registration = await navigator.serviceWorker?.getRegistration().catch(() => undefined);
-  if (!registration?.waiting) {
+  const workers = navigator.serviceWorker;
+  const registration = await workers?.getRegistration().catch(() => undefined);
+  if (!workers?.controller || !registration?.waiting) {
     return false;
   }
-  navigator.serviceWorker.addEventListener("controllerchange", () => location.reload());
+  const changed = new Promise((resolve) => workers.addEventListener("controllerchange", () => resolve(true)));
   registration.waiting.postMessage("take over");
-  return true;
+  // One that does not come is for the next time.
+  const isChanged = await Promise.race([changed, rest(2000).then(() => false)]);
+  if (isChanged) {
+    location.reload();
+  }
+  return isChanged;
 }
 
-/** How things stand, for whoever looks on. */
+/** How things stand, for whoever looks on; whoever takes a report frees it. */
 Object.defineProperty(globalThis, "tamaire", { value: { report: () => running?.report?.() } });
 
 async function main() {
@@ -164,7 +181,7 @@ async function main() {
     await game.default({ module_or_path: module });
   } catch (error) {
     console.error(error);
-    return tell(said.offline, { canTry: true });
+    return tell(navigator.onLine ? said.broken : said.offline, { canTry: true });
   }
   // A panic ends all: what was kept is kept.
   addEventListener("error", ({ error }) => {

@@ -24,7 +24,10 @@ export class Speaker {
 
   constructor() {
     if (this.#trouble) return;
-    this.#module = WebAssembly.compileStreaming(fetch(beside("sound.wasm")));
+    // Not every server knows what type it has.
+    this.#module = fetch(beside("sound.wasm"))
+      .then((response) => (response.ok ? response.arrayBuffer() : Promise.reject(new Error(`no synth (${response.status})`))))
+      .then((bytes) => WebAssembly.compile(bytes));
     this.#module.catch((error) => this.#fail(`sound.wasm: ${error.message}`));
     for (const gesture of GESTURES) {
       addEventListener(gesture, () => this.#wake(), { capture: true, passive: true });

@@ -7,7 +7,9 @@ const FILES = ["@FILES@"];
 const NAME = `tamaire-${VERSION}`;
 
 self.addEventListener("install", (event) => {
-  event.waitUntil(caches.open(NAME).then((cache) => cache.addAll(FILES)));
+  // What is named by its contents stays as it is; the rest may be old in the browser's own cache.
+  const requests = FILES.map((file) => new Request(file, { cache: file.startsWith(VERSION) ? "default" : "reload" }));
+  event.waitUntil(caches.open(NAME).then((cache) => cache.addAll(requests)));
 });
 
 self.addEventListener("message", ({ data }) => {
@@ -18,6 +20,8 @@ self.addEventListener("message", ({ data }) => {
 
 self.addEventListener("activate", (event) => {
   const others = async () => {
+    // Another tab may still play the one before.
+    if ((await clients.matchAll({ includeUncontrolled: true })).length > 1) return;
     const names = (await caches.keys()).filter((name) => name.startsWith("tamaire-") && name !== NAME);
     await Promise.all(names.map((name) => caches.delete(name)));
   };

@@ -50,6 +50,7 @@ const hash = createHash("sha256");
 for (const [name, bytes] of [...files, ...NAMED.map((name) => [name, readFileSync(join(page, name))])]) {
   hash.update(name).update(bytes);
 }
+hash.update(readFileSync(licences)).update(readFileSync(PREVIEW));
 const version = hash.digest("hex").slice(0, 12);
 
 for (const folder of [out, `${out}.br`]) {

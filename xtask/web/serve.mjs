@@ -26,11 +26,12 @@ export function serve(folder, port = 0) {
   /** @type {{path: string, bytes: number}[]} */
   const sent = [];
   const server = createServer((request, response) => {
-    const { pathname } = new URL(request.url ?? "/", "http://here");
-    const path = normalize(decodeURIComponent(pathname)).replace(/\/$/, "/index.html");
-    const isBrotli = extname(path) !== ".png" && /\bbr\b/.test(String(request.headers["accept-encoding"]));
-    let bytes;
+    const takesBrotli = /\bbr\b/.test(String(request.headers["accept-encoding"]));
+    let bytes, path;
     try {
+      const { pathname } = new URL(request.url ?? "/", "http://here");
+      path = normalize(decodeURIComponent(pathname)).replace(/\/$/, "/index.html");
+      const isBrotli = takesBrotli && extname(path) !== ".png";
       bytes = readFileSync(join(isBrotli ? `${folder}.br` : folder, path));
     } catch {
       response.writeHead(404).end();
@@ -41,7 +42,7 @@ export function serve(folder, port = 0) {
       "Content-Type": MEDIA[extname(path)] ?? "application/octet-stream",
       "Cache-Control": isForEver ? "public, max-age=31536000, immutable" : "no-cache",
     };
-    if (isBrotli) {
+    if (takesBrotli && extname(path) !== ".png") {
       headers["Content-Encoding"] = "br";
     }
     sent.push({ path, bytes: bytes.length });

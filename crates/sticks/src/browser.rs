@@ -215,8 +215,9 @@ mod felt {
     use crate::latest::Latest;
     use crate::{DeviceId, Sticks};
     use force_feedback::{Ability, Gone, LENGTH, Output, Sink};
-    use js_sys::{Object, Reflect};
+    use js_sys::{Object, Promise, Reflect};
     use wasm_bindgen::JsValue;
+    use wasm_bindgen_futures::JsFuture;
 
     /// A pad to be felt, for `force_feedback`: browsers rumble, and know no other force.
     pub struct Haptic {
@@ -264,8 +265,7 @@ mod felt {
             };
             if output.is_zero() {
                 // A browser that cannot lets it run out.
-                let _ = actuator.reset();
-                return Ok(());
+                return actuator.reset().map_or(Ok(()), forget);
             }
             let parameters = Object::new();
             let numbers = [
@@ -279,7 +279,15 @@ mod felt {
             }
             // It answers when it is over, or was taken over by the next.
             let played = actuator.play_effect("dual-rumble", &parameters);
-            played.map(|_| ()).map_err(|_| Gone)
+            played.map_err(|_| Gone).and_then(forget)
         }
+    }
+
+    /// Whatever comes of a promise: pads that cannot rumble refuse it later.
+    fn forget(promise: JsValue) -> Result<(), Gone> {
+        wasm_bindgen_futures::spawn_local(async move {
+            let _ = JsFuture::from(Promise::resolve(&promise)).await;
+        });
+        Ok(())
     }
 }

@@ -258,7 +258,10 @@ impl SentLevel {
         if sent.id.chars().count() > MAX_NAME {
             return Err(LinkError::Damaged);
         }
-        Ok(Level::of(&sent.id, plain(sent.scene()?))?)
+        // One that somebody made never takes the place of one that comes along.
+        let is_made = matches!(sent.content, Content::Whole(_)) && !sent.id.contains('.');
+        let id = sent.id.clone() + if is_made { ".toml" } else { "" };
+        Ok(Level::of(&id, plain(sent.scene()?))?)
     }
 
     fn scene(&self) -> Result<Scene, LinkError> {

@@ -2,7 +2,7 @@
 //! because a worklet shares no memory with the game, and needs a hundredth of its code.
 //!
 //! `cargo rustc --release -p tamaire_worklet --crate-type cdylib --target wasm32-unknown-unknown -- -Cstrip=symbols`
-//! builds it, `game/web/test/module.mjs` plays it under Node.
+//! builds it, `xtask/web/test/module.mjs` plays it under Node.
 //!
 //! A [`Worklet`] has room for what it is told and for what it plays; `game/web/worklet.js` fills the one and
 //! empties the other through the [`exports`].

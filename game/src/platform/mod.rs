@@ -17,6 +17,7 @@ mod gpu;
 #[cfg(target_family = "wasm")]
 #[path = "web/mod.rs"]
 mod here;
+mod keeping;
 mod pictures;
 #[cfg(not(target_family = "wasm"))]
 mod screen;
@@ -41,7 +42,7 @@ pub use given::{level_at, replay_in};
 pub use gpu::GpuWatch;
 #[cfg(target_family = "wasm")]
 pub use here::{Host, set_host};
-pub use screen::{address_of_page, fill_screen, speak};
+pub use screen::{address_of_page, begin_anew, fill_screen, is_full_by_itself, speak};
 pub use sound::Sound;
 pub use sticks::Pads;
 pub use storage::{Change, Entry, Kind, Nowhere, Storage};

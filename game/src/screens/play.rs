@@ -17,9 +17,9 @@ pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     } else {
         0.3
     };
-    let share = ui
-        .ctx()
-        .animate_bool_with_time(ui.id().with("room below"), is_below, duration);
+    let share =
+        ui.ctx()
+            .animate_bool_with_time(ui.scope_id().with("room below"), is_below, duration);
     view.centre[1] -= 0.1 * share * view.height();
     game.bout.view = Some(view);
     let theme = game.theme();

@@ -145,10 +145,12 @@ export async function links(browser, site) {
   assert.equal(await other.page.evaluate(() => location.hash), "", "a reload does not open it again");
   await other.click("Race it");
   await other.sees("Play");
+  await other.until((report) => report.ticks > 30, "the race goes on");
   // The same tab, another link.
   await other.page.evaluate((link) => void (location.hash = link), level.split("#")[1]);
   await other.until((report) => report.screen === "Play" && report.ticks < 20, "the level of the link");
   for (const broken of [round.split("#")[1].slice(0, -9), "r1AAAA", "x", "%00%ff", "r9" + round.slice(-40)]) {
+    await other.until((report) => report.notices.length === 0, "silence");
     await other.page.evaluate((link) => void (location.hash = link), broken);
     await other.hears("link");
   }

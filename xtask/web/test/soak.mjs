@@ -1,5 +1,6 @@
 // Somebody who does anything, for long: does the page take more and more memory, or complain?
 // usage: node soak.mjs SITE [MINUTES]
+import assert from "node:assert/strict";
 import { serve } from "../serve.mjs";
 import { Visit, launch, seconds } from "./visit.mjs";
 
@@ -35,7 +36,7 @@ while (passed() < Number(minutes)) {
   const report = await visit.report();
   if (!report) {
     visit.isQuiet();
-    break;
+    assert.fail("the game ended");
   }
   if (report.screen !== "Play" || random() < 0.01) {
     // On to another level, by way of the title.
@@ -72,5 +73,7 @@ for (const [name, value] of Object.entries(settled ?? last)) {
 }
 visit.isQuiet();
 console.log("and the console is empty");
+const grown = Object.entries(settled ?? last).filter(([name, value]) => last[name] > 1.05 * value);
+assert.deepEqual(grown.map(([name]) => name), [], "grew by more than a twentieth");
 await browser.close();
 await site.close();

@@ -8,7 +8,7 @@ pub const IS_THERE: bool = true;
 
 /// The dialog. The page remembers whether it is open.
 #[derive(Default)]
-pub struct Dialog;
+pub struct Dialog(Vec<Given>);
 
 impl Dialog {
     /// Asks for a file; browsers name the kinds by their endings alone.
@@ -18,8 +18,9 @@ impl Dialog {
 
     /// What was picked since this was asked last.
     pub fn take(&mut self) -> Option<Picked> {
-        let files = host().take_picked()?;
-        let given: Option<Given> = read_together(&files).pop();
-        Some(given.map_or(Picked::Nothing, Picked::File))
+        if let Some(files) = host().take_picked() {
+            self.0.extend(read_together(&files));
+        }
+        self.0.pop().map(Picked::File)
     }
 }

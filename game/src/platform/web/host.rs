@@ -30,7 +30,7 @@ extern "C" {
     /// Hands a file to the visitor.
     #[wasm_bindgen(method)]
     pub(crate) fn download(this: &Host, name: &str, media: &str, bytes: &[u8]);
-    /// Asks for files; they come through [`Host::take_given`].
+    /// Asks for files; they come through [`Host::take_picked`].
     #[wasm_bindgen(method)]
     pub(crate) fn pick(this: &Host, endings: &str);
     /// What was picked or dropped together: files, or nothing.
@@ -45,6 +45,12 @@ extern "C" {
     #[wasm_bindgen(method, getter)]
     pub(crate) fn address(this: &Host) -> String;
 
+    /// The GPU is gone, or what is drawn with it fails: the page begins anew.
+    #[wasm_bindgen(method)]
+    pub(crate) fn lost(this: &Host);
+    /// Whether the page fills the screen.
+    #[wasm_bindgen(method, getter, js_name = isFull)]
+    pub(crate) fn is_full(this: &Host) -> bool;
     #[wasm_bindgen(method, js_name = fillScreen)]
     pub(crate) fn fill_screen(this: &Host, wanted: bool);
     /// The language that the game speaks now, for whoever reads the page aloud.

@@ -9,6 +9,16 @@ pub fn fill_screen(_: &egui::Context, wanted: bool) {
     host().fill_screen(wanted);
 }
 
+/// Has the page begin anew, with another canvas.
+pub fn begin_anew() {
+    host().lost();
+}
+
+/// Whether the page fills the screen: browsers have keys and gestures of their own for that.
+pub fn is_full_by_itself() -> Option<bool> {
+    Some(host().is_full())
+}
+
 /// The address of the page, which opens links.
 pub fn address_of_page() -> String {
     host().address()
