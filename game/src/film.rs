@@ -16,7 +16,6 @@ use crate::look::{CameraRig, Effects};
 use crate::platform::Breath;
 #[cfg(target_family = "wasm")]
 pub use device::lend;
-use eframe::egui_wgpu::RendererOptions;
 use fuwafuwa::world::TICK;
 use fuwafuwa_painter::{PaintError, Pixmap, film, png_of};
 use fuwafuwa_render::ImageError;
@@ -209,14 +208,6 @@ async fn pass(
         opened.rest();
     }
     Ok(())
-}
-
-/// What is to be drawn the same by everybody.
-fn renderer_options() -> RendererOptions {
-    RendererOptions {
-        dithering: false,
-        ..RendererOptions::default()
-    }
 }
 
 /// What was drawn, as the films of the painter take it.

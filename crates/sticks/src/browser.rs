@@ -13,11 +13,11 @@ extern "C" {
     #[wasm_bindgen(catch, js_namespace = navigator, js_name = getGamepads)]
     fn get_gamepads() -> Result<Array, JsValue>;
 
-    type Gamepad;
+    pub type Gamepad;
     #[wasm_bindgen(method, getter)]
     fn id(this: &Gamepad) -> String;
     #[wasm_bindgen(method, getter)]
-    fn index(this: &Gamepad) -> u32;
+    pub fn index(this: &Gamepad) -> u32;
     #[wasm_bindgen(method, getter)]
     fn connected(this: &Gamepad) -> bool;
     #[wasm_bindgen(method, getter)]
@@ -28,7 +28,7 @@ extern "C" {
     fn buttons(this: &Gamepad) -> Array;
     #[cfg(feature = "haptic")]
     #[wasm_bindgen(method, getter, js_name = vibrationActuator)]
-    fn actuator(this: &Gamepad) -> Option<Actuator>;
+    pub fn actuator(this: &Gamepad) -> Option<Actuator>;
 
     type GamepadButton;
     #[wasm_bindgen(method, getter)]
@@ -37,13 +37,17 @@ extern "C" {
     fn value(this: &GamepadButton) -> f64;
 
     #[cfg(feature = "haptic")]
-    type Actuator;
+    pub type Actuator;
     #[cfg(feature = "haptic")]
     #[wasm_bindgen(method, catch, js_name = playEffect)]
-    fn play_effect(this: &Actuator, kind: &str, parameters: &JsValue) -> Result<JsValue, JsValue>;
+    pub fn play_effect(
+        this: &Actuator,
+        kind: &str,
+        parameters: &JsValue,
+    ) -> Result<JsValue, JsValue>;
     #[cfg(feature = "haptic")]
     #[wasm_bindgen(method, catch)]
-    fn reset(this: &Actuator) -> Result<JsValue, JsValue>;
+    pub fn reset(this: &Actuator) -> Result<JsValue, JsValue>;
 }
 
 /// The buttons of the standard layout in the order of the API. Its triggers, 6 and 7, are buttons there.
@@ -106,7 +110,7 @@ impl Owner {
     }
 
     #[cfg(feature = "haptic")]
-    fn place(&self, id: DeviceId) -> Option<u32> {
+    pub fn place(&self, id: DeviceId) -> Option<u32> {
         let places = self.places.lock().unwrap_or_else(PoisonError::into_inner);
         let known = places.0.iter().find(|(known, _)| *known == id);
         known.map(|(_, place)| *place)
@@ -114,7 +118,7 @@ impl Owner {
 }
 
 /// The pads that the browser shows; none where the page may not look.
-fn pads() -> Vec<Gamepad> {
+pub fn pads() -> Vec<Gamepad> {
     let list = get_gamepads().unwrap_or_default();
     let there = list.iter().filter(|pad| !pad.is_falsy());
     let pads = there.map(JsCast::unchecked_into::<Gamepad>);
@@ -204,90 +208,4 @@ fn about(id: &str) -> About {
     let guid = format!("{known:0<32.32}");
     let name = name.trim().to_string();
     About { name, guid, labels }
-}
-
-#[cfg(feature = "haptic")]
-pub use felt::Haptic;
-
-#[cfg(feature = "haptic")]
-mod felt {
-    use super::{Actuator, Gamepad, pads};
-    use crate::latest::Latest;
-    use crate::{DeviceId, Sticks};
-    use force_feedback::{Ability, Gone, LENGTH, Output, Sink};
-    use js_sys::{Object, Promise, Reflect};
-    use wasm_bindgen::JsValue;
-    use wasm_bindgen_futures::JsFuture;
-
-    /// A pad to be felt, for `force_feedback`: browsers rumble, and know no other force.
-    pub struct Haptic {
-        id: DeviceId,
-        place: Option<u32>,
-        latest: Latest,
-    }
-
-    impl Sticks {
-        /// Takes hold of a device to be felt; one that is not there, or has no motors, does nothing.
-        pub fn haptic(&self, id: DeviceId) -> Haptic {
-            let (place, latest) = (self.owner.place(id), self.latest.clone());
-            Haptic { id, place, latest }
-        }
-    }
-
-    impl Haptic {
-        fn actuator(&self) -> Option<Actuator> {
-            let place = self.place?;
-            let pads = pads();
-            let pad = pads.iter().find(|pad| pad.index() == place);
-            pad.and_then(Gamepad::actuator)
-        }
-    }
-
-    impl Sink for Haptic {
-        fn ability(&self) -> Ability {
-            match self.actuator() {
-                Some(_) => Ability::Rumble,
-                None => Ability::Nothing,
-            }
-        }
-
-        fn aim(&mut self) -> Result<[f32; 2], Gone> {
-            let latest = self.latest.get();
-            latest
-                .device(self.id)
-                .map(|device| device.aim())
-                .ok_or(Gone)
-        }
-
-        fn play(&mut self, output: Output) -> Result<(), Gone> {
-            let (Some(actuator), Output::Rumble { low, high }) = (self.actuator(), output) else {
-                return Ok(());
-            };
-            if output.is_zero() {
-                // A browser that cannot lets it run out.
-                return actuator.reset().map_or(Ok(()), forget);
-            }
-            let parameters = Object::new();
-            let numbers = [
-                ("duration", LENGTH.as_millis() as f64),
-                ("strongMagnitude", f64::from(low.clamp(0.0, 1.0))),
-                ("weakMagnitude", f64::from(high.clamp(0.0, 1.0))),
-            ];
-            for (name, number) in numbers {
-                // An object of our own refuses nothing.
-                let _ = Reflect::set(&parameters, &JsValue::from(name), &JsValue::from(number));
-            }
-            // It answers when it is over, or was taken over by the next.
-            let played = actuator.play_effect("dual-rumble", &parameters);
-            played.map_err(|_| Gone).and_then(forget)
-        }
-    }
-
-    /// Whatever comes of a promise: pads that cannot rumble refuse it later.
-    fn forget(promise: JsValue) -> Result<(), Gone> {
-        wasm_bindgen_futures::spawn_local(async move {
-            let _ = JsFuture::from(Promise::resolve(&promise)).await;
-        });
-        Ok(())
-    }
 }

@@ -35,6 +35,9 @@ mod device;
 mod feel;
 mod latest;
 
+#[cfg(all(feature = "haptic", target_family = "wasm"))]
+#[path = "felt.rs"]
+mod haptic;
 #[cfg(all(feature = "haptic", not(target_family = "wasm")))]
 mod haptic;
 #[cfg(all(feature = "haptic", not(target_family = "wasm")))]
@@ -67,11 +70,9 @@ pub use device::{
     Snapshot,
 };
 pub use feel::{Navigator, Repeat, radial_dead_zone};
-#[cfg(all(feature = "haptic", not(target_family = "wasm")))]
+#[cfg(feature = "haptic")]
 pub use haptic::Haptic;
 pub use latest::NoSticks;
-#[cfg(all(feature = "haptic", target_family = "wasm"))]
-pub use owner::Haptic;
 #[cfg(all(
     any(test, feature = "virtual"),
     feature = "sdl",

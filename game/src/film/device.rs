@@ -1,21 +1,22 @@
 //! What pictures are drawn with: a device of their own.
 
-use super::renderer_options;
-use eframe::egui_wgpu::{RenderState, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+use eframe::egui_wgpu::{
+    RenderState, RendererOptions, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew,
+};
 use pollster::block_on;
 use std::sync::Arc;
 use wgpu::{Backends, DeviceDescriptor, MemoryHints};
 
 /// What egui needs to draw; none where there is nothing to draw with, not even software.
-pub fn open() -> Option<RenderState> {
+pub fn open(options: RendererOptions) -> Option<RenderState> {
     // OpenGL comes last: where there is no display its driver complains to the terminal.
     [Backends::PRIMARY, Backends::GL]
         .into_iter()
-        .find_map(state_of)
+        .find_map(|backends| state_of(backends, options))
 }
 
 /// What egui needs to draw with one of some interfaces; none where there is no adapter for any.
-fn state_of(backends: Backends) -> Option<RenderState> {
+fn state_of(backends: Backends, options: RendererOptions) -> Option<RenderState> {
     let mut setup = WgpuSetupCreateNew::without_display_handle();
     // Somebody may have chosen by `WGPU_BACKEND`.
     setup.instance_descriptor.backends &= backends;
@@ -38,7 +39,7 @@ fn state_of(backends: Backends) -> Option<RenderState> {
         &configuration,
         &instance,
         None,
-        renderer_options(),
+        options,
     ))
     .ok()
 }

@@ -1,7 +1,6 @@
 //! What pictures are drawn with in a browser: what the page is drawn with, since there is no other.
 
-use super::renderer_options;
-use eframe::egui_wgpu::{RenderState, Renderer};
+use eframe::egui_wgpu::{RenderState, Renderer, RendererOptions};
 use egui::mutex::RwLock;
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -16,9 +15,9 @@ pub fn lend(page: &RenderState) {
 }
 
 /// What egui needs to draw: its images and letters are its own. None before the page has begun.
-pub fn open() -> Option<RenderState> {
+pub fn open(options: RendererOptions) -> Option<RenderState> {
     let page = LENT.with_borrow(Option::clone)?;
-    let renderer = Renderer::new(&page.device, page.target_format, renderer_options());
+    let renderer = Renderer::new(&page.device, page.target_format, options);
     let renderer = Arc::new(RwLock::new(renderer));
     Some(RenderState { renderer, ..page })
 }

@@ -2,7 +2,7 @@
 
 use super::device;
 use crate::look::{CameraRig, Effects, Hint, Look, Stage, Theme, dress};
-use eframe::egui_wgpu::{RenderState, ScreenDescriptor};
+use eframe::egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor};
 use egui::{Align2, FontId, RawInput, Rect, Ui, Vec2, vec2};
 use fuwafuwa_render::{ImageError, Step};
 use tamaire_play::AnyRound;
@@ -38,7 +38,11 @@ pub struct Moment<'a> {
 impl Studio {
     /// A studio; none where there is nothing to draw with, not even software.
     pub fn open() -> Option<Self> {
-        device::open().map(Self::of)
+        let options = RendererOptions {
+            dithering: false,
+            ..RendererOptions::default()
+        };
+        device::open(options).map(Self::of)
     }
 
     fn of(state: RenderState) -> Self {

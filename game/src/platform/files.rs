@@ -1,5 +1,6 @@
 //! What is kept between two evenings: settings, records, replays. All is written on a thread of its own, and pictures are made on another.
 
+pub use super::keeping::Damage;
 use super::keeping::{
     RECORDS, is_aside, keep_best, merge_records, name_of_best, put_aside, read_level, save,
     save_replay, stem_of,
@@ -58,15 +59,6 @@ pub enum News {
     Saved(String),
     /// What was to be kept could not be written. Of settings and records this is told once.
     Failed(String),
-}
-
-/// What could not be used of what was kept.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Damage {
-    /// Each thing: where it stands, and why.
-    pub refused: Vec<String>,
-    /// Where all is kept as it was, if it could be.
-    pub aside: Option<String>,
 }
 
 impl Files {

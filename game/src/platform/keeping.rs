@@ -1,11 +1,19 @@
 //! How single things are kept, whatever the storage: under which names, beside what was there, or set aside.
 
-use super::files::Damage;
 use super::storage::{Kind, Storage};
 use crate::records::Records;
 use std::io;
 use std::sync::Arc;
 use tamaire_play::{Assist, Level, Replay, shortened};
+
+/// What could not be used of what was kept.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Damage {
+    /// Each thing: where it stands, and why.
+    pub refused: Vec<String>,
+    /// Where all is kept as it was, if it could be.
+    pub aside: Option<String>,
+}
 
 /// Most letters of why a level could not be read.
 const LETTERS: usize = 200;

@@ -11,11 +11,11 @@ fn copied(window: &mut Window, button: &str) -> String {
     click(window, button);
     for _ in 0..3 {
         let commands = &window.output().platform_output.commands;
-        let texts = commands.iter().filter_map(|command| match command {
+        let mut texts = commands.iter().filter_map(|command| match command {
             OutputCommand::CopyText(text) => Some(text.clone()),
             _ => None,
         });
-        if let Some(text) = texts.last() {
+        if let Some(text) = texts.next() {
             return text;
         }
         window.step();

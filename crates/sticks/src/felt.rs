@@ -1,0 +1,81 @@
+//! A pad that can be felt, in a browser: browsers rumble, and know no other force.
+
+use crate::latest::Latest;
+use crate::owner::{Actuator, Gamepad, pads};
+use crate::{DeviceId, Sticks};
+use force_feedback::{Ability, Gone, LENGTH, Output, Sink};
+use js_sys::{Object, Promise, Reflect};
+use wasm_bindgen::JsValue;
+use wasm_bindgen_futures::JsFuture;
+
+/// A pad to be felt, for `force_feedback`: browsers rumble, and know no other force.
+pub struct Haptic {
+    id: DeviceId,
+    place: Option<u32>,
+    latest: Latest,
+}
+
+impl Sticks {
+    /// Takes hold of a device to be felt; one that is not there, or has no motors, does nothing.
+    pub fn haptic(&self, id: DeviceId) -> Haptic {
+        let (place, latest) = (self.owner.place(id), self.latest.clone());
+        Haptic { id, place, latest }
+    }
+}
+
+impl Haptic {
+    fn actuator(&self) -> Option<Actuator> {
+        let place = self.place?;
+        let pads = pads();
+        let pad = pads.iter().find(|pad| pad.index() == place);
+        pad.and_then(Gamepad::actuator)
+    }
+}
+
+impl Sink for Haptic {
+    fn ability(&self) -> Ability {
+        match self.actuator() {
+            Some(_) => Ability::Rumble,
+            None => Ability::Nothing,
+        }
+    }
+
+    fn aim(&mut self) -> Result<[f32; 2], Gone> {
+        let latest = self.latest.get();
+        latest
+            .device(self.id)
+            .map(|device| device.aim())
+            .ok_or(Gone)
+    }
+
+    fn play(&mut self, output: Output) -> Result<(), Gone> {
+        let (Some(actuator), Output::Rumble { low, high }) = (self.actuator(), output) else {
+            return Ok(());
+        };
+        if output.is_zero() {
+            // A browser that cannot lets it run out.
+            return actuator.reset().map_or(Ok(()), forget);
+        }
+        let parameters = Object::new();
+        let numbers = [
+            ("duration", LENGTH.as_millis() as f64),
+            ("strongMagnitude", f64::from(low.clamp(0.0, 1.0))),
+            ("weakMagnitude", f64::from(high.clamp(0.0, 1.0))),
+        ];
+        for (name, number) in numbers {
+            // An object of our own refuses nothing.
+            let _ = Reflect::set(&parameters, &JsValue::from(name), &JsValue::from(number));
+        }
+        // It answers when it is over, or was taken over by the next.
+        let played = actuator.play_effect("dual-rumble", &parameters);
+        played.map_err(|_| Gone).and_then(forget)
+    }
+}
+
+/// Whatever comes of a promise: pads that cannot rumble refuse it later.
+fn forget(promise: JsValue) -> Result<(), Gone> {
+    wasm_bindgen_futures::spawn_local(async move {
+        let _ = JsFuture::from(Promise::resolve(&promise)).await;
+    });
+    Ok(())
+}
