@@ -1,0 +1,86 @@
+// How fast the simulation is in Chromium: the golden scenes beside what they take natively, and the ticks of rounds that a bot
+// plays. Prints, and never fails for a number: machines differ.
+// usage: node speed.mjs MODULE.wasm
+import { fileURLToPath } from "node:url";
+import { chromium } from "./browsers.mjs";
+import { natively, open } from "./checks.mjs";
+
+const RUNS = 5;
+/** Bots that play a minute at most. */
+const GAMES = ["classic shave", "classic-3d shave"];
+const SEEDS = [1, 2, 3];
+const MOST_TICKS = 60 * 60;
+/** As many times slower a phone or an old laptop is. */
+const THROTTLE = 4;
+
+/**
+ * @param {import("puppeteer-core").Browser} browser Chromium
+ * @param {string} module path of the .wasm of crates/browser_checks
+ */
+export async function measureSpeed(browser, module) {
+  const checks = await open(browser, module);
+  await measureGolden(checks);
+  console.log(`\nticks [ms] of rounds by seeds ${SEEDS.join(", ")}`);
+  console.log(`${"".padEnd(24)}  ticks  median     p99   worst`);
+  for (const game of GAMES) {
+    await measureTicks(checks, game, 1);
+    await measureTicks(checks, game, THROTTLE);
+  }
+  await checks.close();
+}
+
+/** In turns, so that what else the machine does falls on both. */
+async function measureGolden(/** @type {Awaited<ReturnType<typeof open>>} */ checks) {
+  const scenes = await checks.call("scenes");
+  /** @type {number[][][]} */
+  const [there, here] = [scenes.map(() => []), scenes.map(() => [])];
+  const inBrowser = async () => {
+    const times = [];
+    for (const scene of scenes.keys()) {
+      times.push((await checks.call("golden", scene)).milliseconds);
+    }
+    return times;
+  };
+  const native = () => natively("fuwafuwa_golden", "times").trim().split("\n").map(Number);
+  // The first only warms up: the browser is still compiling, and cargo builds.
+  await inBrowser();
+  native();
+  for (let run = 0; run < RUNS; run++) {
+    native().forEach((time, scene) => here[scene].push(time));
+    (await inBrowser()).forEach((time, scene) => there[scene].push(time));
+  }
+  console.log(`golden scenes [ms], medians of ${RUNS}`);
+  console.log("natively  Chromium  ratio");
+  for (const [scene, name] of scenes.entries()) {
+    const [a, b] = [here, there].map((times) => part(times[scene], 0.5));
+    console.log(`${a.toFixed(1).padStart(8)}${b.toFixed(1).padStart(10)}${(b / a).toFixed(2).padStart(7)}  ${name}`);
+  }
+}
+
+async function measureTicks(checks, /** @type {string} */ game, /** @type {number} */ rate) {
+  await checks.page.emulateCPUThrottling(rate);
+  /** @type {number[]} */
+  const times = [];
+  for (const seed of SEEDS) {
+    times.push(...(await checks.call("time", `${game} ${seed}`, MOST_TICKS)));
+  }
+  await checks.page.emulateCPUThrottling(null);
+  const name = rate === 1 ? game : `${game}, ${rate} × throttled`;
+  const numbers = [0.5, 0.99, 1].map((share) => part(times, share).toFixed(2).padStart(8));
+  console.log(`${name.padEnd(24)} ${String(times.length).padStart(6)}${numbers.join("")}`);
+}
+
+/** What this share of the values stays below or at. */
+function part(/** @type {number[]} */ values, /** @type {number} */ share) {
+  const sorted = values.toSorted((a, b) => a - b);
+  return sorted[Math.floor((sorted.length - 1) * share)];
+}
+
+if (process.argv[1] === fileURLToPath(import.meta.url)) {
+  const browser = await chromium();
+  try {
+    await measureSpeed(browser, process.argv[2]);
+  } finally {
+    await browser.close();
+  }
+}
