@@ -6,12 +6,12 @@ import { chromium } from "./browsers.mjs";
 import { natively, open } from "./checks.mjs";
 
 const RUNS = 5;
-/** Bots that play a minute at most. */
-const GAMES = ["classic shave", "classic-3d shave"];
+/** What a bot plays, a minute at most, and as many times slower than here: 4 is a phone or an old laptop. */
+const GAMES = /** @type {const} */ ([["classic shave", 1], ["classic shave", 4], ["classic-3d shave", 1]]);
 const SEEDS = [1, 2, 3];
 const MOST_TICKS = 60 * 60;
-/** As many times slower a phone or an old laptop is. */
-const THROTTLE = 4;
+/** A round is the same every time: the least of so many times of a tick is what it costs, the rest is the machine. */
+const GOES = 3;
 
 /**
  * @param {import("puppeteer-core").Browser} browser Chromium
@@ -20,11 +20,10 @@ const THROTTLE = 4;
 export async function measureSpeed(browser, module) {
   const checks = await open(browser, module);
   await measureGolden(checks);
-  console.log(`\nticks [ms] of rounds by seeds ${SEEDS.join(", ")}`);
-  console.log(`${"".padEnd(24)}  ticks  median     p99   worst`);
-  for (const game of GAMES) {
-    await measureTicks(checks, game, 1);
-    await measureTicks(checks, game, THROTTLE);
+  console.log(`ticks [ms] of rounds by the seeds ${SEEDS.join(", ")}: least of ${GOES} goes | the first go, still compiling`);
+  console.log(`${"".padEnd(28)}  ticks  median     p99   worst  | median     p99   worst`);
+  for (const [game, slower] of GAMES) {
+    await measureTicks(checks, game, slower);
   }
   await checks.close();
 }
@@ -57,17 +56,22 @@ async function measureGolden(/** @type {Awaited<ReturnType<typeof open>>} */ che
   }
 }
 
-async function measureTicks(checks, /** @type {string} */ game, /** @type {number} */ rate) {
-  await checks.page.emulateCPUThrottling(rate);
+async function measureTicks(checks, /** @type {string} */ game, /** @type {number} */ slower) {
+  await checks.page.emulateCPUThrottling(slower);
   /** @type {number[]} */
-  const times = [];
+  const [least, first] = [[], []];
   for (const seed of SEEDS) {
-    times.push(...(await checks.call("time", `${game} ${seed}`, MOST_TICKS)));
+    const goes = [];
+    for (let go = 0; go < GOES; go++) {
+      goes.push(await checks.call("time", `${game} ${seed}`, MOST_TICKS));
+    }
+    first.push(...goes[0]);
+    least.push(...goes[0].map((_, tick) => Math.min(...goes.map((times) => times[tick]))));
   }
   await checks.page.emulateCPUThrottling(null);
-  const name = rate === 1 ? game : `${game}, ${rate} × throttled`;
-  const numbers = [0.5, 0.99, 1].map((share) => part(times, share).toFixed(2).padStart(8));
-  console.log(`${name.padEnd(24)} ${String(times.length).padStart(6)}${numbers.join("")}`);
+  const name = slower === 1 ? game : `${game}, ${slower} × slower`;
+  const [costs, met] = [least, first].map((times) => [0.5, 0.99, 1].map((share) => part(times, share).toFixed(2).padStart(8)).join(""));
+  console.log(`${name.padEnd(28)} ${String(least.length).padStart(6)}${costs}  |${met}`);
 }
 
 /** What this share of the values stays below or at. */
