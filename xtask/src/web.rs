@@ -6,7 +6,7 @@
 
 use crate::packages::{self, IfMissing, Purpose};
 use crate::shell::{CANNOT, FAILED, Failure, cargo, execute, is_on_path, output_of, root, target};
-use crate::wasm::{self, TARGET, cargo_for_wasm};
+use crate::wasm::{self, Compiler, TARGET, cargo_for_wasm};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -27,16 +27,18 @@ pub fn run(web: Web, if_missing: IfMissing) -> Result<(), Failure> {
     if web == Web::Test {
         provide_browsers(if_missing)?;
     }
-    build(if_missing)?;
+    let compiler = wasm::compiler(if_missing, "the game was NOT built for a browser")?;
+    build(&compiler)?;
     let site = folder().join("site");
     match web {
         Web::Build => Ok(()),
         Web::Serve => node("serve.mjs", &[&site], "the server ended"),
         Web::Test => {
+            let checks = compile(&compiler, &["browser_checks", "--crate-type", "cdylib"])?;
             // Firefox draws in software only where there is a display.
             let mut play = Command::new("xvfb-run");
             play.args(["--auto-servernum", "node", "xtask/web/test/all.mjs"])
-                .arg(&site);
+                .args([&site, &checks]);
             execute(&mut play, "a browser did not play as it must, see above")
         }
     }
@@ -47,47 +49,18 @@ fn folder() -> PathBuf {
     root().join(target()).join("web")
 }
 
-fn build(if_missing: IfMissing) -> Result<(), Failure> {
-    let compiler = wasm::compiler(if_missing, "the game was NOT built for a browser")?;
-    let (stage, modules) = (
-        folder().join("stage"),
-        root().join(wasm::folder()).join(TARGET),
-    );
-    for words in [
-        [
-            "rustc",
-            "--profile",
-            "web",
-            "--package",
-            "tamaire",
-            "--bin",
-            "tamaire",
-        ]
-        .as_slice(),
-        &[
-            "rustc",
-            "--profile",
-            "web",
-            "--package",
-            "tamaire_worklet",
-            "--crate-type",
-            "cdylib",
-        ],
-    ] {
-        execute(
-            &mut cargo_for_wasm(&compiler, words),
-            "what differs in a browser belongs into game/src/platform and behind features of its crates",
-        )?;
-    }
+fn build(compiler: &Compiler) -> Result<(), Failure> {
+    let stage = folder().join("stage");
+    let game = compile(compiler, &["tamaire", "--bin", "tamaire"])?;
+    let sound = compile(compiler, &["tamaire_worklet", "--crate-type", "cdylib"])?;
     let mut bind = Command::new(wasm_bindgen()?);
     bind.args(["--target", "web", "--no-typescript", "--out-dir"])
         .arg(&stage)
-        .arg(modules.join("web/tamaire.wasm"));
+        .arg(game);
     execute(
         &mut bind,
         "the glue between the game and the page could not be made",
     )?;
-    let sound = modules.join("web/tamaire_worklet.wasm");
     let licences = folder().join("licences.txt");
     fs::copy(sound, stage.join("sound.wasm")).map_err(|error| Failure {
         message: format!("{}: {error}", folder().display()),
@@ -105,6 +78,17 @@ fn build(if_missing: IfMissing) -> Result<(), Failure> {
         &[&stage, &page, &licences, &site],
         "the folder could not be packed",
     )
+}
+
+/// Compiles a package, the first of the words, as the game is; where its module is.
+fn compile(compiler: &Compiler, words: &[&str]) -> Result<PathBuf, Failure> {
+    let mut command = cargo_for_wasm(compiler, &["rustc", "--profile", "web", "--package"]);
+    execute(
+        command.args(words),
+        "what differs in a browser belongs into game/src/platform and behind features of its crates",
+    )?;
+    let modules = root().join(wasm::folder()).join(TARGET).join("web");
+    Ok(modules.join(words[0]).with_extension("wasm"))
 }
 
 /// wasm-bindgen's program, of the version that the game is compiled with.

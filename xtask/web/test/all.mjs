@@ -1,11 +1,13 @@
-// Plays the packed game in real browsers.
-// usage: node all.mjs SITE [TEST …]
+// Plays the packed game in real browsers. What only prints figures, `speed`, is done when it is named.
+// usage: node all.mjs SITE MODULE [TEST …]   MODULE: the .wasm of crates/browser_checks
 import { serve } from "../serve.mjs";
+import { checkBits } from "./bits.mjs";
 import * as game from "./game.mjs";
 import { checkSilence, checkSound } from "./sound.mjs";
+import { measureSpeed } from "./speed.mjs";
 import { launch } from "./visit.mjs";
 
-const [folder, ...wanted] = process.argv.slice(2);
+const [folder, module, ...wanted] = process.argv.slice(2);
 const site = await serve(folder);
 
 /** Each with a browser of its own, which knows nothing yet. @type {[string, "chromium" | "firefox", (browser: any) => Promise<void>][]} */
@@ -18,11 +20,16 @@ const TESTS = [
   ["sound", "chromium", (browser) => checkSound(browser, site.address)],
   ["silence", "chromium", (browser) => checkSilence(browser, site.address)],
   ["play", "firefox", (browser) => game.play(browser, site)],
+  ["bits", "chromium", (browser) => checkBits({ Chromium: browser }, module)],
+  ["bits", "firefox", (browser) => checkBits({ Firefox: browser }, module)],
+  ["speed", "chromium", (browser) => measureSpeed(browser, module)],
 ];
+const NAMED_ONLY = ["speed"];
 
 let failed = 0;
 for (const [name, kind, test] of TESTS) {
-  if (wanted.length && !wanted.includes(name) && !wanted.includes(`${name}-${kind}`)) continue;
+  const isWanted = wanted.includes(name) || wanted.includes(`${name}-${kind}`);
+  if (wanted.length ? !isWanted : NAMED_ONLY.includes(name)) continue;
   const start = performance.now();
   const browser = await launch(kind);
   try {

@@ -30,7 +30,8 @@ export function launch(kind, language = "en-US") {
     extraPrefsFirefox: { "intl.accept_languages": language, "webgl.force-enabled": true },
     env: { ...process.env, LANGUAGE: language },
     executablePath: find(executablePath),
-    protocolTimeout: PATIENCE,
+    // A bot's minute, four times slower than here.
+    protocolTimeout: 600_000,
     timeout: PATIENCE,
   });
 }
