@@ -408,6 +408,7 @@ fn a_pad_hums_with_the_force_and_ticks_with_a_tear() {
 fn without_a_thread_whoever_updates_is_enough() {
     let mut force = Force::without_thread();
     let recording = Recording::default();
+    recording.lean(Ok([0.9, 0.0]));
     let line = force.add(Box::new(recording.clone()), Settings::default());
     let start = Instant::now();
     let mut played = Vec::new();
