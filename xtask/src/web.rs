@@ -82,9 +82,9 @@ fn build(compiler: &Compiler) -> Result<(), Failure> {
 
 /// Compiles a package, the first of the words, as the game is; where its module is.
 fn compile(compiler: &Compiler, words: &[&str]) -> Result<PathBuf, Failure> {
-    let mut command = cargo_for_wasm(compiler, &["rustc", "--profile", "web", "--package"]);
+    let call = [&["rustc", "--profile", "web", "--package"], words].concat();
     execute(
-        command.args(words),
+        &mut cargo_for_wasm(compiler, &call),
         "what differs in a browser belongs into game/src/platform and behind features of its crates",
     )?;
     let modules = root().join(wasm::folder()).join(TARGET).join("web");

@@ -60,7 +60,7 @@ pub(super) const WORDS: Words = Words {
     saved: "Saved",
     slow: |share| {
         format!(
-            "This level is much for this device: it goes at {:.0} % of its speed.",
+            "This level is a lot for this device: it runs at {:.0} % of its speed.",
             100.0 * share
         )
     },

@@ -8,8 +8,9 @@ use tamaire::words::Language;
 
 /// What was put on the clipboard when a button was pressed.
 fn copied(window: &mut Window, button: &str) -> String {
-    click(window, button);
-    for _ in 0..3 {
+    self::button(window, button).click();
+    for _ in 0..5 {
+        window.step();
         let commands = &window.output().platform_output.commands;
         let mut texts = commands.iter().filter_map(|command| match command {
             OutputCommand::CopyText(text) => Some(text.clone()),
@@ -18,7 +19,6 @@ fn copied(window: &mut Window, button: &str) -> String {
         if let Some(text) = texts.next() {
             return text;
         }
-        window.step();
     }
     panic!("nothing was copied");
 }

@@ -7,7 +7,7 @@ use fuwafuwa::world::TICK;
 use std::path::PathBuf;
 use tamaire::app::App;
 use tamaire::game::{Game, Screen};
-use tamaire::platform::{Files, Pads, Sound};
+use tamaire::platform::{Clock, Files, Pads, Sound};
 use tamaire_play::{Bot, BotKind};
 
 pub type Window = Harness<'static, App>;
@@ -25,7 +25,9 @@ pub fn open(files: Files, size: egui::Vec2, pixels: f32) -> Window {
     // As the game has it; the harness would darken what egui draws.
     let builder = builder.with_theme(egui::Theme::Light);
     let mut window = builder.build_eframe(|context| {
-        let game = Game::new(files, Sound::none(), Pads::none());
+        let mut game = Game::new(files, Sound::none(), Pads::none());
+        // Nothing depends on what else the machine does.
+        game.clock = Clock::of(|| 0.0);
         App::new(context, game).expect("there is a GPU, if only in software")
     });
     frames(&mut window, 2);
