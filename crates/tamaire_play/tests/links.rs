@@ -236,14 +236,21 @@ fn a_level_of_ones_own_comes_along() {
     println!("a level of one's own: {} characters", link.len());
     assert!(link.len() < USUAL);
     let read = read_level(&link);
-    assert_eq!((read.id.as_str(), read.scene()), ("mine", level.scene()));
+    assert_eq!(
+        (read.id.as_str(), read.scene()),
+        ("mine.toml", level.scene())
+    );
     let replay = played(&level, BotKind::Squeeze, 1, 130);
     watch(read_round(&check(&replay))).unwrap();
 
-    // By the name of one that comes along.
+    // By the name of one that comes along, whose place it must not take.
     let mut other = (*level).clone();
     other.id = "classic".into();
-    assert_eq!(read_level(&other.link().unwrap()), other);
+    let read = read_level(&other.link().unwrap());
+    assert_eq!(
+        (read.id.as_str(), read.scene()),
+        ("classic.toml", other.scene())
+    );
 }
 
 #[test]
@@ -257,7 +264,7 @@ fn pictures_and_models_come_along_if_they_fit() {
         let link = level.link().unwrap();
         println!("{}: {} characters", level.id, link.len());
         assert_eq!(read_level(&link).scene(), level.scene());
-        assert_eq!(read_level(&link).id, "tom");
+        assert_eq!(read_level(&link).id, "tom.toml");
     }
 
     // Noise cannot be made shorter.
