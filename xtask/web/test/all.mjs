@@ -26,20 +26,28 @@ const TESTS = [
 ];
 const NAMED_ONLY = ["speed"];
 
-let failed = 0;
-for (const [name, kind, test] of TESTS) {
-  const isWanted = wanted.includes(name) || wanted.includes(`${name}-${kind}`);
-  if (wanted.length ? !isWanted : NAMED_ONLY.includes(name)) continue;
+/** Whether it passes. A browser on a machine that is busy may be late once; a fault is there again. */
+async function passes(name, kind, test) {
   const start = performance.now();
   const browser = await launch(kind);
   try {
     await test(browser);
     console.log(`ok    ${kind}: ${name} (${((performance.now() - start) / 1000).toFixed(0)} s)`);
+    return true;
   } catch (error) {
-    failed++;
     console.log(`FAILED ${kind}: ${name}\n${error.stack ?? error}`);
+    return false;
   } finally {
     await browser.close();
+  }
+}
+
+let failed = 0;
+for (const [name, kind, test] of TESTS) {
+  const isWanted = wanted.includes(name) || wanted.includes(`${name}-${kind}`);
+  if (wanted.length ? !isWanted : NAMED_ONLY.includes(name)) continue;
+  if (!(await passes(name, kind, test)) && !(await passes(`${name}, once more`, kind, test))) {
+    failed++;
   }
 }
 await site.close();
