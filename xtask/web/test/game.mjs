@@ -255,22 +255,22 @@ export async function pad(browser, site) {
     navigator.getGamepads = () => [null, globalThis.pad];
   };
   const visit = await Visit.begin(browser, site.address, { before });
-  const press = async (/** @type {number} */ button) => {
-    for (const pressed of [true, false]) {
-      await visit.page.evaluate((button, pressed) => void (globalThis.pad.buttons[button] = { pressed, value: +pressed }), button, pressed);
-      await seconds(0.5);
-    }
+  // Held until it is heard: a slow page looks seldom.
+  const press = async (/** @type {number} */ button, /** @type {string} */ screen) => {
+    const hold = (/** @type {boolean} */ pressed) =>
+      visit.page.evaluate((button, pressed) => void (globalThis.pad.buttons[button] = { pressed, value: +pressed }), button, pressed);
+    await hold(true);
+    await visit.sees(screen);
+    await hold(false);
+    await visit.page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
   };
-  await press(0);
-  await visit.sees("Levels");
-  await press(0);
-  await visit.sees("Play");
+  await press(0, "Levels");
+  await press(0, "Play");
   await visit.page.evaluate(() => void (globalThis.pad.axes = [0.5, 0, 0, 0]));
   await visit.page.waitForFunction(() => globalThis.effects.some(([, strong, weak]) => strong + weak > 0.01), { timeout: 90_000 });
   const effects = await visit.page.evaluate(() => globalThis.effects);
   assert(effects.every(([kind, ...both]) => kind === "dual-rumble" && both.every((one) => one >= 0 && one <= 1)), JSON.stringify(effects));
-  await press(9);
-  await visit.sees("Paused");
+  await press(9, "Paused");
   // Pulled out, it is silent and not missed.
   await visit.page.evaluate(() => void (globalThis.pad.connected = false));
   await seconds(1);
