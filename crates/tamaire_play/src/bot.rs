@@ -22,6 +22,14 @@ const PATIENCE: u32 = 210;
 const GRAZING: [f32; 2] = [0.78, 0.55];
 /// After a stroke that took nothing off they pass so much closer to the middle.
 const CLOSER: f32 = 0.85;
+/// In space strokes that are to pass so close and took nothing off are given up for a while: what is left may
+/// go in as it is. In the plane they end up going through the middle.
+const CLOSEST: [f32; 2] = [0.0, 0.4];
+/// In space heavy pieces lie on a floor. Who gathers there has waited for so many ticks less whenever one came
+/// so much nearer to the mouth [m], and pushes ever harder until it does: so much deeper than gently [m].
+const NEARER: f32 = 0.05;
+const ON_ITS_WAY: u32 = 20;
+const FIRMER: [f32; 2] = [0.12, 0.3];
 /// The shaving bot gathers when the largest pieces have this share of what they had.
 const SMALL_ENOUGH: f32 = 0.92;
 /// With so much of all mass in the basket, strokes are no faster than brisk.
@@ -75,6 +83,8 @@ pub struct Bot {
     best: f32,
     waited: u32,
     skips: usize,
+    /// How near to the mouth the piece that matters has come since then [m].
+    near: f32,
     /// For how many ticks enough has been in the basket.
     pressed: u32,
 }
@@ -131,6 +141,7 @@ impl Bot {
             best: 0.0,
             waited: 0,
             skips: 0,
+            near: f32::INFINITY,
             pressed: 0,
         }
     }
@@ -141,7 +152,7 @@ impl Bot {
             BotKind::Idle => InputFrame::default(),
             BotKind::Random => self.wander(round),
             BotKind::Squeeze => match self.look(round) {
-                Some(sight) => InputFrame::towards(self.push(&sight)),
+                Some(sight) => InputFrame::towards(self.push::<D>(&sight)),
                 None => InputFrame::default(),
             },
             BotKind::Shave => match self.look(round) {
@@ -156,13 +167,23 @@ impl Bot {
         let inside = round.progress().inside;
         self.waited += 1;
         if inside > self.best + 0.02 {
-            (self.best, self.waited) = (inside, 0);
+            self.wait_from(inside);
             // In the tick before, who shaves may decide to go on shaving instead.
         } else if self.waited > PATIENCE + 1 {
-            (self.best, self.waited) = (inside, 0);
+            self.wait_from(inside);
             self.skips = (self.skips + 1) % 4;
         }
-        Sight::of(round, self.skips, 0.2 + 0.05 * self.temper[0])
+        let sight = Sight::of(round, self.skips, 0.2 + 0.05 * self.temper[0])?;
+        if D::N == 3 && self.gathers && sight.piece.far < self.near - NEARER {
+            self.near = sight.piece.far;
+            self.waited = self.waited.saturating_sub(ON_ITS_WAY);
+        }
+        Some(sight)
+    }
+
+    /// Begins to wait for more in the basket than there is.
+    fn wait_from(&mut self, inside: f32) {
+        (self.best, self.waited, self.near) = (inside, 0, f32::INFINITY);
     }
 
     fn wander<D: Dim>(&mut self, round: &Round<D>) -> InputFrame {
@@ -181,7 +202,7 @@ impl Bot {
     }
 
     /// From behind, towards the basket; away once enough is in.
-    fn push(&mut self, sight: &Sight) -> Vector {
+    fn push<D: Dim>(&mut self, sight: &Sight) -> Vector {
         let lets_go = self.pressed > LONG_ENOUGH;
         self.pressed = match sight.surplus > if lets_go { 0.0 } else { 0.05 } {
             true => self.pressed + 1,
@@ -201,7 +222,7 @@ impl Bot {
         // What is in pieces is pushed gently, and harder only when nothing moves.
         let firm = (2.0 * self.waited as f32 / PATIENCE as f32 - 1.0).max(0.0);
         let depth = match self.gathers {
-            true => 0.15 + 0.12 * firm,
+            true => 0.15 + FIRMER[D::N - 2] * firm,
             false => 0.25,
         } + 0.02 * self.temper[1];
         let goal = plus(piece.centre, scaled(piece.way, depth - piece.reach));
@@ -224,12 +245,14 @@ impl Bot {
         let is_stuck = self.skips == 0 && !sight.piece.fits && sight.surplus < -0.05;
         if self.gathers && self.waited > PATIENCE && is_stuck {
             (self.gathers, self.aim) = (false, SMALL_ENOUGH * sight.kept);
+            self.off = if D::N == 3 { 1.0 } else { self.off };
         }
         if self.gathers {
-            return self.push(sight);
+            return self.push::<D>(sight);
         }
         // Patience is for gathering, which begins with the largest piece every time.
-        (self.best, self.waited, self.skips) = (0.0, 0, 0);
+        self.wait_from(0.0);
+        self.skips = 0;
         let Sight {
             axis,
             across,
@@ -261,6 +284,7 @@ impl Bot {
                 let is_over = length(minus(sight.hand, to)) < 0.1 || patience == 0;
                 if is_over && sight.pieces <= self.pieces {
                     self.off *= CLOSER;
+                    self.gathers = self.off < CLOSEST[D::N - 2];
                 }
                 self.stroke = match is_over {
                     true => Stroke::Rest,

@@ -107,7 +107,7 @@ fn is_shaved(id: &str, seeds: RangeInclusive<u64>, least: usize) {
 }
 
 /// The levels of which the bot shaves fewer than eighteen of twenty, and how many it does.
-const FALLS_SHORT: [(&str, usize); 2] = [("twins", 12), ("hoop", 8)];
+const FALLS_SHORT: [(&str, usize); 1] = [("twins", 12)];
 
 #[test]
 fn what_can_be_shaved_in_the_plane_is_shaved() {

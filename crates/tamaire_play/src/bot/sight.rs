@@ -50,6 +50,8 @@ pub(super) struct Piece {
     pub reach: f32,
     /// Where a hand begins to push it [m].
     pub behind: Vector,
+    /// How far its middle is from that of the mouth [m].
+    pub far: f32,
     /// Whether it is no wider than the mouth.
     pub fits: bool,
 }
@@ -165,6 +167,7 @@ impl Piece {
             way,
             reach,
             behind: minus(centre, scaled(way, 1.1 * reach)),
+            far: length(minus(centre, basket.mouth)),
             fits: (0..3).all(|k| half[k] < basket.opening[k]),
         }
     }
