@@ -26,37 +26,33 @@
 //!
 //! A fragment is a letter for what it is, a digit for the format, bytes in base64url [RFC 4648, §5] and a `z`: after a `-` or a
 //! `_` at its end many programs that find addresses in a text would stop too early. The bytes are a checksum and what postcard
-//! makes of `SentRound` or `SentLevel`. Of a level that comes along only the name and a hash travel.
+//! makes of `SentRound` or `SentLevel`. For a QR code the bytes are told in decimal digits instead, behind a `0`. Of a level that comes along only the name and a hash travel.
 
 mod coder;
+mod digits;
+mod error;
 mod frames;
+mod level;
 
-use crate::assists::assisted;
-use crate::level::{LevelError, hash_of, plain, stem, text_of};
-use crate::replay::{MAX_NAME, VERSION};
+pub use error::{LinkError, MAX_LENGTH};
+
+use crate::level::{hash_of, stem};
+use crate::replay::{MAX_BYTES, MAX_NAME, VERSION};
 use crate::round::MAX_TICKS;
-use crate::{Assist, Level, Outcome, Replay, ReplayError};
+use crate::{Level, Outcome, Replay, ReplayError};
 use base64::Engine;
-use base64::prelude::{BASE64_STANDARD, BASE64_URL_SAFE_NO_PAD as BASE64};
+use base64::prelude::BASE64_URL_SAFE_NO_PAD as BASE64;
+use error::{all, taken};
 use fuwafuwa::hash::Hash;
-use fuwafuwa_scenes::Scene;
-use fuwafuwa_scenes::scene::BodyText;
-use miniz_oxide::{deflate, inflate};
+use level::SentLevel;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeSet;
 
-/// Most characters of a fragment, the `#` aside: browsers and chat programs bear as many.
-pub const MAX_LENGTH: usize = 16_000;
-
-/// Most bytes of a scene in one before they are deflated: an honest one that fits is smaller.
-const MAX_SCENE_BYTES: usize = 1 << 17;
-/// The format of a fragment.
+/// The formats of a fragment: in base64url, and in digits.
 const FORMAT: char = '1';
+const DIGITS: char = '0';
 const ROUND: char = 'r';
 const LEVEL: char = 'l';
 const END: char = 'z';
-/// How hard deflate looks for repetitions, 0 to 10.
-const EFFORT: u8 = 9;
 
 /// What a link brings.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,41 +61,6 @@ pub enum Link {
     Round(Replay),
     /// A level to play.
     Level(Level),
-}
-
-/// Why there is no such link.
-#[derive(Debug, thiserror::Error)]
-pub enum LinkError {
-    /// It is the address of something else.
-    #[error("this is no link to a round or a level of tamaire")]
-    Other,
-    /// Its format is a later one, or its round was played by later rules.
-    #[error("this link was made by a newer tamaire")]
-    Newer,
-    /// Not all of it arrived.
-    #[error("the end of this link is missing")]
-    CutShort,
-    /// It is not what was sent.
-    #[error("this link was changed on its way, or is not all of it")]
-    Damaged,
-    /// There is too much in it.
-    #[error("a link has {MAX_LENGTH} characters at most, and this one has {found}")]
-    TooLong {
-        /// How many characters it has, or would have.
-        found: usize,
-    },
-    /// It was played in a level that is another one here.
-    #[error("the level {0:?} is not what it was when this link was made")]
-    LevelDiffers(
-        /// The level.
-        String,
-    ),
-    /// The round is broken.
-    #[error(transparent)]
-    Round(#[from] ReplayError),
-    /// The level is broken.
-    #[error(transparent)]
-    Level(#[from] LevelError),
 }
 
 impl Link {
@@ -111,17 +72,9 @@ impl Link {
     pub fn read(text: &str) -> Result<Self, LinkError> {
         let fragment = text.split_once('#').map_or(text, |(_, fragment)| fragment);
         let fragment = fragment.trim();
-        let mut letters = fragment.chars();
-        let kind = letters.next().filter(|kind| [ROUND, LEVEL].contains(kind));
-        let kind = kind.ok_or(LinkError::Other)?;
-        match letters.next() {
-            Some(FORMAT) => {}
-            Some('2'..='9') => return Err(LinkError::Newer),
-            _ => return Err(LinkError::Other),
-        }
+        let (kind, body) = parts(fragment)?;
         check_length(fragment.len())?;
-        let body = letters.as_str().strip_suffix(END);
-        let bytes = unpacked(kind, body.ok_or(LinkError::CutShort)?)?;
+        let bytes = unpacked(kind, body)?;
         match kind {
             ROUND => SentRound::read(&bytes).map(Self::Round),
             _ => SentLevel::read(&bytes).map(Self::Level),
@@ -136,6 +89,34 @@ impl Replay {
     /// # Errors
     /// [`LinkError`] when it is too long, or could not be read again.
     pub fn link(&self) -> Result<String, LinkError> {
+        let fragment = self.fragment()?;
+        check_length(fragment.len())?;
+        Ok(fragment)
+    }
+
+    /// The same however long it is, for whoever keeps many rounds.
+    ///
+    /// # Errors
+    /// [`LinkError`] when it could not be read again.
+    pub fn fragment(&self) -> Result<String, LinkError> {
+        Ok(packed(ROUND, &(VERSION, self.sent()?)))
+    }
+
+    /// The same in digits, which take less room in a QR code, and more elsewhere.
+    ///
+    /// # Errors
+    /// As [`Replay::link`].
+    pub fn code(&self) -> Result<String, LinkError> {
+        let sent = (VERSION, self.sent()?);
+        let code = format!(
+            "{ROUND}{DIGITS}{}{END}",
+            digits::write(&sealed(ROUND, &sent))
+        );
+        check_length(code.len())?;
+        Ok(code)
+    }
+
+    fn sent(&self) -> Result<SentRound, LinkError> {
         self.check()?;
         if self.version != VERSION {
             let found = self.version;
@@ -145,15 +126,31 @@ impl Replay {
             return Err(ReplayError::LevelChanged.into());
         }
         let played: Vec<_> = (0..self.ticks()).map(|tick| self.frame(tick)).collect();
-        let sent = SentRound {
+        Ok(SentRound {
             game: self.game.clone(),
             level: SentLevel::of(&self.level, &self.scene)?,
             outcome: self.outcome,
             hashes: self.hashes.iter().map(|hash| last_digits(hash)).collect(),
             ticks: self.ticks() as u32,
             frames: frames::write(&played),
-        };
-        packed(ROUND, &(VERSION, sent))
+        })
+    }
+
+    /// The round in what [`Replay::fragment`] gave.
+    ///
+    /// # Errors
+    /// As [`Link::read`], but that it may be as long as a replay on file.
+    pub fn of_fragment(fragment: &str) -> Result<Self, LinkError> {
+        if fragment.len() > MAX_BYTES {
+            return Err(LinkError::TooLong {
+                found: fragment.len(),
+            });
+        }
+        let (kind, body) = parts(fragment)?;
+        match kind {
+            ROUND => SentRound::read(&unpacked(kind, body)?),
+            _ => Err(LinkError::Other),
+        }
     }
 }
 
@@ -164,7 +161,9 @@ impl Level {
     /// [`LinkError`] when it is too long.
     pub fn link(&self) -> Result<String, LinkError> {
         let id: String = stem(&self.id).chars().take(MAX_NAME).collect();
-        packed(LEVEL, &SentLevel::of(&id, self.scene())?)
+        let fragment = packed(LEVEL, &SentLevel::of(&id, self.scene())?);
+        check_length(fragment.len())?;
+        Ok(fragment)
     }
 }
 
@@ -218,118 +217,44 @@ impl SentRound {
     }
 }
 
-/// A level on its way.
-#[derive(Debug, Serialize, Deserialize)]
-struct SentLevel {
-    id: String,
-    content: Content,
-}
-
-#[derive(Debug, Serialize, Deserialize)]
-enum Content {
-    /// It comes along, with some things made easier.
-    Known {
-        assists: BTreeSet<Assist>,
-        /// Half of its hash.
-        hash: u32,
-    },
-    /// A [`WholeScene`], deflated.
-    Whole(Vec<u8>),
-}
-
-impl SentLevel {
-    fn of(id: &str, scene: &Scene) -> Result<Self, LinkError> {
-        let assists = scene.game.iter().flat_map(|game| &game.assists);
-        let assists: BTreeSet<Assist> = assists.copied().collect();
-        let known = Level::open(id).map(|level| assisted(level.scene(), &assists));
-        let content = match known {
-            Ok(known) if known == *scene => Content::Known {
-                assists,
-                hash: hash_of(scene) as u32,
-            },
-            _ => Content::Whole(deflated(id, scene)?),
-        };
-        let id = id.into();
-        Ok(Self { id, content })
-    }
-
-    fn read(bytes: &[u8]) -> Result<Level, LinkError> {
-        let sent: Self = all(bytes)?;
-        if sent.id.chars().count() > MAX_NAME {
-            return Err(LinkError::Damaged);
-        }
-        // One that somebody made never takes the place of one that comes along.
-        let is_made = matches!(sent.content, Content::Whole(_)) && !sent.id.contains('.');
-        let id = sent.id.clone() + if is_made { ".toml" } else { "" };
-        Ok(Level::of(&id, plain(sent.scene()?))?)
-    }
-
-    fn scene(&self) -> Result<Scene, LinkError> {
-        match &self.content {
-            Content::Known { assists, hash } => {
-                let scene = assisted(Level::open(&self.id)?.scene(), assists);
-                let is_same = hash_of(&scene) as u32 == *hash;
-                let differs = || LinkError::LevelDiffers(self.id.clone());
-                is_same.then_some(scene).ok_or_else(differs)
-            }
-            Content::Whole(deflated) => inflated(&self.id, deflated),
-        }
-    }
-}
-
-/// The text of a scene without the files that its bodies are made from, and those: their bytes are told in less room than
-/// their letters.
-type WholeScene = (String, Vec<Option<Vec<u8>>>);
-
-fn deflated(id: &str, scene: &Scene) -> Result<Vec<u8>, LinkError> {
-    let mut scene = scene.clone();
-    let files = scene.body.iter_mut().map(take_file).collect();
-    let whole: WholeScene = (text_of(&scene), files);
-    let bytes = postcard::to_stdvec(&whole).expect("a vector takes all");
-    let found = bytes.len();
-    if found > MAX_SCENE_BYTES {
-        let reason = format!("for a link, expected {MAX_SCENE_BYTES} bytes at most, found {found}");
-        return Err(LevelError::Unreadable(id.into(), reason).into());
-    }
-    Ok(deflate::compress_to_vec(&bytes, EFFORT))
-}
-
-fn inflated(id: &str, deflated: &[u8]) -> Result<Scene, LinkError> {
-    let bytes = inflate::decompress_to_vec_with_limit(deflated, MAX_SCENE_BYTES);
-    let (text, files): WholeScene = all(&bytes.map_err(|_| LinkError::Damaged)?)?;
-    let mut scene = Scene::read(id, &text, &[]).map_err(LevelError::Scene)?;
-    for (body, file) in scene.body.iter_mut().zip(files) {
-        body.content = file
-            .map(|bytes| BASE64_STANDARD.encode(bytes))
-            .or(body.content.take());
-    }
-    Ok(scene)
-}
-
-/// Takes out the bytes of the file that a body is made from; what is no base64 stays.
-fn take_file(body: &mut BodyText) -> Option<Vec<u8>> {
-    let bytes = BASE64_STANDARD.decode(body.content.as_ref()?).ok()?;
-    body.content = None;
-    Some(bytes)
-}
-
 /// The last four hexadecimal digits of a hash.
 fn last_digits(hash: &str) -> [u8; 2] {
     let number = u64::from_str_radix(hash, 16);
     (number.expect("that it is one was checked") as u16).to_be_bytes()
 }
 
-fn packed(kind: char, sent: &impl Serialize) -> Result<String, LinkError> {
-    let payload = postcard::to_stdvec(sent).expect("a vector takes all");
-    let bytes = [&checksum(kind, &payload)[..], &payload].concat();
-    let fragment = format!("{kind}{FORMAT}{}{END}", BASE64.encode(bytes));
-    check_length(fragment.len())?;
-    Ok(fragment)
+/// Of what kind a fragment is, and the rest of it.
+fn parts(fragment: &str) -> Result<(char, &str), LinkError> {
+    let mut letters = fragment.chars();
+    let kind = letters.next().filter(|kind| [ROUND, LEVEL].contains(kind));
+    let kind = kind.ok_or(LinkError::Other)?;
+    let rest = letters.as_str();
+    match letters.next() {
+        Some(FORMAT | DIGITS) => Ok((kind, rest)),
+        Some('2'..='9') => Err(LinkError::Newer),
+        _ => Err(LinkError::Other),
+    }
 }
 
-/// What the characters between the format and the end of a link of this kind were made from.
-fn unpacked(kind: char, body: &str) -> Result<Vec<u8>, LinkError> {
-    let mut bytes = BASE64.decode(body).map_err(|_| LinkError::Damaged)?;
+fn packed(kind: char, sent: &impl Serialize) -> String {
+    format!("{kind}{FORMAT}{}{END}", BASE64.encode(sealed(kind, sent)))
+}
+
+/// What is sent as bytes, behind their checksum.
+fn sealed(kind: char, sent: &impl Serialize) -> Vec<u8> {
+    let payload = postcard::to_stdvec(sent).expect("a vector takes all");
+    [&checksum(kind, &payload)[..], &payload].concat()
+}
+
+/// What the rest of a fragment of this kind was made from.
+fn unpacked(kind: char, rest: &str) -> Result<Vec<u8>, LinkError> {
+    let (format, body) = rest.split_at(1);
+    let body = body.strip_suffix(END).ok_or(LinkError::CutShort)?;
+    let bytes = match format.starts_with(DIGITS) {
+        true => digits::read(body),
+        false => BASE64.decode(body).ok(),
+    };
+    let mut bytes = bytes.ok_or(LinkError::Damaged)?;
     let payload = bytes.split_off(bytes.len().min(4));
     let is_whole = bytes == checksum(kind, &payload);
     is_whole.then_some(payload).ok_or(LinkError::Damaged)
@@ -341,17 +266,6 @@ fn checksum(kind: char, payload: &[u8]) -> [u8; 4] {
     (Hash::of(&bytes) as u32).to_le_bytes()
 }
 
-/// The first value in the bytes, and the rest.
-fn taken<'a, T: Deserialize<'a>>(bytes: &'a [u8]) -> Result<(T, &'a [u8]), LinkError> {
-    postcard::take_from_bytes(bytes).map_err(|_| LinkError::Damaged)
-}
-
-/// The value that the bytes are.
-fn all<'a, T: Deserialize<'a>>(bytes: &'a [u8]) -> Result<T, LinkError> {
-    let (value, rest) = taken(bytes)?;
-    rest.is_empty().then_some(value).ok_or(LinkError::Damaged)
-}
-
 fn check_length(found: usize) -> Result<(), LinkError> {
     let is_short = found <= MAX_LENGTH;
     is_short.then_some(()).ok_or(LinkError::TooLong { found })
@@ -359,7 +273,9 @@ fn check_length(found: usize) -> Result<(), LinkError> {
 
 #[cfg(test)]
 mod tests {
+    use super::level::{Content, EFFORT, MAX_SCENE_BYTES, WholeScene};
     use super::*;
+    use miniz_oxide::deflate;
     use std::time::Instant;
 
     fn round(level: SentLevel, ticks: u32, frames: Vec<u8>) -> SentRound {
@@ -387,7 +303,7 @@ mod tests {
 
     fn refusal(kind: char, sent: &impl Serialize) -> String {
         let start = Instant::now();
-        let read = Link::read(&packed(kind, sent).unwrap());
+        let read = Link::read(&packed(kind, sent));
         let seconds = start.elapsed().as_secs_f32();
         assert!(seconds < 2.0, "{seconds} s");
         read.unwrap_err().to_string()
@@ -466,7 +382,7 @@ mod tests {
             let frames = [way].into_iter().chain(told).collect();
             let sent = round(classic(), MAX_TICKS as u32, frames);
             let start = Instant::now();
-            let link = Link::read(&packed(ROUND, &(VERSION, sent)).unwrap());
+            let link = Link::read(&packed(ROUND, &(VERSION, sent)));
             let seconds = start.elapsed().as_secs_f32();
             assert!(seconds < 2.0, "{seconds} s");
             let Ok(Link::Round(replay)) = link else {

@@ -416,3 +416,58 @@ fn what_could_not_be_read_again_makes_no_link() {
         "{hash}"
     );
 }
+
+#[test]
+fn a_round_that_is_too_long_for_a_link_can_be_kept_all_the_same() {
+    let mut round = AnyRound::new(Arc::new(Level::open("classic").unwrap()));
+    let mut random = fastrand::Rng::with_seed(1);
+    for _ in 0..3000 {
+        let places = [0, 1].map(|_| 4.0 * random.f32() - 2.0);
+        round.step(InputFrame::towards([places[0], places[1], 0.0]));
+    }
+    let replay = round.replay();
+    let long = replay.fragment().unwrap();
+    assert!(
+        matches!(replay.link(), Err(LinkError::TooLong { .. })),
+        "{}",
+        long.len()
+    );
+    assert!(matches!(Link::read(&long), Err(LinkError::TooLong { .. })));
+    let kept = Replay::of_fragment(&long).unwrap();
+    assert_eq!(
+        (kept.ticks(), kept.outcome),
+        (replay.ticks(), replay.outcome)
+    );
+    assert!(matches!(
+        Replay::of_fragment(&long[..99]),
+        Err(LinkError::CutShort)
+    ));
+}
+
+#[test]
+fn a_round_in_digits_is_the_same_round() {
+    let mut round = AnyRound::new(Arc::new(Level::open("classic").unwrap()));
+    for tick in 0..120 {
+        round.step(InputFrame::towards([0.01 * tick as f32, 0.2, 0.0]));
+    }
+    let replay = round.replay();
+    let code = replay.code().unwrap();
+    assert!(
+        code[2..code.len() - 1]
+            .bytes()
+            .all(|byte| byte.is_ascii_digit()),
+        "{code}"
+    );
+    let Ok(Link::Round(read)) = Link::read(&address("https://example.org/", &code)) else {
+        panic!("{code}");
+    };
+    let Ok(Link::Round(linked)) = Link::read(&replay.link().unwrap()) else {
+        panic!("a link");
+    };
+    assert_eq!(read, linked);
+    assert!(matches!(Link::read(&code[..30]), Err(LinkError::CutShort)));
+    assert!(matches!(
+        Link::read(&code.replacen('5', "6", 1)),
+        Err(LinkError::Damaged)
+    ));
+}
