@@ -1,0 +1,319 @@
+//! Whether a file can be used, and where it goes if not.
+
+use super::read;
+use super::schema::{self, APPLICATION_ID, VERSION};
+use crate::{Error, Id, Moment};
+use rusqlite::config::DbConfig;
+use rusqlite::{Connection, ErrorCode, OpenFlags};
+use std::ffi::OsString;
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// A file that could not be used, and where it is now, with what stood beside it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SetAside {
+    /// Its name now.
+    pub path: PathBuf,
+    /// What was wrong.
+    pub reason: String,
+}
+
+/// For so long another program is waited for.
+const PATIENCE: Duration = Duration::from_secs(2);
+/// What stands beside a file of SQLite, by what is added to its name.
+const BESIDE: [&str; 3] = ["-wal", "-shm", "-journal"];
+/// Versions that far ahead are those of a damaged file.
+const FAR: i64 = 1000;
+
+/// Opens a file to write it, and begins one where there is none.
+///
+/// # Errors
+/// [`Error::Damaged`] where it cannot be used: it was not changed then.
+pub fn open(path: &Path) -> Result<Connection, Error> {
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder).map_err(|error| unusable(path, &error))?;
+    }
+    let is_there = path.try_exists().map_err(|error| unusable(path, &error))?;
+    if !is_there && size(&beside(path, BESIDE[0])) > 0 {
+        return Err(damaged(
+            path,
+            "the file is gone, and only what stood beside it is left",
+        ));
+    }
+    if !is_there {
+        create(path)?;
+    } else if size(path) == 0 {
+        return Err(damaged(path, "it is empty"));
+    }
+    let mut connection = connect(path, OpenFlags::SQLITE_OPEN_READ_WRITE)?;
+    check(path, &connection)?;
+    if connection
+        .is_readonly("main")
+        .map_err(|error| told(path, error))?
+    {
+        let opened = File::options().write(true).open(path);
+        opened.map_err(|error| unusable(path, &error))?;
+        return Err(damaged(path, "its header says that it may not be written"));
+    }
+    begin(&mut connection).map_err(|error| told(path, error))?;
+    Ok(connection)
+}
+
+/// Opens a file that was checked already, to write it.
+#[cfg(feature = "postgres")]
+pub fn attach(path: &Path) -> Result<Connection, Error> {
+    let mut connection = connect(path, OpenFlags::SQLITE_OPEN_READ_WRITE)?;
+    check_kind(path, &connection)?;
+    begin(&mut connection).map_err(|error| told(path, error))?;
+    Ok(connection)
+}
+
+/// Opens a file to read it.
+pub fn read(path: &Path) -> Result<Connection, Error> {
+    let found = fs::metadata(path).map_err(|error| unusable(path, &error))?;
+    if found.len() == 0 {
+        return Err(damaged(path, "it is empty"));
+    }
+    let connection = connect(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
+    let connection = match check(path, &connection) {
+        // Where nothing can be written, there is no room for what readers tell each other.
+        Err(Error::Unusable { .. }) if size(&beside(path, BESIDE[0])) == 0 => {
+            let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_URI;
+            let connection = connect(&unchanging(path), flags)?;
+            check(path, &connection)?;
+            connection
+        }
+        Err(Error::Unusable { reason, .. }) => {
+            let reason =
+                format!("{reason}; copy it, and what stands beside it, to where it can be written");
+            let path = path.into();
+            return Err(Error::Unusable { path, reason });
+        }
+        other => other.map(|()| connection)?,
+    };
+    match schema::version(&connection).map_err(|error| told(path, error))? {
+        VERSION => Ok(connection),
+        _ => Err(damaged(
+            path,
+            "it is of an older version: the game brings it up to date as it opens it",
+        )),
+    }
+}
+
+/// Gives a file that cannot be used, and what stands beside it, a name with the date.
+pub fn set_aside(path: &Path, reason: String) -> Result<SetAside, Error> {
+    let aside = name_aside(path, Moment::now());
+    let rename = |from: &Path, to: &Path| match fs::rename(from, to) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(unusable(from, &error)),
+        _ => Ok(()),
+    };
+    // The file first: what is left beside no file is found and renamed the next time, and never taken for a new one's.
+    rename(path, &aside)?;
+    for ending in BESIDE {
+        rename(&beside(path, ending), &beside(&aside, ending))?;
+    }
+    Ok(SetAside {
+        path: aside,
+        reason,
+    })
+}
+
+/// What it takes on the disk, with what stands beside it [bytes].
+pub fn bytes(path: &Path) -> u64 {
+    let others = BESIDE.map(|ending| size(&beside(path, ending)));
+    size(path) + others.iter().sum::<u64>()
+}
+
+/// What an error of SQLite means for who keeps this file.
+pub fn told(path: &Path, error: rusqlite::Error) -> Error {
+    use rusqlite::Error as Sql;
+    let (path, reason) = (path.to_path_buf(), error.to_string());
+    match (error.sqlite_error_code(), &error) {
+        (Some(ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked), _)
+        | (Some(ErrorCode::FileLockingProtocolFailed), _) => Error::Locked(path),
+        (Some(ErrorCode::DiskFull), _) => Error::Full(path),
+        (Some(ErrorCode::DatabaseCorrupt | ErrorCode::NotADatabase | ErrorCode::TooBig), _) => {
+            Error::Damaged { path, reason }
+        }
+        (Some(ErrorCode::ConstraintViolation | ErrorCode::TypeMismatch), _) => {
+            Error::Refused { path, reason }
+        }
+        (Some(ErrorCode::Unknown), Sql::SqliteFailure(_, Some(reason))) if lacks(reason) => {
+            let reason = reason.clone();
+            Error::Damaged { path, reason }
+        }
+        // What should be in it is not, or is something else.
+        (_, Sql::QueryReturnedNoRows | Sql::Utf8Error(..))
+        | (_, Sql::InvalidColumnType(..) | Sql::IntegralValueOutOfRange(..))
+        | (_, Sql::FromSqlConversionFailure(..)) => Error::Damaged { path, reason },
+        _ => Error::Unusable { path, reason },
+    }
+}
+
+/// Whether what SQLite says is that a file is not as it should be.
+fn lacks(reason: &str) -> bool {
+    let texts = [
+        "no such table",
+        "no such column",
+        " columns but ",
+        "unsupported file format",
+    ];
+    texts.iter().any(|text| reason.contains(text))
+}
+
+pub fn unusable(path: &Path, error: &io::Error) -> Error {
+    let (path, reason) = (path.into(), error.to_string());
+    Error::Unusable { path, reason }
+}
+
+fn damaged(path: &Path, reason: &str) -> Error {
+    let (path, reason) = (path.into(), reason.into());
+    Error::Damaged { path, reason }
+}
+
+/// Begins a file: under another name until all of it is there, so that nobody ever finds a part of one.
+fn create(path: &Path) -> Result<(), Error> {
+    let new = path.with_added_extension(format!("new-{}", Id::random()));
+    let make = || {
+        let mut connection = connect(
+            &new,
+            OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_CREATE,
+        )?;
+        schema::migrate(&mut connection).map_err(|error| told(path, error))?;
+        drop(connection);
+        match fs::hard_link(&new, path) {
+            // Others may have been faster: then it is theirs.
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Ok(()),
+            // Not every disk has links.
+            Err(_) => fs::rename(&new, path).map_err(|error| unusable(path, &error)),
+            Ok(()) => Ok(()),
+        }
+    };
+    let made = make();
+    let _ = fs::remove_file(&new);
+    made
+}
+
+fn connect(path: &Path, flags: OpenFlags) -> Result<Connection, Error> {
+    let open = || {
+        let flags = flags | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+        let connection = Connection::open_with_flags(path, flags)?;
+        connection.busy_timeout(PATIENCE)?;
+        // Nothing that somebody else put into a file is run, and a file that cannot be used stays as it is.
+        connection.set_db_config(DbConfig::SQLITE_DBCONFIG_TRUSTED_SCHEMA, false)?;
+        connection.set_db_config(DbConfig::SQLITE_DBCONFIG_ENABLE_TRIGGER, false)?;
+        connection.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true)?;
+        Ok(connection)
+    };
+    open().map_err(|error| told(path, error))
+}
+
+/// Whether it is a whole logbook that is known here. All of it is read.
+fn check(path: &Path, connection: &Connection) -> Result<(), Error> {
+    check_kind(path, connection)?;
+    let page = connection.pragma_query_value(None, "page_size", |row| row.get(0));
+    let page: u64 = page.map_err(|error| told(path, error))?;
+    // While there is a log, the end of the file may be in there.
+    let has_log = size(&beside(path, BESIDE[0])) > 0;
+    if !has_log && !size(path).is_multiple_of(page) {
+        return Err(damaged(path, "its end is missing"));
+    }
+    let check = "PRAGMA quick_check(1)";
+    let found: rusqlite::Result<String> = connection.query_row(check, [], |row| row.get(0));
+    match found.map_err(|error| told(path, error))?.as_str() {
+        "ok" => check_tables(connection).map_err(|error| told(path, error)),
+        reason => Err(damaged(path, reason.lines().last().unwrap_or(reason))),
+    }
+}
+
+fn check_kind(path: &Path, connection: &Connection) -> Result<(), Error> {
+    let ask = || {
+        Ok((
+            schema::application(connection)?,
+            schema::version(connection)?,
+        ))
+    };
+    match ask().map_err(|error| told(path, error))? {
+        (APPLICATION_ID, 1..=VERSION) => Ok(()),
+        (APPLICATION_ID, found) if (VERSION..VERSION + FAR).contains(&found) => {
+            let (path, known) = (path.into(), VERSION);
+            Err(Error::Newer { path, found, known })
+        }
+        (APPLICATION_ID, _) => Err(damaged(path, "its version is none")),
+        _ => Err(damaged(path, "it is a database of something else")),
+    }
+}
+
+/// Whether what is read and written is there.
+fn check_tables(connection: &Connection) -> rusqlite::Result<()> {
+    if schema::version(connection)? < VERSION {
+        return Ok(());
+    }
+    for sql in [
+        read::VISITS.in_range(),
+        read::ROUNDS.in_range(),
+        read::EVENTS.in_range(),
+    ] {
+        connection.prepare(&sql)?;
+    }
+    let book = "SELECT id, stand, changes, server, sent FROM book";
+    connection.query_row(book, [], |row| row.get::<_, [u8; 16]>(0))?;
+    Ok(())
+}
+
+/// Brings a file that was checked to where rows can be written: what is committed is on the disk then, and outlasts a power
+/// cut (`synchronous = FULL`: the log is flushed with every commit).
+fn begin(connection: &mut Connection) -> rusqlite::Result<()> {
+    const MOST_LOG: i64 = 1 << 24;
+    connection.pragma_update_and_check(None, "journal_mode", "wal", |_| Ok(()))?;
+    connection.pragma_update(None, "synchronous", "full")?;
+    connection.pragma_update(None, "foreign_keys", true)?;
+    connection.pragma_update_and_check(None, "journal_size_limit", MOST_LOG, |_| Ok(()))?;
+    schema::migrate(connection)?;
+    connection.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, false)?;
+    Ok(())
+}
+
+fn beside(path: &Path, ending: &str) -> PathBuf {
+    let mut name = OsString::from(path);
+    name.push(ending);
+    name.into()
+}
+
+fn size(path: &Path) -> u64 {
+    fs::metadata(path).map_or(0, |found| found.len())
+}
+
+/// `logbook.damaged-2026-11-23-101502.sqlite`, with a number where there is one already.
+fn name_aside(path: &Path, now: Moment) -> PathBuf {
+    let part = |part: Option<&std::ffi::OsStr>| {
+        part.map_or_else(String::new, |part| part.to_string_lossy().into_owned())
+    };
+    let stem = part(path.file_stem());
+    let ending = path
+        .extension()
+        .map_or_else(String::new, |ending| format!(".{}", part(Some(ending))));
+    let date = now.file_stem();
+    let names = (1..).map(|count| match count {
+        1 => format!("{stem}.damaged-{date}{ending}"),
+        _ => format!("{stem}.damaged-{date}-{count}{ending}"),
+    });
+    let mut paths = names.map(|name| path.with_file_name(name));
+    let is_free = |path: &PathBuf| !path.exists() && !beside(path, BESIDE[0]).exists();
+    paths.find(is_free).expect("numbers do not end")
+}
+
+/// A file as an address that tells SQLite that nobody writes it.
+fn unchanging(path: &Path) -> PathBuf {
+    let mut address = String::from("file:");
+    for byte in path.as_os_str().as_encoded_bytes() {
+        match byte {
+            b'/' | b'.' | b'-' | b'_' => address.push(char::from(*byte)),
+            byte if byte.is_ascii_alphanumeric() => address.push(char::from(*byte)),
+            byte => address.push_str(&format!("%{byte:02x}")),
+        }
+    }
+    (address + "?immutable=1").into()
+}

@@ -1,0 +1,118 @@
+//! Rows as a stand has them.
+#![allow(dead_code)] // no test uses all of it
+
+use std::path::PathBuf;
+use tamaire_logbook::{End, Entry, Error, Event, Id, Kind, Logbook, Moment, Round, Visit};
+use tamaire_play::Route;
+use tempfile::TempDir;
+
+pub const STAND: &str = "hall 2";
+/// A Monday in November of 2026, in the morning.
+pub const MORNING: Moment = Moment {
+    utc_ms: 1_795_420_800_000,
+    offset_s: 3600,
+};
+pub const MINUTE: i64 = 60_000;
+pub const DAY: i64 = 24 * 60 * MINUTE;
+
+/// A folder for a logbook, and its name in there: in memory where that can be, for a disk may be busy.
+pub fn place() -> (TempDir, PathBuf) {
+    let folder = tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir());
+    let folder = folder.unwrap();
+    let path = folder.path().join("kept/logbook.sqlite");
+    (folder, path)
+}
+
+/// A new one.
+pub fn open(path: &std::path::Path) -> Logbook {
+    let (book, set_aside) = Logbook::open(path, STAND).unwrap();
+    assert_eq!(set_aside, None);
+    book
+}
+
+pub fn visit(began: Moment) -> Visit {
+    Visit {
+        id: Id::random(),
+        stand: STAND.into(),
+        began,
+        ended: None,
+        language: "de".into(),
+    }
+}
+
+pub fn round(visit: &Visit, number: u32, won: Option<Route>) -> Round {
+    Round {
+        id: Id::random(),
+        visit: visit.id,
+        stand: visit.stand.clone(),
+        number,
+        began: visit.began.after(i64::from(number) * MINUTE),
+        seconds: 10.0 + number as f32,
+        level: "classic".into(),
+        level_hash: u64::MAX - 7,
+        players: 1,
+        end: won.map_or(End::Retried, |_| End::Won),
+        route: won,
+        kept: 0.987_654_3,
+        inside: 0.5,
+        pieces: 3,
+        lost: 1,
+        dare: (number > 1).then_some(Route::Shave),
+        replay: "r1abcz".into(),
+    }
+}
+
+pub fn event(at: Moment, kind: Kind) -> Event {
+    Event {
+        id: Id::random(),
+        stand: STAND.into(),
+        at,
+        kind,
+        text: "what happened, at length".into(),
+    }
+}
+
+/// A visit of three rounds, the last of which was won, and its end.
+pub fn entries(began: Moment) -> Vec<Entry> {
+    let visit = visit(began);
+    let at = began.after(10 * MINUTE);
+    let rounds = [None, None, Some(Route::Squeeze)];
+    let rounds = (1..).zip(rounds);
+    let rounds = rounds.map(|(number, won)| Entry::Round(round(&visit, number, won)));
+    let mut all = vec![Entry::VisitBegan(visit.clone())];
+    all.extend(rounds);
+    let (id, language) = (visit.id, String::new());
+    all.push(Entry::VisitEnded { id, at, language });
+    all
+}
+
+/// A replay as long as most.
+pub fn long_replay() -> String {
+    let letters = (0..3000).map(|k: u32| char::from(b'a' + (k * k % 23) as u8));
+    format!("r1{}z", letters.collect::<String>())
+}
+
+/// All that is in it.
+#[derive(Debug, Default, PartialEq)]
+pub struct All {
+    pub visits: Vec<Visit>,
+    pub rounds: Vec<Round>,
+    pub events: Vec<Event>,
+}
+
+pub fn all(book: &Logbook) -> Result<All, Error> {
+    let mut all = All::default();
+    book.visits(.., |visit| {
+        all.visits.push(visit);
+        Ok::<(), Error>(())
+    })?;
+    book.rounds(.., |round| {
+        all.rounds.push(round);
+        Ok::<(), Error>(())
+    })?;
+    book.events(.., |event| {
+        all.events.push(event);
+        Ok::<(), Error>(())
+    })?;
+    Ok(all)
+}

@@ -1,0 +1,334 @@
+//! Files that cannot be used, and copies that others made.
+
+mod common;
+
+use common::{MORNING, STAND, all, entries, open, place};
+use rusqlite::Connection;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::thread;
+use tamaire_logbook::{Error, Logbook};
+
+/// Writes some days, and leaves the file without anything beside it.
+fn fill(path: &Path) {
+    let mut book = open(path);
+    for _ in 0..30 {
+        book.write_all(&entries(MORNING)).unwrap();
+    }
+}
+
+fn beside(path: &Path, ending: &str) -> PathBuf {
+    path.with_added_extension(ending)
+        .to_string_lossy()
+        .replace(".-", "-")
+        .into()
+}
+
+/// What is in a file that was set aside, and what the new one is like.
+fn expect_set_aside(path: &Path, reason: &str) -> Vec<u8> {
+    let (mut book, set_aside) = Logbook::open(path, STAND).unwrap();
+    let set_aside = set_aside.expect("it cannot be used");
+    assert!(set_aside.reason.contains(reason), "{set_aside:?}");
+    let name = set_aside.path.file_name().unwrap().to_str().unwrap();
+    assert!(
+        name.starts_with("logbook.damaged-20") && name.ends_with(".sqlite"),
+        "{name}"
+    );
+    assert_eq!(all(&book).unwrap().rounds.len(), 0);
+    book.write_all(&entries(MORNING)).unwrap();
+    drop(book);
+    assert_eq!(all(&open(path)).unwrap().rounds.len(), 3);
+    fs::read(&set_aside.path).unwrap()
+}
+
+#[test]
+fn what_is_no_logbook_is_set_aside() {
+    let (_folder, path) = place();
+    fs::create_dir_all(path.parent().unwrap()).unwrap();
+    fs::write(&path, "").unwrap();
+    assert_eq!(expect_set_aside(&path, "empty"), b"");
+    // Another one in the same second gets another name.
+    for text in ["Dear diary", &"no database. ".repeat(1000)] {
+        fs::write(&path, text).unwrap();
+        assert_eq!(expect_set_aside(&path, "not a database"), text.as_bytes());
+    }
+    fs::remove_file(&path).unwrap();
+    let other = Connection::open(&path).unwrap();
+    other
+        .execute_batch("CREATE TABLE recipes (text TEXT)")
+        .unwrap();
+    drop(other);
+    expect_set_aside(&path, "something else");
+    // One that says that it is one, and has other tables.
+    let other = Connection::open(&path).unwrap();
+    other
+        .execute_batch("DROP TABLE replays; ALTER TABLE rounds DROP COLUMN inside")
+        .unwrap();
+    drop(other);
+    expect_set_aside(&path, "no such");
+    let other = Connection::open(&path).unwrap();
+    other.execute_batch("DELETE FROM book").unwrap();
+    drop(other);
+    expect_set_aside(&path, "no rows");
+}
+
+/// Whoever comes first, all of them write the same one.
+#[test]
+fn one_that_several_begin_at_once_is_one() {
+    let (_folder, path) = place();
+    thread::scope(|scope| {
+        for _ in 0..8 {
+            scope.spawn(|| open(&path).write_all(&entries(MORNING)).unwrap());
+        }
+    });
+    assert_eq!(all(&open(&path)).unwrap().rounds.len(), 24);
+    let names = fs::read_dir(path.parent().unwrap()).unwrap();
+    let is_ours = |name: String| name.starts_with("logbook.sqlite") && !name.contains("new");
+    assert!(
+        names
+            .into_iter()
+            .all(|entry| is_ours(entry.unwrap().file_name().into_string().unwrap()))
+    );
+}
+
+#[test]
+fn a_file_that_was_cut_short_is_set_aside_as_it_was() {
+    let (_folder, path) = place();
+    fill(&path);
+    let whole = fs::read(&path).unwrap();
+    assert!(whole.len() > 10 * 4096, "{}", whole.len());
+    for length in [
+        1,
+        99,
+        100,
+        512,
+        4095,
+        4096,
+        5000,
+        3 * 4096,
+        whole.len() - 4096,
+        whole.len() - 1,
+    ] {
+        fs::write(&path, &whole[..length]).unwrap();
+        assert_eq!(expect_set_aside(&path, ""), whole[..length]);
+    }
+}
+
+/// Whatever happened to its bytes, it is opened, or set aside as it was; and then it is written and read without a panic.
+#[test]
+fn a_file_of_which_bytes_were_changed_is_borne() {
+    let (_folder, path) = place();
+    fill(&path);
+    let whole = fs::read(&path).unwrap();
+    let mut random = fastrand::Rng::with_seed(3);
+    let (mut aside, mut silent) = (0, 0);
+    for attempt in 0..300 {
+        let mut changed = whole.clone();
+        // The header and the roots first, each byte of them; then anywhere, one or many.
+        match attempt {
+            0..100 => changed[attempt] ^= 0xff,
+            100..200 => {
+                let place = random.usize(..4096 * 12);
+                changed[place] = random.u8(..);
+            }
+            _ => {
+                let place = random.usize(..whole.len() - 600);
+                changed[place..place + random.usize(1..600)].fill_with(|| random.u8(..));
+            }
+        }
+        fs::write(&path, &changed).unwrap();
+        match Logbook::open(&path, STAND) {
+            Ok((mut book, Some(set_aside))) => {
+                aside += 1;
+                assert_eq!(fs::read(&set_aside.path).unwrap(), changed);
+                fs::remove_file(&set_aside.path).unwrap();
+                book.write_all(&entries(MORNING)).unwrap();
+            }
+            // What is not seen at once may be seen later, and is told.
+            Ok((mut book, None)) => {
+                silent += 1;
+                let written = book.write_all(&entries(MORNING));
+                for result in [written, all(&book).map(drop), book.today(MORNING).map(drop)] {
+                    assert!(
+                        matches!(
+                            result,
+                            Ok(()) | Err(Error::Damaged { .. } | Error::Refused { .. })
+                        ),
+                        "{attempt}: {result:?}"
+                    );
+                }
+            }
+            Err(Error::Newer { .. }) => assert!((60..64).contains(&attempt), "{attempt}"),
+            Err(error) => panic!("{attempt}: {error}"),
+        }
+        for ending in ["-wal", "-shm"] {
+            let _ = fs::remove_file(beside(&path, ending));
+        }
+    }
+    assert!(aside > 50 && silent > 50, "{aside}, {silent}");
+}
+
+#[test]
+fn what_stood_beside_a_damaged_file_goes_with_it() {
+    let (_folder, path) = place();
+    fill(&path);
+    let mut book = open(&path);
+    book.write_all(&entries(MORNING)).unwrap();
+    let (file, log) = (
+        fs::read(&path).unwrap(),
+        fs::read(beside(&path, "-wal")).unwrap(),
+    );
+    drop(book);
+    assert!(log.len() > 4096);
+    fs::write(&path, &file[..file.len() / 2]).unwrap();
+    fs::write(beside(&path, "-wal"), &log).unwrap();
+    let (book, set_aside) = Logbook::open(&path, STAND).unwrap();
+    let aside = set_aside.unwrap().path;
+    assert_eq!(
+        all(&book).unwrap().rounds.len(),
+        0,
+        "an old log is never taken for a new file's"
+    );
+    assert_eq!(fs::read(&aside).unwrap(), file[..file.len() / 2]);
+    assert_eq!(fs::read(beside(&aside, "-wal")).unwrap(), log);
+    drop(book);
+    // The same where the file is gone altogether.
+    fs::remove_file(&path).unwrap();
+    fs::write(beside(&path, "-wal"), &log).unwrap();
+    let (book, set_aside) = Logbook::open(&path, STAND).unwrap();
+    let set_aside = set_aside.unwrap();
+    assert!(set_aside.reason.contains("gone"), "{set_aside:?}");
+    assert_eq!(all(&book).unwrap().rounds.len(), 0);
+    assert_eq!(fs::read(beside(&set_aside.path, "-wal")).unwrap(), log);
+}
+
+#[test]
+fn what_a_newer_version_wrote_is_left_alone() {
+    let (_folder, path) = place();
+    fill(&path);
+    let later = Connection::open(&path).unwrap();
+    later
+        .execute_batch("CREATE TABLE weather (text TEXT); PRAGMA user_version = 2")
+        .unwrap();
+    drop(later);
+    let before = fs::read(&path).unwrap();
+    for error in [
+        Logbook::open(&path, STAND).map(drop),
+        Logbook::read(&path).map(drop),
+    ] {
+        let error = error.unwrap_err().to_string();
+        let expected = "this logbook is of version 2, and this program knows 1 at most";
+        assert!(
+            error.contains(expected) && error.contains("logbook.sqlite"),
+            "{error}"
+        );
+    }
+    assert_eq!(fs::read(&path).unwrap(), before);
+    let names = fs::read_dir(path.parent().unwrap()).unwrap();
+    let names = names.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    assert!(
+        names
+            .into_iter()
+            .all(|name| name.starts_with("logbook.sqlite"))
+    );
+}
+
+#[test]
+fn one_that_another_program_holds_is_told_and_can_be_tried_again() {
+    let (_folder, path) = place();
+    let mut book = open(&path);
+    let other = Connection::open(&path).unwrap();
+    other.execute_batch("BEGIN IMMEDIATE").unwrap();
+    let error = book.write_all(&entries(MORNING)).unwrap_err();
+    assert!(matches!(error, Error::Locked(_)), "{error}");
+    assert!(
+        error.to_string().contains("another program is writing"),
+        "{error}"
+    );
+    other.execute_batch("COMMIT").unwrap();
+    book.write_all(&entries(MORNING)).unwrap();
+    assert_eq!(all(&book).unwrap().rounds.len(), 3);
+}
+
+#[test]
+fn one_that_is_full_goes_on_when_there_is_room() {
+    let (_folder, path) = place();
+    fill(&path);
+    let mut book = open(&path);
+    let before = all(&book).unwrap();
+    book.limit(1).unwrap();
+    let refused = (0..1000).find_map(|_| book.write_all(&entries(MORNING)).err());
+    let refused = refused.expect("there is an end to it");
+    assert!(matches!(refused, Error::Full(_)), "{refused}");
+    assert!(
+        refused.to_string().ends_with("the disk is full"),
+        "{refused}"
+    );
+    let kept = all(&book).unwrap();
+    assert_eq!(
+        kept.rounds.len() % 3,
+        0,
+        "all of what is told at once, or nothing"
+    );
+    assert!(kept.rounds.len() >= before.rounds.len());
+    book.limit(1 << 30).unwrap();
+    book.write_all(&entries(MORNING)).unwrap();
+    assert_eq!(all(&book).unwrap().rounds.len(), kept.rounds.len() + 3);
+}
+
+#[test]
+fn what_cannot_be_written_or_found_is_told() {
+    let (folder, path) = place();
+    fs::write(
+        folder.path().join("kept"),
+        "a file where a folder should be",
+    )
+    .unwrap();
+    let error = Logbook::open(&path, STAND).unwrap_err();
+    assert!(matches!(error, Error::Unusable { .. }), "{error}");
+    assert!(
+        error
+            .to_string()
+            .contains("kept/logbook.sqlite: it cannot be"),
+        "{error}"
+    );
+    let error = Logbook::read(&folder.path().join("none")).unwrap_err();
+    assert!(matches!(error, Error::Unusable { .. }), "{error}");
+    let error = Logbook::read(&folder.path().join("kept")).unwrap_err();
+    assert!(matches!(error, Error::Damaged { .. }), "{error}");
+    assert!(
+        folder.path().join("kept").is_file(),
+        "reading sets nothing aside"
+    );
+    // A folder in which nobody may write.
+    #[cfg(target_os = "linux")]
+    for name in ["/proc/none/logbook.sqlite", "/proc/logbook.sqlite", "/proc"] {
+        let error = Logbook::open(Path::new(name), STAND).unwrap_err();
+        assert!(matches!(error, Error::Unusable { .. }), "{name}: {error}");
+    }
+}
+
+/// A file and its log, copied while both are in use, are read with all that was committed, and the original goes on.
+#[test]
+fn a_copy_taken_while_it_is_written_is_read() {
+    let (folder, path) = place();
+    fill(&path);
+    let mut book = open(&path);
+    let mut told = 90;
+    for attempt in 0..20 {
+        book.write_all(&entries(MORNING)).unwrap();
+        told += 3;
+        let copy = folder.path().join(format!("copy {attempt}?.sqlite"));
+        fs::copy(&path, &copy).unwrap();
+        fs::copy(beside(&path, "-wal"), beside(&copy, "-wal")).unwrap();
+        let copy = Logbook::read(&copy).unwrap();
+        assert_eq!(all(&copy).unwrap().rounds.len(), told);
+    }
+    // Without its log it is read as far as it goes.
+    let copy = folder.path().join("alone");
+    fs::copy(&path, &copy).unwrap();
+    assert_eq!(
+        all(&Logbook::read(&copy).unwrap()).unwrap().rounds.len(),
+        90
+    );
+}
