@@ -1,0 +1,240 @@
+//! A logbook of a million rounds, and how long a report on it takes.
+//!
+//! `cargo run --release -p tamaire_report --example million -- make a.logbook 1000000 300` lets bots play 300 rounds and
+//! writes them again and again, at other times, as visits such as there may be; `… -- report a.logbook out` makes a report of
+//! it and tells how long that took and how much memory; with `ja` behind it in Japanese, with `rerun` all rounds are run again.
+
+use fastrand::Rng;
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+use std::time::Instant;
+use tamaire_logbook::{End, Entry, Event, Id, Kind, Logbook, Moment, Round, Visit};
+use tamaire_play::{AnyRound, Bot, BotKind, Level, Route};
+use tamaire_report::{Language, Options, report};
+
+/// What bots play, and for how many ticks at most.
+const PLAYED: [(&str, BotKind, usize); 8] = [
+    ("classic", BotKind::Squeeze, 3600),
+    ("classic", BotKind::Shave, 3600),
+    ("classic", BotKind::Random, 1500),
+    ("neck", BotKind::Squeeze, 3600),
+    ("neck", BotKind::Shave, 3600),
+    ("donut", BotKind::Squeeze, 3600),
+    ("donut", BotKind::Random, 1200),
+    ("hoop", BotKind::Squeeze, 1800),
+];
+/// Visits in each hour of the day, from 10:00 on: more before noon, and after lunch.
+const CROWD: [u32; 8] = [6, 11, 7, 5, 10, 12, 9, 4];
+const DAY_MS: i64 = 86_400_000;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    match words[..] {
+        ["make", file, rounds, bots] => make(Path::new(file), rounds.parse()?, bots.parse()?),
+        ["report", file, out, ref more @ ..] => tell(file.into(), Path::new(out), more),
+        _ => Err("expected `make FILE ROUNDS BOTS` or `report FILE FOLDER [ja] [rerun]`".into()),
+    }
+}
+
+fn tell(file: PathBuf, out: &Path, more: &[&str]) -> Result<(), Box<dyn Error>> {
+    let language = match more.contains(&"ja") {
+        true => Language::Japanese,
+        false => Language::English,
+    };
+    let options = Options {
+        language,
+        csv: true,
+        json: true,
+        rerun: more.contains(&"rerun"),
+        ..Options::default()
+    };
+    let start = Instant::now();
+    let report = report(&[file], out, &options, None, &mut |_| {})?;
+    let seconds = start.elapsed().as_secs_f32();
+    let (visits, rounds) = (report.figures.total.visits, report.figures.total.rounds.all);
+    println!(
+        "{visits} visits, {rounds} rounds: {seconds:.1} s, {}",
+        peak()
+    );
+    Ok(())
+}
+
+/// The most memory that this program had.
+fn peak() -> String {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find(|line| line.starts_with("VmHWM"));
+    line.unwrap_or("peak memory is not known here").into()
+}
+
+fn make(file: &Path, count: usize, bots: usize) -> Result<(), Box<dyn Error>> {
+    let played = play(bots);
+    println!("{} rounds were played", played.len());
+    let (mut book, _) = Logbook::open(file, "Stand 1")?;
+    let mut random = Rng::with_seed(1);
+    let days = (count as i64 / 1200).clamp(3, 365);
+    let mut written = 0;
+    while written < count {
+        let mut entries = Vec::new();
+        while entries.len() < 5000 && written < count {
+            written += visit(&mut random, &played, days, &mut entries);
+        }
+        book.write_all(&entries)?;
+    }
+    println!("{written} rounds, {} bytes", book.bytes());
+    Ok(())
+}
+
+/// What bots made of levels, on all cores.
+fn play(bots: usize) -> Vec<Round> {
+    let next = AtomicUsize::new(0);
+    let work = || {
+        let mut rounds = Vec::new();
+        loop {
+            let seed = next.fetch_add(1, Ordering::Relaxed);
+            if seed >= bots {
+                return rounds;
+            }
+            let (level, kind, ticks) = PLAYED[seed % PLAYED.len()];
+            rounds.push(play_one(level, kind, ticks, seed as u64));
+        }
+    };
+    let threads = thread::available_parallelism().map_or(1, usize::from);
+    thread::scope(|scope| {
+        let threads: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+        let rounds = threads.into_iter().flat_map(|thread| thread.join());
+        rounds.flatten().collect()
+    })
+}
+
+fn play_one(name: &str, kind: BotKind, ticks: usize, seed: u64) -> Round {
+    let level = Arc::new(Level::open(name).expect("it comes along"));
+    let mut round = AnyRound::new(level.clone());
+    let mut bot = Bot::new(kind, seed);
+    while round.frames().len() < ticks && round.progress().outcome.is_none() {
+        let frame = round.ask(&mut bot);
+        round.step(frame);
+    }
+    let progress = round.progress();
+    let outcome = progress.outcome;
+    Round {
+        id: Id(0),
+        visit: Id(0),
+        stand: String::new(),
+        number: 0,
+        began: Moment {
+            utc_ms: 0,
+            offset_s: 0,
+        },
+        seconds: round.frames().len() as f32 / 60.0,
+        level: level.id.clone(),
+        level_hash: level.hash(),
+        players: 1,
+        end: if outcome.is_some() {
+            End::Won
+        } else {
+            End::Retried
+        },
+        route: outcome.map(|won| won.route),
+        kept: progress.kept,
+        inside: progress.inside,
+        pieces: progress.pieces as u32,
+        lost: outcome.map_or(0, |won| won.lost as u32),
+        dare: None,
+        replay: round.replay().fragment().expect("it was just played"),
+    }
+}
+
+/// A visit: who came learns, and often tries the other way. How many rounds?
+fn visit(random: &mut Rng, played: &[Round], days: i64, entries: &mut Vec<Entry>) -> usize {
+    let began = moment(random, days);
+    let id = Id(random.u128(..));
+    let stand = ["Stand 1", "Stand 2"][usize::from(random.u8(..3) == 0)];
+    let language = ["ja", "ja", "ja", "en", "zh"][random.usize(..5)];
+    entries.push(Entry::VisitBegan(Visit {
+        id,
+        stand: stand.into(),
+        began,
+        ended: None,
+        language: language.into(),
+    }));
+    let mut clock = began.after(random.i64(3000..15_000));
+    let (mut number, mut dare) = (0, None);
+    loop {
+        number += 1;
+        let mut round = chosen(random, played, number, dare);
+        round.id = Id(random.u128(..));
+        (round.visit, round.stand) = (id, stand.into());
+        (round.number, round.began, round.dare) = (number, clock, dare);
+        clock = clock.after((1000.0 * round.seconds) as i64 + random.i64(2000..8000));
+        let route = round.route;
+        let goes = random.f32() < if route.is_some() { 0.4 } else { 0.3 } || number == 30;
+        if goes && route.is_none() {
+            round.end = End::Left;
+        }
+        entries.push(Entry::Round(round));
+        if goes {
+            break;
+        }
+        dare = match route {
+            Some(Route::Squeeze) => Some(Route::Shave),
+            Some(_) => Some(Route::Squeeze),
+            None => dare,
+        };
+    }
+    if random.u16(..300) > 0 {
+        entries.push(Entry::VisitEnded {
+            id,
+            at: clock.after(20_000),
+            language: String::new(),
+        });
+    } else {
+        entries.push(Entry::Event(Event {
+            id: Id(random.u128(..)),
+            stand: stand.into(),
+            at: clock,
+            kind: [Kind::Hung, Kind::Crashed, Kind::DeviceLost][random.usize(..3)].clone(),
+            text: String::new(),
+        }));
+    }
+    number as usize
+}
+
+/// One of the rounds that were played, such as may come so late in a visit.
+fn chosen(random: &mut Rng, played: &[Round], number: u32, dare: Option<Route>) -> Round {
+    let wins = random.f32() < [0.35, 0.5, 0.6, 0.65][(number as usize - 1).min(3)];
+    let tries_dare = random.f32() < 0.4;
+    // Classic comes first.
+    let is_classic = random.f32() < 0.6;
+    for _ in 0..200 {
+        let round = &played[random.usize(..played.len())];
+        let fits = round.route.is_some() == wins
+            && (round.level == "classic") == is_classic
+            && (!wins || !tries_dare || dare.is_none() || round.route == dare);
+        if fits {
+            return round.clone();
+        }
+    }
+    played[random.usize(..played.len())].clone()
+}
+
+/// In the opening hours of one of the days up to 2026-11-23, in Japan.
+fn moment(random: &mut Rng, days: i64) -> Moment {
+    let midnight = 1_795_359_600_000 - DAY_MS * random.i64(0..days);
+    let mut place = random.u32(0..CROWD.iter().sum::<u32>());
+    let mut hour = 10;
+    for many in CROWD {
+        if place < many {
+            break;
+        }
+        place -= many;
+        hour += 1;
+    }
+    Moment {
+        utc_ms: midnight + 3_600_000 * hour + random.i64(0..3_600_000),
+        offset_s: 9 * 3600,
+    }
+}

@@ -1,0 +1,95 @@
+//! Tables for spreadsheets and programs [RFC 4180].
+
+use std::fmt::Display;
+
+/// Rows of a table.
+#[derive(Debug, Default)]
+pub struct Row {
+    text: String,
+    is_begun: bool,
+}
+
+impl Row {
+    /// The names of columns.
+    pub fn names(names: &[&str]) -> Self {
+        let row = names
+            .iter()
+            .fold(Self::default(), |row, name| row.text(name));
+        row.end()
+    }
+
+    /// A cell with a text that may come from anybody. Where a spreadsheet would take it for a formula, an apostrophe stands
+    /// before it.
+    pub fn text(mut self, text: &str) -> Self {
+        let formula = ['=', '+', '-', '@', '\t', '\r', '\n'];
+        // Full-width signs are taken for the same by some.
+        let wide = ['＝', '＋', '－', '＠'];
+        let is_formula = text.starts_with(formula) || text.starts_with(wide);
+        let guard = if is_formula { "'" } else { "" };
+        self.separate();
+        if text.contains(['"', ',', '\r', '\n']) {
+            self.text += &format!("\"{guard}{}\"", text.replace('"', "\"\""));
+        } else {
+            self.text += guard;
+            self.text += text;
+        }
+        self
+    }
+
+    /// A cell with a number or another word of our own.
+    pub fn value(mut self, value: impl Display) -> Self {
+        use std::fmt::Write;
+        self.separate();
+        write!(self.text, "{value}").expect("a string takes all");
+        self
+    }
+
+    /// The same, empty where there is nothing.
+    pub fn maybe(self, value: Option<impl Display>) -> Self {
+        match value {
+            Some(value) => self.value(value),
+            None => self.text(""),
+        }
+    }
+
+    /// The row as it stands in the file.
+    pub fn end(mut self) -> Self {
+        self.text += "\r\n";
+        self
+    }
+
+    /// Its bytes.
+    pub fn bytes(&self) -> &[u8] {
+        self.text.as_bytes()
+    }
+
+    fn separate(&mut self) {
+        if std::mem::replace(&mut self.is_begun, true) {
+            self.text.push(',');
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Row;
+
+    #[test]
+    fn cells_are_quoted_and_no_formula_is_left() {
+        let row = Row::default()
+            .text("")
+            .text("a,b")
+            .text("say \"hi\"\r\nnow")
+            .value(-1.5);
+        let row = row
+            .text("=1+1")
+            .text("+x")
+            .text("-x")
+            .text("@x")
+            .text("\t=1")
+            .text("a=1");
+        let row = row.maybe(None::<u8>).maybe(Some(2)).text("=\"a\",b").end();
+        let expected = ",\"a,b\",\"say \"\"hi\"\"\r\nnow\",-1.5,'=1+1,'+x,'-x,'@x,'\t=1,a=1,,2,\"'=\"\"a\"\",b\"\r\n";
+        assert_eq!(row.text, expected);
+    }
+}

@@ -1,0 +1,111 @@
+//! Days and hours, as the clock on a stand's wall shows them.
+
+use jiff::civil::Date;
+use std::fmt;
+use std::str::FromStr;
+use tamaire_logbook::Moment;
+
+/// The first of January 1970.
+const EPOCH: Date = Date::constant(1970, 1, 1);
+const DAY_MS: i64 = 86_400_000;
+const HOUR_MS: i64 = 3_600_000;
+
+/// A day of the calendar, at whatever place.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Day(
+    /// Since the first of January 1970 [days].
+    pub i32,
+);
+
+/// Why a text is no [`Day`].
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("expected a day such as 2026-11-23, found {0:?}")]
+pub struct NoDay(
+    /// The text.
+    pub String,
+);
+
+impl Day {
+    /// The day of a moment, in the local time that the moment itself tells.
+    pub fn of(moment: Moment) -> Self {
+        let days = local_ms(moment).div_euclid(DAY_MS);
+        Self(days.clamp(i32::MIN.into(), i32::MAX.into()) as i32)
+    }
+
+    fn date(self) -> Option<Date> {
+        let days = jiff::Span::new().try_days(self.0).ok()?;
+        EPOCH.checked_add(days).ok()
+    }
+}
+
+/// The hour of a moment, 0 to 23, in the local time that the moment itself tells.
+pub fn hour(moment: Moment) -> usize {
+    (local_ms(moment).rem_euclid(DAY_MS) / HOUR_MS) as usize
+}
+
+fn local_ms(moment: Moment) -> i64 {
+    let offset = 1000 * i64::from(moment.offset_s);
+    moment.utc_ms.saturating_add(offset)
+}
+
+/// As `2026-11-23`.
+impl fmt::Display for Day {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.date() {
+            Some(date) => write!(formatter, "{date}"),
+            None => write!(formatter, "day {}", self.0),
+        }
+    }
+}
+
+impl FromStr for Day {
+    type Err = NoDay;
+
+    fn from_str(text: &str) -> Result<Self, NoDay> {
+        let is_plain = text.len() == 10 && text.bytes().all(|b| b.is_ascii_digit() || b == b'-');
+        let date = text.parse::<Date>().ok().filter(|_| is_plain);
+        let since = date.and_then(|day| day.since(EPOCH).ok());
+        since
+            .map(|span| Self(span.get_days()))
+            .ok_or_else(|| NoDay(text.into()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_day_is_written_and_read() {
+        for text in ["1970-01-01", "2026-11-23", "1969-12-31", "2028-02-29"] {
+            assert_eq!(text.parse::<Day>().unwrap().to_string(), text);
+        }
+        assert_eq!("2026-11-23".parse(), Ok(Day(20_780)));
+        for wrong in [
+            "",
+            "today",
+            "2026-11-31",
+            "2026-1-1",
+            "20261123",
+            "2026-11-23T10:00",
+        ] {
+            assert_eq!(wrong.parse::<Day>(), Err(NoDay(wrong.into())));
+        }
+    }
+
+    #[test]
+    fn a_moment_is_of_the_day_and_hour_of_its_place() {
+        let at = |utc_ms, offset_s| Moment { utc_ms, offset_s };
+        let late = 1_795_474_800_000; // 2026-11-23 23:00 UTC
+        let days = [0, 3600, -7200].map(|offset| Day::of(at(late, offset)).to_string());
+        assert_eq!(days, ["2026-11-23", "2026-11-24", "2026-11-23"]);
+        assert_eq!(
+            [0, 3600, -7200].map(|offset| hour(at(late, offset))),
+            [23, 0, 21]
+        );
+        for utc_ms in [i64::MIN, i64::MAX] {
+            Day::of(at(utc_ms, i32::MAX)).to_string();
+            assert!(hour(at(utc_ms, i32::MIN)) < 24);
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! Where hands were in the rounds of a level.
+
+use crate::figures::Heat;
+use crate::rerun::{Ran, TICK};
+use crate::room::{Grid, Stroke, strokes};
+use crate::tally::LevelKey;
+use std::collections::HashMap;
+use tamaire_logbook::Round;
+use tamaire_play::{Level, Replay};
+
+/// Maps that are drawn together, by level.
+#[derive(Debug, Default)]
+pub struct Heats(HashMap<LevelKey, Sum>);
+
+#[derive(Debug)]
+struct Sum {
+    rounds: u64,
+    /// For how many ticks a hand was in each cell.
+    ticks: Vec<u64>,
+    level: Level,
+}
+
+impl Heats {
+    /// Adds a round.
+    pub fn add(&mut self, round: &Round, ran: &Ran) {
+        let key = (round.level.clone(), round.level_hash);
+        let sum = match self.0.get_mut(&key) {
+            Some(sum) => sum,
+            None => {
+                let replay = Replay::of_fragment(&round.replay).ok();
+                let Some(level) = replay.and_then(|replay| replay.level().ok()) else {
+                    return;
+                };
+                let [columns, rows] = Grid::of(&level).counts;
+                self.0.entry(key).or_insert(Sum {
+                    rounds: 0,
+                    ticks: vec![0; columns * rows],
+                    level,
+                })
+            }
+        };
+        sum.rounds += 1;
+        for &(cell, ticks) in &ran.cells {
+            if let Some(sum) = sum.ticks.get_mut(usize::from(cell)) {
+                *sum += u64::from(ticks);
+            }
+        }
+    }
+
+    /// The map of a level, and what stands in it.
+    pub fn take(&mut self, name: &str, hash: &str) -> Option<(Heat, Vec<Stroke>)> {
+        let hash = u64::from_str_radix(hash, 16).ok()?;
+        let sum = self.0.remove(&(name.into(), hash))?;
+        let grid = Grid::of(&sum.level);
+        let seconds = sum.ticks.iter().map(|&ticks| ticks as f64 * TICK);
+        let heat = Heat {
+            rounds: sum.rounds,
+            axes: grid.axes,
+            low: grid.low,
+            cell: grid.cell,
+            columns: grid.counts[0],
+            seconds: seconds.map(crate::spread::thousandth).collect(),
+        };
+        Some((heat, strokes(sum.level)))
+    }
+}

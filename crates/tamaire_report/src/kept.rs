@@ -1,0 +1,137 @@
+//! What came of rounds that were run again, in a file that a next time goes on with: a line of JSON for each.
+
+use crate::Error;
+use crate::rerun::Rerun;
+use fuwafuwa::hash::Hash;
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+use std::fs::{File, OpenOptions};
+use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use tamaire_logbook::{Id, Round};
+use tamaire_play::replay::VERSION;
+
+/// Rounds that were run again, by what they are known by, under which rules, and what was run.
+#[derive(Debug)]
+pub struct Kept {
+    path: PathBuf,
+    file: File,
+    /// Where each line begins, and how long it is [bytes].
+    places: HashMap<Key, (u64, usize)>,
+    end: u64,
+}
+
+/// The round, and a hash of its replay.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+struct Key {
+    round: Id,
+    replay: u64,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Line {
+    #[serde(flatten)]
+    head: Head,
+    result: Rerun,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Head {
+    rules: u32,
+    #[serde(flatten)]
+    key: Key,
+}
+
+impl Key {
+    fn of(round: &Round) -> Self {
+        Self {
+            round: round.id,
+            replay: Hash::of(round.replay.as_bytes()),
+        }
+    }
+}
+
+impl Kept {
+    /// Opens the file, and begins it where there is none. A line at its end that is not whole, as that of a program that was
+    /// killed, is taken off.
+    ///
+    /// # Errors
+    /// [`Error::Unwritable`].
+    pub fn open(path: &Path) -> Result<Self, Error> {
+        let failed = |error: std::io::Error| Error::unwritable(path, error);
+        let mut options = OpenOptions::new();
+        let options = options.read(true).write(true).create(true).truncate(false);
+        let mut kept = Self {
+            path: path.into(),
+            file: options.open(path).map_err(failed)?,
+            places: HashMap::new(),
+            end: 0,
+        };
+        kept.index().map_err(failed)?;
+        Ok(kept)
+    }
+
+    /// Whether there is nothing about a round yet.
+    pub fn lacks(&self, round: &Round) -> bool {
+        !self.places.contains_key(&Key::of(round))
+    }
+
+    /// What came of a round.
+    ///
+    /// # Errors
+    /// [`Error::Unwritable`], as the file is one that this program writes.
+    pub fn get(&mut self, round: &Round) -> Result<Option<Rerun>, Error> {
+        let Some(&(at, length)) = self.places.get(&Key::of(round)) else {
+            return Ok(None);
+        };
+        let mut bytes = vec![0; length];
+        let read = self.file.seek(SeekFrom::Start(at));
+        let read = read.and_then(|_| self.file.read_exact(&mut bytes));
+        read.map_err(|error| Error::unwritable(&self.path, error))?;
+        Ok(serde_json::from_slice::<Line>(&bytes)
+            .ok()
+            .map(|line| line.result))
+    }
+
+    /// Keeps what came of a round.
+    ///
+    /// # Errors
+    /// [`Error::Unwritable`].
+    pub fn add(&mut self, round: &Round, result: Rerun) -> Result<(), Error> {
+        let key = Key::of(round);
+        let head = Head {
+            rules: VERSION,
+            key,
+        };
+        let line = Line { head, result };
+        let mut text = serde_json::to_vec(&line).expect("all of it can be written");
+        text.push(b'\n');
+        let written = self.file.seek(SeekFrom::Start(self.end));
+        let written = written.and_then(|_| self.file.write_all(&text));
+        written.map_err(|error| Error::unwritable(&self.path, error))?;
+        self.places.insert(key, (self.end, text.len()));
+        self.end += text.len() as u64;
+        Ok(())
+    }
+
+    fn index(&mut self) -> std::io::Result<()> {
+        let mut reader = BufReader::new(&self.file);
+        let mut line = Vec::new();
+        loop {
+            line.clear();
+            let length = reader.read_until(b'\n', &mut line)?;
+            if line.last() != Some(&b'\n') {
+                break;
+            }
+            // What another version wrote stays, and is not looked at.
+            if let Ok(Line { head, .. }) = serde_json::from_slice(&line)
+                && head.rules == VERSION
+            {
+                self.places.insert(head.key, (self.end, length));
+            }
+            self.end += length as u64;
+        }
+        drop(reader);
+        self.file.set_len(self.end)
+    }
+}

@@ -1,0 +1,158 @@
+//! A round, run again.
+
+use crate::figures::Reason;
+use crate::room::Grid;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use tamaire_logbook::Round;
+use tamaire_play::level::LevelError;
+use tamaire_play::link::LinkError;
+use tamaire_play::{Outcome, Playback, Replay, ReplayError};
+
+/// One over the rate of ticks [s].
+pub const TICK: f64 = 1.0 / 60.0;
+/// A row may be so much off in time [s]: it was told in single precision.
+const SAME_TIME: f64 = 0.05;
+
+/// How a replay went when it was run again.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Rerun {
+    /// As it was written, and where it led.
+    Ran(Ran),
+    /// Not as it was written, and why.
+    Astray(String),
+    /// It cannot be read, and why.
+    Unreadable(String),
+    /// It is of other rules or of a level that is another one in this program.
+    Foreign(String),
+}
+
+/// Where a replay led.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Ran {
+    level: String,
+    level_hash: u64,
+    ticks: u64,
+    outcome: Option<Outcome>,
+    kept: f32,
+    inside: f32,
+    pieces: usize,
+    /// Whether what was played goes on after its end: only so much of a round is recorded.
+    is_cut: bool,
+    /// For how many ticks a hand was in a cell of the level's [`Grid`].
+    pub cells: Vec<(u16, u32)>,
+}
+
+impl Rerun {
+    /// Runs what stands in a row.
+    pub fn of(fragment: &str) -> Self {
+        let run = || match Replay::of_fragment(fragment) {
+            Ok(replay) => run(replay),
+            Err(error) => Self::of_error(&error),
+        };
+        // What a stranger wrote and no check has thought of is no reason to stop.
+        let result = std::panic::catch_unwind(run);
+        result.unwrap_or_else(|_| Self::Unreadable("it breaks the simulation".into()))
+    }
+
+    /// Why a row does not count, as its replay was run again so.
+    pub fn objection(&self, row: &Round) -> Option<(Reason, String)> {
+        match self {
+            Self::Ran(ran) => ran.difference(row).map(|what| (Reason::Differs, what)),
+            Self::Astray(why) => Some((Reason::Astray, why.clone())),
+            Self::Unreadable(why) => Some((Reason::Unreadable, why.clone())),
+            Self::Foreign(_) => None,
+        }
+    }
+
+    fn of_error(error: &LinkError) -> Self {
+        let text = error.to_string();
+        match error {
+            LinkError::Newer
+            | LinkError::LevelDiffers(_)
+            | LinkError::Round(ReplayError::Version { .. }) => Self::Foreign(text),
+            LinkError::Level(LevelError::Unknown { .. }) => Self::Foreign(text),
+            _ => Self::Unreadable(text),
+        }
+    }
+}
+
+fn run(replay: Replay) -> Rerun {
+    let (level, level_hash) = (replay.level.clone(), replay.level_hash.clone());
+    let level_hash = u64::from_str_radix(&level_hash, 16).unwrap_or_default();
+    let ticks = replay.ticks();
+    let mut playback = match Playback::new(Arc::new(replay)) {
+        Ok(playback) => playback,
+        Err(error) => return Rerun::Unreadable(error.to_string()),
+    };
+    let grid = Grid::of(playback.round().level());
+    let mut cells = BTreeMap::new();
+    while !playback.is_over() {
+        if let Err(error) = playback.step() {
+            return Rerun::Astray(error.to_string());
+        }
+        for hand in playback.round().hands() {
+            *cells
+                .entry(grid.cell_at(hand.position()) as u16)
+                .or_default() += 1;
+        }
+    }
+    let progress = playback.round().progress();
+    Rerun::Ran(Ran {
+        level,
+        level_hash,
+        ticks: ticks as u64,
+        outcome: progress.outcome,
+        kept: progress.kept,
+        inside: progress.inside,
+        pieces: progress.pieces,
+        is_cut: ticks >= tamaire_play::round::MAX_TICKS,
+        cells: cells.into_iter().collect(),
+    })
+}
+
+impl Ran {
+    /// What a row says otherwise.
+    fn difference(&self, row: &Round) -> Option<String> {
+        let told = |what: &str, row: String, run: String| {
+            (row != run).then(|| format!("{what}: the row has {row}, the replay {run}"))
+        };
+        let number = |k: f32| format!("{k:.4}");
+        let won = self.outcome.as_ref();
+        let route = |route: Option<_>| format!("{route:?}").to_lowercase();
+        let hash = |hash: u64| format!("{hash:016x}");
+        let level = row.level.rsplit(['/', '\\']).next().unwrap_or_default();
+        let level = level.strip_suffix(".toml").unwrap_or(level);
+        let mut differences = vec![
+            told("level_hash", hash(row.level_hash), hash(self.level_hash)),
+            told(
+                "level",
+                level.chars().take(200).collect(),
+                self.level.clone(),
+            ),
+            told("route", route(row.route), route(won.map(|won| won.route))),
+        ];
+        if !self.is_cut {
+            let seconds = self.ticks as f64 * TICK;
+            let is_off = (f64::from(row.seconds) - seconds).abs() > SAME_TIME;
+            let both = || (format!("{:.2}", row.seconds), format!("{seconds:.2}"));
+            differences.push(
+                is_off
+                    .then(both)
+                    .and_then(|(row, run)| told("seconds", row, run)),
+            );
+            let pieces = won.map_or(self.pieces, |won| won.pieces).to_string();
+            let inside = won.map_or(self.inside, |won| won.inside);
+            let kept = won.map_or(self.kept, |won| won.kept);
+            differences.extend([
+                told("pieces", row.pieces.to_string(), pieces),
+                told("inside", number(row.inside), number(inside)),
+                told("kept", number(row.kept), number(kept)),
+                won.and_then(|won| told("lost", row.lost.to_string(), won.lost.to_string())),
+            ]);
+        }
+        differences.into_iter().flatten().next()
+    }
+}

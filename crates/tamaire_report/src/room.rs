@@ -1,0 +1,212 @@
+//! The room of a level as a map: its cells, and what stands in it.
+
+use fuwafuwa::{Dim, Shape, Vector, World};
+use tamaire_play::{AnyRound, Level};
+
+/// So many cells along the longer side of a room.
+const CELLS: f32 = 64.0;
+
+/// The cells of a map.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Grid {
+    /// The axes across and up the map: x and y in the plane; in space, seen from above, x and z.
+    pub axes: [usize; 2],
+    /// Least coordinates along them [m].
+    pub low: [f32; 2],
+    /// Greatest coordinates along them [m].
+    pub high: [f32; 2],
+    /// Width of a cell [m].
+    pub cell: f32,
+    /// Number of cells along the axes.
+    pub counts: [usize; 2],
+}
+
+/// Something in a room, as a line through places of its map.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stroke {
+    /// What it is of.
+    pub of: Thing,
+    /// The places [m].
+    pub points: Vec<[f32; 2]>,
+    /// How wide it is [m]; nothing for a hairline.
+    pub width: f32,
+}
+
+/// What is drawn on a map.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Thing {
+    /// What stands still.
+    Obstacle,
+    /// The basket.
+    Basket,
+    /// A body as it begins.
+    Body,
+}
+
+impl Grid {
+    /// That of a level.
+    pub fn of(level: &Level) -> Self {
+        let axes = if level.scene().dim == 2 {
+            [0, 1]
+        } else {
+            [0, 2]
+        };
+        let [low, high] = level.arena().map(|corner| axes.map(|axis| corner[axis]));
+        let sides = [0, 1].map(|k| (high[k] - low[k]).max(0.01));
+        let cell = sides[0].max(sides[1]) / CELLS;
+        Self {
+            axes,
+            low,
+            high,
+            cell,
+            counts: sides.map(|side| ((side / cell).ceil() as usize).max(1)),
+        }
+    }
+
+    /// The cell in which a place is, or the one nearest to it.
+    pub fn cell_at(&self, place: Vector) -> usize {
+        let [column, row] = [0, 1].map(|k| {
+            let cells = (place[self.axes[k]] - self.low[k]) / self.cell;
+            (cells.max(0.0) as usize).min(self.counts[k] - 1)
+        });
+        row * self.counts[0] + column
+    }
+}
+
+/// What is in the room of a level as a round begins.
+pub fn strokes(level: Level) -> Vec<Stroke> {
+    let grid = Grid::of(&level);
+    let round = AnyRound::new(level.into());
+    let mut strokes = match &round {
+        AnyRound::Plane(round) => of_world(grid, round.world()),
+        AnyRound::Space(round) => of_world(grid, round.world()),
+    };
+    strokes.extend(
+        round
+            .basket()
+            .and_then(|basket| of_shape(grid, basket, Thing::Basket)),
+    );
+    strokes
+}
+
+fn of_world<D: Dim>(grid: Grid, world: &World<D>) -> Vec<Stroke> {
+    let fixed = world.rigids().iter().filter(|rigid| !rigid.is_driven());
+    let fixed = fixed.filter_map(|rigid| of_shape(grid, rigid.shape(), Thing::Obstacle));
+    let bodies = world.bodies().iter().flat_map(|body| match D::N {
+        2 => body
+            .outlines()
+            .into_iter()
+            .map(|outline| flat(grid, &outline.points))
+            .collect(),
+        _ => {
+            let nodes = body.mesh().nodes().map(|(id, _)| {
+                let [x, y, z, _] = body.positions()[id];
+                [x, y, z]
+            });
+            vec![hull(flat(grid, &nodes.collect::<Vec<_>>()))]
+        }
+    });
+    let bodies = bodies.map(|points| closed(Thing::Body, points));
+    fixed.chain(bodies).collect()
+}
+
+/// Walls and floors are the border of a map already.
+fn of_shape(grid: Grid, shape: &Shape, of: Thing) -> Option<Stroke> {
+    let flat = |at: Vector| grid.axes.map(|axis| at[axis]);
+    match *shape {
+        Shape::HalfSpace { .. } => None,
+        Shape::Box { centre, half } => {
+            let ([x, y], [width, height]) = (flat(centre), flat(half));
+            let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+            let corners = corners.map(|[a, b]| [x + a * width, y + b * height]);
+            Some(closed(of, corners.into()))
+        }
+        Shape::Capsule { from, to, radius } => Some(Stroke {
+            of,
+            points: vec![flat(from), flat(to)],
+            width: 2.0 * radius,
+        }),
+        Shape::Ball { centre, radius } => Some(Stroke {
+            of,
+            points: vec![flat(centre), flat(centre)],
+            width: 2.0 * radius,
+        }),
+    }
+}
+
+fn flat(grid: Grid, points: &[Vector]) -> Vec<[f32; 2]> {
+    let points = points.iter();
+    points.map(|at| grid.axes.map(|axis| at[axis])).collect()
+}
+
+fn closed(of: Thing, mut points: Vec<[f32; 2]>) -> Stroke {
+    points.extend(points.first().copied());
+    Stroke {
+        of,
+        points,
+        width: 0.0,
+    }
+}
+
+/// The convex line around some places, from the left to the right below them and back above [Andrew 1979].
+fn hull(mut points: Vec<[f32; 2]>) -> Vec<[f32; 2]> {
+    points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    let there = half_hull(points.iter().copied());
+    let back = half_hull(points.iter().rev().copied());
+    [there, back].concat()
+}
+
+fn half_hull(points: impl Iterator<Item = [f32; 2]>) -> Vec<[f32; 2]> {
+    let mut line: Vec<[f32; 2]> = Vec::new();
+    for at in points {
+        while let [.., a, b] = line[..] {
+            let turn = (b[0] - a[0]) * (at[1] - a[1]) - (b[1] - a[1]) * (at[0] - a[0]);
+            if turn > 0.0 {
+                break;
+            }
+            line.pop();
+        }
+        line.push(at);
+    }
+    line.pop();
+    line
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_place_has_a_cell_and_every_level_a_map() {
+        for name in ["classic", "hoop"] {
+            let level = Level::open(name).unwrap();
+            let grid = Grid::of(&level);
+            let [low, high] = level.arena();
+            let last = grid.counts[0] * grid.counts[1] - 1;
+            assert_eq!((grid.cell_at(low), grid.cell_at([9.0; 3])), (0, last));
+            assert_eq!(grid.cell_at([f32::NAN; 3]), 0);
+            assert!(grid.cell_at(high) <= last && last < usize::from(u16::MAX));
+            let strokes = strokes(level);
+            for thing in [Thing::Obstacle, Thing::Basket, Thing::Body] {
+                let of_it = strokes.iter().find(|stroke| stroke.of == thing);
+                assert!(of_it.unwrap().points.len() >= 2, "{name} {thing:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_hull_of_a_square_is_its_corners() {
+        let points = vec![
+            [0.0, 0.0],
+            [1.0, 1.0],
+            [0.5, 0.5],
+            [1.0, 0.0],
+            [0.0, 1.0],
+            [0.5, 0.0],
+        ];
+        assert_eq!(
+            hull(points),
+            [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
+        );
+    }
+}

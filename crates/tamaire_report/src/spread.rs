@@ -1,0 +1,106 @@
+//! How numbers are spread.
+
+use crate::figures::{Bin, Times};
+
+/// The bins of times: so many at most, and one for what took longer.
+const MOST_BINS: f64 = 15.0;
+/// How wide a bin may be [s].
+const WIDTHS: [f64; 8] = [2.0, 5.0, 10.0, 20.0, 30.0, 60.0, 300.0, 1800.0];
+
+/// The least of some numbers that are sorted, such that this share of them is that small or smaller.
+pub fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
+    let place = (share * sorted.len() as f64).ceil() as usize;
+    sorted.get(place.saturating_sub(1)).copied()
+}
+
+/// Half of the numbers are that small or smaller, to a thousandth.
+pub fn median(mut numbers: Vec<f64>) -> Option<f64> {
+    numbers.sort_by(f64::total_cmp);
+    quantile(&numbers, 0.5).map(thousandth)
+}
+
+/// How times are spread.
+pub fn times(mut seconds: Vec<f64>) -> Times {
+    seconds.sort_by(f64::total_cmp);
+    let quantiles = [0.1, 0.25, 0.5, 0.75, 0.9].map(|share| quantile(&seconds, share));
+    let quantiles = quantiles.iter().copied().collect::<Option<Vec<f64>>>();
+    let Some(most) = quantile(&seconds, 0.95) else {
+        return Times::default();
+    };
+    let fits = |width: &&f64| most < MOST_BINS * **width;
+    let width = WIDTHS.iter().find(fits).unwrap_or(&WIDTHS[7]);
+    let last = ((most / width) as usize + 1).min(MOST_BINS as usize);
+    let mut bins: Vec<Bin> = (0..=last)
+        .map(|k| Bin {
+            from: k as f64 * width,
+            to: (k < last).then_some((k + 1) as f64 * width),
+            visits: 0,
+        })
+        .collect();
+    for time in &seconds {
+        bins[((time / width) as usize).min(last)].visits += 1;
+    }
+    let quantiles = quantiles.and_then(|all| all.try_into().ok());
+    Times {
+        visits: seconds.len() as u64,
+        quantiles: quantiles.map(|all: [f64; 5]| all.map(thousandth)),
+        bins,
+    }
+}
+
+/// To a thousandth: a third of a second in single precision has many digits that mean nothing.
+pub fn thousandth(number: f64) -> f64 {
+    (1000.0 * number).round() / 1000.0
+}
+
+/// Between which two shares the true one lies, 19 times of 20, where so many of all were seen to do something [Wilson 1927].
+pub fn interval(some: u64, all: u64) -> [f64; 2] {
+    const Z: f64 = 1.96;
+    let n = all.max(1) as f64;
+    let share = some as f64 / n;
+    let middle = share + Z * Z / (2.0 * n);
+    let half = Z * (share * (1.0 - share) / n + Z * Z / (4.0 * n * n)).sqrt();
+    [-half, half].map(|half| ((middle + half) / (1.0 + Z * Z / n)).clamp(0.0, 1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_are_no_longer_than_the_median() {
+        assert_eq!(median(vec![]), None);
+        assert_eq!(median(vec![3.0]), Some(3.0));
+        assert_eq!(median(vec![4.0, 1.0]), Some(1.0));
+        assert_eq!(median(vec![9.0, 1.0, 4.0]), Some(4.0));
+        assert_eq!(quantile(&[1.0, 2.0, 3.0, 4.0], 0.75), Some(3.0));
+        assert_eq!(quantile(&[1.0, 2.0, 3.0, 4.0], 0.76), Some(4.0));
+    }
+
+    #[test]
+    fn every_time_is_in_a_bin() {
+        for scale in [0.0, 0.01, 1.0, 7.0, 100.0, 1e4, 1e9] {
+            let seconds: Vec<f64> = (0..100).map(|k| scale * f64::from(k * k) / 1e4).collect();
+            let times = times(seconds.clone());
+            assert_eq!(times.bins.iter().map(|bin| bin.visits).sum::<u64>(), 100);
+            assert!(times.bins.len() <= 16);
+            for bin in &times.bins {
+                let is_in = |time: &&f64| bin.from <= **time && bin.to.is_none_or(|to| **time < to);
+                assert_eq!(bin.visits, seconds.iter().filter(is_in).count() as u64);
+            }
+        }
+    }
+
+    #[test]
+    fn a_share_of_few_is_known_badly() {
+        // Ten of twenty, as the tables have it.
+        let [low, high] = interval(10, 20);
+        assert!(
+            (low - 0.299).abs() < 0.001 && (high - 0.701).abs() < 0.001,
+            "{low} {high}"
+        );
+        assert_eq!(interval(0, 0), [0.0, interval(0, 0)[1]]);
+        let [low, high] = interval(5000, 10_000);
+        assert!((low - 0.49).abs() < 0.001 && (high - 0.51).abs() < 0.001);
+    }
+}

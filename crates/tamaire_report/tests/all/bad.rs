@@ -1,0 +1,168 @@
+//! Files and texts that nobody meant.
+
+use crate::made_up::{Rows, rows};
+use crate::{logbooks, report_on};
+use std::fs;
+use std::path::Path;
+use tamaire_logbook::Logbook;
+use tamaire_report::{Language, Options};
+
+fn all() -> Options {
+    Options {
+        csv: true,
+        json: true,
+        ..Options::default()
+    }
+}
+
+/// What is in a folder.
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let mut names: Vec<String> = entries
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn what_cannot_be_read_is_named_and_nothing_is_left() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let good = logbooks(&at("good"), &[rows(1, 3)]).remove(0);
+    fs::write(at("letter.txt"), "Dear logbook,").unwrap();
+    fs::write(at("empty"), "").unwrap();
+    fs::copy(&good, at("newer")).unwrap();
+    // The version of a file of SQLite stands at byte 60.
+    let mut bytes = fs::read(at("newer")).unwrap();
+    bytes[60..64].copy_from_slice(&999_u32.to_be_bytes());
+    fs::write(at("newer"), &bytes).unwrap();
+    fs::write(at("short"), &bytes[..bytes.len() / 2]).unwrap();
+
+    for wrong in ["missing", "letter.txt", "empty", "newer", "short", "good"] {
+        let files = [good.clone(), at(wrong)];
+        let error = report_on(&files, &at("report"), &all())
+            .unwrap_err()
+            .to_string();
+        assert!(
+            error.contains(wrong) && error.len() < 500,
+            "{wrong}: {error}"
+        );
+        assert!(!at("report").exists(), "{wrong}");
+    }
+    let error = report_on(&[], &at("report"), &all())
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("one logbook or more"), "{error}");
+    let days = Options {
+        from: Some("2026-11-02".parse().unwrap()),
+        to: Some("2026-11-01".parse().unwrap()),
+        ..Options::default()
+    };
+    let error = report_on(&[good], &at("report"), &days)
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("2026-11-02 and 2026-11-01"), "{error}");
+}
+
+#[test]
+fn what_cannot_be_written_is_named_and_the_last_report_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let files = logbooks(&at("good"), &[rows(1, 3)]);
+    fs::write(at("file"), "").unwrap();
+    for out in ["file", "file/report"] {
+        let error = report_on(&files, &at(out), &all()).unwrap_err().to_string();
+        assert!(error.contains(&at("file").display().to_string()), "{error}");
+    }
+
+    let out = at("report");
+    report_on(&files, &out, &Options::default()).unwrap();
+    assert_eq!(names(&out), ["index.html"]);
+    let before = fs::read(out.join("index.html")).unwrap();
+    fs::create_dir(out.join("report.json")).unwrap();
+    let error = report_on(&files, &out, &all()).unwrap_err().to_string();
+    assert!(
+        error.contains("report.json: it cannot be written: it is a folder"),
+        "{error}"
+    );
+    assert_eq!(names(&out), ["index.html", "report.json"]);
+    assert_eq!(fs::read(out.join("index.html")).unwrap(), before);
+
+    fs::remove_dir(out.join("report.json")).unwrap();
+    let report = report_on(&files, &out, &all()).unwrap();
+    assert_eq!(
+        names(&out),
+        [
+            "events.csv",
+            "index.html",
+            "report.json",
+            "rounds.csv",
+            "visits.csv"
+        ]
+    );
+    assert_eq!(report.files.len(), 5);
+}
+
+#[test]
+fn texts_of_strangers_stay_texts() {
+    let hostile = "=1+1</title><script>alert('\"&')</script><img src=http://example.org/x onerror=alert(1)>\u{202E}";
+    let mut rows = rows(1, 40);
+    for visit in &mut rows.visits {
+        visit.stand = hostile.into();
+        visit.language = hostile.into();
+    }
+    for (k, round) in rows.rounds.iter_mut().enumerate() {
+        round.stand = hostile.into();
+        round.level = format!("{hostile}{}", k % 3);
+    }
+    for event in &mut rows.events {
+        event.kind = tamaire_logbook::Kind::Other(hostile.into());
+        event.text = format!("{hostile}\r\n,\"");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let files = logbooks(folder.path(), &[rows]);
+    for language in [Language::English, Language::Japanese] {
+        let options = Options { language, ..all() };
+        let report = report_on(&files, &folder.path().join("out"), &options).unwrap();
+        let page = fs::read_to_string(&report.page).unwrap();
+        assert!(page.contains("&lt;script&gt;"));
+        for wrong in ["<script", "<img", "\u{202E}"] {
+            assert!(!page.contains(wrong), "{wrong}");
+        }
+        // But for the names of what SVG is, it has no address.
+        let bare = page
+            .replace("xmlns=\"http://www.w3.org/2000/svg\"", "")
+            .replace("src=http://example.org/x", "");
+        for address in ["http:", "https:", "src=", "href=", "@import", "url(h"] {
+            assert!(!bare.contains(address), "{address}");
+        }
+    }
+    for name in ["visits.csv", "rounds.csv", "events.csv"] {
+        let text = fs::read_to_string(folder.path().join("out").join(name)).unwrap();
+        assert!(
+            text.contains("\"'=1+1") && !text.contains(",=") && !text.contains(",\"="),
+            "{name}"
+        );
+    }
+    let json = fs::read_to_string(folder.path().join("out/report.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["stands"][0]["stand"], hostile);
+}
+
+#[test]
+fn an_empty_logbook_has_an_honest_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let files = logbooks(folder.path(), &[Rows::default()]);
+    for (language, nothing) in [
+        (Language::English, "no visit"),
+        (Language::Japanese, "まだ来場者がいません"),
+    ] {
+        let options = Options { language, ..all() };
+        let report = report_on(&files, &folder.path().join("out"), &options).unwrap();
+        let page = fs::read_to_string(&report.page).unwrap();
+        assert!(page.contains(nothing) && !page.contains("NaN"));
+        assert_eq!(report.figures.total.share_won, None);
+    }
+    assert!(Logbook::read(&files[0]).is_ok());
+}

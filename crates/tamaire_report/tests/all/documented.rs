@@ -1,0 +1,57 @@
+//! What analysts are told.
+
+use crate::made_up::rows;
+use crate::{logbooks, report_on};
+use serde_json::Value;
+use std::collections::BTreeSet;
+use tamaire_report::Options;
+
+fn names(value: &Value, found: &mut BTreeSet<String>) {
+    match value {
+        Value::Object(fields) => {
+            for (name, value) in fields {
+                found.insert(name.clone());
+                names(value, found);
+            }
+        }
+        Value::Array(values) => values.iter().for_each(|value| names(value, found)),
+        _ => {}
+    }
+}
+
+#[test]
+fn all_names_are_described() {
+    let described = include_str!("../../../../docs/report.md");
+    let folder = tempfile::tempdir().unwrap();
+    let files = logbooks(folder.path(), &[rows(4, 60)]);
+    let options = Options {
+        csv: true,
+        json: true,
+        ..Options::default()
+    };
+    let out = folder.path().join("out");
+    report_on(&files, &out, &options).unwrap();
+    let text = |name: &str| std::fs::read_to_string(out.join(name)).unwrap();
+    let mut found = BTreeSet::new();
+    names(
+        &serde_json::from_str(&text("report.json")).unwrap(),
+        &mut found,
+    );
+    for table in ["visits.csv", "rounds.csv", "events.csv"] {
+        let columns = text(table);
+        let columns = columns.lines().next().unwrap().split(',');
+        found.extend(columns.map(String::from));
+    }
+    assert!(found.len() > 80, "{}", found.len());
+    for name in found {
+        let is_described = [
+            format!("`{name}`"),
+            format!("`{name}["),
+            format!("{name}` ="),
+        ];
+        assert!(
+            is_described.iter().any(|text| described.contains(text)),
+            "{name}"
+        );
+    }
+}
