@@ -3,6 +3,8 @@
 import { Speaker } from "./sound.js";
 
 const STORE = "things";
+/** Under this key stands what is another one after each change. */
+const STAMP = "stamp";
 /** Most bytes of a file that is read: the game reads no more of any kind. */
 const MOST_BYTES = 1 << 26;
 
@@ -18,6 +20,12 @@ export class Host {
   #others;
   /** @type {Changed[]} */
   #changes = [];
+  /** What stood under STAMP when all was read. @type {string | undefined} */
+  #stamp;
+  /** What is done alone now. @type {IDBTransaction | undefined} */
+  #transaction;
+  /** Why those were given up that were not taken. @type {WeakMap<IDBTransaction, unknown>} */
+  #refused = new WeakMap();
   /** @type {string | undefined} */
   #failure;
   /** Called when the game cannot go on drawing. @type {() => void} */
@@ -28,6 +36,8 @@ export class Host {
   #picked = [];
   /** @type {string | undefined} */
   #link;
+  /** @type {boolean | undefined} */
+  #copied;
   /** @type {Speaker | undefined} */
   #speaker;
   #wantsLetters = false;
@@ -40,7 +50,7 @@ export class Host {
     host.#hearLinks();
     host.#takeDrops();
     try {
-      await host.#openStore();
+      await host.#read(await host.#begin("readonly"));
     } catch (error) {
       host.refusal = String(error);
     }
@@ -62,10 +72,10 @@ export class Host {
   // ---- what is kept ----
 
   async #openStore() {
-    // What another tab changes meanwhile comes after what is read.
+    // What another tab changes meanwhile is heard after what is read.
     if (!this.#others && "BroadcastChannel" in globalThis) {
       this.#others = new BroadcastChannel("tamaire");
-      this.#others.onmessage = ({ data }) => this.#changes.push(data);
+      this.#others.onmessage = () => this.#look();
     }
     const asked = indexedDB.open("tamaire", 1);
     asked.onupgradeneeded = () => asked.result.createObjectStore(STORE);
@@ -75,67 +85,138 @@ export class Host {
     // Browsers close it in the background, too.
     database.onclose = () => (this.#database = undefined);
     this.#database = database;
-    await this.#readStore();
     // What a browser keeps for pages that are visited often it does not throw away when its disk is full.
     navigator.storage?.persist?.().catch(() => {});
   }
 
-  async #readStore() {
-    const store = this.#database?.transaction(STORE).objectStore(STORE);
-    if (store) {
+  /** A way to what is kept. @param {IDBTransactionMode} mode */
+  async #begin(mode) {
+    if (!this.#database) {
+      await this.#openStore();
+    }
+    return /** @type {IDBDatabase} */ (this.#database).transaction(STORE, mode);
+  }
+
+  /** Learns what is kept, where that changed since. @param {IDBTransaction} transaction */
+  async #read(transaction) {
+    const store = transaction.objectStore(STORE);
+    const stamp = await answer(store.get(STAMP));
+    if (stamp === undefined || stamp !== this.#stamp) {
       const [keys, things] = await Promise.all([answer(store.getAllKeys()), answer(store.getAll())]);
-      this.#changes.unshift(...keys.map((key, place) => ({ key: String(key), ...things[place] })));
+      this.#stamp = stamp;
+      const all = keys.map((key, place) => ({ key: String(key), ...things[place] }));
+      this.#changes = [{ key: "", bytes: undefined, written: 0 }, ...all.filter(({ key }) => key !== STAMP)];
+    }
+  }
+
+  /** Learns it between two changes. */
+  async #look() {
+    try {
+      await this.#read(await this.#begin("readonly"));
+    } catch (error) {
+      this.#failure = String(error);
     }
   }
 
   /** For a game that begins anew: it knows nothing yet. */
   async again() {
     this.#wantsLetters = false;
+    this.#stamp = undefined;
+    await this.#look();
+  }
+
+  /** The next thing that is kept; one without a key says that nothing is but what follows. */
+  takeChange() {
+    return this.#changes.shift();
+  }
+
+  /**
+   * Keeps and removes things, all of them or none, while no other tab does, and when all that they did is known. Resolves
+   * once it is truly kept, or says why it is not.
+   * @param {() => void} job what does so, at once
+   * @returns {Promise<string | undefined>}
+   */
+  async alone(job) {
+    if (this.refusal) {
+      job();
+      return;
+    }
     try {
-      await (this.#database ? this.#readStore() : this.#openStore());
+      const transaction = await this.#begin("readwrite");
+      const ended = this.#end(transaction);
+      await this.#read(transaction);
+      this.#transaction = transaction;
+      try {
+        job();
+      } finally {
+        this.#transaction = undefined;
+      }
+      await ended;
     } catch (error) {
-      this.#fail(error);
+      // What the game takes for kept is not.
+      this.#stamp = undefined;
+      await this.#look();
+      return String(error);
     }
   }
 
-  /** The next thing that was kept before, or in another tab. */
-  takeChange() {
-    return this.#changes.shift();
+  /** What came of it; other tabs hear of it. @param {IDBTransaction} transaction @returns {Promise<void>} */
+  #end(transaction) {
+    const ended = new Promise((resolve, reject) => {
+      transaction.oncomplete = () => resolve(this.#others?.postMessage("changed"));
+      transaction.onabort = () => reject(this.#refused.get(transaction) ?? transaction.error);
+    });
+    // Who waits for it may still be reading.
+    ended.catch(() => {});
+    return ended;
   }
 
   /** @param {string} key @param {Uint8Array} bytes @param {number} written */
   keep(key, bytes, written) {
     // They lie in the game's memory, which moves on.
     const thing = { bytes: bytes.slice(), written };
-    this.#write({ key, ...thing }, (store) => store.put(thing, key));
+    this.#write((store) => store.put(thing, key));
   }
 
   /** @param {string} key */
   remove(key) {
-    this.#write({ key, bytes: undefined, written: 0 }, (store) => store.delete(key));
+    this.#write((store) => store.delete(key));
   }
 
-  /** @param {Changed} changed @param {(store: IDBObjectStore) => IDBRequest} change */
-  async #write(changed, change) {
+  /** @param {(store: IDBObjectStore) => void} change */
+  async #write(change) {
+    if (this.#transaction) {
+      return this.#change(this.#transaction, change);
+    }
+    // The page may be about to go: this asks nothing first.
     try {
-      if (!this.#database) {
-        await this.#openStore();
+      const transaction = this.#database?.transaction(STORE, "readwrite") ?? (await this.#begin("readwrite"));
+      const ended = this.#end(transaction);
+      this.#change(transaction, change);
+      if (!this.#refused.has(transaction)) {
+        // Firefox gives up what is not told to end when the page goes.
+        transaction.commit?.();
       }
-      const transaction = /** @type {IDBDatabase} */ (this.#database).transaction(STORE, "readwrite");
-      transaction.oncomplete = () => this.#others?.postMessage(changed);
-      transaction.onabort = () => this.#fail(transaction.error);
-      change(transaction.objectStore(STORE));
+      await ended;
     } catch (error) {
-      this.#fail(error);
+      this.#failure = String(error);
+    }
+    await this.#look();
+  }
+
+  /** @param {IDBTransaction} transaction @param {(store: IDBObjectStore) => void} change */
+  #change(transaction, change) {
+    try {
+      const store = transaction.objectStore(STORE);
+      change(store);
+      store.put(`${Date.now()} ${Math.random()}`, STAMP);
+    } catch (error) {
+      this.#refused.set(transaction, error);
+      transaction.abort();
     }
   }
 
-  /** @param {unknown} error */
-  #fail(error) {
-    this.#failure = String(error);
-  }
-
-  /** Why something is not kept, once. */
+  /** Why something is not kept that was not done alone, once. */
   takeFailure() {
     const failure = this.#failure;
     this.#failure = undefined;
@@ -211,6 +292,23 @@ export class Host {
 
   get address() {
     return location.origin + location.pathname;
+  }
+
+  /** Puts a text on the clipboard. @param {string} text */
+  async copy(text) {
+    try {
+      await navigator.clipboard.writeText(text);
+      this.#copied = true;
+    } catch {
+      this.#copied = false;
+    }
+  }
+
+  /** Whether the browser took what was copied, once that is known. */
+  takeCopied() {
+    const copied = this.#copied;
+    this.#copied = undefined;
+    return copied;
   }
 
   // ---- sound ----

@@ -67,6 +67,10 @@ async function load() {
   if (!response.ok || !response.body) {
     throw new Error(`${response.status}`);
   }
+  // What is kept comes at once, and browsers keep what they compiled only of an answer as it came.
+  if (navigator.serviceWorker?.controller) {
+    return response;
+  }
   let bytes = 0;
   const counted = response.body.pipeThrough(
     new TransformStream({

@@ -94,8 +94,8 @@ fn soak(words: &[String]) -> Result<(), Failure> {
     )
 }
 
-/// Tests draw into images, and open no window.
-const FOR_TESTS: &[Purpose] = &[Purpose::Build, Purpose::Drawing];
+/// Tests draw into images, and open no window; one of them starts a database server.
+const FOR_TESTS: &[Purpose] = &[Purpose::Build, Purpose::Drawing, Purpose::Serving];
 
 /// One call of cargo.
 struct Step {
@@ -147,6 +147,19 @@ const TEST: &[Step] = &[
         arguments: &["test", "--workspace"],
         environment: &[],
         hint: "a test failed or did not compile, see above",
+    },
+    Step {
+        arguments: &[
+            "test",
+            "--package",
+            "tamaire_logbook",
+            "--features",
+            "postgres",
+            "--test",
+            "postgres",
+        ],
+        environment: &[],
+        hint: "what a stand keeps does not get to a PostgreSQL server, see above",
     },
     Step {
         arguments: &[

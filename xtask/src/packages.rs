@@ -27,6 +27,8 @@ pub enum Purpose {
     Fuzzing,
     /// To play the game in browsers.
     Browsing,
+    /// To run a server that a stand sends to, as tests do.
+    Serving,
 }
 
 /// How to see that a package is there.
@@ -66,7 +68,7 @@ const fn package(
 /// this program would not have been linked.
 #[rustfmt::skip]
 const PACKAGES: &[Package] = {
-    use Purpose::{Browsing, Build, Drawing, Fuzzing, Window};
+    use Purpose::{Browsing, Build, Drawing, Fuzzing, Serving, Window};
     use Seen::{Installed, Program};
     &[
         package("cmake", Program("cmake"), &[Build], "configures SDL, which reads sticks and pads"),
@@ -80,6 +82,7 @@ const PACKAGES: &[Package] = {
         package("xauth", Installed, &[Browsing], "opens that display"),
         package("libegl1", Installed, &[Browsing], "what Firefox draws with"),
         package("libgl1-mesa-dri", Installed, &[Browsing], "OpenGL, without a GPU too"),
+        package("postgresql", Installed, &[Serving], "a server that a logbook is sent to; tests start one of their own"),
         package("libx11-6", Installed, &[Window], "X11 windows"),
         package("libx11-xcb1", Installed, &[Window], "X11 windows"),
         package("libxcursor1", Installed, &[Window], "the mouse pointer in X11 windows"),
@@ -280,6 +283,7 @@ mod tests {
         check(&[Purpose::Build], &build, &[]);
         check(&[Purpose::Build], &["cmake", "make"], &build[2..]);
         check(&[Purpose::Drawing], &[], &["mesa-vulkan-drivers"]);
+        check(&[Purpose::Serving], &[], &["postgresql"]);
         check(&[], &[], &[]);
         // Once, though it has both purposes.
         let window = missing(&[Purpose::Window, Purpose::Drawing], |_| false);

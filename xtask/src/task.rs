@@ -13,7 +13,8 @@ tasks:
   wasm             the golden scenes on wasm32 under Node: the same bits as natively? And does the
                    game compile for a browser?
   wasm --install   the same; what is missing comes from Debian's packages
-  web              the game for a browser: a folder that any web server can hand out
+  web              the game for a browser: a folder that any web server can hand out; where it will
+                   stand, --address https://…/ says for those who show a preview of the page
   web --serve      the same, handed out on this machine
   web --test       the same, played in Chromium and Firefox
                    with --install after any of them what is missing comes from Debian's packages
@@ -103,12 +104,25 @@ fn web(words: &[&str]) -> Result<Task, String> {
     let (web, rest) = match words {
         ["--serve", rest @ ..] => (Web::Serve, rest),
         ["--test", rest @ ..] => (Web::Test, rest),
-        rest => (Web::Build, rest),
+        ["--address", address, rest @ ..] => (Web::Build(Some(address_of_page(address)?)), rest),
+        rest => (Web::Build(None), rest),
     };
     match rest {
         [] => Ok(Task::Web(web, IfMissing::Say)),
         ["--install"] => Ok(Task::Web(web, IfMissing::Install)),
         _ => Err(format!("there is no task `web {}`", words.join(" "))),
+    }
+}
+
+/// An address that names of files can be put behind.
+fn address_of_page(word: &str) -> Result<String, String> {
+    let is_whole = word.starts_with("https://") || word.starts_with("http://");
+    let is_plain = !word.contains(['"', '<', '>', '&', '#', '?']);
+    match is_whole && is_plain && word.ends_with('/') {
+        true => Ok(word.to_string()),
+        false => Err(format!(
+            "the address of a page begins with https:// and ends with a slash, not `{word}`"
+        )),
     }
 }
 
@@ -133,7 +147,20 @@ mod tests {
         check("test --no-install", Ok(Task::Test(IfMissing::Say)));
         check("wasm", Ok(Task::Wasm(IfMissing::Say)));
         check("wasm --install", Ok(Task::Wasm(IfMissing::Install)));
-        check("web", Ok(Task::Web(Web::Build, IfMissing::Say)));
+        check("web", Ok(Task::Web(Web::Build(None), IfMissing::Say)));
+        check(
+            "web --address https://example.org/tamaire/ --install",
+            Ok(Task::Web(
+                Web::Build(Some("https://example.org/tamaire/".into())),
+                IfMissing::Install,
+            )),
+        );
+        check(
+            "web --address example.org",
+            Err(
+                "the address of a page begins with https:// and ends with a slash, not `example.org`",
+            ),
+        );
         check(
             "web --test --install",
             Ok(Task::Web(Web::Test, IfMissing::Install)),

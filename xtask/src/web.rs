@@ -12,10 +12,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// What to do with the game for a browser.
-#[derive(Debug, PartialEq, Clone, Copy)]
+#[derive(Debug, PartialEq)]
 pub enum Web {
-    /// Build it.
-    Build,
+    /// Build it, for this address where one is known.
+    Build(Option<String>),
     /// And hand it out on this machine.
     Serve,
     /// And play it in browsers.
@@ -28,10 +28,14 @@ pub fn run(web: Web, if_missing: IfMissing) -> Result<(), Failure> {
         provide_browsers(if_missing)?;
     }
     let compiler = wasm::compiler(if_missing, "the game was NOT built for a browser")?;
-    build(&compiler)?;
+    let address = match &web {
+        Web::Build(address) => address.as_deref(),
+        Web::Serve | Web::Test => None,
+    };
+    build(&compiler, address)?;
     let site = folder().join("site");
     match web {
-        Web::Build => Ok(()),
+        Web::Build(_) => Ok(()),
         Web::Serve => node("serve.mjs", &[&site], "the server ended"),
         Web::Test => {
             let checks = compile(&compiler, &["browser_checks", "--crate-type", "cdylib"])?;
@@ -49,7 +53,7 @@ fn folder() -> PathBuf {
     root().join(target()).join("web")
 }
 
-fn build(compiler: &Compiler) -> Result<(), Failure> {
+fn build(compiler: &Compiler, address: Option<&str>) -> Result<(), Failure> {
     let stage = folder().join("stage");
     let game = compile(compiler, &["tamaire", "--bin", "tamaire"])?;
     let sound = compile(compiler, &["tamaire_worklet", "--crate-type", "cdylib"])?;
@@ -73,11 +77,9 @@ fn build(compiler: &Compiler) -> Result<(), Failure> {
         "the licences could not be gathered",
     )?;
     let (page, site) = (root().join("game/web"), folder().join("site"));
-    node(
-        "pack.mjs",
-        &[&stage, &page, &licences, &site],
-        "the folder could not be packed",
-    )
+    let mut words: Vec<&Path> = vec![&stage, &page, &licences, &site];
+    words.extend(address.map(Path::new));
+    node("pack.mjs", &words, "the folder could not be packed")
 }
 
 /// Compiles a package, the first of the words, as the game is; where its module is.
@@ -107,6 +109,7 @@ fn wasm_bindgen() -> Result<PathBuf, Failure> {
             .args([
                 "install",
                 "wasm-bindgen-cli",
+                "--locked",
                 "--version",
                 version,
                 "--root",

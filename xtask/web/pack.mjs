@@ -1,14 +1,16 @@
 // Makes the folder that a web server hands out: the module optimised, everything that may be kept for ever in a folder that is
 // named by its contents, and what it costs on the wire.
-// usage: node pack.mjs STAGE PAGE LICENCES OUT
-//   STAGE: what wasm-bindgen made, and sound.wasm; PAGE: game/web; LICENCES: a text; OUT: the folder, made anew
+// usage: node pack.mjs STAGE PAGE LICENCES OUT [ADDRESS]
+//   STAGE: what wasm-bindgen made, and sound.wasm; PAGE: game/web; LICENCES: a text; OUT: the folder, made anew;
+//   ADDRESS: where it will stand
 import { execFileSync } from "node:child_process";
 import { createHash } from "node:crypto";
 import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
+import { addressed } from "./address.mjs";
 import { brotli } from "./compress.mjs";
 
-const [stage, page, licences, out] = process.argv.slice(2);
+const [stage, page, licences, out, address] = process.argv.slice(2);
 const here = import.meta.dirname;
 
 /** What a browser must be able to do: page.js asks for the lanes, and all that have them have the rest. */
@@ -50,7 +52,7 @@ const hash = createHash("sha256");
 for (const [name, bytes] of [...files, ...NAMED.map((name) => [name, readFileSync(join(page, name))])]) {
   hash.update(name).update(bytes);
 }
-hash.update(readFileSync(licences)).update(readFileSync(PREVIEW));
+hash.update(readFileSync(licences)).update(readFileSync(PREVIEW)).update(address ?? "");
 const version = hash.digest("hex").slice(0, 12);
 
 for (const folder of [out, `${out}.br`]) {
@@ -67,7 +69,7 @@ cpSync(licences, join(out, "licences.txt"));
 cpSync(PREVIEW, join(out, "preview.png"));
 const change = (/** @type {string} */ name, /** @type {(text: string) => string} */ how) =>
   writeFileSync(join(out, name), how(readFileSync(join(out, name), "utf8")));
-change("index.html", (text) => text.replaceAll(/"(page\.(?:css|js))"/g, `"${version}/$1"`));
+change("index.html", (text) => addressed(text, address).replaceAll(/"(page\.(?:css|js))"/g, `"${version}/$1"`));
 const kept = ["./", ...NAMED.filter((name) => name !== "sw.js" && name !== "index.html")];
 kept.push("licences.txt", ...[...files.keys()].map((name) => `${version}/${name}`));
 change("sw.js", (text) => text.replace("@VERSION@", version).replace('"@FILES@"', kept.map((name) => JSON.stringify(name)).join(", ")));

@@ -20,7 +20,7 @@ const MEDIA = {
 /**
  * @param {string} folder
  * @param {number} port 0 for any that is free
- * @returns {Promise<{address: string, sent: {path: string, bytes: number}[], close(): Promise<void>}>}
+ * @returns {Promise<{address: string, folder: string, sent: {path: string, bytes: number}[], close(): Promise<void>}>}
  */
 export function serve(folder, port = 0) {
   /** @type {{path: string, bytes: number}[]} */
@@ -56,7 +56,7 @@ export function serve(folder, port = 0) {
         server.closeAllConnections();
         return new Promise((done) => server.close(() => done(undefined)));
       };
-      resolve({ address: `http://localhost:${port}/`, sent, close });
+      resolve({ address: `http://localhost:${port}/`, folder, sent, close });
     });
   });
 }

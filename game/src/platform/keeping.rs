@@ -91,9 +91,9 @@ pub(super) fn merge_records(
 }
 
 /// Keeps a replay; says where, or why not.
-pub(super) fn save_replay(storage: &dyn Storage, replay: &Replay) -> Result<String, String> {
+pub(super) fn save_replay(storage: &dyn Storage, replay: &Replay) -> io::Result<String> {
     // One that could not be watched is none.
-    let text = replay.text_to_keep().map_err(|error| error.to_string())?;
+    let text = replay.text_to_keep().map_err(io::Error::other)?;
     save(storage, Kind::Replay, &stem_of(replay), text.as_bytes())
 }
 
@@ -138,8 +138,8 @@ pub(super) fn save(
     kind: Kind,
     stem: &str,
     bytes: &[u8],
-) -> Result<String, String> {
-    let names = storage.list(kind).map_err(|error| error.to_string())?;
+) -> io::Result<String> {
+    let names = storage.list(kind)?;
     let is_listed = |name: &String| names.iter().any(|entry| entry.name == *name);
     let numbered = (1..).map(|number| format!("{stem}-{number}"));
     let mut last = None;
@@ -153,8 +153,8 @@ pub(super) fn save(
         match written {
             Ok(()) if is_free => return Ok(storage.location(kind, &name)),
             Ok(()) => {}
-            Err(error) => last = Some(error.to_string()),
+            Err(error) => last = Some(error),
         }
     }
-    Err(last.unwrap_or_else(|| "no name is free".into()))
+    Err(last.unwrap_or_else(|| io::Error::other("no name is free")))
 }

@@ -1,5 +1,6 @@
 //! What is written while the game goes on.
 
+use std::io;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::{self, JoinHandle};
 
@@ -27,14 +28,20 @@ impl<T: Send + 'static> Writer<T> {
         }
     }
 
-    /// Does this after what was asked for before.
-    pub fn write(&mut self, job: impl FnOnce() -> T + Send + 'static) {
+    /// Does this after what was asked for before; `told` makes of it what is to be told.
+    pub fn write<V: 'static>(
+        &mut self,
+        job: impl FnOnce() -> io::Result<V> + Send + 'static,
+        told: fn(io::Result<V>) -> T,
+    ) {
+        self.begin(Box::new(move || told(job())));
+    }
+
+    fn begin(&mut self, job: Job<T>) {
         self.open += 1;
-        // A browser has no threads.
-        if self.thread.is_none() && !cfg!(target_family = "wasm") {
+        if self.thread.is_none() {
             self.thread = start(self.teller.clone());
         }
-        let job: Job<T> = Box::new(job);
         let refused = match &self.thread {
             Some((jobs, _)) => jobs.send(job).err().map(|refused| refused.0),
             None => Some(job),
@@ -46,20 +53,8 @@ impl<T: Send + 'static> Writer<T> {
     }
 
     /// Does this too, which may have to wait for a device.
-    #[cfg(not(target_family = "wasm"))]
     pub fn develop<W: Future<Output = T>>(&mut self, job: impl FnOnce() -> W + Send + 'static) {
-        self.write(move || pollster::block_on(job()));
-    }
-
-    /// Does this between frames: it may have to wait for a device.
-    #[cfg(target_family = "wasm")]
-    pub fn develop<W: Future<Output = T>>(&mut self, job: impl FnOnce() -> W + 'static) {
-        self.open += 1;
-        let teller = self.teller.clone();
-        wasm_bindgen_futures::spawn_local(async move {
-            // The game may have begun anew.
-            let _ = teller.send(job().await);
-        });
+        self.begin(Box::new(move || pollster::block_on(job())));
     }
 
     /// What came of what was done, without waiting.
@@ -108,13 +103,14 @@ mod tests {
     #[test]
     fn all_is_done_in_its_order_and_waited_for() {
         let mut writer = Writer::new();
+        let told = |number: io::Result<i32>| number.expect("it is there");
         for number in 0..100 {
-            writer.write(move || number);
+            writer.write(move || Ok(number), told);
         }
         let mut done = writer.results();
         done.extend(writer.finish());
         assert_eq!(done, (0..100).collect::<Vec<_>>());
-        writer.write(|| 100);
+        writer.write(|| Ok(100), told);
         assert_eq!(writer.finish(), [100]);
         assert!(!writer.is_busy());
     }

@@ -17,7 +17,7 @@ export async function checkBits(browsers, module) {
   const folder = mkdtempSync(join(tmpdir(), "tamaire-bits-"));
   try {
     const recorded = join(folder, "natively");
-    natively("browser_checks", "replays", "record", recorded);
+    natively("utf8", "browser_checks", "replays", "record", recorded);
     for (const [index, [name, browser]] of Object.entries(browsers).entries()) {
       const checks = await open(browser, module);
       await checkGolden(name, checks);
@@ -29,7 +29,7 @@ export async function checkBits(browsers, module) {
         writeFileSync(join(written, `${game}.tamaire`), await checks.call("record", game));
       }
       await checks.close();
-      process.stdout.write(`${name}, then ${natively("browser_checks", "replays", "verify", written)}`);
+      process.stdout.write(`${name}, then ${natively("utf8", "browser_checks", "replays", "verify", written)}`);
     }
   } finally {
     rmSync(folder, { recursive: true });

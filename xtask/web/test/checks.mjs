@@ -46,9 +46,9 @@ export async function open(browser, module) {
   };
 }
 
-/** Runs an example natively, in release; what it printed. @param {string} name @param {...string} words */
-export function natively(crate, name, ...words) {
+/** Runs an example natively, in release; what it printed. @param {"utf8" | "buffer"} encoding @param {string} crate @param {string} name @param {...string} words */
+export function natively(encoding, crate, name, ...words) {
   const cargo = ["run", "--quiet", "--release", "--package", crate, "--example", name, "--", ...words];
   const stdio = /** @type {["ignore", "pipe", "inherit"]} */ (["ignore", "pipe", "inherit"]);
-  return execFileSync(process.env.CARGO ?? "cargo", cargo, { cwd: ROOT, stdio, encoding: "utf8" });
+  return execFileSync(process.env.CARGO ?? "cargo", cargo, { cwd: ROOT, stdio, encoding, maxBuffer: 1 << 26 });
 }

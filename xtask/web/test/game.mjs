@@ -1,13 +1,35 @@
-// The game in a browser, as somebody plays it: with the mouse, with a finger, offline, with nothing kept, from a link …
+// The game in a browser, as somebody plays it: with the mouse, with a finger, offline, from a link …
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
+import { addressed } from "../address.mjs";
+import { serve } from "../serve.mjs";
 import { Visit, seconds } from "./visit.mjs";
 
 const PHONES = /** @type {[number, number][]} */ ([[390, 844], [844, 390]]);
 const LEVELS = new URL("../../../crates/tamaire_play/levels/", import.meta.url);
 
-/** @typedef {{address: string, sent: {path: string, bytes: number}[]}} Site */
+/** @typedef {{address: string, folder: string, sent: {path: string, bytes: number}[]}} Site */
 /** @typedef {import("puppeteer-core").Browser} Browser */
+
+/** What a preview is made of: whole addresses, or none. @param {Browser} browser */
+export async function preview(browser) {
+  const html = readFileSync(new URL("../../../game/web/index.html", import.meta.url), "utf8");
+  const page = await browser.newPage();
+  const told = async (/** @type {string | undefined} */ address) => {
+    await page.setContent(addressed(html, address));
+    const told = { canonical: "link[rel=canonical]", url: "meta[property='og:url']", image: "meta[property='og:image']" };
+    const find = (/** @type {Record<string, string>} */ told) =>
+      Object.entries(told).map(([name, selector]) => {
+        const element = document.querySelector(selector);
+        return [name, element?.getAttribute("href") ?? element?.getAttribute("content") ?? "none"];
+      });
+    return Object.fromEntries(await page.evaluate(find, told));
+  };
+  const address = "https://example.org/tamaire/";
+  assert.deepEqual(await told(address), { canonical: address, url: address, image: `${address}preview.png` });
+  assert.deepEqual(await told(undefined), { canonical: "none", url: "none", image: "none" });
+  await page.close();
+}
 
 /** What comes over the wire until somebody can play, and how long that takes. @param {Browser} browser @param {Site} site */
 export async function first(browser, site) {
@@ -63,7 +85,7 @@ export async function touch(browser, site) {
 }
 
 /** @param {Visit} visit @param {"click" | "tap"} how */
-async function start(visit, how) {
+export async function start(visit, how) {
   await visit[how]("Play");
   await visit.sees("Levels");
   await visit[how]("Classic");
@@ -72,43 +94,15 @@ async function start(visit, how) {
 
 /** Without a network, once it was there. @param {Browser} browser @param {Site} site */
 export async function offline(browser, site) {
-  const visit = await Visit.begin(browser, site.address);
+  const server = await serve(site.folder);
+  const visit = await Visit.begin(browser, server.address);
   await visit.page.waitForFunction(async () => (await navigator.serviceWorker.ready).active?.state === "activated");
   await visit.page.setOfflineMode(true);
-  site.sent.length = 0;
+  // It is truly gone: whatever is asked for fails.
+  await server.close();
   await visit.page.reload();
   await visit.comes();
   await start(visit, "click");
-  // A worker looks for a newer one by a way of its own.
-  assert.deepEqual(site.sent.filter(({ path }) => path !== "/sw.js"), []);
-  visit.isQuiet();
-  await visit.page.close();
-}
-
-/** Where the browser keeps nothing. @param {Browser} browser @param {Site} site */
-export async function forbidden(browser, site) {
-  const before = () => Object.defineProperty(globalThis, "indexedDB", { get: () => { throw new DOMException("refused", "SecurityError"); } });
-  const visit = await Visit.begin(browser, site.address, { before });
-  await visit.hears("the browser keeps nothing for this page");
-  await start(visit, "click");
-  visit.isQuiet();
-  await visit.page.close();
-}
-
-/** Where there is no room any more. @param {Browser} browser @param {Site} site */
-export async function full(browser, site) {
-  const before = () => {
-    IDBObjectStore.prototype.put = () => {
-      throw new DOMException("the quota is used up", "QuotaExceededError");
-    };
-  };
-  const visit = await Visit.begin(browser, site.address, { before });
-  await start(visit, "click");
-  await visit.press("Escape");
-  await visit.click("Save replay");
-  await visit.hears("quota");
-  await visit.click("Go on");
-  await visit.sees("Play");
   visit.isQuiet();
   await visit.page.close();
 }
@@ -159,6 +153,29 @@ export async function links(browser, site) {
   await other.page.close();
 }
 
+/** A browser that keeps its clipboard to itself says so, in the visitor's language. @param {Browser} browser @param {Site} site */
+export async function clipboard(browser, site) {
+  const visit = await Visit.begin(browser, site.address);
+  await visit.page.evaluate(() => {
+    navigator.clipboard.writeText = () => Promise.reject(new DOMException("not here", "NotAllowedError"));
+  });
+  const refused = async (/** @type {string[]} */ [play, classic, link], /** @type {string} */ words) => {
+    for (const name of [play, classic]) await visit.click(name);
+    await visit.sees("Play");
+    await visit.press("Escape");
+    await visit.click(link);
+    const { notices } = await visit.hears(words);
+    assert.equal(notices.length, 1, notices.join("\n"));
+  };
+  await refused(["Play", "Classic", "Link to this level"], "clipboard");
+  for (const name of ["Levels", "Back", "日本語"]) await visit.click(name);
+  await visit.until((report) => report.notices.length === 0, "silence");
+  await refused(["あそぶ", "クラシック", "このステージのリンク"], "クリップボード");
+  // eframe draws Japanese with a canvas until its letters are there.
+  visit.isQuiet(/willReadFrequently/);
+  await visit.page.close();
+}
+
 /** Files that are dropped onto the page. @param {Browser} browser @param {Site} site */
 export async function drops(browser, site) {
   const visit = await Visit.begin(browser, site.address);
@@ -166,7 +183,7 @@ export async function drops(browser, site) {
     ["cat.png", (report) => report.screen === "Play" && report.level === "cat.png"],
     ["pudding.vox", (report) => report.screen === "Play" && report.level === "pudding.vox"],
   ])) {
-    await drop(visit, name, [...readFileSync(new URL(name, LEVELS))]);
+    await drop(visit, name);
     await visit.until(is, `${name} is played`);
   }
   await drop(visit, "broken.png", [1, 2, 3]);
@@ -182,8 +199,8 @@ export async function drops(browser, site) {
   await visit.page.close();
 }
 
-/** @param {Visit} visit @param {string} name @param {number[]} bytes */
-function drop(visit, name, bytes) {
+/** Drops a file, of the levels where nothing else is said. @param {Visit} visit @param {string} name @param {number[]} bytes */
+export function drop(visit, name, bytes = [...readFileSync(new URL(name, LEVELS))]) {
   return visit.page.evaluate(
     (name, bytes) => {
       const dataTransfer = new DataTransfer();
@@ -276,29 +293,4 @@ export async function pad(browser, site) {
   await seconds(1);
   visit.isQuiet();
   await visit.page.close();
-}
-
-/** What one tab keeps the other finds. @param {Browser} browser @param {Site} site */
-export async function tabs(browser, site) {
-  const one = await Visit.begin(browser, site.address);
-  const other = await Visit.begin(browser, site.address);
-  await one.page.bringToFront();
-  await start(one, "click");
-  await one.press("Escape");
-  await one.click("Save replay");
-  await one.hears("Saved");
-  await other.page.bringToFront();
-  await other.click("Replays");
-  await other.place("Watch");
-  await other.click("Delete");
-  await other.click("Really?");
-  await one.page.bringToFront();
-  await one.click("Levels");
-  await one.click("Back");
-  await one.click("Replays");
-  await one.until((report) => report.screen === "Replays" && !report.labels.some(({ name }) => name === "Watch"), "an empty list");
-  one.isQuiet();
-  other.isQuiet();
-  await one.page.close();
-  await other.page.close();
 }

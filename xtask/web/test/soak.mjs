@@ -1,13 +1,16 @@
-// Somebody who does anything, for long: does the page take more and more memory, or complain?
+// Somebody who does anything, for long, on every level and then on every level again: does the page take more and more
+// memory, here or on the GPU, or complain?
 // usage: node soak.mjs SITE [MINUTES]
 import assert from "node:assert/strict";
 import { serve } from "../serve.mjs";
+import { countGpu } from "./gpu.mjs";
 import { Visit, launch, seconds } from "./visit.mjs";
 
 const [folder, minutes = "30"] = process.argv.slice(2);
-const KEYS = /** @type {import("puppeteer-core").KeyInput[]} */ (["Escape", "e", "r", "f", "j", "q", "z", "Enter", "ArrowDown", "Tab"]);
-/** After so much of the time everything was there once. */
-const SETTLED = 0.3;
+const [WIDTH, HEIGHT] = [900, 640];
+/** What is pressed; those that pause come up seldom enough. */
+const KEYS = /** @type {import("puppeteer-core").KeyInput[]} */ (["Escape", "e", "r", "f", "j", "q", "z", "x", "c", "[", "Enter", "ArrowDown", "Tab"]);
+const ROUNDS = 2;
 
 let seed = 1;
 /** Below one, the same each time. */
@@ -18,7 +21,7 @@ function random() {
 
 const site = await serve(folder);
 const browser = await launch("chromium");
-const visit = await Visit.begin(browser, site.address, { size: [900, 640] });
+const visit = await Visit.begin(browser, site.address, { size: [WIDTH, HEIGHT], before: countGpu });
 const session = await visit.page.createCDPSession();
 await session.send("Performance.enable");
 
@@ -26,54 +29,109 @@ async function measured() {
   await session.send("HeapProfiler.collectGarbage");
   const { metrics } = await session.send("Performance.getMetrics");
   const of = (/** @type {string} */ name) => metrics.find((metric) => metric.name === name)?.value ?? 0;
-  return { wasm: (await visit.report())?.memory ?? 0, heap: of("JSHeapUsedSize"), nodes: of("Nodes"), listeners: of("JSEventListeners") };
+  const gpu = await visit.page.evaluate(() => globalThis.gpu());
+  return {
+    wasm: (await report()).memory,
+    heap: of("JSHeapUsedSize"),
+    gpu: gpu.bytes,
+    "gpu objects": gpu.objects,
+    nodes: of("Nodes"),
+    listeners: of("JSEventListeners"),
+  };
 }
 
-const begin = performance.now();
-const passed = () => (performance.now() - begin) / 60_000;
-let [settled, minute, level] = [undefined, 0, 0];
-while (passed() < Number(minutes)) {
+/** How things stand; fails where the game ended. */
+async function report() {
   const report = await visit.report();
   if (!report) {
     visit.isQuiet();
     assert.fail("the game ended");
   }
-  if (report.screen !== "Play" || random() < 0.01) {
-    // On to another level, by way of the title.
-    for (const _ of [1, 2, 3, 4]) {
-      if ((await visit.report())?.screen !== "Title") await visit.press("Escape");
+  return report;
+}
+
+/** The names on the list of levels, by way of the title. */
+async function openLevels() {
+  while ((await report()).screen !== "Levels") {
+    const { screen, labels } = await report();
+    // Somewhere below the title, or on it.
+    const wanted = screen === "Title" ? "Play" : "Levels";
+    const found = labels.find(({ name }) => name === wanted);
+    await (found ? visit.page.mouse.click(found.x, found.y, { delay: 120 }) : visit.press("Escape"));
+    await seconds(0.5);
+  }
+  const { labels } = await visit.until(({ labels }) => labels.some(({ name }) => name === "Classic"), "a list of levels");
+  const others = ["Back", "Open…", "Levels", "The mouse rests"];
+  return labels.map(({ name }) => name).slice(labels.findIndex(({ name }) => name === "Classic")).filter((name) => !others.includes(name));
+}
+
+/** Begins a level from the list, which is rolled to where it stands. */
+async function begin(/** @type {string} */ level) {
+  await openLevels();
+  await visit.page.mouse.move(WIDTH / 2, HEIGHT / 2);
+  for (let goes = 0; goes < 40; goes++) {
+    const { y } = await visit.place(level);
+    if (y > 120 && y < HEIGHT - 60) {
+      await visit.click(level);
+      await seconds(1);
+      if ((await report()).screen !== "Levels") return;
+    } else {
+      await visit.page.mouse.wheel({ deltaY: y < HEIGHT / 2 ? -150 : 150 });
+      await seconds(0.3);
     }
-    for (const name of ["Levels", "Back", "Play"]) {
-      const found = (await visit.report())?.labels.find((label) => label.name === name);
-      if (found) await visit.page.mouse.click(found.x, found.y);
-      await seconds(0.5);
-    }
-    const { screen, labels } = (await visit.report()) ?? {};
-    const tiles = labels?.filter(({ name }) => !["Back", "Open…"].includes(name)) ?? [];
-    if (screen === "Levels" && tiles.length) {
-      const { x, y } = tiles[level++ % tiles.length];
-      await visit.page.mouse.click(x, y);
-    }
+  }
+  assert.fail(`“${level}” never stands where it can be pressed`);
+}
+
+/** Something that anybody might do; at which tick the round is. */
+async function act(/** @type {string} */ level) {
+  const { screen, ticks } = await report();
+  if (screen === "Title" || screen === "Levels") {
+    await begin(level);
+  } else if (screen !== "Play") {
+    await visit.press(random() < 0.5 ? "Escape" : "r");
   } else if (random() < 0.05) {
     await visit.press(KEYS[Math.floor(random() * KEYS.length)]);
+  } else if (random() < 0.05) {
+    await visit.page.mouse.wheel({ deltaY: 200 * (random() - 0.5) });
   } else {
-    await visit.page.mouse.move(900 * random(), 640 * random(), { steps: 8 });
+    await visit.page.mouse.move(WIDTH * random(), HEIGHT * random(), { steps: 8 });
   }
-  if (passed() > minute) {
+  return ticks;
+}
+
+const levels = await openLevels();
+console.log(`${levels.length} levels: ${levels.join(", ")}`);
+const turn = (60 * Number(minutes)) / (ROUNDS * levels.length);
+/** The most of each round. @type {Record<string, number>[]} */
+const most = [];
+const since = performance.now();
+const text = ([name, value]) => `${name} ${value > 1e5 ? `${(value / 1e6).toFixed(1)} MB` : value}`;
+for (let round = 0; round < ROUNDS; round++) {
+  most.push({});
+  for (const [place, level] of levels.entries()) {
+    await begin(level);
+    const end = since + 1000 * turn * (round * levels.length + place + 1);
+    let [played, before] = [0, 0];
+    while (performance.now() < end) {
+      const ticks = await act(level);
+      played += Math.max(ticks - before, 0);
+      before = ticks;
+    }
     const now = await measured();
-    const line = Object.entries(now).map(([name, value]) => `${name} ${value > 1e5 ? `${(value / 1e6).toFixed(1)} MB` : value}`);
-    console.log(`${String(minute).padStart(3)} min: ${line.join(", ")}, ${report.screen} ${report.level}`);
-    minute++;
-    if (!settled && passed() > SETTLED * Number(minutes)) settled = now;
+    for (const [name, value] of Object.entries(now)) {
+      most[round][name] = Math.max(most[round][name] ?? 0, value);
+    }
+    const minute = ((performance.now() - since) / 60_000).toFixed(1).padStart(5);
+    console.log(`${minute} min: ${Object.entries(now).map(text).join(", ")}; ${played} ticks of ${(await report()).level}`);
   }
 }
-const last = await measured();
-for (const [name, value] of Object.entries(settled ?? last)) {
-  console.log(`${name} grew by ${(100 * (last[name] / value - 1)).toFixed(1)} %`);
+for (const [name, value] of Object.entries(most[0])) {
+  console.log(`most of ${name}: ${text(["first", value])}, ${text(["then", most[1][name]])}: ${(100 * (most[1][name] / value - 1)).toFixed(1)} %`);
 }
 visit.isQuiet();
 console.log("and the console is empty");
-const grown = Object.entries(settled ?? last).filter(([name, value]) => last[name] > 1.05 * value);
-assert.deepEqual(grown.map(([name]) => name), [], "grew by more than a twentieth");
+const grown = Object.keys(most[0]).filter((name) => most[1][name] > 1.05 * most[0][name]);
+assert.deepEqual(grown, [], "grew by more than a twentieth");
 await browser.close();
 await site.close();

@@ -65,7 +65,8 @@ async function open(browser, url, first) {
   page.on("pageerror", (error) => complaints.push(error.message));
   await page.evaluateOnNewDocument(first);
   await page.goto(url, { waitUntil: "load" });
-  await rest(2);
+  await page.waitForFunction(() => globalThis.tamaire?.report(), { polling: 100, timeout: 90_000 });
+  await rest(1);
   return { page, complaints };
 }
 

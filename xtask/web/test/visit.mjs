@@ -104,7 +104,7 @@ export class Visit {
     let report;
     do {
       report = await this.report().catch(() => undefined);
-      if (is(report)) return report;
+      if (report && is(report)) return report;
       await seconds(0.1);
     } while (performance.now() - start < PATIENCE);
     assert.fail(`never: ${what}\nlast: ${JSON.stringify(report)}\nconsole: ${this.complaints.join("\n")}`);

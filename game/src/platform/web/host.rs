@@ -16,14 +16,17 @@ extern "C" {
     /// Why nothing can be kept, if so.
     #[wasm_bindgen(method, getter)]
     pub(crate) fn refusal(this: &Host) -> Option<String>;
-    /// The next thing that was kept before or in another tab and is not known here yet.
+    /// The next thing that is kept and not known here yet.
     #[wasm_bindgen(method, js_name = takeChange)]
     pub(crate) fn take_change(this: &Host) -> Option<Changed>;
+    /// Keeps and removes things, all of them or none, while no other tab does. Resolves to why they are not kept, if so.
+    #[wasm_bindgen(method)]
+    pub(crate) fn alone(this: &Host, job: &js_sys::Function) -> js_sys::Promise;
     #[wasm_bindgen(method)]
     pub(crate) fn keep(this: &Host, key: &str, bytes: &[u8], written: f64);
     #[wasm_bindgen(method)]
     pub(crate) fn remove(this: &Host, key: &str);
-    /// Why something that was to be kept is not, told once.
+    /// Why something that was not kept alone is not, told once.
     #[wasm_bindgen(method, js_name = takeFailure)]
     pub(crate) fn take_failure(this: &Host) -> Option<String>;
 
@@ -44,6 +47,10 @@ extern "C" {
     /// The address of the page, without what stands behind it.
     #[wasm_bindgen(method, getter)]
     pub(crate) fn address(this: &Host) -> String;
+    #[wasm_bindgen(method)]
+    pub(crate) fn copy(this: &Host, text: &str);
+    #[wasm_bindgen(method, js_name = takeCopied)]
+    pub(crate) fn take_copied(this: &Host) -> Option<bool>;
 
     /// The GPU is gone, or what is drawn with it fails: the page begins anew.
     #[wasm_bindgen(method)]
@@ -80,7 +87,7 @@ extern "C" {
     pub(crate) type Changed;
     #[wasm_bindgen(method, getter)]
     pub(crate) fn key(this: &Changed) -> String;
-    /// Nothing where it is kept no longer.
+    /// Nothing where it is not a thing but says that nothing is kept but what follows.
     #[wasm_bindgen(method, getter)]
     pub(crate) fn bytes(this: &Changed) -> Option<Vec<u8>>;
     /// When it was written [ms since 1970].

@@ -34,9 +34,9 @@ impl Kept {
             let since = Duration::from_millis(changed.written().max(0.0) as u64);
             let written = SystemTime::UNIX_EPOCH + since;
             match changed.bytes() {
-                Some(bytes) => things.insert(changed.key(), Thing { bytes, written }),
-                None => things.remove(&changed.key()),
-            };
+                Some(bytes) => _ = things.insert(changed.key(), Thing { bytes, written }),
+                None => things.clear(),
+            }
         }
         things
     }
@@ -110,8 +110,19 @@ impl Storage for Kept {
     }
 
     fn take_failure(&self) -> Option<io::Error> {
-        host().take_failure().map(io::Error::other)
+        host().take_failure().map(refused)
     }
+}
+
+/// Why the browser does not keep something, as it says.
+pub(super) fn refused(reason: String) -> io::Error {
+    let is_full = reason.starts_with("QuotaExceededError");
+    let kind = if is_full {
+        io::ErrorKind::StorageFull
+    } else {
+        io::ErrorKind::Other
+    };
+    io::Error::new(kind, reason)
 }
 
 /// How the keys of a kind begin; nothing where it does not stay in the browser.

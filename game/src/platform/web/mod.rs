@@ -2,12 +2,14 @@
 //! makes elements of its own.
 
 pub mod breath;
+pub mod clipboard;
 pub mod date;
 pub mod dialog;
 mod host;
 mod kept;
 pub mod screen;
 pub mod sound;
+pub mod writer;
 
 pub(crate) use host::{GivenFile, host};
 pub use host::{Host, set_host};

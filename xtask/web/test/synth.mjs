@@ -1,20 +1,24 @@
 // Plays the module of crates/tamaire_worklet under Node beside what this machine plays natively. Fails where both are
 // further apart than rounding explains, where a call takes memory, or where hostile bytes stop it.
-// usage: cargo run --release -p tamaire_worklet --example reference > REFERENCE; node module.mjs FILE.wasm REFERENCE
 import assert from "node:assert/strict";
-import { readFile } from "node:fs/promises";
+import { readFileSync } from "node:fs";
+import { natively } from "./checks.mjs";
 
 const RATE = 48_000;
 const FRAMES = 128;
 // Sines and exponentials are rounded by the library of each machine.
 const MOST_APART = 1e-3;
 
-const [file, reference] = await Promise.all(process.argv.slice(2, 4).map((path) => readFile(path)));
-const module = await WebAssembly.compile(file);
-assert.deepEqual(WebAssembly.Module.imports(module), []);
+/** @param {string} file path of the .wasm */
+export async function checkSynth(file) {
+  const module = await WebAssembly.compile(readFileSync(file));
+  assert.deepEqual(WebAssembly.Module.imports(module), []);
+  checkSamples(module, natively("buffer", "tamaire_worklet", "reference"));
+  checkHostile(module);
+}
 
-/** An instance that has begun. */
-function begin(rate) {
+/** An instance that has begun. @param {WebAssembly.Module} module @param {number} rate */
+function begin(module, rate) {
   const { memory, sound_begin, sound_message, sound_message_room, sound_take, sound_render } =
     new WebAssembly.Instance(module).exports;
   sound_begin(rate);
@@ -30,8 +34,9 @@ function begin(rate) {
   };
 }
 
-{
-  const sound = begin(RATE);
+/** @param {WebAssembly.Module} module @param {Buffer} reference */
+function checkSamples(module, reference) {
+  const sound = begin(module, RATE);
   const size = sound.memory.buffer.byteLength;
   const [times, squares] = [[], []];
   let [at, apart, different, peak] = [0, 0, 0, 0];
@@ -66,8 +71,9 @@ function begin(rate) {
   console.log(`worklet: ${FRAMES} frames last ${((1e6 * FRAMES) / RATE).toFixed(0)} µs and take ${quantile(0.5)} µs, 99 % at most ${quantile(0.99)} µs, the slowest ${quantile(1)} µs`);
 }
 
-{
-  const sound = begin(8000);
+/** @param {WebAssembly.Module} module */
+function checkHostile(module) {
+  const sound = begin(module, 8000);
   let state = 1;
   const random = (below) => (state = (state * 48271) % 2147483647) % below;
   for (let round = 0; round < 2000; round++) {
