@@ -9,8 +9,10 @@ mod switch;
 use crate::game::{Game, Screen};
 use crate::input::{Action, Means, Seat};
 use crate::look::{Stage, dress};
-use crate::platform::{GpuWatch, begin_anew, dropped, fill_screen, is_full_by_itself, speak};
-use crate::screens;
+use crate::platform::{
+    Clipboard, GpuWatch, begin_anew, dropped, fill_screen, is_full_by_itself, speak,
+};
+use crate::screens::{self, Attendant};
 use dwell::Dwell;
 use egui::{Event, Key};
 use fingers::Fingers;
@@ -42,6 +44,8 @@ const OF_MENUS: [Key; 8] = [
 pub struct App {
     /// Its state.
     pub game: Game,
+    /// What leads it where visitors find no menus.
+    pub attendant: Option<Box<dyn Attendant>>,
     /// An eye on what it is drawn with.
     pub gpu: GpuWatch,
     stage: Stage,
@@ -49,6 +53,7 @@ pub struct App {
     presses: Presses,
     fingers: Fingers,
     dwell: Dwell,
+    clipboard: Clipboard,
     switch: Switch,
     screen_before: Screen,
     /// Whether the window ever had the focus, whether it was asked to fill the screen, and whether a page did.
@@ -83,12 +88,14 @@ impl App {
         context.egui_ctx.add_plugin(presses.clone());
         Ok(Self {
             game,
+            attendant: None,
             gpu,
             stage,
             navigators,
             presses,
             fingers: Fingers::default(),
             dwell: Dwell::default(),
+            clipboard: Clipboard::default(),
             switch: Switch::default(),
             screen_before,
             had_focus: false,
@@ -314,7 +321,8 @@ impl App {
                 game.controls.latch.press(key, &game.settings.bindings);
             }
             // A browser has this key for itself.
-            if key == Key::F11 && action.is_none() && !cfg!(target_family = "wasm") {
+            let fills = !cfg!(target_family = "wasm") && game.public.is_none();
+            if key == Key::F11 && action.is_none() && fills {
                 game.settings.full_screen ^= true;
                 game.keep_settings();
             }
@@ -333,6 +341,9 @@ impl App {
             _ => false,
         };
         ctx.input_mut(|input| input.events.retain(|event| !is_taken(event)));
+        if game.public.is_some() {
+            return;
+        }
         for given in dropped(ctx) {
             game.open(given);
         }
@@ -347,6 +358,13 @@ impl App {
 }
 
 impl eframe::App for App {
+    /// Runs where nothing is drawn, too.
+    fn logic(&mut self, ctx: &egui::Context, _: &mut eframe::Frame) {
+        if let Some(attendant) = &mut self.attendant {
+            attendant.live(ctx);
+        }
+    }
+
     fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
         if self.gpu.is_lost() {
@@ -360,7 +378,12 @@ impl eframe::App for App {
             self.game.settings.language,
             self.game.has_strange_names(),
         );
-        fit(&ctx, self.game.settings.text_size);
+        // In public it is seen from afar.
+        let text_size = match self.game.public {
+            Some(_) => f32::INFINITY,
+            None => self.game.settings.text_size,
+        };
+        fit(&ctx, text_size);
         self.zoom = ctx.zoom_factor();
         let seconds = ctx.input(|input| input.stable_dt).min(0.1);
         self.hear_sticks(&ctx, seconds);
@@ -368,6 +391,9 @@ impl eframe::App for App {
         self.switch
             .pass(&mut self.game, &self.presses, &ctx, seconds);
         self.game.pass(seconds);
+        if let Some(attendant) = &mut self.attendant {
+            attendant.pass(&mut self.game, &ctx, seconds);
+        }
         if self.screen_before != self.game.screen() {
             // What had the focus is gone.
             self.screen_before = self.game.screen();
@@ -378,10 +404,16 @@ impl eframe::App for App {
                 }
             });
         }
-        screens::show(&mut self.game, &mut self.stage, ui);
+        match &mut self.attendant {
+            Some(attendant) => attendant.show(&mut self.game, &mut self.stage, ui),
+            None => screens::show(&mut self.game, &mut self.stage, ui),
+        }
         // Some browsers take it only in the frame of the press.
         if let Some(copied) = self.game.copied.take() {
-            ctx.copy_text(copied);
+            self.clipboard.copy(&ctx, copied);
+        }
+        if let Some(took) = self.clipboard.took() {
+            self.game.tell_of_copy(took);
         }
         self.press_by_resting(&ctx, seconds);
         // What stands in these is of many widths.
@@ -401,6 +433,9 @@ impl eframe::App for App {
 
     /// Some systems end the program with its last window, and nothing is dropped.
     fn on_exit(&mut self) {
+        if let Some(attendant) = &mut self.attendant {
+            attendant.close(&mut self.game);
+        }
         self.game.files.close();
     }
 }

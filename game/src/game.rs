@@ -3,12 +3,14 @@
 
 mod bout;
 mod controls;
+mod ended;
 mod forces;
 mod heard;
 mod keep;
 mod lesson;
 mod links;
 mod notices;
+mod public;
 mod screen;
 mod shelf;
 mod teach;
@@ -27,6 +29,7 @@ pub use bout::Bout;
 pub use controls::{Controls, ScreenButton};
 use fuwafuwa::world::TICK;
 pub use notices::{Notice, Notices};
+pub use public::{Ended, Public};
 pub use screen::{Screen, Screens};
 pub use shelf::{Found, Kept, Shelf};
 use std::sync::Arc;
@@ -73,6 +76,10 @@ pub struct Game {
     pub forces: Forces,
     /// The one that is tried or measured.
     pub trial: Option<Trial>,
+    /// What is different because it stands in public, if it does.
+    pub public: Option<Public>,
+    /// Whether sticks may stir gently while nobody plays.
+    pub calls: bool,
     sound: Sound,
     /// Why nothing is heard, as the player was told last.
     trouble: Option<String>,
@@ -113,6 +120,8 @@ impl Game {
             sound,
             forces: Forces::default(),
             trial: None,
+            public: None,
+            calls: false,
             attracted: 0,
         };
         if settings_damage.is_some() && game.settings.haptics == 0.0 {
@@ -153,6 +162,11 @@ impl Game {
         self.notices.tell(&text);
     }
 
+    /// Why nothing is heard, if so.
+    pub fn sound_trouble(&self) -> Option<String> {
+        self.trouble.clone()
+    }
+
     /// A sound of the menus.
     pub fn blip(&self, menu: Menu) {
         self.sound.play(Cue::Menu(menu));
@@ -160,8 +174,11 @@ impl Game {
 
     /// Plays the next recorded round.
     fn attract(&mut self) {
+        self.note_end();
         self.attracted += 1;
-        self.bout.session = attract(self.attracted);
+        let shown = self.public.as_ref();
+        let shown = shown.and_then(|public| public.attraction(self.attracted));
+        self.bout.session = shown.unwrap_or_else(|| attract(self.attracted));
     }
 
     /// The screen that is seen.
@@ -284,6 +301,7 @@ impl Game {
     }
 
     fn begin(&mut self, session: Session) {
+        self.note_end();
         self.bout.begin(session, self.time);
         let is_space = self.bout.turn().is_some();
         self.controls.begin(is_space);
@@ -387,6 +405,11 @@ impl Game {
                 self.notify(self.words().cut_now.to_string());
             }
             (Screen::Play | Screen::Paused | Screen::Result, Action::Retry) => self.retry(),
+            // What is free there asks for the other language.
+            (_, Action::Slow) if self.public.is_some() => {
+                self.public.get_or_insert_default().asks_for_language = true;
+            }
+            (_, Action::Pause | Action::Step) if self.public.is_some() => {}
             (Screen::Play, Action::Pause) => {
                 self.go(Screen::Paused);
                 self.blip(Menu::Back);
@@ -402,11 +425,15 @@ impl Game {
                 self.pass_ticks(TICK);
                 self.bout.effects.pass(TICK);
             }
-            (Screen::Play, Action::Join) if self.bout.takes_two() => {
-                self.controls.players.join(seat)
-            }
+            (Screen::Play, Action::Join) if self.takes_two() => self.controls.players.join(seat),
             _ => {}
         }
+    }
+
+    /// Whether a second player can come in, and may.
+    pub fn takes_two(&self) -> bool {
+        let may = self.public.as_ref().is_none_or(|public| public.takes_two);
+        may && self.bout.takes_two()
     }
 
     /// Takes back that all forces were cut.
@@ -441,7 +468,8 @@ impl Game {
 
     /// Lets a round that people play stand still.
     pub fn pause_round(&mut self) {
-        if self.screen() == Screen::Play && self.bout.session.is_played() {
+        let goes_on = self.public.is_some();
+        if self.screen() == Screen::Play && self.bout.session.is_played() && !goes_on {
             self.go(Screen::Paused);
         }
     }

@@ -4,7 +4,7 @@
 //! [`input`] devices become wishes for the hands → [`words`] what is said, in each language → [`sift`] what can be used of a text → [`settings`] what players chose → [`records`] what they reached
 //! → [`platform`] files, sound and sticks
 //! → [`pace`] how many ticks a frame plays → [`session`] a round in time, played or watched → [`haptics`] what there is to feel of it → [`attract`] what plays behind the title → [`look`] how it looks
-//! → [`film`] films and photos of it → [`headless`] a round without a window → [`game`] the state, and what can happen to it → [`screens`] what there is to see and to choose → [`app`] the loop → [`desktop`] and [`browser`] the ways in.
+//! → [`film`] films and photos of it → [`headless`] a round without a window → [`game`] the state, and what can happen to it → [`exhibit`] a stand in public that leads it → [`screens`] what there is to see and to choose → [`app`] the loop → [`desktop`] and [`browser`] the ways in.
 //!
 //! The rules, levels, bots and replays are the crate `tamaire_play`, which knows no window.
 #![forbid(unsafe_code)]
@@ -17,6 +17,8 @@ pub mod attract;
 pub mod browser;
 #[cfg(not(target_family = "wasm"))]
 pub mod desktop;
+#[cfg(not(target_family = "wasm"))]
+pub mod exhibit;
 pub mod film;
 pub mod game;
 pub mod haptics;

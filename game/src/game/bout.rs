@@ -32,6 +32,8 @@ pub struct Bout {
     /// The win: how, and whether it was the best by its route.
     pub won: Option<(Outcome, bool)>,
     pub(super) lesson: Lesson,
+    /// Whether it was collected by whoever collects rounds.
+    pub(super) is_noted: bool,
     /// Whether it was told that this machine cannot bear it at its speed.
     pub(super) is_known_slow: bool,
     /// How long it has been over [s].
@@ -53,6 +55,7 @@ impl Bout {
             stepping: false,
             won: None,
             lesson: Lesson::default(),
+            is_noted: false,
             is_known_slow: false,
             cheered: 0.0,
         }
@@ -68,6 +71,7 @@ impl Bout {
         // It means places of the round before.
         self.view = None;
         self.won = None;
+        self.is_noted = false;
         self.is_known_slow = false;
         self.cheered = 0.0;
     }

@@ -3,12 +3,18 @@
 use super::trial::{Outcome, Trial};
 use super::{Game, Screen};
 use crate::haptics;
+use crate::settings::FULL;
 use force_feedback::{Ability, Calibration, Manner, State, Stop};
 use sticks::DeviceId;
 use tamaire_play::PLAYERS;
 
 /// A device that was not used for so long is not felt [s].
 const RESTED: f32 = 1.5;
+
+/// A stick that calls somebody stirs for so long, as often as this [s], and with such a share of full force.
+const CALL: f64 = 1.6;
+const CALLS: f64 = 24.0;
+const GENTLE: f32 = 0.12;
 
 impl Game {
     /// Tells devices what there is to feel, and those that feel nothing why.
@@ -73,6 +79,9 @@ impl Game {
 
     /// What the player who holds a device feels.
     fn state(&self, id: DeviceId) -> Option<State> {
+        if self.screen() == Screen::Title {
+            return self.call();
+        }
         let player =
             (0..PLAYERS).find(|&player| self.controls.players.device_of(player) == Some(id))?;
         let hands = self.bout.round().hands();
@@ -89,14 +98,32 @@ impl Game {
         Some(State { contact, manner })
     }
 
+    /// What a stick is made to do that calls somebody: it goes around once, slowly, every now and then.
+    fn call(&self) -> Option<State> {
+        let share = self.time % CALLS / CALL;
+        let (sin, cos) = (std::f64::consts::TAU * share).sin_cos();
+        let swell = FULL * GENTLE * (std::f64::consts::PI * share).sin() as f32;
+        (share < 1.0).then_some(State {
+            contact: [swell * sin as f32, swell * cos as f32],
+            manner: Manner::Yields,
+        })
+    }
+
+    /// Whether sticks stir by themselves, or did a moment ago.
+    pub fn is_calling(&self) -> bool {
+        self.calls && self.time % CALLS < 2.0 * CALL
+    }
+
     /// Why nobody feels anything now, if so.
     pub fn silence(&self) -> Option<Stop> {
         match self.screen() {
             _ if self.is_away => Some(Stop::FocusLost),
+            _ if self.public.as_ref().is_some_and(|public| public.is_left) => Some(Stop::Idle),
             Screen::Play if !self.bout.session.is_played() => Some(Stop::Idle),
             Screen::Play if self.bout.stepping => Some(Stop::Paused),
             Screen::Play => haptics::silence(self.bout.round()),
             Screen::Paused => Some(Stop::Paused),
+            Screen::Title if self.calls => None,
             _ => Some(Stop::Menu),
         }
     }

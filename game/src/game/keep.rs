@@ -88,6 +88,7 @@ impl Game {
             News::Failed(reason) => {
                 self.notify(format!("{} {reason}", self.words().not_written));
             }
+            News::Full => self.notify(self.words().full.to_string()),
         }
     }
 

@@ -27,12 +27,17 @@ impl Game {
 
     fn copy(&mut self, link: Result<String, LinkError>) {
         match link {
-            Ok(link) => {
-                self.copied = Some(address(&address_of_page(), &link));
-                self.notify(self.words().link_copied.to_string());
-            }
+            Ok(link) => self.copied = Some(address(&address_of_page(), &link)),
             Err(error) => self.notify((self.words().link_error)(&error)),
         }
+    }
+
+    /// Tells whether the clipboard took what was put on it.
+    pub fn tell_of_copy(&mut self, took: bool) {
+        self.notify(match took {
+            true => self.words().link_copied.to_string(),
+            false => self.words().link_refused.to_string(),
+        });
     }
 
     /// Opens what a link brings: a level is played, a round is offered to be watched or raced.

@@ -164,6 +164,7 @@ impl Game {
             let is_known = self.listed(&level).is_some();
             let is_best = is_known && self.records.note(&level, &outcome);
             self.bout.won = Some((outcome, is_best));
+            self.note_end();
             self.sound.play(Cue::Won(match outcome.route {
                 tamaire_play::Route::Squeeze => tamaire_sound::Route::Squeeze,
                 tamaire_play::Route::Shave => tamaire_sound::Route::Shave,

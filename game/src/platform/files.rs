@@ -40,12 +40,19 @@ pub struct Files {
     is_failing: bool,
 }
 
+/// The folder that the system means for what the game keeps, if it names one.
+#[cfg(not(target_family = "wasm"))]
+pub fn data_folder() -> Option<std::path::PathBuf> {
+    let folders = directories::ProjectDirs::from("", "", "tamaire")?;
+    Some(folders.data_dir().into())
+}
+
 /// What became of something that was to be written.
 enum Done {
     Note(io::Result<()>),
-    Level(Result<Arc<Level>, Damage>),
-    Replay(Result<String, String>),
-    Picture(Result<String, String>),
+    Level(io::Result<Result<Arc<Level>, Damage>>),
+    Replay(io::Result<String>),
+    Picture(io::Result<String>),
 }
 
 /// What there is to tell of what was written.
@@ -59,15 +66,16 @@ pub enum News {
     Saved(String),
     /// What was to be kept could not be written. Of settings and records this is told once.
     Failed(String),
+    /// The same, because there is no room.
+    Full,
 }
 
 impl Files {
     /// The folder that the system means for this.
     #[cfg(not(target_family = "wasm"))]
     pub fn usual() -> Self {
-        let folders = directories::ProjectDirs::from("", "", "tamaire");
-        let files = match folders {
-            Some(folders) => Self::in_folder(folders.data_dir()),
+        let files = match data_folder() {
+            Some(folder) => Self::in_folder(folder),
             None => Self::on(Nowhere {
                 reason: Some("the system names no folder to keep things in"),
             }),
@@ -174,8 +182,10 @@ impl Files {
     pub fn keep_records(&mut self, records: &Records, levels: &[Arc<Level>]) {
         let (storage, records) = (self.storage.clone(), records.clone());
         let levels = levels.to_vec();
-        self.writer
-            .write(move || Done::Note(merge_records(&*storage, &records, &levels)));
+        self.writer.write(
+            move || merge_records(&*storage, &records, &levels),
+            Done::Note,
+        );
     }
 
     /// Reads the levels that were kept. They come one by one as [`News::Level`], those that were kept first first.
@@ -187,38 +197,36 @@ impl Files {
         for Entry { name, .. } in found.split_off(older) {
             let storage = self.storage.clone();
             self.writer
-                .write(move || Done::Level(read_level(&*storage, &name)));
+                .write(move || Ok(read_level(&*storage, &name)), Done::Level);
         }
     }
 
     /// Keeps a level, in place of one with the same name.
     pub fn keep_level(&mut self, level: Arc<Level>) {
         let storage = self.storage.clone();
-        self.writer.write(move || {
-            let text = level.text_to_keep().map_err(io::Error::other);
-            Done::Note(text.and_then(|text| {
-                let mut change = |_: Option<&[u8]>| Some(text.clone().into_bytes());
-                storage.change(Kind::Level, &level.id, &mut change)
-            }))
-        });
+        let job = move || {
+            let text = level.text_to_keep().map_err(io::Error::other)?;
+            let mut change = |_: Option<&[u8]>| Some(text.clone().into_bytes());
+            storage.change(Kind::Level, &level.id, &mut change)
+        };
+        self.writer.write(job, Done::Note);
     }
 
     /// Keeps a level no longer. What was reached in it stays.
     pub fn remove_level(&mut self, name: &str) {
         let (storage, name) = (self.storage.clone(), name.to_string());
-        self.writer.write(move || {
-            Done::Note(match storage.remove(Kind::Level, &name) {
-                Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
-                removed => removed,
-            })
-        });
+        let job = move || match storage.remove(Kind::Level, &name) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+            removed => removed,
+        };
+        self.writer.write(job, Done::Note);
     }
 
     /// Keeps a replay.
     pub fn save_replay(&mut self, replay: Replay) {
         let storage = self.storage.clone();
         self.writer
-            .write(move || Done::Replay(save_replay(&*storage, &replay)));
+            .write(move || save_replay(&*storage, &replay), Done::Replay);
     }
 
     /// Makes a photo or a clip of a round and keeps it, unless another one is being made.
@@ -233,8 +241,22 @@ impl Files {
             let stem = stem_of(&replay);
             let told = |share: f32| developed.store((100.0 * share) as u32, Ordering::Relaxed);
             let picture = pictures.shoot(kind, replay, told).await;
+            let picture = picture.map_err(io::Error::other);
             Done::Picture(picture.and_then(|bytes| save(&*storage, kind, &stem, &bytes)))
         });
+    }
+
+    /// Keeps of a kind only so many, those that were written last.
+    pub fn thin_out(&mut self, kind: Kind, most: usize) {
+        let storage = self.storage.clone();
+        let job = move || {
+            let mut kept = storage.list(kind)?;
+            kept.sort_by_key(|entry| entry.written);
+            let older = kept.len().saturating_sub(most);
+            let mut older = kept.into_iter().take(older);
+            older.try_for_each(|entry| storage.remove(kind, &entry.name))
+        };
+        self.writer.write(job, Done::Note);
     }
 
     /// How much of a photo or clip is done that is being made, 0 to 1.
@@ -272,9 +294,11 @@ impl Files {
     /// Writes what is still to be written at the end of the program.
     pub fn close(&mut self) {
         for news in self.finish() {
-            if let News::Failed(reason) = news {
-                // There is no window any more.
-                eprintln!("tamaire: this could not be written: {reason}");
+            // There is no window any more.
+            match news {
+                News::Failed(reason) => eprintln!("tamaire: this could not be written: {reason}"),
+                News::Full => eprintln!("tamaire: there is no room to write what was to be kept"),
+                _ => {}
             }
         }
     }
@@ -288,28 +312,32 @@ impl Files {
         if let Some((text, _)) = self.resting.take() {
             let storage = self.storage.clone();
             let mut change = move |_: Option<&[u8]>| Some(text.clone().into_bytes());
-            self.writer
-                .write(move || Done::Note(storage.change(Kind::Note, SETTINGS, &mut change)));
+            self.writer.write(
+                move || storage.change(Kind::Note, SETTINGS, &mut change),
+                Done::Note,
+            );
         }
     }
 
     fn news(&mut self, done: Vec<Done>) -> Vec<News> {
         let mut news = Vec::new();
         for done in done {
+            if let Done::Picture(_) = done {
+                self.developed = None;
+            }
             match done {
-                Done::Level(Ok(level)) => news.push(News::Level(level)),
-                Done::Level(Err(damage)) => news.push(News::Damaged(damage)),
-                Done::Replay(saved) => news.push(saved.map_or_else(News::Failed, News::Saved)),
-                Done::Picture(saved) => {
-                    self.developed = None;
-                    news.push(saved.map_or_else(News::Failed, News::Saved));
+                Done::Level(Ok(Ok(level))) => news.push(News::Level(level)),
+                Done::Level(Ok(Err(damage))) => news.push(News::Damaged(damage)),
+                Done::Replay(Ok(location)) | Done::Picture(Ok(location)) => {
+                    news.push(News::Saved(location));
                 }
+                Done::Replay(Err(error)) | Done::Picture(Err(error)) => news.push(failed(&error)),
                 Done::Note(Ok(())) => self.is_failing = false,
-                Done::Note(Err(error)) if !self.is_failing => {
+                Done::Note(Err(error)) | Done::Level(Err(error)) if !self.is_failing => {
                     self.is_failing = true;
-                    news.push(News::Failed(error.to_string()));
+                    news.push(failed(&error));
                 }
-                Done::Note(Err(_)) => {}
+                Done::Note(Err(_)) | Done::Level(Err(_)) => {}
             }
         }
         news
@@ -319,7 +347,7 @@ impl Files {
     pub fn keep_best(&mut self, level: &Level, replay: Replay) {
         let (storage, name) = (self.storage.clone(), name_of_best(level));
         self.writer
-            .write(move || Done::Note(keep_best(&*storage, &name, &replay)));
+            .write(move || keep_best(&*storage, &name, &replay), Done::Note);
     }
 
     /// The fastest win that was kept of a level.
@@ -375,6 +403,13 @@ impl Files {
     /// What the system says when it cannot.
     pub fn delete(&self, name: &str) -> io::Result<()> {
         self.storage.remove(Kind::Replay, name)
+    }
+}
+
+fn failed(error: &io::Error) -> News {
+    match error.kind() {
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => News::Full,
+        _ => News::Failed(error.to_string()),
     }
 }
 

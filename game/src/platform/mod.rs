@@ -2,7 +2,11 @@
 //! sticks can be read and felt. Nothing else in the game knows on which it runs.
 
 #[cfg(not(target_family = "wasm"))]
+mod awake;
+#[cfg(not(target_family = "wasm"))]
 mod breath;
+#[cfg(not(target_family = "wasm"))]
+mod clipboard;
 mod clock;
 #[cfg(not(target_family = "wasm"))]
 mod date;
@@ -18,6 +22,8 @@ mod gpu;
 #[path = "web/mod.rs"]
 mod here;
 mod keeping;
+#[cfg(not(target_family = "wasm"))]
+mod machine;
 mod pictures;
 #[cfg(not(target_family = "wasm"))]
 mod screen;
@@ -25,12 +31,18 @@ mod screen;
 mod sound;
 mod sticks;
 mod storage;
+#[cfg(not(target_family = "wasm"))]
+pub mod supervisor;
+#[cfg(not(target_family = "wasm"))]
 mod writer;
 
 #[cfg(target_family = "wasm")]
-use here::{breath, date, dialog, screen, sound};
+use here::{breath, clipboard, date, dialog, screen, sound, writer};
 
+#[cfg(not(target_family = "wasm"))]
+pub use awake::keep_awake;
 pub use breath::Breath;
+pub use clipboard::Clipboard;
 pub use clock::Clock;
 pub use date::local as local_date;
 pub use dialog::{Dialog, IS_THERE as HAS_DIALOG};
@@ -42,6 +54,10 @@ pub use given::{level_at, replay_in};
 pub use gpu::GpuWatch;
 #[cfg(target_family = "wasm")]
 pub use here::{Host, set_host};
+#[cfg(not(target_family = "wasm"))]
+pub use machine::{StandFolder, TextFile, memory};
+#[cfg(not(target_family = "wasm"))]
+pub use pictures::Pictures;
 pub use screen::{address_of_page, begin_anew, fill_screen, is_full_by_itself, speak};
 pub use sound::Sound;
 pub use sticks::Pads;

@@ -22,18 +22,21 @@ const THUMB: f32 = 68.0;
 /// and whether the mouse is on one.
 pub(super) fn show(game: &mut Game, ui: &Ui, corner: Pos2, scale: f32) -> (f32, bool) {
     let said = game.words();
-    let mut row: Vec<(Action, &str, Icon)> = vec![
-        (Action::Pause, said.paused, icons::pause),
-        (Action::Retry, said.again, icons::again),
-    ];
+    let mut row: Vec<(Action, &str, Icon)> = Vec::new();
+    if game.public.is_none() {
+        row.push((Action::Pause, said.paused, icons::pause));
+    }
+    row.push((Action::Retry, said.again, icons::again));
     let mut thumb: Vec<(Action, &str, Icon)> = Vec::new();
     if game.controls.means == Means::Fingers && game.bout.session.is_played() {
         let name = |action| (said.action)(action);
         row.push((Action::Elements, name(Action::Elements), icons::elements));
-        row.push((Action::Slow, name(Action::Slow), icons::slow));
+        if game.public.is_none() {
+            row.push((Action::Slow, name(Action::Slow), icons::slow));
+        }
         match game.bout.round() {
             // In space a second finger raises the hand.
-            AnyRound::Plane(_) if game.bout.takes_two() => {
+            AnyRound::Plane(_) if game.takes_two() => {
                 row.push((Action::Join, name(Action::Join), icons::two));
             }
             AnyRound::Plane(_) => {}

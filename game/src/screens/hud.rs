@@ -23,6 +23,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
     let theme = game.theme();
     let screen = ui.max_rect().shrink(scale * EDGE);
     let mut at = screen.left_top();
+    let start = at.x;
     let (end, is_on_button) = buttons::show(game, ui, at, scale);
     at.x = end;
     let round = game.bout.round();
@@ -37,7 +38,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
         painter: ui.painter(),
         fill: pale(&theme),
         scale,
-        start: at.x,
+        start,
         at,
         right,
     };

@@ -100,7 +100,7 @@ fn way_out(ui: &mut Ui, game: &Game, index: usize, wide: f32) -> Response {
 }
 
 /// A level as a card: a little map, its name, what was reached.
-fn tile(ui: &mut Ui, game: &Game, maps: &Maps, index: usize, size: Vec2) -> Response {
+pub(super) fn tile(ui: &mut Ui, game: &Game, maps: &Maps, index: usize, size: Vec2) -> Response {
     let theme = game.theme();
     let level = &game.levels[index];
     let name = game.settings.language.of(&level.game().name);
@@ -161,7 +161,8 @@ fn tile(ui: &mut Ui, game: &Game, maps: &Maps, index: usize, size: Vec2) -> Resp
         icons::tick(painter, at, 7.0, Stroke::new(3.0, theme.card));
     }
     focus_ring(ui, &response, rect, 22.0, &theme);
-    if response.hovered() || is_on(ui, &response) {
+    let can_explain = game.public.is_none();
+    if can_explain && (response.hovered() || is_on(ui, &response)) {
         explain(ui, game, &response, level, record);
     }
     response

@@ -71,7 +71,7 @@ fn help_of(level: &Level, said: &Words) -> Option<String> {
 }
 
 /// The other way.
-fn other(route: Route) -> Route {
+pub(super) fn other(route: Route) -> Route {
     match route {
         Route::Squeeze => Route::Shave,
         Route::Shave | Route::Mix => Route::Squeeze,
@@ -79,7 +79,7 @@ fn other(route: Route) -> Route {
 }
 
 /// The route, as a sign and in words.
-fn headline(ui: &mut Ui, theme: &Theme, said: &Words, route: Route) {
+pub(super) fn headline(ui: &mut Ui, theme: &Theme, said: &Words, route: Route) {
     const SIGN: f32 = 64.0;
     let room = vec2(ui.available_width(), 58.0);
     let (rect, response) = ui.allocate_exact_size(room, Sense::hover());
@@ -94,13 +94,13 @@ fn headline(ui: &mut Ui, theme: &Theme, said: &Words, route: Route) {
 }
 
 /// Words on a line of their own.
-fn line(ui: &mut Ui, text: &str, size: f32, ink: egui::Color32) {
+pub(super) fn line(ui: &mut Ui, text: &str, size: f32, ink: egui::Color32) {
     let galley = fitted(ui.painter(), text, size, ui.available_width(), ink);
     ui.label(galley);
 }
 
 /// What is counted, side by side.
-fn numbers(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcome) {
+pub(super) fn numbers(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcome) {
     let summary = (said.summary)(outcome);
     ui.spacing_mut().item_spacing.x = GAP;
     ui.columns(summary.len(), |columns| {

@@ -286,7 +286,7 @@ pub fn choice<T: Copy + PartialEq>(
 }
 
 /// The name of something to the left, and what it is to the right.
-fn row<R>(ui: &mut Ui, theme: &Theme, name: &str, contents: impl FnOnce(&mut Ui) -> R) -> R {
+pub fn row<R>(ui: &mut Ui, theme: &Theme, name: &str, contents: impl FnOnce(&mut Ui) -> R) -> R {
     let all = ui.available_width();
     // Where there is little room it stands above.
     let is_above = all < LEAST_ROW;

@@ -68,6 +68,7 @@ pub(super) const WORDS: Words = Words {
     link: "Copy link",
     link_to_level: "Link to this level",
     link_copied: "The link is copied: paste it wherever you like.",
+    link_refused: "The browser keeps its clipboard to itself: the link is not copied.",
     link_error: |error| error.to_string(),
     offered: "Somebody sent you a round",
     download: "Download",
@@ -237,6 +238,7 @@ pub(super) const WORDS: Words = Words {
         None => format!("This could not be read: {refused}."),
     },
     not_written: "This could not be written:",
+    full: "There is no room left: it is not kept.",
     level_error: |error| error.to_string(),
     replay_error: |error| error.to_string(),
 };

@@ -70,6 +70,7 @@ pub(super) const WORDS: Words = Words {
     link: "リンクをコピー",
     link_to_level: "このステージのリンク",
     link_copied: "リンクをコピーしました。どこにでも はりつけられます。",
+    link_refused: "クリップボードが使えないため、リンクをコピーできませんでした。",
     link_error,
     offered: "だれかの リプレイが とどきました",
     download: "ダウンロード",
@@ -233,6 +234,7 @@ pub(super) const WORDS: Words = Words {
         None => format!("読めませんでした：{refused}。"),
     },
     not_written: "書きこめませんでした：",
+    full: "空きがないため、のこせませんでした。",
     level_error,
     replay_error,
 };

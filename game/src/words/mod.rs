@@ -3,8 +3,12 @@
 mod en;
 mod ja;
 mod said;
+#[cfg(not(target_family = "wasm"))]
+mod stand;
 
 pub use said::Words;
+#[cfg(not(target_family = "wasm"))]
+pub use stand::StandWords;
 
 use serde::{Deserialize, Serialize};
 use tamaire_play::Words as Name;
@@ -30,6 +34,22 @@ impl Language {
         match locale.split(['-', '_', '.']).next() {
             Some("ja") => Self::Japanese,
             _ => Self::English,
+        }
+    }
+
+    /// The other one.
+    pub fn other(self) -> Self {
+        match self {
+            Self::English => Self::Japanese,
+            Self::Japanese => Self::English,
+        }
+    }
+
+    /// Its code [ISO 639-1].
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::English => "en",
+            Self::Japanese => "ja",
         }
     }
 

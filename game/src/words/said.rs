@@ -36,6 +36,7 @@ pub struct Words {
     pub link: &'static str,
     pub link_to_level: &'static str,
     pub link_copied: &'static str,
+    pub link_refused: &'static str,
     pub link_error: fn(&LinkError) -> String,
     pub offered: &'static str,
     pub download: &'static str,
@@ -110,6 +111,7 @@ pub struct Words {
     /// What could not be used of what was kept, and where that is put aside.
     pub damaged: fn(&str, Option<&str>) -> String,
     pub not_written: &'static str,
+    pub full: &'static str,
     pub level_error: fn(&LevelError) -> String,
     pub replay_error: fn(&ReplayError) -> String,
 }

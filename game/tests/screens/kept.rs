@@ -152,13 +152,14 @@ fn a_full_disk_is_told_once_and_the_game_goes_on() {
     let memory = Memory::default();
     memory.0.lock().unwrap().is_full = true;
     let mut window = window(Files::on(memory.clone()));
+    let full = game(&mut window).words().full;
     let mut told = 0;
     for speed in [0.6, 0.7, 0.8] {
         game(&mut window).notices.clear();
         game(&mut window).settings.speed = speed;
         game(&mut window).keep_settings();
         wait(&mut window);
-        told += notices(&window).matches("could not be written").count();
+        told += notices(&window).matches(full).count();
     }
     assert_eq!((told, memory.writes()), (1, 3));
     // Who asks for a replay is told each time that there is none.
@@ -166,7 +167,7 @@ fn a_full_disk_is_told_once_and_the_game_goes_on() {
         game(&mut window).notices.clear();
         game(&mut window).keep_replay();
         wait(&mut window);
-        assert!(notices(&window).contains("could not be written"));
+        assert!(notices(&window).contains(full));
     }
     memory.0.lock().unwrap().is_full = false;
     game(&mut window).keep_settings();

@@ -13,5 +13,6 @@ mod pads;
 mod pictures;
 mod shelf;
 mod space;
+mod stand;
 mod told;
 mod window;

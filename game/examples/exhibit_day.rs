@@ -1,0 +1,368 @@
+//! A stand's day: visitors that are programs come, hesitate, play, mash, leave in the middle, try again. Time goes as fast as
+//! the machine can. It tells each hour how it goes. At the end all that was won has to be in the logbook, all rounds are run
+//! again, and memory and frame times have to be what they were.
+//!
+//! Most frames are laid out and not drawn, since a GPU in software takes longer to draw than all the rest.
+//!
+//! ```text
+//! cargo run --release -p tamaire --example exhibit_day -- 8 [COPY]
+//! ```
+//!
+//! leaves a copy of the logbook where that is named.
+
+use egui::{Event, Key, Modifiers, PointerButton, pos2, vec2};
+use egui_kittest::Harness;
+use std::path::Path;
+use std::process::ExitCode;
+use std::time::Instant;
+use sticks::{About, Device, DeviceId, Labels, Pad, PadButton, Snapshot};
+use tamaire::app::App;
+use tamaire::exhibit::Stand;
+use tamaire::exhibit::config::USUAL;
+use tamaire::game::{Game, Screen};
+use tamaire::platform::{Clock, Files, Pads, Sound, StandFolder, TextFile, memory};
+use tamaire_logbook::{Error, Logbook, Round};
+use tamaire_play::{Bot, BotKind, Playback, Replay};
+
+/// A frame lasts so long for the game [s]: it plays six ticks in each.
+const STEP: f64 = 0.1;
+/// One of so many frames is drawn.
+const DRAWN: u64 = 50;
+const SIZE: egui::Vec2 = vec2(640.0, 400.0);
+/// Memory and frame times may differ by such shares between the first hour and the last.
+const MORE_MEMORY: f64 = 0.05;
+const SLOWER: f64 = 0.1;
+/// A hand trembles by so many points.
+const TREMBLE: f32 = 6.0;
+
+/// What a visitor is like.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Manner {
+    /// Plays with the mouse as a bot does, with an unsteady hand.
+    Plays(BotKind),
+    /// Plays with the pad, around and around.
+    Pad,
+    /// Presses whatever there is.
+    Mashes,
+    /// Touches it, looks, and goes.
+    Looks,
+}
+
+/// Somebody who came.
+struct Visitor {
+    manner: Manner,
+    bot: Bot,
+    /// Does nothing for so long still [s].
+    hesitates: f64,
+    /// Goes after so long, whatever is on [s].
+    patience: f64,
+    /// How often still they would try again.
+    tries: u32,
+}
+
+/// The stand and whoever comes.
+struct Day {
+    window: Harness<'static, App>,
+    random: fastrand::Rng,
+    pad: Device,
+    visitor: Option<Visitor>,
+    /// Nobody comes for so long still [s].
+    quiet: f64,
+    frames: u64,
+    /// How long each frame of this hour took [ms].
+    times: Vec<f64>,
+    /// Memory [MB] and the middle of all frame times [ms], by hour.
+    hours: Vec<[f64; 2]>,
+    visitors: u64,
+    wins: u64,
+    was_won: bool,
+}
+
+impl Day {
+    fn somebody(&mut self) -> Visitor {
+        let random = &mut self.random;
+        let manner = match random.u32(..10) {
+            0..3 => Manner::Plays(BotKind::Squeeze),
+            3..6 => Manner::Plays(BotKind::Shave),
+            6 => Manner::Plays(BotKind::Random),
+            7 => Manner::Pad,
+            8 => Manner::Mashes,
+            _ => Manner::Looks,
+        };
+        let bot = match manner {
+            Manner::Plays(kind) => kind,
+            _ => BotKind::Idle,
+        };
+        let looks = manner == Manner::Looks;
+        Visitor {
+            manner,
+            bot: Bot::new(bot, random.u64(..)),
+            hesitates: 5.0 * random.f64(),
+            patience: if looks {
+                1.0
+            } else {
+                10.0 + 110.0 * random.f64()
+            },
+            tries: random.u32(..4),
+        }
+    }
+
+    /// What whoever is there does in a frame.
+    fn act(&mut self, events: &mut Vec<Event>) {
+        let Some(visitor) = &mut self.visitor else {
+            self.quiet -= STEP;
+            if self.quiet < 0.0 {
+                self.visitor = Some(self.somebody());
+                self.visitors += 1;
+                self.quiet = 10.0 + 60.0 * self.random.f64();
+                tap(events, Key::Space);
+            }
+            return;
+        };
+        visitor.patience -= STEP;
+        visitor.hesitates -= STEP;
+        if visitor.patience < 0.0 {
+            self.visitor = None;
+            return;
+        }
+        if visitor.hesitates > 0.0 {
+            return;
+        }
+        let game = &mut self.window.state_mut().game;
+        let random = &mut self.random;
+        match (game.screen(), visitor.manner) {
+            (Screen::Result, _) if visitor.tries == 0 => visitor.patience = 0.0,
+            (Screen::Result, _) => {
+                visitor.tries -= 1;
+                visitor.hesitates = 2.0 + 3.0 * random.f64();
+                tap(events, Key::Enter);
+            }
+            (_, Manner::Plays(_)) => {
+                let goal = game.bout.round().ask(&mut visitor.bot).goal(0);
+                let view = game.bout.view;
+                if let (Some(goal), Some(view)) = (goal, view) {
+                    let shake = egui::vec2(random.f32() - 0.5, random.f32() - 0.5) * TREMBLE;
+                    events.push(Event::PointerMoved(view.on_screen(goal) + shake));
+                }
+                if random.u32(..600) == 0 {
+                    tap(events, Key::R);
+                }
+            }
+            (_, Manner::Pad) => {
+                let pad = self.pad.pad.get_or_insert_default();
+                let turn = visitor.patience as f32 * 1.7;
+                pad.left = [turn.cos(), turn.sin()];
+                if random.u32(..40) == 0 {
+                    pad.button_mut(PadButton::Back).press();
+                }
+            }
+            (_, Manner::Mashes) => mash(events, random),
+            (_, Manner::Looks) => {}
+        }
+        if visitor.manner == Manner::Mashes {
+            let button = PadButton::ALL[random.usize(..PadButton::ALL.len())];
+            let pad = self.pad.pad.get_or_insert_default();
+            pad.button_mut(button).press();
+            pad.button_mut(button).down = false;
+            pad.left = [2.0 * random.f32() - 1.0, 2.0 * random.f32() - 1.0];
+        }
+    }
+
+    /// Lets a frame pass.
+    fn step(&mut self) {
+        let mut events = Vec::new();
+        self.act(&mut events);
+        for event in events {
+            self.window.event(event);
+        }
+        let plugged = vec![self.pad.clone()];
+        self.window.state_mut().game.controls.pads = Pads::of(Snapshot { devices: plugged });
+        let began = Instant::now();
+        self.window.step();
+        self.times.push(1000.0 * began.elapsed().as_secs_f64());
+        self.frames += 1;
+        if self.frames.is_multiple_of(DRAWN) {
+            self.window.render().expect("it can be drawn");
+        }
+        let is_won = self.window.state().game.bout.won.is_some();
+        self.wins += u64::from(is_won && !self.was_won);
+        self.was_won = is_won;
+    }
+
+    /// Tells how an hour went.
+    fn pass_hour(&mut self) {
+        self.times.sort_by(f64::total_cmp);
+        let middle = self.times[self.times.len() / 2];
+        let worst = self.times[self.times.len() - 1];
+        self.times.clear();
+        let memory = memory().unwrap_or(0) as f64 / 1e6;
+        self.hours.push([memory, middle]);
+        println!(
+            "hour {:3}: {memory:6.1} MB, {middle:5.2} ms a frame, {worst:.0} at worst, {} visitors, {} wins",
+            self.hours.len(),
+            self.visitors,
+            self.wins
+        );
+    }
+}
+
+fn tap(events: &mut Vec<Event>, key: Key) {
+    for pressed in [true, false] {
+        events.push(Event::Key {
+            key,
+            physical_key: None,
+            pressed,
+            repeat: false,
+            modifiers: Modifiers::NONE,
+        });
+    }
+}
+
+fn mash(events: &mut Vec<Event>, random: &mut fastrand::Rng) {
+    let keys = [
+        Key::Escape,
+        Key::E,
+        Key::F,
+        Key::J,
+        Key::R,
+        Key::F11,
+        Key::Enter,
+        Key::Tab,
+    ];
+    if random.u32(..4) == 0 {
+        tap(events, keys[random.usize(..keys.len())]);
+    }
+    let at = pos2(SIZE.x * random.f32(), SIZE.y * random.f32());
+    events.push(Event::PointerMoved(at));
+    if random.u32(..5) == 0 {
+        for pressed in [true, false] {
+            events.push(Event::PointerButton {
+                pos: at,
+                button: PointerButton::Primary,
+                pressed,
+                modifiers: Modifiers::NONE,
+            });
+        }
+    }
+}
+
+/// Looks into the logbook: how many rounds were won, and how many do not come out as they were written.
+fn check(folder: &Path) -> Result<(u64, u64, u64), Error> {
+    let logbook = Logbook::read(&StandFolder(folder.into()).logbook())?;
+    let (mut rounds, mut wins, mut astray) = (0, 0, 0);
+    logbook.rounds(.., |round: Round| {
+        rounds += 1;
+        wins += u64::from(round.route.is_some());
+        if !reproduces(&round) {
+            println!("round {} of {} s goes another way", round.id, round.seconds);
+            astray += 1;
+        }
+        Ok::<(), Error>(())
+    })?;
+    Ok((rounds, wins, astray))
+}
+
+fn reproduces(round: &Round) -> bool {
+    let Ok(replay) = Replay::of_fragment(&round.replay) else {
+        return false;
+    };
+    let Ok(mut playback) = Playback::new(replay.into()) else {
+        return false;
+    };
+    while !playback.is_over() {
+        if playback.step().is_err() {
+            return false;
+        }
+    }
+    let outcome = playback.round().progress().outcome;
+    outcome.map(|outcome| outcome.route) == round.route
+}
+
+/// A stand with its own file, in a window that nobody sees.
+fn open(folder: &Path) -> Harness<'static, App> {
+    let text = USUAL.replace(
+        "#folder = \"/var/lib/tam\"",
+        &format!("folder = {folder:?}"),
+    );
+    let text = text.replace("[\"classic\"]", "[\"classic\", \"neck\", \"cat\"]");
+    let text = text.replace("clips = 50", "clips = 5");
+    let file = TextFile(folder.join("exhibit.toml"));
+    file.write(&text).expect("it can be written");
+    let builder = Harness::builder().with_size(SIZE).wgpu();
+    let builder = builder.with_step_dt(STEP as f32).with_render_cursor(false);
+    builder.build_eframe(|context| {
+        let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
+        // However long ticks take, all of them are played.
+        game.clock = Clock::of(|| 0.0);
+        let mut stand = Stand::open(file).expect("it is good");
+        stand.prepare(&mut game);
+        let mut app = App::new(context, game).expect("there is a GPU, if only in software");
+        app.attendant = Some(Box::new(stand));
+        app
+    })
+}
+
+fn main() -> ExitCode {
+    let hours = std::env::args().nth(1).and_then(|word| word.parse().ok());
+    let hours: u64 = hours.unwrap_or(8);
+    let folder = tempfile::tempdir().expect("there is a place for files");
+    let about = About {
+        name: "Pad".into(),
+        guid: "pad".into(),
+        labels: Labels::Letters,
+    };
+    let mut pad = Device::at_rest(DeviceId(1), about, 6, 0, 0);
+    pad.pad = Some(Pad::default());
+    let mut day = Day {
+        window: open(folder.path()),
+        random: fastrand::Rng::with_seed(2004),
+        pad,
+        visitor: None,
+        quiet: 5.0,
+        frames: 0,
+        times: Vec::new(),
+        hours: Vec::new(),
+        visitors: 0,
+        wins: 0,
+        was_won: false,
+    };
+    for _ in 0..hours {
+        for _ in 0..(3600.0 / STEP) as u64 {
+            day.step();
+        }
+        day.pass_hour();
+    }
+    let Day {
+        mut window,
+        hours,
+        visitors,
+        wins: seen,
+        ..
+    } = day;
+    eframe::App::on_exit(window.state_mut());
+    drop(window);
+    let (rounds, wins, astray) = match check(folder.path()) {
+        Ok(found) => found,
+        Err(error) => {
+            eprintln!("{error}");
+            return ExitCode::FAILURE;
+        }
+    };
+    println!(
+        "{visitors} visitors; {rounds} rounds and {wins} wins in the logbook, {seen} wins seen; {astray} go another way"
+    );
+    let mut is_good = wins == seen && astray == 0;
+    if let [first, .., last] = hours.as_slice() {
+        let [memory, frame] = [0, 1].map(|at| last[at] / first[at] - 1.0);
+        println!(
+            "memory {:+.1} %, frames {:+.1} %",
+            100.0 * memory,
+            100.0 * frame
+        );
+        is_good &= memory <= MORE_MEMORY && frame <= SLOWER;
+    }
+    if let Some(copy) = std::env::args().nth(2) {
+        std::fs::copy(StandFolder(folder.path().into()).logbook(), copy).expect("it can be copied");
+    }
+    ExitCode::from(u8::from(!is_good))
+}

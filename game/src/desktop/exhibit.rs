@@ -1,0 +1,157 @@
+//! The way in for a stand in public: a parent that keeps it running, and the game itself.
+
+use super::window::{Opened, has_display, open};
+use crate::exhibit::Stand;
+use crate::exhibit::config::{Config, USUAL};
+use crate::game::{Game, Public, Screen};
+use crate::headless::BAD_USAGE;
+use crate::look::Stage;
+use crate::platform::supervisor::{LOST_GRAPHICS, MOST, PAUSE, Plan, Pulse, supervise};
+use crate::platform::{Files, Pads, Sound, StandFolder, TextFile, keep_awake};
+use crate::screens::{Attendant, Calm};
+use egui::{Context, Ui, ViewportBuilder, ViewportCommand};
+use std::ffi::OsString;
+use std::panic::resume_unwind;
+use std::path::Path;
+use std::process::ExitCode;
+
+/// Keeps a stand running until staff ends it.
+pub(super) fn keep_running(file: &Path, mute: bool) -> ExitCode {
+    let text = TextFile(file.into()).read_or(USUAL);
+    let config = text.and_then(|text| {
+        Config::read(&text).map_err(|error| format!("{}: {error}", file.display()))
+    });
+    let config = match config {
+        Ok(config) => config,
+        Err(error) => return refused(&error, BAD_USAGE),
+    };
+    if !has_display() {
+        return refused("there is no display to set a stand up on", 1);
+    }
+    let program = match std::env::current_exe() {
+        Ok(program) => program,
+        Err(error) => return refused(&error.to_string(), 1),
+    };
+    let words = |kind: &str| {
+        let mut words: Vec<OsString> = vec![kind.into(), file.into()];
+        words.extend(mute.then(|| "--mute".into()));
+        words
+    };
+    let plan = Plan {
+        program,
+        game: words("--stand"),
+        calm: words("--rest"),
+        folder: StandFolder::of(config.logbook.folder.as_deref()),
+        stand: config.stand.0,
+        most: MOST,
+        pause: PAUSE,
+    };
+    match supervise(&plan) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(reason) => refused(&reason, 1),
+    }
+}
+
+fn refused(reason: &str, code: u8) -> ExitCode {
+    eprintln!("tamaire: {reason}");
+    ExitCode::from(code)
+}
+
+/// The game of a stand, in a window that fills the screen.
+pub(super) fn play(file: &Path, mute: bool) -> ExitCode {
+    let stand = match Stand::open(TextFile(file.into())) {
+        Ok(stand) => stand,
+        Err(error) => return refused(&error, BAD_USAGE),
+    };
+    show(move || {
+        let sound = if mute { Sound::none() } else { Sound::open() };
+        // How sticks are built in is kept there.
+        let folder = StandFolder::of(stand.config.logbook.folder.as_deref());
+        let mut game = Game::new(folder.files(), sound, Pads::open());
+        let mut stand = stand;
+        stand.prepare(&mut game);
+        (game, Box::new(stand))
+    })
+}
+
+/// A calm picture instead of a game that breaks down.
+pub(super) fn rest(file: &Path) -> ExitCode {
+    let text = TextFile(file.into()).read_or(USUAL);
+    let config = text.and_then(|text| Config::read(&text));
+    let settings = config.map(|config| config.settings()).unwrap_or_default();
+    show(move || {
+        let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
+        game.settings = settings;
+        game.public = Some(Public::default());
+        // Behind settings nothing plays.
+        game.go(Screen::Settings);
+        (game, Box::new(Calm::default()))
+    })
+}
+
+fn show(make: impl FnOnce() -> (Game, Box<dyn Attendant>) + 'static) -> ExitCode {
+    if let Err(error) = keep_awake() {
+        eprintln!("tamaire: {error}");
+    }
+    let viewport = ViewportBuilder::default().with_fullscreen(true);
+    let opened = open(viewport, move || {
+        let (game, attendant) = make();
+        let pulse = Pulse::begin();
+        let watched = Watched { attendant, pulse };
+        (game, Some(Box::new(watched) as Box<dyn Attendant>))
+    });
+    match opened {
+        Opened::Closed => ExitCode::SUCCESS,
+        Opened::LostGpu => ExitCode::from(LOST_GRAPHICS),
+        Opened::Failed(reason) | Opened::Never(reason) => refused(&reason, LOST_GRAPHICS),
+        Opened::Broken(panic) => resume_unwind(panic),
+    }
+}
+
+/// One that tells its parent that it lives, and ends with it.
+struct Watched {
+    attendant: Box<dyn Attendant>,
+    pulse: Pulse,
+}
+
+impl Attendant for Watched {
+    fn live(&mut self, ctx: &Context) {
+        if self.pulse.beat().is_err() {
+            self.attendant.end();
+            ctx.send_viewport_cmd(ViewportCommand::Close);
+        }
+        self.attendant.live(ctx);
+    }
+
+    fn pass(&mut self, game: &mut Game, ctx: &Context, seconds: f32) {
+        fill(ctx);
+        self.attendant.pass(game, ctx, seconds);
+    }
+
+    fn show(&mut self, game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
+        self.attendant.show(game, stage, ui);
+    }
+
+    fn end(&mut self) {
+        self.attendant.end();
+    }
+
+    fn close(&mut self, game: &mut Game) {
+        self.pulse.end();
+        self.attendant.close(game);
+    }
+}
+
+/// Without a window manager nobody makes a window as large as the screen.
+fn fill(ctx: &Context) {
+    let (screen, window) = ctx.input(|input| {
+        let viewport = input.viewport();
+        (viewport.monitor_size, viewport.inner_rect)
+    });
+    if let (Some(screen), Some(window)) = (screen, window)
+        && (window.size() - screen).abs().max_elem() > 1.0
+    {
+        ctx.send_viewport_cmd(ViewportCommand::OuterPosition(egui::Pos2::ZERO));
+        ctx.send_viewport_cmd(ViewportCommand::InnerSize(screen));
+    }
+}

@@ -1,0 +1,110 @@
+//! The window of a program, and what becomes of it.
+
+use crate::app::App;
+use crate::game::Game;
+use crate::platform::GpuWatch;
+use crate::screens::Attendant;
+use std::any::Any;
+use std::cell::RefCell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::rc::Rc;
+use std::time::{Duration, Instant};
+
+/// Whose GPU is lost so soon does not begin anew: it would be lost again and again.
+const LEAST_LIFE: Duration = Duration::from_secs(10);
+
+/// What became of a window.
+pub(super) enum Opened {
+    /// It was closed.
+    Closed,
+    /// What it was drawn with was lost. No window system lets go of a window that broke down: the program has to begin anew.
+    LostGpu,
+    /// It was open, and ended so.
+    Failed(String),
+    /// It was open, and panicked.
+    Broken(Box<dyn Any + Send>),
+    /// It never opened, for this reason.
+    Never(String),
+}
+
+/// Opens a window for a game and what leads it, if anything; returns when it is closed.
+pub(super) fn open(
+    viewport: egui::ViewportBuilder,
+    make: impl FnOnce() -> (Game, Option<Box<dyn Attendant>>) + 'static,
+) -> Opened {
+    let gpu = Rc::new(RefCell::new(None::<GpuWatch>));
+    let seen = gpu.clone();
+    let began = Instant::now();
+    // A library of the window system that is not installed makes it panic, and so does what is left of a lost GPU.
+    let closed = catch_unwind(AssertUnwindSafe(|| run_window(viewport, seen, make)));
+    let gpu = gpu.take();
+    let is_open = gpu.is_some();
+    let is_lost = gpu.is_some_and(|gpu| match closed {
+        Ok(_) => gpu.is_lost(),
+        Err(_) => gpu.tried_is_lost(),
+    });
+    match closed {
+        _ if is_lost && began.elapsed() > LEAST_LIFE => Opened::LostGpu,
+        Ok(Ok(())) if is_lost => Opened::Failed("the GPU was lost".into()),
+        Ok(Ok(())) => Opened::Closed,
+        Ok(Err(error)) if is_open => Opened::Failed(error.to_string()),
+        Ok(Err(error)) => Opened::Never(trouble(&error)),
+        Err(panic) if is_open => Opened::Broken(panic),
+        Err(_) => Opened::Never("no window opens".into()),
+    }
+}
+
+fn run_window(
+    viewport: egui::ViewportBuilder,
+    gpu: Rc<RefCell<Option<GpuWatch>>>,
+    make: impl FnOnce() -> (Game, Option<Box<dyn Attendant>>) + 'static,
+) -> eframe::Result {
+    let options = eframe::NativeOptions {
+        viewport: viewport
+            .with_title("玉入れ tamaire")
+            .with_inner_size([1280.0, 800.0])
+            .with_min_inner_size([640.0, 400.0]),
+        ..Default::default()
+    };
+    let create = move |context: &eframe::CreationContext<'_>| {
+        let (game, attendant) = make();
+        let mut app = App::new(context, game)?;
+        app.attendant = attendant;
+        gpu.replace(Some(app.gpu.clone()));
+        Ok(Box::new(app) as Box<dyn eframe::App>)
+    };
+    eframe::run_native("tamaire", options, Box::new(create))
+}
+
+/// Why no window opens.
+fn trouble(error: &eframe::Error) -> String {
+    let text = error.to_string();
+    match error {
+        eframe::Error::Wgpu(_) => format!(
+            "there is nothing to draw with, neither Vulkan nor OpenGL, not even in software ({text})"
+        ),
+        // Before its reason it names a line of its source.
+        eframe::Error::WinitEventLoop(_) | eframe::Error::Winit(_) => {
+            let reason = text.rsplit(": ").next().unwrap_or(&text);
+            format!("no window opens ({reason})")
+        }
+        _ => format!("no window opens ({text})"),
+    }
+}
+
+/// Whether there is a screen to open a window on: only some systems tell beforehand.
+pub(super) fn has_display() -> bool {
+    let says_so = cfg!(all(
+        unix,
+        not(any(
+            target_os = "macos",
+            target_os = "ios",
+            target_os = "android"
+        ))
+    ));
+    let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    !says_so
+        || ["WAYLAND_DISPLAY", "WAYLAND_SOCKET", "DISPLAY"]
+            .into_iter()
+            .any(is_set)
+}

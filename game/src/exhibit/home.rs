@@ -1,0 +1,74 @@
+//! The round that a visitor takes home: an address as a code that phones read.
+
+use qrcode::{Color, EcLevel, QrCode};
+use tamaire_play::Replay;
+use tamaire_play::link::address;
+
+/// A code.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Code {
+    /// What it says.
+    pub address: String,
+    /// Number of modules on a side.
+    pub side: usize,
+    /// Row by row from the upper left corner, whether each is dark.
+    pub dark: Vec<bool>,
+}
+
+impl Code {
+    /// The address at which a page shows a round, unless it is too long for a code.
+    pub fn of(page: &str, replay: &Replay) -> Option<Self> {
+        let address = address(page, &replay.code().ok()?);
+        // A screen has no stains, so little of it has to be there twice.
+        let code = QrCode::with_error_correction_level(&address, EcLevel::L).ok()?;
+        let dark = code.to_colors().into_iter();
+        Some(Self {
+            address,
+            side: code.width(),
+            dark: dark.map(|module| module == Color::Dark).collect(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Arc;
+    use tamaire_play::{AnyRound, Bot, BotKind, Level, Link};
+
+    fn played(seconds: usize) -> Replay {
+        let mut round = AnyRound::new(Arc::new(Level::open("classic").unwrap()));
+        round.play(&mut Bot::new(BotKind::Squeeze, 3), 60 * seconds);
+        round.replay()
+    }
+
+    #[test]
+    fn a_phone_reads_the_round_that_was_played() {
+        const PIXELS: usize = 4;
+        const QUIET: usize = 4;
+        let replay = played(60);
+        assert!(replay.outcome.is_some());
+        let code = Code::of("https://example.org/tamaire/", &replay).unwrap();
+        let side = PIXELS * (code.side + 2 * QUIET);
+        let mut image = rqrr::PreparedImage::prepare_from_greyscale(side, side, |x, y| {
+            let [x, y] = [x, y].map(|pixel| (pixel / PIXELS).wrapping_sub(QUIET));
+            let is_dark = x < code.side && y < code.side && code.dark[y * code.side + x];
+            if is_dark { 0 } else { 255 }
+        });
+        let (_, read) = image.detect_grids()[0].decode().unwrap();
+        assert_eq!(read, code.address);
+        let Ok(Link::Round(round)) = Link::read(&read) else {
+            panic!("{read}");
+        };
+        assert_eq!(
+            (round.ticks(), round.outcome),
+            (replay.ticks(), replay.outcome)
+        );
+    }
+
+    #[test]
+    fn what_is_too_long_for_a_code_has_none() {
+        let page = format!("https://example.org/{}", "x".repeat(3000));
+        assert!(Code::of(&page, &played(1)).is_none());
+    }
+}

@@ -1,0 +1,196 @@
+//! Whether somebody stands there.
+
+use super::config::Times;
+use egui::{Context, Event};
+use std::collections::BTreeMap;
+use sticks::{Change, DeviceId, Snapshot};
+
+/// A stick or trigger has to move by so much: those that are worn tremble.
+const MOVED: f32 = 0.15;
+/// And a mouse by so many points, if slowly: tables are knocked against.
+const PUSHED: f32 = 4.0;
+/// What it moved before a rest of so long counts no more [s].
+const KNOCKED: f32 = 1.0;
+
+/// What is known of whoever stands there.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub enum Attention {
+    /// Somebody does something, or did not long ago.
+    #[default]
+    There,
+    /// Nobody did anything for long; such a share of the countdown is left.
+    Leaving(f32),
+    /// Nobody is there.
+    Gone,
+}
+
+/// Watches whether anything is touched.
+#[derive(Default)]
+pub struct Presence {
+    /// Nothing was touched for so long [s].
+    rest: f32,
+    /// The mouse was not, for so long [s].
+    pointer_rest: f32,
+    /// How far it moved since that counted [points].
+    pushed: f32,
+    before: Snapshot,
+    /// Where the sticks and triggers of devices were when they moved last.
+    axes: BTreeMap<DeviceId, [f32; 6]>,
+}
+
+impl Presence {
+    /// Whether anything was touched since this was asked last. Sticks may stir by themselves: then how they lean does not
+    /// count.
+    pub fn is_touched(&mut self, ctx: &Context, sticks: &Snapshot, they_stir: bool) -> bool {
+        let by_hand = ctx.input(|input| input.events.iter().any(is_deed));
+        let way = ctx.input(|input| input.pointer.delta().length());
+        let by_stick = self.is_moved(sticks, they_stir);
+        by_hand || self.is_pushed(way) || by_stick
+    }
+
+    /// Whether a mouse that moved so far [points] has moved far enough.
+    fn is_pushed(&mut self, way: f32) -> bool {
+        if self.pointer_rest > KNOCKED {
+            self.pushed = 0.0;
+        }
+        self.pushed += way;
+        if way > 0.0 {
+            self.pointer_rest = 0.0;
+        }
+        let is_pushed = self.pushed > PUSHED;
+        if is_pushed {
+            self.pushed = 0.0;
+        }
+        is_pushed
+    }
+
+    /// Whether a stick or pad was, since the last time.
+    fn is_moved(&mut self, now: &Snapshot, they_stir: bool) -> bool {
+        let changes = now.since(&self.before);
+        let mut is_moved = changes
+            .iter()
+            .any(|change| matches!(change, Change::Pressed { .. }));
+        self.before = now.clone();
+        self.axes.retain(|id, _| now.device(*id).is_some());
+        for device in &now.devices {
+            let [right, triggers] = device
+                .pad
+                .map_or([[0.0; 2]; 2], |pad| [pad.right, pad.triggers]);
+            let [x, y] = device.aim();
+            let axes = [x, y, right[0], right[1], triggers[0], triggers[1]];
+            let known = self.axes.entry(device.id).or_insert(axes);
+            let differs = known
+                .iter()
+                .zip(axes)
+                .any(|(known, now)| (known - now).abs() > MOVED);
+            if differs {
+                *known = axes;
+                is_moved |= !they_stir;
+            }
+        }
+        is_moved
+    }
+
+    /// Lets time pass [s], in which something was touched or not.
+    pub fn pass(&mut self, seconds: f32, is_touched: bool, times: &Times) -> Attention {
+        self.pointer_rest += seconds;
+        self.rest = if is_touched { 0.0 } else { self.rest + seconds };
+        let left = 1.0 - (self.rest - times.rest.0) / times.countdown.0;
+        match left {
+            left if left > 1.0 => Attention::There,
+            left if left > 0.0 => Attention::Leaving(left),
+            _ => Attention::Gone,
+        }
+    }
+
+    /// Somebody has just come, or it is as if.
+    pub fn begin(&mut self) {
+        self.rest = 0.0;
+    }
+
+    /// Whether the mouse is where somebody left it.
+    pub fn is_pointer_left(&self, times: &Times) -> bool {
+        self.pointer_rest > times.pointer.0
+    }
+}
+
+/// Whether it takes a hand to make this happen. A key that something lies on does not count again and again.
+fn is_deed(event: &Event) -> bool {
+    match event {
+        Event::Key {
+            pressed, repeat, ..
+        } => *pressed && !repeat,
+        Event::PointerButton { pressed, .. } => *pressed,
+        Event::Touch { .. } | Event::MouseWheel { .. } => true,
+        _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::config::Seconds;
+    use super::*;
+    use sticks::{About, Device, Labels};
+
+    const TIMES: Times = Times {
+        rest: Seconds(20.0),
+        countdown: Seconds(10.0),
+        pointer: Seconds(3.0),
+    };
+
+    fn stick(lean: f32) -> Snapshot {
+        let about = About {
+            name: "worn".into(),
+            guid: String::new(),
+            labels: Labels::Unknown,
+        };
+        let mut device = Device::at_rest(DeviceId(1), about, 2, 0, 0);
+        device.axes[0] = lean;
+        Snapshot {
+            devices: vec![device],
+        }
+    }
+
+    #[test]
+    fn who_rests_is_counted_down_and_any_touch_stays() {
+        let mut presence = Presence::default();
+        let mut pass = |seconds, touched| presence.pass(seconds, touched, &TIMES);
+        assert_eq!(pass(19.0, false), Attention::There);
+        assert!(matches!(pass(6.0, false), Attention::Leaving(left) if (0.4..0.6).contains(&left)));
+        assert_eq!(pass(0.1, true), Attention::There);
+        assert!(matches!(pass(29.0, false), Attention::Leaving(_)));
+        assert_eq!(pass(2.0, false), Attention::Gone);
+    }
+
+    #[test]
+    fn a_stick_that_trembles_or_leans_for_ever_is_nobody() {
+        let mut presence = Presence::default();
+        presence.is_moved(&stick(0.0), false);
+        assert!(presence.is_moved(&stick(0.9), false));
+        for tick in 0..100 {
+            let tremble = 0.03 * f32::from(i8::from(tick % 2 == 0));
+            assert!(!presence.is_moved(&stick(0.9 + tremble), false));
+        }
+        assert!(presence.is_moved(&stick(0.5), false));
+    }
+
+    #[test]
+    fn a_stick_that_stirs_by_itself_is_nobody() {
+        let mut presence = Presence::default();
+        presence.is_moved(&stick(0.0), true);
+        assert!(!presence.is_moved(&stick(0.9), true));
+        assert!(!presence.is_moved(&stick(0.9), false), "it is left there");
+        assert!(presence.is_moved(&stick(0.0), false));
+    }
+
+    #[test]
+    fn a_mouse_that_moves_slowly_is_somebody_and_a_knock_is_not() {
+        let mut presence = Presence::default();
+        let pushes = (0..20).filter(|_| presence.is_pushed(0.5)).count();
+        assert_eq!(pushes, 2);
+        for _ in 0..20 {
+            presence.pass(2.0, false, &TIMES);
+            assert!(!presence.is_pushed(3.0));
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! What happens between two times at which nobody is there.
+
+use super::config::Config;
+use crate::game::Ended;
+use fuwafuwa::world::TICK;
+use tamaire_logbook::{End, Id, Moment, Round};
+use tamaire_play::Route;
+
+/// A visit that goes on.
+#[derive(Clone, Debug)]
+pub struct Visit {
+    /// By what it is known.
+    pub id: Id,
+    /// When it began.
+    pub began: Moment,
+    /// Whether it stands in the logbook.
+    pub is_noted: bool,
+    /// How the round is to be won that is played, if that was suggested.
+    pub dare: Option<Route>,
+    rounds: u32,
+}
+
+impl Visit {
+    /// One that begins now.
+    pub fn begin() -> Self {
+        Self {
+            id: Id::random(),
+            began: Moment::now(),
+            is_noted: false,
+            dare: None,
+            rounds: 0,
+        }
+    }
+
+    /// A round of it, as it is written down; `end` is how it ended if it was not won.
+    pub fn round(&mut self, config: &Config, ended: &Ended, end: End) -> Round {
+        self.rounds += 1;
+        let (progress, won) = (&ended.progress, ended.progress.outcome);
+        let seconds = ended.replay.ticks() as f32 * TICK;
+        Round {
+            id: Id::random(),
+            visit: self.id,
+            stand: config.stand.0.clone(),
+            number: self.rounds,
+            began: Moment::now().after(-(1000.0 * seconds) as i64),
+            seconds,
+            level: ended.level.id.clone(),
+            level_hash: ended.level.hash(),
+            players: ended.players as u8,
+            end: won.map_or(end, |_| End::Won),
+            route: won.map(|won| won.route),
+            kept: won.map_or(progress.kept, |won| won.kept),
+            inside: won.map_or(progress.inside, |won| won.inside),
+            pieces: won.map_or(progress.pieces, |won| won.pieces) as u32,
+            lost: won.map_or(0, |won| won.lost) as u32,
+            dare: self.dare.take(),
+            // What was just played can be told.
+            replay: ended.replay.fragment().unwrap_or_default(),
+        }
+    }
+}

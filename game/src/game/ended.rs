@@ -1,0 +1,23 @@
+//! Rounds that ended, for whoever collects them.
+
+use super::Game;
+use super::public::Ended;
+
+impl Game {
+    /// Collects the round on the screen, once, where somebody collects rounds and people played in it.
+    pub(super) fn note_end(&mut self) {
+        let (bout, round) = (&self.bout, self.bout.round());
+        let is_begun = round.ticks() > 0 && bout.session.is_played();
+        let Some(public) = self.public.as_mut().filter(|_| is_begun && !bout.is_noted) else {
+            return;
+        };
+        let players = 1 + usize::from(self.controls.players.second().is_some());
+        public.ended.push(Ended {
+            level: round.level().clone(),
+            progress: round.progress().clone(),
+            players,
+            replay: round.replay(),
+        });
+        self.bout.is_noted = true;
+    }
+}

@@ -1,0 +1,71 @@
+//! Which of two or three levels?
+
+use super::super::widgets::{fitted, veil};
+use super::super::{levels::tile, play::focus_first};
+use super::language::above;
+use crate::exhibit::Stand;
+use crate::game::Game;
+use crate::look::Stage;
+use egui::{Rect, Ui, pos2, vec2};
+use tamaire_sound::Menu;
+
+const GAP: f32 = 28.0;
+/// A picture is no wider than this [points].
+const WIDE: f32 = 360.0;
+/// Below a picture there is so much of its tile.
+const BELOW: f32 = 92.0;
+
+pub(super) fn show(stand: &mut Stand, game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
+    veil(ui, 255);
+    let (theme, screen) = (game.theme(), above(ui.max_rect()));
+    let text = game.settings.language.at_stand().which;
+    let headline = fitted(
+        ui.painter(),
+        text,
+        52.0,
+        screen.width() - 2.0 * GAP,
+        theme.ink,
+    );
+    let count = game.levels.len() as f32;
+    // Side by side, or one below the other.
+    let is_tall = screen.width() < screen.height();
+    let (across, down) = if is_tall { (1.0, count) } else { (count, 1.0) };
+    let room = vec2(
+        screen.width(),
+        screen.height() - headline.size().y - 4.0 * GAP,
+    );
+    let wide = ((room.x - GAP) / across - GAP).min(WIDE);
+    let high = (room.y / down - GAP - BELOW).max(40.0) / 0.62 + 20.0;
+    let wide = wide.min(high);
+    let size = vec2(wide, 0.62 * (wide - 20.0) + BELOW);
+    let all = vec2(across * (size.x + GAP) - GAP, down * (size.y + GAP) - GAP);
+    let middle = screen.center() + vec2(0.0, 0.5 * headline.size().y);
+    let top = middle.y - 0.5 * all.y - GAP - headline.size().y;
+    let at = pos2(screen.center().x - 0.5 * headline.size().x, top);
+    ui.painter().galley(at, headline, theme.ink);
+    let corner = middle - 0.5 * all;
+    let maps = stage.maps(&game.pictured(), &theme);
+    let mut chosen = None;
+    for index in 0..game.levels.len() {
+        let step = index as f32 * (size + vec2(GAP, GAP));
+        let step = if is_tall {
+            vec2(0.0, step.y)
+        } else {
+            vec2(step.x, 0.0)
+        };
+        let place = egui::UiBuilder::new().max_rect(Rect::from_min_size(corner + step, size));
+        let response = ui
+            .scope_builder(place, |ui| tile(ui, game, maps, index, size))
+            .inner;
+        if index == 0 {
+            focus_first(ui, &response);
+        }
+        if response.clicked() && stand.is_settled() {
+            chosen = Some(index);
+        }
+    }
+    if let Some(index) = chosen {
+        game.blip(Menu::Confirm);
+        stand.choose(game, index);
+    }
+}

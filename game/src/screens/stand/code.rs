@@ -1,0 +1,63 @@
+//! A code that phones read.
+
+use super::super::widgets::{card, fitted};
+use crate::exhibit::home::Code;
+use crate::game::Game;
+use egui::{Color32, Mesh, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
+
+/// Modules of quiet around a code [ISO/IEC 18004].
+const QUIET: usize = 4;
+
+/// With fewer pixels a module no phone reads it from a screen.
+const LEAST: f32 = 3.0;
+
+/// Shows it on a card with a side of so many points at most, and what it is for.
+pub(super) fn show(ui: &mut Ui, game: &Game, code: &Code, most: f32) {
+    if pixels(ui, code, most) < LEAST {
+        return;
+    }
+    let (theme, said) = (game.theme(), game.settings.language.at_stand());
+    card(ui, &theme, |ui| {
+        ui.spacing_mut().item_spacing.y = 6.0;
+        ui.vertical_centered(|ui| {
+            ui.set_max_width(most);
+            let headline = fitted(ui.painter(), said.take_home, 27.0, most, theme.accent);
+            ui.label(headline);
+            draw(ui, code, most);
+            let how = fitted(ui.painter(), said.scan, 20.0, most, theme.faint);
+            ui.label(how);
+        });
+    });
+}
+
+/// Each module is a whole number of pixels wide, so that all are alike.
+fn draw(ui: &mut Ui, code: &Code, most: f32) {
+    let per_point = ui.ctx().pixels_per_point();
+    let module = pixels(ui, code, most) / per_point;
+    let side = modules(code) * module;
+    let (rect, response) = ui.allocate_exact_size(vec2(side, side), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &code.address));
+    let corner = (rect.min.to_vec2() * per_point).round() / per_point;
+    let mut mesh = Mesh::default();
+    mesh.add_colored_rect(rect, Color32::WHITE);
+    let dark = { code.dark.iter().enumerate() }.filter(|&(_, &is_dark)| is_dark);
+    for (index, _) in dark {
+        let [x, y] = [index % code.side, index / code.side].map(|at| (at + QUIET) as f32 * module);
+        let at = pos2(x, y) + corner;
+        mesh.add_colored_rect(
+            Rect::from_min_size(at, vec2(module, module)),
+            Color32::BLACK,
+        );
+    }
+    ui.painter().add(mesh);
+}
+
+/// Modules on a side, with the quiet ones around.
+fn modules(code: &Code) -> f32 {
+    (code.side + 2 * QUIET) as f32
+}
+
+/// How many pixels wide a module is, where a side has so many points at most.
+fn pixels(ui: &Ui, code: &Code, most: f32) -> f32 {
+    (most * ui.ctx().pixels_per_point() / modules(code)).floor()
+}

@@ -1,0 +1,86 @@
+//! The number that staff is asked for.
+
+use super::super::play::focus_first;
+use super::super::widgets::{Weight, button, card, column, fitted, veil};
+use crate::exhibit::Stand;
+use crate::game::Game;
+use egui::{Sense, Ui, Vec2, vec2};
+use tamaire_sound::Menu;
+
+const KEY: Vec2 = vec2(96.0, 60.0);
+const GAP: f32 = 10.0;
+const DIGITS: [[char; 3]; 4] = [
+    ['1', '2', '3'],
+    ['4', '5', '6'],
+    ['7', '8', '9'],
+    [' ', '0', ' '],
+];
+
+pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
+    veil(ui, 255);
+    let (theme, said) = (game.theme(), game.settings.language.at_stand());
+    let pause = stand.pause();
+    let entered = "●".repeat(stand.entrance.entered.len());
+    let shown = match pause > 0.0 {
+        true => (said.wait)(pause.ceil()),
+        false => entered,
+    };
+    let typed = typed_digit(ui);
+    let mut leaves = ui.input(|input| input.key_pressed(egui::Key::Escape));
+    let mut digit = typed;
+    let width = 3.0 * KEY.x + 2.0 * GAP;
+    column(ui, width + 60.0, 0.5, |ui| {
+        card(ui, &theme, |ui| {
+            ui.spacing_mut().item_spacing = vec2(GAP, GAP);
+            for (text, size) in [(said.door, 34.0), (shown.as_str(), 28.0)] {
+                let (rect, _) = ui.allocate_exact_size(vec2(width, 1.3 * size), Sense::hover());
+                let galley = fitted(ui.painter(), text, size, width, theme.ink);
+                ui.painter()
+                    .galley(rect.center() - 0.5 * galley.size(), galley, theme.ink);
+            }
+            for row in DIGITS {
+                ui.horizontal(|ui| {
+                    for key in row {
+                        if key == ' ' {
+                            ui.allocate_exact_size(KEY, Sense::hover());
+                            continue;
+                        }
+                        let response = button(ui, &theme, &key.to_string(), KEY, Weight::Other);
+                        if key == '1' {
+                            focus_first(ui, &response);
+                        }
+                        if response.clicked() {
+                            digit = Some(key);
+                        }
+                    }
+                });
+            }
+            let back = button(
+                ui,
+                &theme,
+                game.words().back,
+                vec2(width, 52.0),
+                Weight::Other,
+            );
+            leaves |= back.clicked();
+        })
+    });
+    if leaves {
+        game.blip(Menu::Back);
+        stand.leave(game);
+    } else if let Some(digit) = digit {
+        game.blip(Menu::Confirm);
+        stand.enter(game, digit);
+    }
+}
+
+/// A digit on a keyboard, where there is one.
+fn typed_digit(ui: &Ui) -> Option<char> {
+    ui.input(|input| {
+        let mut typed = input.events.iter().filter_map(|event| match event {
+            egui::Event::Text(text) => text.chars().next(),
+            _ => None,
+        });
+        typed.find(char::is_ascii_digit)
+    })
+}

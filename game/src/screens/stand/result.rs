@@ -1,0 +1,102 @@
+//! How it went: another go, a dare to win the other way, and the round to take home.
+
+use super::super::play::focus_first;
+use super::super::result::{headline, line, numbers, other};
+use super::super::widgets::{Weight, button, card, column_beside, veil};
+use super::code;
+use super::language::above;
+use crate::exhibit::Stand;
+use crate::game::{Game, Screen};
+use egui::{Rect, Ui, UiBuilder, Vec2, pos2, vec2};
+use tamaire_play::Route;
+use tamaire_sound::Menu;
+
+/// Width of the card, and how far what is on it is apart [points].
+const WIDE: f32 = 470.0;
+const GAP: f32 = 12.0;
+/// Side of a code [points]: as large as there is room for, and no larger.
+const CODE: f32 = 360.0;
+
+/// What a visitor wants.
+#[derive(Copy, Clone)]
+enum Wish {
+    Again(Option<Route>),
+    Another,
+}
+
+pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
+    veil(ui, 40);
+    let Some((outcome, _)) = game.bout.won else {
+        game.go(Screen::Play);
+        return;
+    };
+    let (theme, said) = (game.theme(), game.words());
+    let level = game.bout.round().level().clone();
+    let dared = level
+        .routes()
+        .contains(&other(outcome.route))
+        .then_some(outcome.route);
+    let has_others = stand.config.levels.0.len() > 1;
+    let area = UiBuilder::new().max_rect(above(ui.max_rect()));
+    let show = |ui: &mut Ui| {
+        column_beside(ui, WIDE, (0.05, false), |ui| {
+            card(ui, &theme, |ui| {
+                ui.spacing_mut().item_spacing = Vec2::ZERO;
+                headline(ui, &theme, said, outcome.route);
+                ui.add_space(GAP);
+                numbers(ui, &theme, said, &outcome);
+                ui.add_space(2.0 * GAP);
+                let size = vec2(ui.available_width(), 64.0);
+                let mut wish = None;
+                if let Some(route) = dared {
+                    line(ui, (said.other_way)(route), 25.0, theme.accent);
+                    ui.add_space(GAP);
+                }
+                let again = button(ui, &theme, said.again, size, Weight::Main);
+                focus_first(ui, &again);
+                if again.clicked() {
+                    wish = Some(Wish::Again(dared.map(other)));
+                }
+                if has_others {
+                    ui.add_space(GAP);
+                    let text = game.settings.language.at_stand().another;
+                    if button(ui, &theme, text, size - vec2(0.0, 12.0), Weight::Other).clicked() {
+                        wish = Some(Wish::Another);
+                    }
+                }
+                wish
+            })
+        })
+    };
+    let wish = ui.scope_builder(area, show).inner;
+    if let Some(home) = stand.to_take_home() {
+        let screen = ui.max_rect();
+        let is_upright = screen.width() < screen.height();
+        let most = CODE.min(if is_upright { 0.6 } else { 0.42 } * screen.width());
+        let place = place_of_code(ui.max_rect(), most);
+        ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
+            code::show(ui, game, home, most)
+        });
+    }
+    if let Some(wish) = wish.filter(|_| stand.is_result_settled()) {
+        game.blip(Menu::Confirm);
+        match wish {
+            Wish::Again(route) => stand.try_again(game, route),
+            Wish::Another => stand.choose_again(game),
+        }
+    }
+}
+
+/// At the right; on an upright screen above.
+fn place_of_code(screen: Rect, side: f32) -> Rect {
+    // The card has an edge and two lines beside the code.
+    let size = vec2(side + 40.0, side + 130.0);
+    let at = match screen.width() < screen.height() {
+        true => pos2(screen.center().x - 0.5 * size.x, screen.top() + 20.0),
+        false => pos2(
+            screen.right() - size.x - 30.0,
+            screen.center().y - 0.5 * size.y,
+        ),
+    };
+    Rect::from_min_size(at, size)
+}

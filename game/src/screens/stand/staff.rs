@@ -1,0 +1,330 @@
+//! What staff sees: the figures of the day, how the stand is, and what can be changed.
+
+use super::super::forces;
+use super::super::play::focus_first;
+use super::super::widgets::{
+    Weight, button, card, choice, fitted, header, page, place_of_page, row, slider, veil,
+};
+use crate::exhibit::config::Change;
+use crate::exhibit::staff::Page;
+use crate::exhibit::{Phase, Stand};
+use crate::game::{Game, Screen};
+use crate::look::Theme;
+use crate::platform::memory;
+use crate::words::Language;
+use egui::{RichText, Sense, Ui, vec2};
+use jiff::ToSpan;
+use jiff::civil::Time;
+use tamaire_play::level::{NAMED, NAMED_3D};
+use tamaire_sound::Menu;
+
+/// Width of a page, height of a line, and how far cards are apart [points].
+const WIDE: f32 = 780.0;
+const LINE: f32 = 38.0;
+const GAP: f32 = 12.0;
+/// When a stand opens and closes where that is first said.
+const USUAL_HOURS: [Time; 2] = [Time::constant(10, 0, 0, 0), Time::constant(18, 0, 0, 0)];
+
+/// What staff wishes.
+enum Wish {
+    Leave,
+    See(Page),
+    Change(Change),
+    TryStick,
+    Export,
+    End,
+}
+
+pub(super) fn show(stand: &mut Stand, game: &mut Game, shown: Page, ui: &mut Ui) {
+    if game.screen() == Screen::Forces {
+        forces::show(game, ui);
+        let strength = game.settings.haptics;
+        if game.screen() != Screen::Forces && strength != stand.config.force.strength.0 {
+            stand.change(game, &Change::Strength(strength));
+        }
+        return;
+    }
+    veil(ui, 255);
+    let (theme, said) = (game.theme(), game.settings.language.at_stand());
+    let mut wish = None;
+    if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+        wish = Some(Wish::Leave);
+    }
+    let area = place_of_page(ui);
+    ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
+        let back = header(ui, &theme, game.words().back, &stand.config.stand.0);
+        focus_first(ui, &back);
+        if back.clicked() {
+            wish = Some(Wish::Leave);
+        }
+        page(ui, "staff", WIDE, |ui| {
+            let width = (ui.available_width() - 2.0 * GAP) / 3.0;
+            ui.horizontal(|ui| {
+                ui.spacing_mut().item_spacing.x = GAP;
+                for (seen, name) in Page::ALL.into_iter().zip(said.pages) {
+                    let weight = if seen == shown {
+                        Weight::Main
+                    } else {
+                        Weight::Other
+                    };
+                    if button(ui, &theme, name, vec2(width, 48.0), weight).clicked() {
+                        wish = Some(Wish::See(seen));
+                    }
+                }
+            });
+            ui.add_space(GAP);
+            if let Some(answer) = &stand.answer {
+                ui.label(RichText::new(answer).size(19.0).color(theme.accent));
+                ui.add_space(GAP);
+            }
+            card(ui, &theme, |ui| {
+                ui.set_width(ui.available_width());
+                match shown {
+                    Page::Today => today(stand, game, ui),
+                    Page::Health => health(stand, game, ui),
+                    Page::Settings => {
+                        if let Some(change) = settings(stand, game, ui) {
+                            wish = Some(Wish::Change(change));
+                        }
+                    }
+                }
+            });
+            ui.add_space(GAP);
+            let deeds = match shown {
+                Page::Today => vec![(said.export, Wish::Export)],
+                Page::Health => vec![(said.try_stick, Wish::TryStick)],
+                Page::Settings => vec![(said.end, Wish::End)],
+            };
+            for (name, deed) in deeds {
+                if button(ui, &theme, name, vec2(320.0, 52.0), Weight::Other).clicked() {
+                    wish = Some(deed);
+                }
+            }
+        });
+    });
+    match stand.take_exported() {
+        Some(Ok(path)) => stand.answer = Some((said.exported)(&path)),
+        Some(Err(error)) => stand.answer = Some(error),
+        None => {}
+    }
+    let Some(wish) = wish else {
+        return;
+    };
+    game.blip(Menu::Confirm);
+    match wish {
+        Wish::Leave => stand.leave(game),
+        Wish::See(page) => stand.phase = Phase::Staff(page),
+        Wish::Change(change) => stand.change(game, &change),
+        Wish::TryStick => {
+            game.go(Screen::Settings);
+            game.go(Screen::Forces);
+        }
+        Wish::Export => stand.export(),
+        Wish::End => stand.is_ended = true,
+    }
+}
+
+/// A name and what there is to tell of it.
+fn told(ui: &mut Ui, theme: &Theme, name: &str, value: &str) {
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), LINE), Sense::hover());
+    let half = 0.5 * rect.width() - 8.0;
+    let left = fitted(ui.painter(), name, 20.0, half, theme.faint);
+    let right = fitted(ui.painter(), value, 23.0, half, theme.ink);
+    let painter = ui.painter();
+    painter.galley(
+        rect.left_center() - vec2(0.0, 0.5 * left.size().y),
+        left,
+        theme.faint,
+    );
+    let at = rect.right_center() - vec2(right.size().x, 0.5 * right.size().y);
+    painter.galley(at, right, theme.ink);
+}
+
+fn today(stand: &Stand, game: &Game, ui: &mut Ui) {
+    let (theme, said) = (game.theme(), game.settings.language.at_stand());
+    let day = stand.today();
+    let share = |count: u64| match day.rounds {
+        0 => count.to_string(),
+        rounds => format!("{count}  ({:.0} %)", 100.0 * count as f64 / rounds as f64),
+    };
+    let first = day.median_to_first_win;
+    let values = [
+        day.visits.to_string(),
+        day.rounds.to_string(),
+        share(day.wins),
+        share(day.squeezed),
+        share(day.shaved),
+        share(day.mixed),
+        share(day.retries),
+        first.map_or(said.unknown.into(), said.seconds),
+    ];
+    for (name, value) in said.figures.into_iter().zip(values) {
+        told(ui, &theme, name, &value);
+    }
+}
+
+fn health(stand: &Stand, game: &Game, ui: &mut Ui) {
+    let (theme, said) = (game.theme(), game.settings.language.at_stand());
+    let logbook = stand.logbook();
+    let frame = |percent| {
+        stand
+            .frames
+            .percentile(percent)
+            .map(|seconds| format!("{:.1} ms", 1000.0 * seconds))
+    };
+    let devices = &game.controls.devices.sticks.devices;
+    let names: Vec<&str> = devices
+        .iter()
+        .map(|device| device.about.name.as_str())
+        .collect();
+    let recording = match (&logbook.trouble, logbook.dropped) {
+        (Some(trouble), _) => trouble.clone(),
+        (None, 0) => said.recording.into(),
+        (None, dropped) => format!("{} (-{dropped})", said.recording),
+    };
+    let unknown = || said.unknown.to_string();
+    let forces = match game.forces.is_cut() {
+        true => game.words().forces_cut.into(),
+        false => format!("{:.0} %", 100.0 * game.settings.haptics),
+    };
+    let sound = game.sound_trouble().unwrap_or_else(|| "✓".into());
+    let values = [
+        frame(50).unwrap_or_else(unknown),
+        frame(99).unwrap_or_else(unknown),
+        memory().map_or_else(unknown, said.bytes),
+        stand.room().map_or_else(unknown, said.bytes),
+        if names.is_empty() {
+            "-".into()
+        } else {
+            names.join(", ")
+        },
+        forces,
+        sound,
+        recording,
+        (said.bytes)(logbook.bytes),
+        logbook.unsent.to_string(),
+    ];
+    for (name, value) in said.health.into_iter().zip(values) {
+        told(ui, &theme, name, &value);
+    }
+}
+
+/// What the stand is like; gives back what is to be changed.
+fn settings(stand: &Stand, game: &mut Game, ui: &mut Ui) -> Option<Change> {
+    let (theme, words) = (game.theme(), game.words());
+    let said = game.settings.language.at_stand();
+    let mut change = None;
+    let config = &stand.config;
+    let mut language = config.language;
+    if choice(ui, &theme, words.language, &mut language, &Language::ALL) {
+        change = Some(Change::Language(language));
+    }
+    let kinds = [
+        (
+            words.volume,
+            config.sound.volume.0,
+            Change::Volume as fn(f32) -> Change,
+        ),
+        (words.haptics, config.force.strength.0, Change::Strength),
+    ];
+    for (name, value, kind) in kinds {
+        let mut chosen = value;
+        slider(ui, &theme, name, &mut chosen, 0.0, 1.0, 0.05);
+        // Not on every frame of a drag.
+        let rests = ui.input(|input| !input.pointer.any_down());
+        let id = ui.scope_id().with(name);
+        let dragged = ui.data_mut(|data| data.get_temp::<f32>(id));
+        match (chosen != value, rests) {
+            (true, true) => change = Some(kind(chosen)),
+            (true, false) => {
+                ui.data_mut(|data| data.insert_temp(id, chosen));
+            }
+            (false, true) => {
+                if let Some(dragged) = dragged.filter(|&dragged| dragged != value) {
+                    change = Some(kind(dragged));
+                }
+                ui.data_mut(|data| data.remove::<f32>(id));
+            }
+            (false, false) => {}
+        }
+    }
+    if let Some(hours) = hours(stand, game, ui) {
+        change = Some(Change::Hours(hours));
+    }
+    row(ui, &theme, said.levels, |_| ());
+    levels(stand, game, ui).or(change)
+}
+
+/// When it is open.
+fn hours(stand: &Stand, game: &Game, ui: &mut Ui) -> Option<Option<(Time, Time)>> {
+    let (theme, said) = (game.theme(), game.settings.language.at_stand());
+    let known = stand
+        .config
+        .hours
+        .map(|hours| (hours.open.0, hours.close.0));
+    let mut chosen = None;
+    row(ui, &theme, said.hours, |ui| {
+        let Some((open, close)) = known else {
+            let [open, close] = USUAL_HOURS;
+            let size = vec2(200.0, 44.0);
+            let text = (said.from_to)(open, close);
+            ui.label(RichText::new(said.always).size(21.0).color(theme.ink));
+            if button(ui, &theme, &text, size, Weight::Other).clicked() {
+                chosen = Some(Some((open, close)));
+            }
+            return;
+        };
+        for (is_open, time) in [(true, open), (false, close)] {
+            for (sign, by) in [("-", -30.minutes()), ("+", 30.minutes())] {
+                if button(ui, &theme, sign, vec2(44.0, 44.0), Weight::Other).clicked() {
+                    chosen = Some(Some(match is_open {
+                        true => (open.wrapping_add(by), close),
+                        false => (open, close.wrapping_add(by)),
+                    }));
+                }
+                if sign == "-" {
+                    let text = RichText::new(time.strftime("%H:%M").to_string());
+                    ui.label(text.size(21.0).color(theme.ink));
+                }
+            }
+        }
+        let size = vec2(104.0, 44.0);
+        if button(ui, &theme, said.always, size, Weight::Other).clicked() {
+            chosen = Some(None);
+        }
+    });
+    chosen
+}
+
+/// Which levels there are to choose from: a press takes one in or out.
+fn levels(stand: &Stand, game: &Game, ui: &mut Ui) -> Option<Change> {
+    let theme = game.theme();
+    let chosen: Vec<&str> = { stand.config.levels.0.iter() }
+        .map(|level| level.id.as_str())
+        .collect();
+    let mut changed = None;
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(8.0, 8.0);
+        let named = NAMED.iter().chain(&NAMED_3D).map(|(id, _)| id);
+        let known = { stand.known.iter() }.filter(|level| level.game().basket.is_some());
+        for level in known.filter(|level| named.clone().any(|id| *id == level.id)) {
+            let (id, name) = (
+                level.id.as_str(),
+                game.settings.language.of(&level.game().name),
+            );
+            let is_in = chosen.contains(&id);
+            let text = if is_in {
+                format!("● {name}")
+            } else {
+                name.to_string()
+            };
+            let weight = if is_in { Weight::Main } else { Weight::Other };
+            if button(ui, &theme, &text, vec2(176.0, 42.0), weight).clicked() {
+                let others = chosen.iter().filter(|&&known| known != id);
+                let added = (!is_in).then_some(&id);
+                changed = Some(others.chain(added).map(|id| id.to_string()).collect());
+            }
+        }
+    });
+    changed.map(Change::Levels)
+}

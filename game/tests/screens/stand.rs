@@ -1,0 +1,456 @@
+//! A stand in public: visitors come, play and go, and staff looks behind it.
+
+use crate::window::*;
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2, pos2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use fuwafuwa::world::TICK;
+use jiff::civil::Time;
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+use sticks::{About, Device, DeviceId, Labels, Snapshot};
+use tamaire::app::App;
+use tamaire::exhibit::config::USUAL;
+use tamaire::exhibit::presence::Attention;
+use tamaire::exhibit::{Phase, Stand};
+use tamaire::game::{Game, Screen};
+use tamaire::look::Stage;
+use tamaire::platform::{Clock, Files, Pads, Sound, StandFolder, TextFile};
+use tamaire::screens::Attendant;
+use tamaire::words::Language;
+use tamaire_logbook::{End, Error, Kind, Logbook, Round, Visit};
+use tamaire_play::{BotKind, Playback, Replay};
+
+/// A stand whose visitors are in the window's hands, and the test's eye on it.
+struct Shown {
+    window: Window,
+    stand: Rc<RefCell<Stand>>,
+    folder: PathBuf,
+}
+
+/// Hands a stand to a window and keeps it.
+struct Shared(Rc<RefCell<Stand>>);
+
+impl Attendant for Shared {
+    fn pass(&mut self, game: &mut Game, ctx: &egui::Context, seconds: f32) {
+        Attendant::pass(&mut *self.0.borrow_mut(), game, ctx, seconds);
+    }
+
+    fn show(&mut self, game: &mut Game, stage: &mut Stage, ui: &mut egui::Ui) {
+        self.0.borrow_mut().show(game, stage, ui);
+    }
+
+    fn end(&mut self) {
+        self.0.borrow_mut().end();
+    }
+
+    fn close(&mut self, game: &mut Game) {
+        Attendant::close(&mut *self.0.borrow_mut(), game);
+    }
+}
+
+/// A stand with this in its file instead of what it usually says.
+fn shown(name: &str, size: Vec2, changes: &[(&str, &str)]) -> Shown {
+    let folder = folder(name);
+    let mut text = USUAL.replace(
+        "#folder = \"/var/lib/tam\"",
+        &format!("folder = {folder:?}"),
+    );
+    for (usual, wanted) in changes {
+        assert!(text.contains(usual), "{usual}");
+        text = text.replace(usual, wanted);
+    }
+    let file = TextFile(folder.join("exhibit.toml"));
+    file.write(&text).unwrap();
+    let stand = Stand::open(file).unwrap().at(Time::constant(12, 0, 0, 0));
+    let stand = Rc::new(RefCell::new(stand));
+    let kept = stand.clone();
+    let builder = Harness::builder()
+        .with_size(size)
+        .wgpu()
+        .with_pixels_per_point(1.0);
+    let builder = builder.with_step_dt(TICK).with_render_cursor(false);
+    let builder = builder.with_theme(egui::Theme::Light);
+    let mut window = builder.build_eframe(|context| {
+        let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
+        game.clock = Clock::of(|| 0.0);
+        kept.borrow_mut().prepare(&mut game);
+        let mut app = App::new(context, game).expect("there is a GPU, if only in software");
+        app.attendant = Some(Box::new(Shared(kept)));
+        app
+    });
+    frames(&mut window, 2);
+    let zoom = window.ctx.zoom_factor();
+    window.set_size(size / zoom);
+    frames(&mut window, 2);
+    Shown {
+        window,
+        stand,
+        folder,
+    }
+}
+
+impl Shown {
+    fn phase(&self) -> Phase {
+        self.stand.borrow().phase
+    }
+
+    /// Lets so many seconds pass in which nobody does anything.
+    fn rest(&mut self, seconds: f32) {
+        let ctx = self.window.ctx.clone();
+        let mut stand = self.stand.borrow_mut();
+        let game = game(&mut self.window);
+        for _ in 0..(seconds / TICK) as usize {
+            game.pass(TICK);
+            // No events are left in the context after a frame.
+            ctx.input_mut(|input| input.events.clear());
+            stand.pass(game, &ctx, TICK);
+        }
+    }
+
+    fn touch(&mut self) {
+        press(&mut self.window, Key::Space);
+    }
+
+    /// Plays until it is won.
+    fn win(&mut self, kind: BotKind) {
+        drive(game(&mut self.window), kind, |game| game.bout.won.is_none());
+        game(&mut self.window).pass(2.0);
+        frames(&mut self.window, 30);
+        assert_eq!(screen(&self.window), Screen::Result);
+    }
+
+    /// What is in the logbook when all is written.
+    fn end(self) -> (Vec<Visit>, Vec<Round>) {
+        let Self {
+            mut window,
+            stand,
+            folder,
+        } = self;
+        stand.borrow_mut().close(game(&mut window));
+        drop(window);
+        drop(stand);
+        read(&folder)
+    }
+}
+
+fn read(folder: &Path) -> (Vec<Visit>, Vec<Round>) {
+    let logbook = Logbook::read(&StandFolder(folder.into()).logbook()).unwrap();
+    let (mut visits, mut rounds) = (Vec::new(), Vec::new());
+    let visit = |visit| {
+        visits.push(visit);
+        Ok::<(), Error>(())
+    };
+    logbook.visits(.., visit).unwrap();
+    let round = |round| {
+        rounds.push(round);
+        Ok::<(), Error>(())
+    };
+    logbook.rounds(.., round).unwrap();
+    (visits, rounds)
+}
+
+#[test]
+fn a_visit_begins_with_a_touch_and_is_written_down_whole() {
+    let mut shown = shown("visit", vec2(960.0, 600.0), &[]);
+    assert_eq!(shown.phase(), Phase::Attract);
+    shown.rest(60.0);
+    assert_eq!(shown.phase(), Phase::Attract, "nobody came");
+    shown.touch();
+    assert_eq!(
+        (shown.phase(), screen(&shown.window)),
+        (Phase::Visit, Screen::Play)
+    );
+    shown.win(BotKind::Squeeze);
+    let again = game(&mut shown.window).words().again;
+    click(&mut shown.window, again);
+    assert_eq!(screen(&shown.window), Screen::Play);
+    // Somebody begins anew, and goes in the middle of it.
+    frames(&mut shown.window, 60);
+    press(&mut shown.window, Key::R);
+    frames(&mut shown.window, 30);
+    shown.rest(19.0);
+    assert_eq!(shown.phase(), Phase::Visit);
+    shown.rest(12.0);
+    assert_eq!(shown.phase(), Phase::Attract);
+    let (visits, rounds) = shown.end();
+    assert_eq!(visits.len(), 1);
+    assert!(visits[0].ended.is_some());
+    let ends: Vec<End> = rounds.iter().map(|round| round.end).collect();
+    assert_eq!(ends, [End::Won, End::Retried, End::Left]);
+    assert_eq!(
+        rounds.iter().map(|round| round.number).collect::<Vec<_>>(),
+        [1, 2, 3]
+    );
+    assert_eq!(
+        rounds[1].dare,
+        Some(tamaire_play::Route::Shave),
+        "{:?}",
+        rounds[1]
+    );
+    for round in rounds {
+        let replay = Replay::of_fragment(&round.replay).unwrap();
+        let mut playback = Playback::new(replay.into()).unwrap();
+        while !playback.is_over() {
+            playback.step().unwrap();
+        }
+        let outcome = playback.round().progress().outcome;
+        assert_eq!(outcome.map(|outcome| outcome.route), round.route);
+    }
+}
+
+#[test]
+fn a_ring_counts_down_and_any_touch_stays() {
+    let mut shown = shown("ring", vec2(960.0, 600.0), &[]);
+    shown.touch();
+    shown.rest(25.0);
+    frames(&mut shown.window, 2);
+    let attention = shown.stand.borrow().attention;
+    assert!(matches!(attention, Attention::Leaving(left) if (0.3..0.7).contains(&left)));
+    shown.touch();
+    assert_eq!(shown.stand.borrow().attention, Attention::There);
+    shown.rest(19.0);
+    assert_eq!(
+        (shown.phase(), screen(&shown.window)),
+        (Phase::Visit, Screen::Play)
+    );
+}
+
+#[test]
+fn the_next_visitor_finds_it_fresh() {
+    let mut shown = shown("fresh", vec2(960.0, 600.0), &[]);
+    shown.touch();
+    frames(&mut shown.window, 3);
+    assert_eq!(
+        game(&mut shown.window).settings.language,
+        Language::Japanese
+    );
+    click(&mut shown.window, "English");
+    assert_eq!(game(&mut shown.window).settings.language, Language::English);
+    press(&mut shown.window, Key::F);
+    assert_eq!(
+        game(&mut shown.window).settings.language,
+        Language::Japanese
+    );
+    press(&mut shown.window, Key::F);
+    press(&mut shown.window, Key::E);
+    let game = game(&mut shown.window);
+    assert_eq!(game.settings.language, Language::English);
+    assert!(game.bout.elements.is_some());
+    game.controls.players.join(tamaire::input::Seat::Keys);
+    game.forces.cut();
+    shown.rest(31.0);
+    let game = crate::window::game(&mut shown.window);
+    assert_eq!(game.settings.language, Language::Japanese);
+    assert!(!game.forces.is_cut(), "nobody switches them off for good");
+    assert!(game.bout.elements.is_none() && game.controls.players.second().is_none());
+}
+
+#[test]
+fn nobody_gets_out_of_it() {
+    let mut shown = shown(
+        "kiosk",
+        vec2(960.0, 600.0),
+        &[("#pin = \"…\"", "pin = \"2004\"")],
+    );
+    shown.touch();
+    for key in [
+        Key::Escape,
+        Key::P,
+        Key::F11,
+        Key::F,
+        Key::Period,
+        Key::Tab,
+        Key::Enter,
+    ] {
+        press(&mut shown.window, key);
+        assert_eq!(screen(&shown.window), Screen::Play, "{key:?}");
+        assert!(!game(&mut shown.window).bout.slow && !game(&mut shown.window).bout.stepping);
+    }
+    shown
+        .window
+        .event(Event::Paste("https://example.org/#r1AAz".into()));
+    shown.window.event(Event::WindowFocused(false));
+    frames(&mut shown.window, 2);
+    assert_eq!(screen(&shown.window), Screen::Play);
+    assert!(shown.window.query_by_label("おわる").is_none());
+}
+
+/// Presses or lets go of the mouse.
+fn button_at(window: &mut Window, pos: Pos2, pressed: bool) {
+    window.event(Event::PointerMoved(pos));
+    window.event(Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    });
+    frames(window, 1);
+}
+
+#[test]
+fn staff_gets_in_by_a_corner_and_a_number_and_changes_what_it_is_like() {
+    let pin = ("#pin = \"…\"", "pin = \"2004\"");
+    let mut shown = shown(
+        "staff",
+        vec2(960.0, 600.0),
+        &[pin, ("\"japanese\"", "\"english\"")],
+    );
+    let width = shown.window.ctx.content_rect().width();
+    let corner = pos2(width - 10.0, 10.0);
+    button_at(&mut shown.window, corner, true);
+    frames(&mut shown.window, 200);
+    button_at(&mut shown.window, corner, false);
+    assert_eq!(shown.phase(), Phase::Door);
+    for digit in ["1", "2", "3", "4"] {
+        click(&mut shown.window, digit);
+    }
+    assert_eq!(shown.phase(), Phase::Door, "a wrong number");
+    for digit in ["2", "0", "0", "4"] {
+        click(&mut shown.window, digit);
+    }
+    assert!(matches!(shown.phase(), Phase::Staff(_)));
+    let (visits, _) = read(&shown.folder);
+    assert!(visits.is_empty(), "staff is no visitor");
+    click(&mut shown.window, "Stand");
+    let japanese = shown.window.get_by_label("Language: 日本語");
+    japanese.click();
+    frames(&mut shown.window, 2);
+    let file = TextFile(shown.folder.join("exhibit.toml"));
+    assert!(
+        file.read_or("")
+            .unwrap()
+            .contains("language = \"japanese\"")
+    );
+    click(&mut shown.window, "もどる");
+    assert_eq!(shown.phase(), Phase::Attract);
+    assert_eq!(
+        game(&mut shown.window).settings.language,
+        Language::Japanese
+    );
+}
+
+#[test]
+fn out_of_hours_nothing_plays() {
+    let hours = [
+        ("#[hours]", "[hours]"),
+        ("#open = \"10:00\"", "open = \"13:30\""),
+        ("#close = \"18:00\"", "close = \"18:00\""),
+    ];
+    let mut shown = shown("hours", vec2(960.0, 600.0), &hours);
+    frames(&mut shown.window, 3);
+    assert_eq!(shown.phase(), Phase::Closed);
+    shown.touch();
+    assert_eq!(shown.phase(), Phase::Closed);
+    let (visits, _) = shown.end();
+    assert!(visits.is_empty());
+}
+
+#[test]
+fn a_file_that_is_wrong_is_named_with_its_line() {
+    let folder = folder("wrong");
+    let file = TextFile(folder.join("exhibit.toml"));
+    file.write(&USUAL.replace("rest = 20", "rest = -1"))
+        .unwrap();
+    let Err(error) = Stand::open(file) else {
+        panic!("it is wrong");
+    };
+    assert!(
+        error.contains("exhibit.toml") && error.contains("line 10"),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_stick_that_is_pulled_out_and_put_back_is_noted_and_play_goes_on() {
+    let mut shown = shown("pulled", vec2(960.0, 600.0), &[]);
+    let about = About {
+        name: "Stick".into(),
+        guid: "stick".into(),
+        labels: Labels::Unknown,
+    };
+    let stick = Device::at_rest(DeviceId(1), about, 2, 4, 0);
+    shown.touch();
+    for plugged in [vec![stick.clone()], Vec::new(), vec![stick]] {
+        game(&mut shown.window).controls.pads = Pads::of(Snapshot { devices: plugged });
+        frames(&mut shown.window, 3);
+        assert_eq!(screen(&shown.window), Screen::Play);
+    }
+    let folder = shown.folder.clone();
+    shown.end();
+    let mut kinds = Vec::new();
+    let logbook = Logbook::read(&StandFolder(folder.clone()).logbook()).unwrap();
+    let event = |event: tamaire_logbook::Event| {
+        kinds.push((event.kind, event.text));
+        Ok::<(), Error>(())
+    };
+    logbook.events(.., event).unwrap();
+    let told = |kind: Kind, text: &str| (kind, text.to_string());
+    let expected = [
+        told(Kind::DeviceFound, "Stick"),
+        told(Kind::DeviceLost, "Stick"),
+        told(Kind::DeviceFound, "Stick"),
+    ];
+    assert_eq!(kinds[1..4], expected);
+}
+
+/// Pictures at a size, for the eye: `cargo test -p tamaire --test screens -- stand_seen --ignored`.
+#[test]
+#[ignore = "writes pictures for people to look at"]
+fn stand_seen() {
+    let out = PathBuf::from(std::env::var_os("OUT").expect("OUT names a folder"));
+    std::fs::create_dir_all(&out).unwrap();
+    for (size, name) in [
+        (vec2(1920.0, 1080.0), "wide"),
+        (vec2(1080.0, 1920.0), "upright"),
+        (vec2(3840.0, 2160.0), "4k"),
+    ] {
+        for (language, tag) in [("english", "en"), ("japanese", "ja")] {
+            let changes = [
+                ("\"japanese\"", format!("{language:?}")),
+                (
+                    "[\"classic\"]",
+                    "[\"classic\", \"neck\", \"classic-3d\"]".into(),
+                ),
+                (
+                    "#page = \"https://…/\"",
+                    "page = \"https://museum.example/tamaire/\"".into(),
+                ),
+                ("#pin = \"…\"", "pin = \"2004\"".into()),
+            ];
+            let changes: Vec<_> = changes.iter().map(|(a, b)| (*a, b.as_str())).collect();
+            let mut shown = shown("seen", size, &changes);
+            let save = |shown: &mut Shown, what: &str| {
+                let image = shown.window.render().unwrap();
+                image
+                    .save(out.join(format!("{name}-{tag}-{what}.png")))
+                    .unwrap();
+            };
+            shown.rest(5.0);
+            frames(&mut shown.window, 2);
+            save(&mut shown, "attract");
+            shown.touch();
+            frames(&mut shown.window, 40);
+            save(&mut shown, "choice");
+            press(&mut shown.window, Key::Enter);
+            frames(&mut shown.window, 60);
+            save(&mut shown, "play");
+            shown.rest(24.0);
+            frames(&mut shown.window, 2);
+            save(&mut shown, "leaving");
+            shown.touch();
+            shown.win(BotKind::Shave);
+            frames(&mut shown.window, 130);
+            save(&mut shown, "result");
+            shown.stand.borrow_mut().phase = Phase::Door;
+            frames(&mut shown.window, 3);
+            save(&mut shown, "door");
+            for page in tamaire::exhibit::staff::Page::ALL {
+                shown.stand.borrow_mut().phase = Phase::Staff(page);
+                frames(&mut shown.window, 4);
+                save(&mut shown, &format!("{page:?}"));
+            }
+        }
+    }
+}
