@@ -1,8 +1,7 @@
 //! The game for a browser: a folder of files that any web server can hand out.
 //!
-//! cargo compiles the game and its sound for wasm32, wasm-bindgen makes the glue between the game and the page
-//! (`game/web`), and `xtask/web/pack.mjs` the folder. wasm-bindgen's program has to be of the very version that the game
-//! was compiled with, so it is built here too.
+//! cargo compiles the game and its sound for wasm32, `xtask_bindgen` makes the glue between the game and the page
+//! (`game/web`), and `xtask/web/pack.mjs` the folder.
 
 use crate::packages::{self, IfMissing, Purpose};
 use crate::shell::{CANNOT, FAILED, Failure, cargo, execute, is_on_path, output_of, root, target};
@@ -57,10 +56,9 @@ fn build(compiler: &Compiler, address: Option<&str>) -> Result<(), Failure> {
     let stage = folder().join("stage");
     let game = compile(compiler, &["tamaire", "--bin", "tamaire"])?;
     let sound = compile(compiler, &["tamaire_worklet", "--crate-type", "cdylib"])?;
-    let mut bind = Command::new(wasm_bindgen()?);
-    bind.args(["--target", "web", "--no-typescript", "--out-dir"])
-        .arg(&stage)
-        .arg(game);
+    let mut bind = cargo();
+    bind.args(["run", "--release", "--package", "xtask_bindgen", "--"])
+        .args([&game, &stage]);
     execute(
         &mut bind,
         "the glue between the game and the page could not be made",
@@ -91,42 +89,6 @@ fn compile(compiler: &Compiler, words: &[&str]) -> Result<PathBuf, Failure> {
     )?;
     let modules = root().join(wasm::folder()).join(TARGET).join("web");
     Ok(modules.join(words[0]).with_extension("wasm"))
-}
-
-/// wasm-bindgen's program, of the version that the game is compiled with.
-fn wasm_bindgen() -> Result<PathBuf, Failure> {
-    let lock = fs::read_to_string(root().join("Cargo.lock")).unwrap_or_default();
-    let version = locked(&lock, "wasm-bindgen").ok_or_else(|| Failure {
-        message: "Cargo.lock names no wasm-bindgen".to_string(),
-        code: FAILED,
-    })?;
-    let tools = folder().join("tools");
-    let program = tools.join("bin/wasm-bindgen");
-    let found = output_of(&program.to_string_lossy(), &["--version"]);
-    if found.is_none_or(|found| found.trim() != format!("wasm-bindgen {version}")) {
-        let mut install = cargo();
-        install
-            .args([
-                "install",
-                "wasm-bindgen-cli",
-                "--locked",
-                "--version",
-                version,
-                "--root",
-            ])
-            .arg(&tools)
-            .env("CARGO_TARGET_DIR", folder().join("tools-target"));
-        execute(&mut install, "wasm-bindgen's program could not be built")?;
-    }
-    Ok(program)
-}
-
-/// The version of a package in a lock file.
-fn locked<'a>(lock: &'a str, package: &str) -> Option<&'a str> {
-    let after = lock
-        .split_once(&format!("name = \"{package}\"\nversion = \""))?
-        .1;
-    after.split_once('"').map(|(version, _)| version)
 }
 
 /// npm's packages, as the lock file names them.
@@ -169,18 +131,5 @@ fn provide_browsers(if_missing: IfMissing) -> Result<(), Failure> {
             ),
             code: CANNOT,
         }),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_version_of_a_package_is_that_of_its_whole_name() {
-        let lock = "name = \"wasm-bindgen-futures\"\nversion = \"0.4.80\"\n\n\
-                    name = \"wasm-bindgen\"\nversion = \"0.2.130\"\n";
-        assert_eq!(locked(lock, "wasm-bindgen"), Some("0.2.130"));
-        assert_eq!(locked(lock, "wasm"), None);
     }
 }

@@ -1,0 +1,29 @@
+//! Makes the glue between the game and its page, as wasm-bindgen's own program does for `--target web`.
+//!
+//! A program of its own, as what it is made of would have to be compiled for every other chore too.
+
+use std::env;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use wasm_bindgen_cli_support::Bindgen;
+
+fn main() -> ExitCode {
+    let words: Vec<PathBuf> = env::args_os().skip(1).map(PathBuf::from).collect();
+    let [module, folder] = &words[..] else {
+        eprintln!("usage: xtask_bindgen MODULE.wasm FOLDER");
+        return ExitCode::from(2);
+    };
+    let mut bindgen = Bindgen::new();
+    let made = bindgen
+        .input_path(module)
+        .typescript(false)
+        .web(true)
+        .and_then(|bindgen| bindgen.generate(folder));
+    match made {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("xtask_bindgen: {}: {error:#}", module.display());
+            ExitCode::FAILURE
+        }
+    }
+}
