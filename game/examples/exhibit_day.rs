@@ -1,6 +1,6 @@
-//! A stand's day: visitors that are programs come, hesitate, play, mash, leave in the middle, try again. Time goes as fast as
-//! the machine can. It tells each hour how it goes. At the end all that was won has to be in the logbook, all rounds are run
-//! again, and memory and frame times have to be what they were.
+//! A stand's day: visitors that are programs come, hesitate, play, alone or two at once, mash, leave in the middle, try again,
+//! and staff looks behind it. Time goes as fast as the machine can. It tells each hour how it goes. At the end all rounds that
+//! ended have to be in the logbook, all are run again, and memory and frame times have to be what they were.
 //!
 //! Most frames are laid out and not drawn, since a GPU in software takes longer to draw than all the rest.
 //!
@@ -32,6 +32,8 @@ const SIZE: egui::Vec2 = vec2(640.0, 400.0);
 /// Memory and frame times may differ by such shares between the first hour and the last.
 const MORE_MEMORY: f64 = 0.05;
 const SLOWER: f64 = 0.1;
+/// What staff enters.
+const PIN: &str = "2004";
 /// A hand trembles by so many points.
 const TREMBLE: f32 = 6.0;
 
@@ -40,8 +42,12 @@ const TREMBLE: f32 = 6.0;
 enum Manner {
     /// Plays with the mouse as a bot does, with an unsteady hand.
     Plays(BotKind),
+    /// The same, while somebody else plays along with the pad.
+    Pair(BotKind),
     /// Plays with the pad, around and around.
     Pad,
+    /// Holds the corner and enters a number, the right one or another.
+    Staff(&'static str),
     /// Presses whatever there is.
     Mashes,
     /// Touches it, looks, and goes.
@@ -58,6 +64,8 @@ struct Visitor {
     patience: f64,
     /// How often still they would try again.
     tries: u32,
+    /// Frames since the first that was not hesitated away.
+    frame: usize,
 }
 
 /// The stand and whoever comes.
@@ -75,22 +83,29 @@ struct Day {
     hours: Vec<[f64; 2]>,
     visitors: u64,
     wins: u64,
-    was_won: bool,
+    /// Rounds of visitors that were seen to end.
+    ended: u64,
+    /// Ticks of such a round that is on, and whether it is won.
+    round: Option<(usize, bool)>,
+    /// How long it took until the frame was there in which somebody who came could move the hand [ms], at most.
+    welcome: f64,
 }
 
 impl Day {
     fn somebody(&mut self) -> Visitor {
         let random = &mut self.random;
-        let manner = match random.u32(..10) {
-            0..3 => Manner::Plays(BotKind::Squeeze),
-            3..6 => Manner::Plays(BotKind::Shave),
-            6 => Manner::Plays(BotKind::Random),
-            7 => Manner::Pad,
-            8 => Manner::Mashes,
+        let kinds = [BotKind::Squeeze, BotKind::Shave, BotKind::Random];
+        let manner = match random.u32(..20) {
+            0..8 => Manner::Plays(kinds[random.usize(..2)]),
+            8..10 => Manner::Plays(BotKind::Random),
+            10..13 => Manner::Pair(kinds[random.usize(..3)]),
+            13..15 => Manner::Pad,
+            15..17 => Manner::Mashes,
+            17 => Manner::Staff(if random.bool() { PIN } else { "7777" }),
             _ => Manner::Looks,
         };
         let bot = match manner {
-            Manner::Plays(kind) => kind,
+            Manner::Plays(kind) | Manner::Pair(kind) => kind,
             _ => BotKind::Idle,
         };
         let looks = manner == Manner::Looks;
@@ -104,6 +119,7 @@ impl Day {
                 10.0 + 110.0 * random.f64()
             },
             tries: random.u32(..4),
+            frame: 0,
         }
     }
 
@@ -128,6 +144,7 @@ impl Day {
         if visitor.hesitates > 0.0 {
             return;
         }
+        visitor.frame += 1;
         let game = &mut self.window.state_mut().game;
         let random = &mut self.random;
         match (game.screen(), visitor.manner) {
@@ -137,7 +154,8 @@ impl Day {
                 visitor.hesitates = 2.0 + 3.0 * random.f64();
                 tap(events, Key::Enter);
             }
-            (_, Manner::Plays(_)) => {
+            (_, Manner::Staff(number)) => knock(events, visitor.frame, number),
+            (_, Manner::Plays(_) | Manner::Pair(_)) => {
                 let goal = game.bout.round().ask(&mut visitor.bot).goal(0);
                 let view = game.bout.view;
                 if let (Some(goal), Some(view)) = (goal, view) {
@@ -159,6 +177,14 @@ impl Day {
             (_, Manner::Mashes) => mash(events, random),
             (_, Manner::Looks) => {}
         }
+        if let Manner::Pair(_) = visitor.manner {
+            let pad = self.pad.pad.get_or_insert_default();
+            let turn = visitor.frame as f32 * 0.1;
+            pad.left = [turn.cos(), turn.sin()];
+            if visitor.frame == 1 {
+                pad.button_mut(PadButton::Back).press();
+            }
+        }
         if visitor.manner == Manner::Mashes {
             let button = PadButton::ALL[random.usize(..PadButton::ALL.len())];
             let pad = self.pad.pad.get_or_insert_default();
@@ -177,16 +203,42 @@ impl Day {
         }
         let plugged = vec![self.pad.clone()];
         self.window.state_mut().game.controls.pads = Pads::of(Snapshot { devices: plugged });
+        let was_there = self.is_played();
         let began = Instant::now();
         self.window.step();
-        self.times.push(1000.0 * began.elapsed().as_secs_f64());
+        let time = 1000.0 * began.elapsed().as_secs_f64();
+        self.times.push(time);
+        if !was_there && self.is_played() {
+            self.welcome = self.welcome.max(time);
+        }
         self.frames += 1;
         if self.frames.is_multiple_of(DRAWN) {
             self.window.render().expect("it can be drawn");
         }
-        let is_won = self.window.state().game.bout.won.is_some();
-        self.wins += u64::from(is_won && !self.was_won);
-        self.was_won = is_won;
+        self.count();
+    }
+
+    /// Whether a round is on for a visitor.
+    fn is_played(&self) -> bool {
+        matches!(self.window.state().game.screen(), Screen::Play)
+    }
+
+    /// Counts what ended in this frame.
+    fn count(&mut self) {
+        let game = &self.window.state().game;
+        let bout = &game.bout;
+        let is_on = matches!(game.screen(), Screen::Play | Screen::Result);
+        let is_begun = is_on && bout.session.is_played() && bout.round().ticks() > 0;
+        let round = is_begun.then(|| (bout.round().ticks(), bout.won.is_some()));
+        let is_won = round.is_some_and(|(_, is_won)| is_won);
+        if let Some((before, was_won)) = self.round
+            && !was_won
+        {
+            // It was won, left or begun anew.
+            self.ended += u64::from(round.is_none_or(|(now, is_won)| is_won || now < before));
+            self.wins += u64::from(is_won);
+        }
+        self.round = round;
     }
 
     /// Tells how an hour went.
@@ -198,9 +250,10 @@ impl Day {
         let memory = memory().unwrap_or(0) as f64 / 1e6;
         self.hours.push([memory, middle]);
         println!(
-            "hour {:3}: {memory:6.1} MB, {middle:5.2} ms a frame, {worst:.0} at worst, {} visitors, {} wins",
+            "hour {:3}: {memory:6.1} MB, {middle:5.2} ms a frame, {worst:.0} at worst; {} visitors, {} rounds, {} wins",
             self.hours.len(),
             self.visitors,
+            self.ended,
             self.wins
         );
     }
@@ -215,6 +268,26 @@ fn tap(events: &mut Vec<Event>, key: Key) {
             repeat: false,
             modifiers: Modifiers::NONE,
         });
+    }
+}
+
+/// Holds the corner for four seconds, and enters a digit each second frame after that.
+fn knock(events: &mut Vec<Event>, frame: usize, number: &str) {
+    const HELD: usize = (4.0 / STEP) as usize;
+    let corner = pos2(SIZE.x - 20.0, 20.0);
+    events.push(Event::PointerMoved(corner));
+    if frame == 1 || frame == HELD {
+        events.push(Event::PointerButton {
+            pos: corner,
+            button: PointerButton::Primary,
+            pressed: frame == 1,
+            modifiers: Modifiers::NONE,
+        });
+    }
+    let digit = (frame.saturating_sub(HELD + 10)).checked_div(2);
+    let digit = digit.filter(|_| frame > HELD + 10 && frame.is_multiple_of(2));
+    if let Some(digit) = digit.and_then(|at| number.get(at - 1..at)) {
+        events.push(Event::Text(digit.into()));
     }
 }
 
@@ -286,6 +359,11 @@ fn open(folder: &Path) -> Harness<'static, App> {
     );
     let text = text.replace("[\"classic\"]", "[\"classic\", \"neck\", \"cat\"]");
     let text = text.replace("clips = 50", "clips = 5");
+    let text = text.replace("#pin = \"…\"", &format!("pin = {PIN:?}"));
+    let text = text.replace(
+        "#page = \"https://…/\"",
+        "page = \"https://example.org/tamaire/\"",
+    );
     let file = TextFile(folder.join("exhibit.toml"));
     file.write(&text).expect("it can be written");
     let builder = Harness::builder().with_size(SIZE).wgpu();
@@ -324,7 +402,9 @@ fn main() -> ExitCode {
         hours: Vec::new(),
         visitors: 0,
         wins: 0,
-        was_won: false,
+        ended: 0,
+        round: None,
+        welcome: 0.0,
     };
     for _ in 0..hours {
         for _ in 0..(3600.0 / STEP) as u64 {
@@ -336,7 +416,9 @@ fn main() -> ExitCode {
         mut window,
         hours,
         visitors,
-        wins: seen,
+        wins: wins_seen,
+        ended,
+        welcome,
         ..
     } = day;
     eframe::App::on_exit(window.state_mut());
@@ -349,9 +431,11 @@ fn main() -> ExitCode {
         }
     };
     println!(
-        "{visitors} visitors; {rounds} rounds and {wins} wins in the logbook, {seen} wins seen; {astray} go another way"
+        "{visitors} visitors, welcome within {welcome:.0} ms; {rounds} rounds and {wins} wins in the logbook, \
+         {ended} and {wins_seen} seen; {astray} go another way"
     );
-    let mut is_good = wins == seen && astray == 0;
+    // A round of a few ticks begins and ends between two frames.
+    let mut is_good = wins == wins_seen && rounds >= ended && astray == 0;
     if let [first, .., last] = hours.as_slice() {
         let [memory, frame] = [0, 1].map(|at| last[at] / first[at] - 1.0);
         println!(

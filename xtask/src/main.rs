@@ -44,6 +44,18 @@ fn main() -> ExitCode {
         Task::Web(web, if_missing) => web::run(web, if_missing),
         Task::Kernel(if_missing) => kernel::run(if_missing),
         Task::Soak(words) => soak(&words),
+        Task::Stand(if_missing) => {
+            packages::provide(
+                &[
+                    Purpose::Build,
+                    Purpose::Window,
+                    Purpose::Drawing,
+                    Purpose::Staging,
+                ],
+                if_missing,
+            );
+            run_all(STAND)
+        }
         Task::Fuzz(words) => fuzz::run(&words),
         Task::Rapier => run_all(RAPIER),
     };
@@ -179,6 +191,22 @@ const TEST: &[Step] = &[
                and for sums whose order depends on the threads",
     },
 ];
+
+const STAND: &[Step] = &[Step {
+    arguments: &[
+        "test",
+        "--release",
+        "--package",
+        "tamaire",
+        "--test",
+        "stand",
+        "--",
+        "--ignored",
+        "--nocapture",
+    ],
+    environment: &[],
+    hint: "a stand did not come back, or lost a round that had ended, see above",
+}];
 
 const RAPIER: &[Step] = &[Step {
     arguments: &[

@@ -29,6 +29,8 @@ pub enum Purpose {
     Browsing,
     /// To run a server that a stand sends to, as tests do.
     Serving,
+    /// To play at a stand that nobody sees.
+    Staging,
 }
 
 /// How to see that a package is there.
@@ -68,7 +70,7 @@ const fn package(
 /// this program would not have been linked.
 #[rustfmt::skip]
 const PACKAGES: &[Package] = {
-    use Purpose::{Browsing, Build, Drawing, Fuzzing, Serving, Window};
+    use Purpose::{Browsing, Build, Drawing, Fuzzing, Serving, Staging, Window};
     use Seen::{Installed, Program};
     &[
         package("cmake", Program("cmake"), &[Build], "configures SDL, which reads sticks and pads"),
@@ -78,7 +80,8 @@ const PACKAGES: &[Package] = {
         package("g++", Program("g++"), &[Fuzzing], "compiles libFuzzer"),
         package("chromium", Program("chromium"), &[Browsing], "plays the game"),
         package("firefox-esr", Program("firefox-esr"), &[Browsing], "plays it too"),
-        package("xvfb", Installed, &[Browsing], "a display, without which Firefox draws in no software"),
+        package("xvfb", Installed, &[Browsing, Staging], "a display that nobody sees: without one Firefox draws in no software"),
+        package("xdotool", Program("xdotool"), &[Staging], "moves a mouse and presses keys"),
         package("xauth", Installed, &[Browsing], "opens that display"),
         package("libegl1", Installed, &[Browsing], "what Firefox draws with"),
         package("libgl1-mesa-dri", Installed, &[Browsing], "OpenGL, without a GPU too"),

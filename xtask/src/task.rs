@@ -22,6 +22,8 @@ tasks:
   kernel --install the same; what is missing comes from Debian's or Ubuntu's packages
   soak [MINUTES [LEVEL …]]
                    ten minutes of two hands that do anything, on every level, unless told otherwise
+  stand            ten minutes of a stand in public, killed and stopped while it is played
+  stand --install  the same; what is missing comes from Debian's packages
   fuzz [MINUTES [DOOR …]]
                    nine minutes of scenes, levels, pictures, replays, settings … that nobody
                    meant, each looking for a way that none before it took
@@ -46,6 +48,7 @@ pub enum Task {
     Kernel(IfMissing),
     /// With how long to play, and which levels.
     Soak(Vec<String>),
+    Stand(IfMissing),
     /// With how long, and through which doors.
     Fuzz(Vec<String>),
     Rapier,
@@ -84,6 +87,8 @@ impl Task {
             ["kernel"] => Task::Kernel(IfMissing::Say),
             ["kernel", "--install"] => Task::Kernel(IfMissing::Install),
             ["soak", ..] => Task::Soak(own[1..].to_vec()),
+            ["stand"] => Task::Stand(IfMissing::Say),
+            ["stand", "--install"] => Task::Stand(IfMissing::Install),
             ["fuzz", ..] => Task::Fuzz(own[1..].to_vec()),
             ["rapier"] => Task::Rapier,
             ["help"] => Task::Help,
@@ -168,6 +173,7 @@ mod tests {
         check("web --fast", Err("there is no task `web --fast`"));
         check("kernel", Ok(Task::Kernel(IfMissing::Say)));
         check("kernel --install", Ok(Task::Kernel(IfMissing::Install)));
+        check("stand --install", Ok(Task::Stand(IfMissing::Install)));
         check("soak", Ok(Task::Soak(Vec::new())));
         check(
             "soak 2 hoop",

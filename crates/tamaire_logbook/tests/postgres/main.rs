@@ -161,6 +161,59 @@ fn nothing_is_lost_or_doubled_while_a_server_comes_and_goes() {
     );
 }
 
+/// `AWAY=60 cargo test -p tamaire_logbook --features postgres --test postgres -- --ignored --nocapture` takes a minute.
+#[test]
+#[ignore = "takes an hour"]
+fn a_server_that_is_away_for_an_hour_gets_all_of_it() {
+    let Some(mut server) = Postgres::find() else {
+        return;
+    };
+    let away = std::env::var("AWAY").map_or(3600, |seconds| seconds.parse().unwrap());
+    let address = server.named("postgres");
+    let (_folder, path) = place();
+    let recorder = begin(&path, STAND, &address);
+    server.start();
+    let mut rows = 0;
+    let mut record = |minute| {
+        for entry in entries(MORNING.after(minute * MINUTE)) {
+            recorder.record(entry);
+        }
+        rows += 4;
+        rows
+    };
+    let known = record(0);
+    wait_for_rows(&recorder, &mut server.ask("postgres"), known);
+    server.kill();
+    let left = Instant::now();
+    let mut minute = 0;
+    while left.elapsed() < Duration::from_secs(away) {
+        minute += 1;
+        record(minute);
+        thread::sleep(Duration::from_secs(1));
+    }
+    let health = recorder.health();
+    assert!(
+        health.is_recording && health.trouble.is_some(),
+        "{health:?}"
+    );
+    server.start();
+    let back = Instant::now();
+    let rows = record(minute + 1);
+    let mut client = server.ask("postgres");
+    wait_for(&recorder, "all is sent", |health| {
+        health.unsent == 0 && health.waiting == 0
+    });
+    wait_for_rows(&recorder, &mut client, rows);
+    println!(
+        "{rows} rows, all there {:.1?} after it was back",
+        back.elapsed()
+    );
+    drop(recorder);
+    let kept = all(&open(&path)).unwrap();
+    let expected = kept.rounds.iter().map(|round| round.id.to_string());
+    assert_eq!(ids(&mut client, "rounds"), expected.collect());
+}
+
 /// What does not need a server of its own.
 #[test]
 fn what_a_stand_keeps_gets_to_a_server() {

@@ -1,0 +1,294 @@
+//! A stand on a screen that nobody sees, with hands that never rest, while its game is killed and stopped.
+//!
+//! `cargo xtask stand` runs it; it needs Xvfb and xdotool, and takes ten minutes or so.
+#![cfg(target_os = "linux")]
+
+use std::collections::{BTreeMap, BTreeSet, HashSet};
+use std::env;
+use std::fs;
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+use tamaire_logbook::{Error, Event, Kind, Logbook, Round};
+use tempfile::TempDir;
+
+const TAMAIRE: &str = env!("CARGO_BIN_EXE_tamaire");
+/// How often the game is killed or stopped, unless `KILLS` says otherwise.
+const KILLS: usize = 54;
+/// After one more than so many within ten minutes a stand gives up.
+const BORNE: usize = 9;
+/// One of so many is stopped, not killed.
+const STOPPED: usize = 9;
+/// A stand is back after so long at most.
+const BACK: Duration = Duration::from_secs(5);
+/// A round that ended is in the logbook after so long at most.
+const WRITTEN: Duration = Duration::from_secs(2);
+/// Nothing that is waited for takes so long.
+const LONG: Duration = Duration::from_secs(60);
+const SIZE: (u32, u32) = (640, 400);
+/// A picture of the game has more colours than so many; an empty screen has one.
+const COLOURS: usize = 50;
+
+/// An X server without a screen, whose picture can be looked at.
+struct Screen {
+    server: Child,
+    folder: TempDir,
+    name: String,
+}
+
+impl Screen {
+    fn open() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let (width, height) = SIZE;
+        let mut server = Command::new("Xvfb");
+        server.args(["-displayfd", "1", "-nolisten", "tcp", "-screen", "0"]);
+        server.arg(format!("{width}x{height}x24"));
+        server.arg("-fbdir").arg(folder.path());
+        server.stdout(Stdio::piped()).stderr(Stdio::null());
+        let mut server = server.spawn().expect("there is Xvfb (Debian: xvfb)");
+        let mut number = String::new();
+        let mut told = BufReader::new(server.stdout.take().unwrap());
+        told.read_line(&mut number).unwrap();
+        let name = format!(":{}", number.trim());
+        Self {
+            server,
+            folder,
+            name,
+        }
+    }
+
+    /// Whether a game is seen on it.
+    fn is_drawn(&self) -> bool {
+        let picture = fs::read(self.folder.path().join("Xvfb_screen0")).unwrap();
+        let (width, height) = SIZE;
+        let pixels = &picture[picture.len() - (4 * width * height) as usize..];
+        let colours: HashSet<&[u8]> = pixels.chunks_exact(4).collect();
+        colours.len() > COLOURS
+    }
+
+    fn wait_until(&self, is_drawn: bool) -> Duration {
+        let began = Instant::now();
+        while self.is_drawn() != is_drawn {
+            assert!(
+                began.elapsed() < LONG,
+                "waited in vain: drawn is not {is_drawn}"
+            );
+            thread::sleep(Duration::from_millis(20));
+        }
+        began.elapsed()
+    }
+}
+
+impl Drop for Screen {
+    fn drop(&mut self) {
+        let _gone = self.server.kill();
+        let _gone = self.server.wait();
+    }
+}
+
+/// A hand that plays with the mouse and the keys.
+struct Hand {
+    tool: Child,
+    told: ChildStdin,
+    random: fastrand::Rng,
+}
+
+impl Hand {
+    fn on(screen: &Screen) -> Self {
+        let mut tool = Command::new("xdotool");
+        tool.arg("-")
+            .env("DISPLAY", &screen.name)
+            .stdin(Stdio::piped());
+        let mut tool = tool.spawn().expect("there is xdotool (Debian: xdotool)");
+        let told = tool.stdin.take().unwrap();
+        let random = fastrand::Rng::with_seed(50);
+        Self { tool, told, random }
+    }
+
+    fn tell(&mut self, words: &str) {
+        writeln!(self.told, "{words}").unwrap();
+        self.told.flush().unwrap();
+    }
+
+    /// Plays for so long.
+    fn play(&mut self, time: Duration) {
+        let began = Instant::now();
+        while began.elapsed() < time {
+            let (x, y) = (self.random.u32(..SIZE.0), self.random.u32(..SIZE.1));
+            self.tell(&format!("mousemove {x} {y}"));
+            thread::sleep(Duration::from_millis(60));
+        }
+    }
+}
+
+impl Drop for Hand {
+    fn drop(&mut self) {
+        let _gone = self.tool.kill();
+        let _gone = self.tool.wait();
+    }
+}
+
+/// A stand as an operator starts it.
+struct Stand {
+    parent: Child,
+}
+
+impl Stand {
+    fn begin(screen: &Screen, file: &Path) -> Self {
+        let mut parent = Command::new(TAMAIRE);
+        parent
+            .args(["--mute", "--exhibit"])
+            .arg(file)
+            .env("DISPLAY", &screen.name);
+        parent.env_remove("WAYLAND_DISPLAY").stderr(Stdio::null());
+        Self {
+            parent: parent.spawn().unwrap(),
+        }
+    }
+
+    /// The game of now, if there is one.
+    fn game(&self) -> Option<String> {
+        let parent = self.parent.id().to_string();
+        let mut find = Command::new("pgrep");
+        let found = find.args(["-P", &parent]).output().unwrap();
+        let found = String::from_utf8(found.stdout).unwrap();
+        found.lines().next().map(str::to_string)
+    }
+
+    fn signal(&self, signal: &str) {
+        let game = self.game().expect("a game is on");
+        let sent = Command::new("kill").args([signal, &game]).status();
+        assert!(sent.unwrap().success());
+    }
+
+    /// Ends it as a system does.
+    fn end(mut self) -> ExitStatus {
+        let parent = self.parent.id().to_string();
+        let game = self.game();
+        let sent = Command::new("kill").args(["-TERM", &parent]).status();
+        assert!(sent.unwrap().success());
+        let status = self.parent.wait().unwrap();
+        // The game ends with its parent.
+        let began = Instant::now();
+        while game.as_ref().is_some_and(|game| is_alive(game)) {
+            assert!(began.elapsed() < LONG, "the game outlives its parent");
+            thread::sleep(Duration::from_millis(20));
+        }
+        status
+    }
+}
+
+fn is_alive(process: &str) -> bool {
+    let stat = fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
+    stat.rsplit(')')
+        .next()
+        .is_some_and(|rest| !rest.trim().is_empty() && !rest.trim().starts_with('Z'))
+}
+
+/// The rounds of a logbook that others write, by how long they lasted [s].
+fn rounds(logbook: &Path) -> BTreeMap<String, f32> {
+    let mut found = BTreeMap::new();
+    if let Ok(logbook) = Logbook::read(logbook) {
+        let each = |round: Round| {
+            found.insert(round.id.to_string(), round.seconds);
+            Ok::<(), Error>(())
+        };
+        logbook.rounds(.., each).unwrap();
+    }
+    found
+}
+
+fn events(logbook: &Path) -> Vec<Kind> {
+    let mut found = Vec::new();
+    let each = |event: Event| {
+        found.push(event.kind);
+        Ok::<(), Error>(())
+    };
+    Logbook::read(logbook).unwrap().events(.., each).unwrap();
+    found
+}
+
+fn worst(times: &[Duration]) -> Duration {
+    times.iter().copied().max().unwrap_or_default()
+}
+
+#[test]
+#[ignore = "needs Xvfb and xdotool, and takes ten minutes: `cargo xtask stand`"]
+fn a_game_that_is_killed_while_it_is_played_is_back_and_loses_no_round_that_ended() {
+    let kills = env::var("KILLS").map_or(KILLS, |kills| kills.parse().unwrap());
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("exhibit.toml");
+    let logbook: PathBuf = folder.path().join("visits.sqlite");
+    fs::write(&file, format!("[logbook]\nfolder = {:?}\n", folder.path())).unwrap();
+    let screen = Screen::open();
+    let mut hand = Hand::on(&screen);
+    let (mut known, mut stopped) = (BTreeSet::new(), 0);
+    let (mut back, mut back_from_stop, mut written) = (Vec::new(), Vec::new(), Vec::new());
+    let mut stand = Stand::begin(&screen, &file);
+    screen.wait_until(true);
+    for kill in 0..kills {
+        if kill > 0 && kill % BORNE == 0 {
+            stand.end();
+            screen.wait_until(false);
+            stand = Stand::begin(&screen, &file);
+            screen.wait_until(true);
+        }
+        // Somebody plays, ends a round, and begins another.
+        hand.play(Duration::from_secs(5));
+        let before = rounds(&logbook).len();
+        hand.tell("key r");
+        let pressed = Instant::now();
+        while rounds(&logbook).len() == before {
+            assert!(
+                pressed.elapsed() < WRITTEN,
+                "{kill}: the round is not written"
+            );
+            thread::sleep(Duration::from_millis(10));
+        }
+        written.push(pressed.elapsed());
+        let time = Duration::from_millis(hand.random.u64(..3000));
+        hand.play(time);
+        known.extend(rounds(&logbook).into_keys());
+        if kill % STOPPED == STOPPED - 1 {
+            stopped += 1;
+            stand.signal("-STOP");
+            // What is stopped is still seen.
+            let began = Instant::now();
+            screen.wait_until(false);
+            screen.wait_until(true);
+            back_from_stop.push(began.elapsed());
+        } else {
+            stand.signal("-KILL");
+            screen.wait_until(false);
+            back.push(screen.wait_until(true));
+        }
+    }
+    stand.end();
+    let kept = rounds(&logbook);
+    println!(
+        "{kills} times: back after {:.1?} at most, after {:.1?} when it was stopped; {} rounds; written after {:.0?} at most",
+        worst(&back),
+        worst(&back_from_stop),
+        kept.len(),
+        worst(&written)
+    );
+    assert!(known.iter().all(|id| kept.contains_key(id)));
+    assert!(known.len() >= kills);
+    assert!(worst(&back) < BACK && worst(&back_from_stop) < BACK);
+    let events = events(&logbook);
+    let count = |kind: Kind| events.iter().filter(|&event| *event == kind).count();
+    assert_eq!(count(Kind::Crashed), kills - stopped);
+    assert_eq!(count(Kind::Hung), stopped);
+    // Each of the rounds is what it says.
+    let out = folder.path().join("report");
+    let mut report = Command::new(TAMAIRE);
+    report.args(["report", "--rerun", "--no-clips", "--out"]);
+    let told = report.arg(&out).arg(&logbook).output().unwrap();
+    let told = String::from_utf8_lossy(&told.stdout).into_owned();
+    assert!(
+        told.ends_with(&format!(" {} rounds\n", kept.len())),
+        "{told}"
+    );
+}
