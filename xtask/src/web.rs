@@ -4,7 +4,7 @@
 //! (`game/web`), and `xtask/web/pack.mjs` the folder.
 
 use crate::packages::{self, IfMissing, Purpose};
-use crate::shell::{CANNOT, FAILED, Failure, cargo, execute, is_on_path, output_of, root, target};
+use crate::shell::{CANNOT, FAILED, Failure, cargo, execute, is_on_path, root, target};
 use crate::wasm::{self, Compiler, TARGET, cargo_for_wasm};
 use std::fs;
 use std::path::{Path, PathBuf};
