@@ -86,7 +86,7 @@ struct Day {
     /// Rounds of visitors that were seen to end.
     ended: u64,
     /// Ticks of such a round that is on, and whether it is won.
-    round: Option<(usize, bool)>,
+    round: Option<(u64, bool)>,
     /// How long it took until the frame was there in which somebody who came could move the hand [ms], at most.
     welcome: f64,
 }
