@@ -14,8 +14,8 @@ use tamaire_play::Replay;
 
 /// So many of the best rounds of a day are shown while nobody is there.
 const BEST: usize = 5;
-/// So often it is asked what came of the day [s]: it may be another one.
-const ASKED: f32 = 300.0;
+/// So often it is asked what came of the day [s]: it may be another one, and another level's best are shown.
+const ASKED: f32 = 60.0;
 /// So often it is looked whether there is an answer [s]: it is some rounds, whole.
 const LOOKED: f32 = 1.0;
 /// Clips are made while so much room is left on the disk [bytes].
@@ -38,6 +38,8 @@ pub struct Memory {
     /// What was known to be wrong.
     trouble: Option<String>,
     best: Vec<Id>,
+    /// How often it was asked for them.
+    turn: usize,
     /// How long ago it was asked what came of the day [s].
     asked: f32,
     /// How long ago it was looked for the best rounds of the day [s].
@@ -64,6 +66,7 @@ impl Memory {
             began: (Instant::now(), SystemTime::now()),
             trouble: None,
             best: Vec::new(),
+            turn: 0,
             asked: 0.0,
             looked: 0.0,
         };
@@ -115,12 +118,14 @@ impl Memory {
         self.recorder.record(Entry::Round(round));
     }
 
-    /// Asks for the figures and the best rounds of the day.
+    /// Asks for the figures of the day, and for its best rounds of one level after the other.
     pub fn ask(&mut self, config: &Config) {
         self.asked = 0.0;
         let midnight = Moment::now().midnight();
         self.recorder.ask_today(midnight);
-        let level = &config.levels.0[0];
+        let levels = &config.levels.0;
+        let level = &levels[self.turn % levels.len()];
+        self.turn += 1;
         let hash = Some(level.hash());
         self.recorder.ask_best(midnight, &level.id, hash, BEST);
     }

@@ -53,3 +53,19 @@ impl GpuWatch {
         written.is_none() || self.is_lost()
     }
 }
+
+#[cfg(all(test, not(target_family = "wasm")))]
+mod tests {
+    use super::*;
+    use egui_kittest::wgpu::{create_render_state, default_wgpu_setup};
+
+    #[test]
+    fn a_gpu_that_goes_is_noticed() {
+        let state = create_render_state(default_wgpu_setup(), Default::default());
+        let watch = GpuWatch::of(&state);
+        assert!(!watch.is_lost() && !watch.tried_is_lost());
+        state.device.destroy();
+        let _polled = state.device.poll(wgpu::PollType::Poll);
+        assert!(watch.is_lost() && watch.tried_is_lost());
+    }
+}
