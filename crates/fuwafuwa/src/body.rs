@@ -6,6 +6,7 @@ mod cache;
 pub(crate) mod cooldowns;
 mod derived;
 mod motion;
+mod placing;
 #[cfg(feature = "serde")]
 mod sound;
 mod state;
@@ -147,29 +148,6 @@ impl<D: Dim> Body<D> {
     /// At the end of what changed so far.
     pub fn bookmark(&self) -> Bookmark {
         self.cache.history.end()
-    }
-
-    /// The same body, moved `by` [m]. What is then not finite is quarantined in its first tick.
-    #[inline(never)]
-    pub fn moved(mut self, by: [f32; 3]) -> Self {
-        let State {
-            position, ahead, ..
-        } = &mut self.state;
-        for row in position.iter_mut().chain(ahead.iter_mut()) {
-            for axis in 0..D::N {
-                row[axis] += by[axis];
-            }
-        }
-        self
-    }
-
-    /// The same body, every node moving at `velocity` [m/s].
-    #[inline(never)]
-    pub fn thrown(mut self, velocity: [f32; 3]) -> Self {
-        for row in self.state.velocity.iter_mut() {
-            row[..D::N].copy_from_slice(&velocity[..D::N]);
-        }
-        self
     }
 
     /// Holds a node: from now on it keeps the velocity it is given, whatever pulls at it.

@@ -19,7 +19,7 @@ use crate::rigid::Rigids;
 use crate::solve::Row;
 use crate::threads;
 use crate::touch::{ContactSphere, Impulse, MARGIN, Nearby, NodePairs};
-use crate::vector::{as_row, minus, scaled, three};
+use crate::vector::{as_row, cross, minus, scaled, three};
 use exit::Exit;
 use motion::Motion;
 use row::{Contact, inner};
@@ -133,6 +133,10 @@ impl Contacts {
                     contact,
                     node: self.motion.row(pair.body, pair.node),
                     hand: rigids.at(pair.rigid).is_driven().then_some(pair.rigid),
+                    lever: {
+                        let at = bodies.at(pair.body).state.position[pair.node];
+                        minus(three(at), rigids.at(pair.rigid).position())
+                    },
                 }));
         }
     }
@@ -319,6 +323,12 @@ impl Contacts {
             }
         }
         motion.store(bodies);
+        for row in &self.nodes {
+            if let Some(hand) = row.hand {
+                let impulse = scaled(three(row.contact.start()), -1.0 / duration);
+                rigids.at_mut(hand).twist(cross(row.lever, impulse));
+            }
+        }
     }
 }
 

@@ -150,6 +150,15 @@ impl<D: Dim> VoxelGrid<D> {
         })
     }
 
+    /// The same grid with all lengths multiplied by `factor`: of as many voxels, larger or smaller.
+    ///
+    /// # Errors
+    /// [`BuildError::BadVoxelSize`] when they are not of [`VOXEL_SIZES`] then.
+    pub fn scaled(mut self, factor: f32) -> Result<Self, BuildError> {
+        self.voxel_size *= factor;
+        Self::checked(self.size, self.voxel_size, self.materials)
+    }
+
     /// The centre of a voxel [m] from the low corner of a grid of such voxels; the third coordinate
     /// is 0 in 2D.
     pub fn centre(voxel: Point, voxel_size: f32) -> Vector {

@@ -83,6 +83,9 @@ pub struct Rigid {
 pub struct Reaction {
     /// Force of everything it touches [N]; jumps when something tears.
     pub contact: Vector,
+    /// Torque of the bodies that it touches, about its [`position`](Rigid::position) [N m]; in the plane the third
+    /// component alone.
+    pub torque: Vector,
     /// Force of the coupling towards the goal, reversed [N]: what a stick should push back with.
     pub coupling: Vector,
 }
@@ -343,6 +346,13 @@ impl Rigid {
             if let Some(reaction) = self.reactions.last_mut() {
                 reaction.contact[axis] += impulse[axis] / duration;
             }
+        }
+    }
+
+    /// Feels a torque [N m] of bodies that it touches.
+    pub(crate) fn twist(&mut self, torque: Vector) {
+        if let Some(reaction) = self.reactions.last_mut() {
+            reaction.torque = plus(reaction.torque, torque);
         }
     }
 

@@ -24,6 +24,7 @@ use crate::dim::Dim;
 use crate::ids::{ElementId, NodeId, Table};
 use crate::lanes::{Eight, LANES, on_widest_lanes, splat, sum};
 use crate::law::{Elasticity, Law};
+use crate::rotation::Rotation;
 use crate::threads::{self, Rows};
 use crate::vector::{plus, scaled};
 use block::{Block, GROUP, Group, Home, Shared, VACANT, evaluate_best};
@@ -224,6 +225,29 @@ impl<D: Dim> Blocks<D> {
         let rotation = &mut self.blocks[block as usize].rotation;
         for (all, part) in rotation.iter_mut().zip(turned) {
             all[lane as usize] = part;
+        }
+    }
+
+    /// Turns all elements, and the forces of the last evaluation.
+    pub fn rotate(&mut self, rotation: Rotation) {
+        for block in &mut self.blocks {
+            for lane in 0..LANES {
+                let turned = match (D::N, block.rotation.map(|part| part[lane])) {
+                    (2, [cosine, sine, ..]) => {
+                        let [x, y, _] = rotation.apply([cosine, sine, 0.0]);
+                        [x, y, 0.0, 0.0]
+                    }
+                    (_, turned) => rotation.after(turned),
+                };
+                for (all, part) in block.rotation.iter_mut().zip(turned) {
+                    all[lane] = part;
+                }
+            }
+        }
+        for force in self.forces.chunks_exact_mut(D::N) {
+            let mut turned = [0.0; 3];
+            turned[..D::N].copy_from_slice(force);
+            force.copy_from_slice(&rotation.apply(turned)[..D::N]);
         }
     }
 

@@ -1,6 +1,8 @@
 //! Everything together, and time: [`World::step`] is the program.
 
+mod acts;
 mod contents;
+mod hooks;
 
 use crate::body::{Bodies, Body};
 use crate::contact::{Contacts, Hit};
@@ -16,6 +18,7 @@ use crate::sleep::{fall_asleep, wake};
 use crate::solve::Row;
 use crate::touch::{Nearby, NodePair};
 use crate::vector::three;
+pub use hooks::{Hooks, Substep, field_around};
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -66,12 +69,39 @@ impl Default for Settings {
     }
 }
 
+impl Settings {
+    fn check(&self) -> Result<(), Refused> {
+        let range = FEWEST_SUBSTEPS..=1024;
+        let is_finite = self.gravity.iter().all(|k| k.is_finite());
+        let checks = [
+            ("gravity", "finite", is_finite),
+            ("drag", "0 to 10", (0.0..=10.0).contains(&self.drag)),
+            (
+                "most_substeps",
+                "8 to 1024",
+                range.contains(&self.most_substeps),
+            ),
+        ];
+        let bad = checks.into_iter().find(|(.., is_good)| !is_good);
+        bad.map_or(Ok(()), |(field, expected, _)| {
+            Err(Refused::Setting { field, expected })
+        })
+    }
+}
+
 /// Why something was not let into the world, or could not be done with what is in it.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum Refused {
     /// A setting is out of range.
     Setting {
         /// The field.
+        field: &'static str,
+        /// What was expected.
+        expected: &'static str,
+    },
+    /// What it is to be done with is out of range.
+    Argument {
+        /// Which of what was given.
         field: &'static str,
         /// What was expected.
         expected: &'static str,
@@ -100,6 +130,7 @@ impl fmt::Display for Refused {
             Self::Setting { field, expected } => {
                 write!(f, "the setting {field} must be {expected}")
             }
+            Self::Argument { field, expected } => write!(f, "the {field} must be {expected}"),
             Self::Rigid(bad) => bad.fmt(f),
             Self::Gone(gone) => gone.fmt(f),
         }
@@ -130,25 +161,7 @@ impl<D: Dim> World<D> {
     /// [`Refused::Setting`] when a setting is out of range.
     #[inline(never)]
     pub fn new(settings: Settings) -> Result<Self, Refused> {
-        let range = FEWEST_SUBSTEPS..=1024;
-        let checks = [
-            (
-                "gravity",
-                "finite",
-                settings.gravity.iter().all(|k| k.is_finite()),
-            ),
-            ("drag", "0 to 10", (0.0..=10.0).contains(&settings.drag)),
-            (
-                "most_substeps",
-                "8 to 1024",
-                range.contains(&settings.most_substeps),
-            ),
-        ];
-        for (field, expected, good) in checks {
-            if !good {
-                return Err(Refused::Setting { field, expected });
-            }
-        }
+        settings.check()?;
         Ok(Self {
             settings,
             bodies: Bodies::default(),
@@ -163,6 +176,29 @@ impl<D: Dim> World<D> {
     /// Lets a tick pass.
     #[inline(never)]
     pub fn step(&mut self) -> StepReport {
+        self.step_with(&mut Hooks::default())
+    }
+
+    /// Lets a tick pass in which a program has a say. What sleeps feels no field until it is
+    /// [woken](World::wake_up).
+    ///
+    /// ```
+    /// use fuwafuwa::{Dim2, Hooks, Rigid, Settings, World};
+    ///
+    /// let mut world = World::<Dim2>::new(Settings::default())?;
+    /// let hand = world.add_rigid(Rigid::hand([0.0; 3], 0.1))?;
+    /// world.set_goal(hand, [0.1, 0.0, 0.0])?;
+    /// let mut forces = Vec::new();
+    /// let mut note = |substep: &fuwafuwa::Substep| {
+    ///     forces.push(substep.reaction(hand).map_or([0.0; 3], |felt| felt.coupling));
+    /// };
+    /// let report = world.step_with(&mut Hooks { after_substep: Some(&mut note), ..Hooks::default() });
+    /// assert_eq!(forces.len(), report.substeps as usize);
+    /// assert!(forces[15][0] < 0.0);
+    /// # Ok::<(), fuwafuwa::Refused>(())
+    /// ```
+    #[inline(never)]
+    pub fn step_with(&mut self, hooks: &mut Hooks<'_>) -> StepReport {
         self.events.clear();
         let substeps = self.substeps();
         let duration = TICK / substeps as f32;
@@ -180,10 +216,13 @@ impl<D: Dim> World<D> {
             if is_due(substep, substeps, DAMPING_ROUNDS) {
                 self.damp(duration);
             }
-            self.push(duration);
+            self.push(duration, hooks);
             let hits = self.touch(duration);
             self.drift(duration);
             self.wake(&hits);
+            if let Some(after) = &mut hooks.after_substep {
+                after(&Substep::new(substep, duration, &self.rigids));
+            }
         }
         report.inverted = self.bodies.iter().map(Body::inverted_count).sum();
         self.quarantine(&before, &mut report);
@@ -262,10 +301,13 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Adds elastic forces, gravity and the pull of the coupling to the velocities.
-    fn push(&mut self, duration: f32) {
+    /// Adds elastic forces, gravity, a field and the pull of the coupling to the velocities.
+    fn push(&mut self, duration: f32, hooks: &Hooks<'_>) {
         for body in self.bodies.iter_mut() {
             body.push(duration, self.settings.gravity);
+            if let Some(field) = hooks.field {
+                body.pull(duration, field);
+            }
         }
         for rigid in self.rigids.iter_mut() {
             rigid.pull(duration);

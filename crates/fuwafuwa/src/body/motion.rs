@@ -5,9 +5,10 @@ use crate::dim::Dim;
 use crate::ids::ElementId;
 use crate::law::turn_far_from;
 use crate::momentum::RoughMotion;
+use crate::shape::Vector;
 use crate::solve::Kick;
 use crate::threads;
-use crate::vector::{as_row, dot, minus, plus, scaled};
+use crate::vector::{as_row, dot, minus, plus, scaled, three};
 
 impl<D: Dim> Body<D> {
     /// Moves a free body on by `duration` seconds under `gravity` [m/s²], without contact or
@@ -26,7 +27,7 @@ impl<D: Dim> Body<D> {
             self.settle(&all);
         }
         self.state.blocks.evaluate(&self.state.ahead);
-        let mut gravity = as_row(gravity);
+        let mut gravity = scaled(as_row(gravity), self.state.gravity_scale);
         gravity[D::N..].fill(0.0);
         let kick = Kick {
             nodes: &self.cache.awake,
@@ -35,6 +36,18 @@ impl<D: Dim> Body<D> {
             gravity,
         };
         self.state.blocks.kick(&kick, &mut self.state.velocity);
+    }
+
+    /// Adds a field [m/s²] over `duration` [s] to the velocities.
+    pub(crate) fn pull(&mut self, duration: f32, field: &dyn Fn(Vector) -> Vector) {
+        for &id in &self.cache.awake {
+            let pull = as_row(field(three(self.state.position[id])));
+            if self.state.inverse_mass[id] > 0.0 && pull.iter().all(|k| k.is_finite()) {
+                for axis in 0..D::N {
+                    self.state.velocity[id][axis] += pull[axis] * duration;
+                }
+            }
+        }
     }
 
     /// Turns elements that are far from how their nodes lie, because they are new or their nodes were

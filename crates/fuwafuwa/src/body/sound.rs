@@ -27,6 +27,7 @@ impl<D: Dim> Body<D> {
             self.state.blocks.is_sound(&self.truth.mesh),
             "states of elements",
         )?;
+        ensure(self.state.gravity_scale.is_finite(), "pull")?;
         let points = self.state.cooldowns.points();
         let is_known = { points }.all(|at| self.truth.sharing.contains(at));
         ensure(is_known, "points that cool down")?;

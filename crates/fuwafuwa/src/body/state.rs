@@ -23,6 +23,8 @@ pub struct State<D: Dim> {
     pub cooldowns: Cooldowns,
     /// Positions a moment ahead, where damped forces are evaluated.
     pub ahead: Table<NodeId, Row>,
+    /// How many times as strongly as on others gravity pulls on it.
+    pub gravity_scale: f32,
     /// Whether nodes were placed from outside since forces were last computed.
     pub placed: bool,
     /// How each element has turned, and the forces of the last substep: where an element has come to turns
@@ -42,6 +44,7 @@ impl<D: Dim> State<D> {
             damage: Table::default(),
             cooldowns: Cooldowns::default(),
             ahead: Table::default(),
+            gravity_scale: 1.0,
             placed: false,
             blocks,
         }

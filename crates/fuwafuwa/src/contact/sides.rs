@@ -3,6 +3,7 @@
 use super::row::Contact;
 use crate::handle::RigidSlot;
 use crate::ids::id;
+use crate::shape::Vector;
 
 id! {
     /// A node among those of all bodies.
@@ -16,6 +17,8 @@ pub struct NodeContact {
     pub node: NodeRow,
     /// The hand, if it is one that the node touches.
     pub hand: Option<RigidSlot>,
+    /// From the position of what it touches to it [m].
+    pub lever: Vector,
 }
 
 /// Two spheres against each other.

@@ -208,7 +208,7 @@ impl<D: Dim> World<D> {
     }
 
     /// Wakes all pieces of a body.
-    fn wake_body(&mut self, body: BodyId) {
+    pub(super) fn wake_body(&mut self, body: BodyId) {
         let pieces = self.bodies[body].truth.pieces.list.ids();
         let pieces: Vec<Hit> = pieces.map(|piece| (body.slot(), piece)).collect();
         self.wake(&pieces);

@@ -1,0 +1,130 @@
+//! Where a body is put, which way round, and how fast it goes: all of it at once.
+
+use super::Body;
+use super::state::State;
+use crate::dim::Dim;
+use crate::ids::NodeId;
+use crate::momentum::centre_of;
+use crate::rotation::Rotation;
+use crate::shape::Vector;
+use crate::solve::Row;
+use crate::vector::{as_row, cross, minus, plus, three};
+
+impl<D: Dim> Body<D> {
+    /// The same body, moved `by` [m]. What is then not finite is quarantined in its first tick.
+    #[inline(never)]
+    pub fn moved(mut self, by: Vector) -> Self {
+        self.shift(by);
+        self
+    }
+
+    /// The same body, turned about a place [m]: nothing in it is strained by that, and nothing tears. In the plane only
+    /// turns about the third axis count.
+    ///
+    /// ```
+    /// use fuwafuwa::{Body, Dim2, Material, Rotation, VoxelGrid};
+    ///
+    /// let grid = VoxelGrid::<Dim2>::from_fn([8, 4, 1], 0.25, |_| 1)?;
+    /// let body = Body::new(grid, &[Material::default()])?;
+    /// let centre = body.centre_of_mass();
+    /// let upright = body.rotated(Rotation::in_plane(1.5708), centre);
+    /// assert!((upright.centre_of_mass()[0] - centre[0]).abs() < 1e-5);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[inline(never)]
+    pub fn rotated(mut self, rotation: Rotation, about: Vector) -> Self {
+        self.turn(rotation, about);
+        self
+    }
+
+    /// The same body, every node moving at `velocity` [m/s].
+    #[inline(never)]
+    pub fn thrown(mut self, velocity: Vector) -> Self {
+        for row in self.state.velocity.iter_mut() {
+            row[..D::N].copy_from_slice(&velocity[..D::N]);
+        }
+        self
+    }
+
+    /// The centre of its mass [m].
+    #[inline(never)]
+    pub fn centre_of_mass(&self) -> Vector {
+        let nodes: Vec<NodeId> = self.truth.mesh.nodes().map(|(id, _)| id).collect();
+        let states = self.states(&nodes).map(|(at, _, mass)| (at, mass));
+        centre_of(states).map(|k| k as f32)
+    }
+
+    pub(crate) fn shift(&mut self, by: Vector) {
+        let State {
+            position, ahead, ..
+        } = &mut self.state;
+        for row in position.iter_mut().chain(ahead.iter_mut()) {
+            for axis in 0..D::N {
+                row[axis] += by[axis];
+            }
+        }
+    }
+
+    pub(crate) fn turn(&mut self, rotation: Rotation, about: Vector) {
+        let rotation = rotation.seen_in::<D>();
+        let State {
+            position,
+            velocity,
+            ahead,
+            blocks,
+            ..
+        } = &mut self.state;
+        for row in position.iter_mut().chain(ahead.iter_mut()) {
+            *row = as_row(rotation.apply_about(three(*row), about));
+        }
+        for row in velocity.iter_mut() {
+            *row = as_row(rotation.apply(three(*row)));
+        }
+        blocks.rotate(rotation);
+    }
+
+    /// Adds `linear` [m/s], and `angular` [rad/s] about the centre of mass, to the velocities of all nodes that are
+    /// neither held nor asleep.
+    pub(crate) fn add_velocity(&mut self, linear: Vector, angular: Vector) {
+        let centre = self.centre_of_mass();
+        let angular = match D::N {
+            2 => [0.0, 0.0, angular[2]],
+            _ => angular,
+        };
+        for (id, _) in self.truth.mesh.nodes() {
+            if self.state.inverse_mass[id] > 0.0 {
+                let lever = minus(three(self.state.position[id]), centre);
+                let added = plus(linear, cross(angular, lever));
+                add::<D>(&mut self.state.velocity[id], added);
+            }
+        }
+    }
+
+    /// Spreads an impulse [N s] over the nodes within `radius` [m] of a place, in proportion to their mass, so that all of
+    /// them gain the same velocity; over the nearest one where none is. Those that are held or asleep gain none.
+    pub(crate) fn add_impulse(&mut self, at: Vector, radius: f32, impulse: Vector) {
+        let nodes = self.truth.mesh.nodes().map(|(id, _)| id);
+        let free = nodes.filter(|&id| self.state.inverse_mass[id] > 0.0);
+        let squared = |id: NodeId| {
+            let apart = minus(three(self.state.position[id]), at);
+            apart.iter().map(|k| k * k).sum::<f32>()
+        };
+        let free: Vec<(NodeId, f32)> = free.map(|id| (id, squared(id))).collect();
+        let is_within = |(_, squared): &&(NodeId, f32)| *squared <= radius * radius;
+        let mut reached: Vec<NodeId> = free.iter().filter(is_within).map(|&(id, _)| id).collect();
+        if reached.is_empty() {
+            let nearest = free.iter().min_by(|a, b| a.1.total_cmp(&b.1));
+            reached.extend(nearest.map(|&(id, _)| id));
+        }
+        let mass: f32 = reached.iter().map(|&id| self.state.mass[id]).sum();
+        for id in reached {
+            add::<D>(&mut self.state.velocity[id], impulse.map(|k| k / mass));
+        }
+    }
+}
+
+fn add<D: Dim>(row: &mut Row, vector: Vector) {
+    for axis in 0..D::N {
+        row[axis] += vector[axis];
+    }
+}

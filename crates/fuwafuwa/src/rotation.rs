@@ -1,0 +1,142 @@
+//! Turning things.
+
+use crate::dim::Dim;
+use crate::shape::Vector;
+use crate::vector::{cross, dot, minus, plus, scaled};
+
+/// A rotation, kept as a unit quaternion. The same on every machine: no sine of a system's own library is in it.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Rotation {
+    /// x, y, z, w.
+    quaternion: [f64; 4],
+}
+
+impl Default for Rotation {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
+
+impl Rotation {
+    /// No rotation.
+    pub const NONE: Self = Self {
+        quaternion: [0.0, 0.0, 0.0, 1.0],
+    };
+
+    /// By an angle [rad] about an axis of any length, counterclockwise as seen from its tip; none about an axis
+    /// without a length or by an angle that is not finite.
+    ///
+    /// ```
+    /// use fuwafuwa::Rotation;
+    /// use std::f32::consts::FRAC_PI_2;
+    ///
+    /// let quarter = Rotation::about([0.0, 0.0, 1.0], FRAC_PI_2);
+    /// let [x, y, z] = quarter.apply([1.0, 0.0, 0.0]);
+    /// assert!(x.abs() < 1e-6 && (y - 1.0).abs() < 1e-6 && z == 0.0);
+    /// ```
+    pub fn about(axis: Vector, angle: f32) -> Self {
+        let axis = axis.map(f64::from);
+        let (sine, cosine) = libm::sincos(0.5 * f64::from(angle));
+        let part = sine / dot(axis, axis).sqrt();
+        let [x, y, z] = scaled(axis, part);
+        Self::unit([x, y, z, cosine])
+    }
+
+    /// In the plane, by an angle [rad], counterclockwise.
+    pub fn in_plane(angle: f32) -> Self {
+        Self::about([0.0, 0.0, 1.0], angle)
+    }
+
+    /// From a quaternion x, y, z, w of any length; none from one without a length or with a number that is not finite.
+    pub fn from_quaternion(quaternion: [f32; 4]) -> Self {
+        Self::unit(quaternion.map(f64::from))
+    }
+
+    /// The unit quaternion x, y, z, w.
+    pub fn quaternion(self) -> [f32; 4] {
+        self.quaternion.map(|part| part as f32)
+    }
+
+    /// A vector, turned.
+    pub fn apply(self, vector: Vector) -> Vector {
+        self.turn(vector.map(f64::from)).map(|part| part as f32)
+    }
+
+    /// A place [m], turned about another one.
+    pub(crate) fn apply_about(self, place: Vector, centre: Vector) -> Vector {
+        let (place, centre) = (place.map(f64::from), centre.map(f64::from));
+        let turned = self.turn(minus(place, centre));
+        plus(centre, turned).map(|part| part as f32)
+    }
+
+    /// The same as a world of `D` sees it: in the plane all turns are about the third axis.
+    pub(crate) fn seen_in<D: Dim>(self) -> Self {
+        let [_, _, z, w] = self.quaternion;
+        match D::N {
+            2 => Self::unit([0.0, 0.0, z, w]),
+            _ => self,
+        }
+    }
+
+    /// This one after another, as a quaternion that need not be of length 1.
+    pub(crate) fn after(self, [bx, by, bz, bw]: [f32; 4]) -> [f32; 4] {
+        let [x, y, z, w] = self.quaternion;
+        let [bx, by, bz, bw] = [bx, by, bz, bw].map(f64::from);
+        let product = [
+            w * bx + x * bw + y * bz - z * by,
+            w * by - x * bz + y * bw + z * bx,
+            w * bz + x * by - y * bx + z * bw,
+            w * bw - x * bx - y * by - z * bz,
+        ];
+        product.map(|part| part as f32)
+    }
+
+    fn turn(self, vector: [f64; 3]) -> [f64; 3] {
+        let [x, y, z, w] = self.quaternion;
+        let axis = [x, y, z];
+        let across = scaled(cross(axis, vector), 2.0);
+        plus(plus(vector, scaled(across, w)), cross(axis, across))
+    }
+
+    fn unit(quaternion: [f64; 4]) -> Self {
+        let length = dot(quaternion, quaternion).sqrt();
+        let quaternion = scaled(quaternion, 1.0 / length);
+        match quaternion.iter().all(|part| part.is_finite()) {
+            true => Self { quaternion },
+            false => Self::NONE,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dim::Dim2;
+    use std::f32::consts::PI;
+
+    #[test]
+    fn turns_follow_each_other() {
+        let first = Rotation::about([1.0, 2.0, -1.0], 0.7);
+        let second = Rotation::about([0.0, -3.0, 1.0], -2.0);
+        let both = Rotation::from_quaternion(second.after(first.quaternion()));
+        let vector = [0.3, -0.8, 2.0];
+        let (one, two) = (both.apply(vector), second.apply(first.apply(vector)));
+        assert!((0..3).all(|axis| (one[axis] - two[axis]).abs() < 1e-5));
+    }
+
+    #[test]
+    fn what_is_no_rotation_is_none() {
+        let bad = [
+            Rotation::about([0.0; 3], 1.0),
+            Rotation::about([1.0, 0.0, 0.0], f32::NAN),
+            Rotation::about([f32::INFINITY, 0.0, 0.0], 1.0),
+            Rotation::from_quaternion([0.0; 4]),
+            Rotation::from_quaternion([f32::NAN, 0.0, 0.0, 1.0]),
+            Rotation::about([1.0, 0.0, 0.0], PI).seen_in::<Dim2>(),
+        ];
+        for (index, rotation) in bad.into_iter().enumerate() {
+            let turned = rotation.apply([1.0, 2.0, 3.0]);
+            assert_eq!(turned, [1.0, 2.0, 3.0], "{index}");
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! What is done to bodies from outside: moved, turned, thrown, pushed, put to sleep.
+
+use super::{Refused, Settings, TICK, World};
+use crate::body::Body;
+use crate::contact::Hit;
+use crate::dim::Dim;
+use crate::handle::BodyId;
+use crate::ids::{PieceId, Table};
+use crate::rigid::FARTHEST;
+use crate::rotation::Rotation;
+use crate::shape::Vector;
+use crate::touch::leaning_on_body;
+
+/// How much stronger than on others gravity may pull on a body.
+const MOST_GRAVITY: f32 = 100.0;
+
+impl<D: Dim> World<D> {
+    /// Moves a body `by` [m] at once, through whatever is in between. It and what leant on it wake; who follows it by a
+    /// bookmark need not begin anew, since nothing in it changes but places.
+    ///
+    /// # Errors
+    /// [`Refused`] when there is no such body, or when one coordinate is more than 1e6 m or not finite.
+    #[inline(never)]
+    pub fn move_body(&mut self, body: BodyId, by: Vector) -> Result<(), Refused> {
+        let by = within("distance", by, FARTHEST, "at most 1e6 m on each axis")?;
+        self.displace(body, |body| body.shift(by))
+    }
+
+    /// Turns a body about a place [m] at once, with its velocities; as [`World::move_body`] and [`Body::rotated`].
+    ///
+    /// # Errors
+    /// As [`World::move_body`].
+    #[inline(never)]
+    pub fn rotate_body(
+        &mut self,
+        body: BodyId,
+        rotation: Rotation,
+        about: Vector,
+    ) -> Result<(), Refused> {
+        let about = within("centre", about, FARTHEST, "within 1e6 m of the origin")?;
+        self.displace(body, |body| body.turn(rotation, about))
+    }
+
+    /// Adds `linear` [m/s], and `angular` [rad/s] about the centre of mass, to the velocity of all of a body; in the plane
+    /// the third component of `angular` counts alone. It wakes.
+    ///
+    /// # Errors
+    /// [`Refused`] when there is no such body, or when a component is more than 1e6 or not finite.
+    #[inline(never)]
+    pub fn add_velocity(
+        &mut self,
+        body: BodyId,
+        linear: Vector,
+        angular: Vector,
+    ) -> Result<(), Refused> {
+        let linear = within("velocity", linear, FARTHEST, "at most 1e6 m/s on each axis")?;
+        let angular = within("spin", angular, FARTHEST, "at most 1e6 rad/s on each axis")?;
+        self.bodies.get(body)?;
+        self.wake_body(body);
+        self.bodies.get_mut(body)?.add_velocity(linear, angular);
+        Ok(())
+    }
+
+    /// Gives a body an impulse [N s] at a place [m], spread over its nodes within `radius` [m] so that they gain the same
+    /// velocity: it is squashed or torn there if that is more than it bears. Where no node is within, the nearest one has
+    /// all of it. The body wakes.
+    ///
+    /// ```
+    /// use fuwafuwa::{Body, Dim2, Material, Settings, VoxelGrid, World};
+    ///
+    /// let grid = VoxelGrid::<Dim2>::ball(16, 1.0)?;
+    /// let mut world = World::new(Settings { gravity: [0.0; 3], ..Settings::default() })?;
+    /// let ball = world.add_body(Body::new(grid, &[Material::default()])?);
+    /// world.apply_impulse(ball, [0.5, 0.5, 0.0], 1.0, [2.0, 0.0, 0.0])?;
+    /// let momentum = world.bodies()[ball].momentum().linear[0];
+    /// assert!((momentum - 2.0).abs() < 1e-4);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Refused`] when there is no such body, when a number is not finite or more than 1e6, or when the radius is negative.
+    #[inline(never)]
+    pub fn apply_impulse(
+        &mut self,
+        body: BodyId,
+        at: Vector,
+        radius: f32,
+        impulse: Vector,
+    ) -> Result<(), Refused> {
+        let at = within("place", at, FARTHEST, "within 1e6 m of the origin")?;
+        let impulse = within("impulse", impulse, FARTHEST, "at most 1e6 N s on each axis")?;
+        require((0.0..=FARTHEST).contains(&radius), "radius", "0 to 1e6 m")?;
+        self.bodies.get(body)?;
+        self.wake_body(body);
+        self.bodies.get_mut(body)?.add_impulse(at, radius, impulse);
+        Ok(())
+    }
+
+    /// Lets gravity pull on a body `scale` times as strongly as on others: 0 not at all, negative upwards. It wakes.
+    ///
+    /// # Errors
+    /// [`Refused`] when there is no such body, or when the scale is beyond ±100 or not finite.
+    #[inline(never)]
+    pub fn set_gravity_scale(&mut self, body: BodyId, scale: f32) -> Result<(), Refused> {
+        require(scale.abs() <= MOST_GRAVITY, "gravity scale", "-100 to 100")?;
+        self.bodies.get(body)?;
+        self.wake_body(body);
+        self.bodies.get_mut(body)?.state.gravity_scale = scale;
+        Ok(())
+    }
+
+    /// Wakes a body, and keeps it awake for half a second at the least.
+    ///
+    /// # Errors
+    /// [`Refused::Gone`] when there is no such body.
+    #[inline(never)]
+    pub fn wake_up(&mut self, body: BodyId) -> Result<(), Refused> {
+        self.bodies.get(body)?;
+        self.wake_body(body);
+        Ok(())
+    }
+
+    /// Puts a body to sleep where it is, at rest: it costs next to nothing, and stands like a wall until something moves
+    /// against it.
+    ///
+    /// # Errors
+    /// [`Refused::Gone`] when there is no such body.
+    #[inline(never)]
+    pub fn put_to_sleep(&mut self, body: BodyId) -> Result<(), Refused> {
+        let sleeper = self.bodies.get_mut(body)?;
+        let awake = sleeper.truth.pieces.list.iter().map(|piece| !piece.asleep);
+        let awake: Table<PieceId, bool> = awake.collect();
+        sleeper.set_asleep(&awake, true);
+        sleeper.refresh_awake();
+        Ok(())
+    }
+
+    /// Changes what holds for the whole world. Everything wakes. Bodies are softened or stiffened as the most substeps ask
+    /// for now: see [`Body::stiffness_scale`].
+    ///
+    /// # Errors
+    /// [`Refused::Setting`], and all stays as it was, when a setting is out of range.
+    #[inline(never)]
+    pub fn set_settings(&mut self, settings: Settings) -> Result<(), Refused> {
+        settings.check()?;
+        self.settings = settings;
+        let shortest = f64::from(TICK) / f64::from(settings.most_substeps);
+        let all: Vec<BodyId> = self.bodies.ids().collect();
+        for body in all {
+            self.bodies.get_mut(body)?.scale_stiffness_for(shortest);
+            self.wake_body(body);
+        }
+        Ok(())
+    }
+
+    /// Changes where a body is: those that leant on it wake, as it does itself, and nothing of what pressed on it counts.
+    fn displace(&mut self, id: BodyId, change: impl FnOnce(&mut Body<D>)) -> Result<(), Refused> {
+        let body = self.bodies.get(id)?;
+        let own = id.slot();
+        let leaning = leaning_on_body(body, &self.bodies);
+        let leaning: Vec<Hit> = leaning.into_iter().filter(|hit| hit.0 != own).collect();
+        self.nearby.remove_body(own);
+        change(self.bodies.get_mut(id)?);
+        self.wake_body(id);
+        self.wake(&leaning);
+        Ok(())
+    }
+}
+
+fn require(is_good: bool, field: &'static str, expected: &'static str) -> Result<(), Refused> {
+    is_good
+        .then_some(())
+        .ok_or(Refused::Argument { field, expected })
+}
+
+fn within(
+    field: &'static str,
+    vector: Vector,
+    most: f32,
+    expected: &'static str,
+) -> Result<Vector, Refused> {
+    let is_good = vector.iter().all(|k| k.abs() <= most);
+    require(is_good, field, expected).map(|()| vector)
+}
