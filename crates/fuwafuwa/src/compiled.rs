@@ -63,6 +63,9 @@ macro_rules! entries {
             $crate::World::<$dim>::put_to_sleep,
             $crate::World::<$dim>::set_settings,
             $crate::World::<$dim>::hash,
+            $crate::Queries::<$dim>::new,
+            $crate::Queries::<$dim>::at,
+            $crate::Queries::<$dim>::overlapping,
             ; if "serde" {
                 $crate::snapshot::save::<$dim>,
                 $crate::snapshot::load::<$dim>,

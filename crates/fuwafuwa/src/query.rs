@@ -1,0 +1,386 @@
+//! What is where in a world: what a ray meets, what is nearest to a place, what is there, what overlaps a shape.
+
+mod figure;
+mod tree;
+
+use crate::body::Body;
+use crate::dim::Dim;
+use crate::handle::{BodyId, RigidId};
+use crate::ids::{ElementId, PieceId};
+use crate::rigid::Rigid;
+use crate::shape::{Shape, Vector};
+use crate::vector::{dot, length, minus, plus, scaled};
+use crate::view::Facet;
+use crate::world::World;
+use figure::{
+    is_in_block, nearest_on_segment, nearest_on_triangle, ray_meets_segment, ray_meets_triangle,
+};
+use std::cell::OnceCell;
+use std::collections::BTreeSet;
+use tree::{Bounds, Tree, around_all, distance_from, entry};
+
+/// A ray comes so near to something rigid [m] when it meets it, in so many steps at most.
+const MET: f32 = 1e-5;
+const STEPS: usize = 512;
+
+/// Something in a world that can be found.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Thing {
+    /// Something rigid.
+    Rigid(RigidId),
+    /// A soft body.
+    Soft {
+        /// The body.
+        body: BodyId,
+        /// Its piece.
+        piece: PieceId,
+        /// Its element.
+        element: ElementId,
+        /// The number of the material there.
+        material: u8,
+    },
+}
+
+/// A place on the surface of something.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Found {
+    /// What it is.
+    pub thing: Thing,
+    /// Where [m].
+    pub at: Vector,
+    /// Out of it, of length 1.
+    pub normal: Vector,
+    /// How far it is from where it was looked for [m].
+    pub distance: f32,
+}
+
+/// Answers about a world as it is now. To make them costs about as much as to look at all bare faces once; each answer
+/// costs little then. A filter says of each thing whether it counts.
+///
+/// ```
+/// use fuwafuwa::{Body, Dim3, Material, Queries, Settings, Thing, VoxelGrid, World};
+///
+/// let mut world = World::new(Settings::default())?;
+/// let grid = VoxelGrid::<Dim3>::ball(16, 1.0)?;
+/// let ball = world.add_body(Body::new(grid, &[Material::default()])?);
+/// let queries = Queries::new(&world);
+/// let from_above = queries.ray([0.5, 3.0, 0.5], [0.0, -1.0, 0.0], 10.0, |_| true);
+/// let found = from_above.expect("the ball is below");
+/// assert!((found.distance - 2.0).abs() < 1e-3 && found.normal[1] > 0.99);
+/// assert!(matches!(found.thing, Thing::Soft { body, material: 1, .. } if body == ball));
+/// assert_eq!(queries.at([0.5; 3]).len(), 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Queries<'a, D: Dim> {
+    world: &'a World<D>,
+    facets: Vec<(BodyId, Facet)>,
+    surface: Tree,
+    /// The blocks of all elements, once they are asked for.
+    filled: OnceCell<Filled>,
+}
+
+/// What elements fill: blocks, with who they are of, and the corners of each in a row.
+struct Filled {
+    things: Vec<Thing>,
+    corners: Vec<Vector>,
+    tree: Tree,
+}
+
+impl<'a, D: Dim> Queries<'a, D> {
+    /// About a world.
+    #[inline(never)]
+    pub fn new(world: &'a World<D>) -> Self {
+        let mut facets = Vec::new();
+        for (id, body) in world.bodies().entries() {
+            facets.extend(body.facets().map(|facet| (id, facet)));
+        }
+        let bounds = |(_, facet): &(BodyId, Facet)| around_all(corners::<D>(facet).iter().copied());
+        let boxes: Vec<Bounds> = facets.iter().map(bounds).collect();
+        Self {
+            world,
+            facets,
+            surface: Tree::new(&boxes),
+            filled: OnceCell::new(),
+        }
+    }
+
+    /// The first surface that a ray meets, from inside or from outside, no further than `most` [m] from where it begins.
+    /// Nothing when the direction has no length or a number is not finite.
+    #[inline(never)]
+    pub fn ray(
+        &self,
+        from: Vector,
+        direction: Vector,
+        most: f32,
+        counts: impl Fn(Thing) -> bool,
+    ) -> Option<Found> {
+        let (from, direction) = (flat::<D>(from), flat::<D>(direction));
+        let direction = scaled(direction, 1.0 / length(direction));
+        if !direction.iter().chain(&from).all(|k| k.is_finite()) {
+            return None;
+        }
+        let mut best: Option<Found> = None;
+        for (id, rigid) in self.world.rigids().entries() {
+            let thing = Thing::Rigid(id);
+            let least = best.map_or(most, |found| found.distance);
+            if let Some((distance, normal)) = met(rigid.shape(), from, direction, least)
+                && counts(thing)
+            {
+                best = Some(found(thing, from, direction, distance, normal));
+            }
+        }
+        let least = best.map_or(most, |found| found.distance);
+        self.surface.search(
+            // Up to there, and not only before.
+            least.next_up(),
+            |bounds| entry(bounds, from, direction),
+            |place| {
+                let (body, facet) = &self.facets[place];
+                let thing = self.thing(*body, facet);
+                match distance_to::<D>(facet, from, direction) {
+                    Some(distance)
+                        if distance <= best.map_or(most, |best| best.distance) && counts(thing) =>
+                    {
+                        best = Some(found(thing, from, direction, distance, facet.normal));
+                        distance
+                    }
+                    _ => f32::INFINITY,
+                }
+            },
+        );
+        best
+    }
+
+    /// The place on any surface that is nearest to `at` [m], from inside or from outside, no further than `most` [m].
+    /// Nothing when a number is not finite.
+    #[inline(never)]
+    pub fn nearest(&self, at: Vector, most: f32, counts: impl Fn(Thing) -> bool) -> Option<Found> {
+        let at = flat::<D>(at);
+        let mut best: Option<Found> = None;
+        for (id, rigid) in self.world.rigids().entries() {
+            let (gap, normal) = rigid.shape().distance(at);
+            let (thing, distance) = (Thing::Rigid(id), gap.abs());
+            if distance <= best.map_or(most, |best| best.distance) && counts(thing) {
+                best = Some(found(thing, at, normal, -gap, normal));
+            }
+        }
+        let least = best.map_or(most, |found| found.distance);
+        self.surface.search(
+            least.next_up(),
+            |bounds| distance_from(bounds, at),
+            |place| {
+                let (body, facet) = &self.facets[place];
+                let nearest = nearest_on::<D>(facet, at);
+                let distance = length(minus(nearest, at));
+                let thing = self.thing(*body, facet);
+                if distance > best.map_or(most, |best| best.distance) || !counts(thing) {
+                    return f32::INFINITY;
+                }
+                best = Some(Found {
+                    thing,
+                    at: nearest,
+                    normal: facet.normal,
+                    distance,
+                });
+                distance
+            },
+        );
+        best
+    }
+
+    /// All that is at a place [m]: things that are forced into each other may be more than one.
+    #[inline(never)]
+    pub fn at(&self, at: Vector) -> Vec<Thing> {
+        let at = flat::<D>(at);
+        let rigids = self.world.rigids().entries();
+        let rigids = rigids.filter(|(_, rigid)| rigid.shape().distance(at).0 <= 0.0);
+        let mut things: Vec<Thing> = rigids.map(|(id, _)| Thing::Rigid(id)).collect();
+        let filled = self.filled.get_or_init(|| Filled::new(self.world));
+        filled.tree.search(
+            f32::INFINITY,
+            // All whose box the place is in, and none else.
+            |bounds| match distance_from(bounds, at) {
+                0.0 => 0.0,
+                _ => f32::INFINITY,
+            },
+            |block| {
+                let corners = &filled.corners[block * D::CORNERS..][..D::CORNERS];
+                if is_in_block::<D>(at, corners) {
+                    things.push(filled.things[block]);
+                }
+                f32::INFINITY
+            },
+        );
+        // Neighbours share the place between them.
+        things.sort();
+        things.dedup_by_key(|thing| thing.owner());
+        things
+    }
+
+    /// All that overlaps a shape: what is rigid, and each piece whose surface or middle is in it, or that it is in, with
+    /// one of its elements.
+    #[inline(never)]
+    pub fn overlapping(&self, shape: &Shape) -> Vec<Thing> {
+        let shape = shape.seen_in::<D>();
+        let rigids = self.world.rigids().entries();
+        let overlaps = |(_, rigid): &(RigidId, &Rigid)| rigid.shape().gap(&shape).0 <= 0.0;
+        let rigids = rigids.filter(overlaps);
+        let mut things: BTreeSet<Thing> = rigids.map(|(id, _)| Thing::Rigid(id)).collect();
+        self.surface.search(
+            f32::INFINITY,
+            |&[low, high]| {
+                let half = scaled(minus(high, low), 0.5);
+                let distance = shape.distance(plus(low, half)).0 - length(half);
+                if distance <= 0.0 { 0.0 } else { f32::INFINITY }
+            },
+            |place| {
+                let (body, facet) = &self.facets[place];
+                if is_near::<D>(facet, &shape) {
+                    things.insert(self.thing(*body, facet));
+                }
+                f32::INFINITY
+            },
+        );
+        // One that is all inside a piece is near no face of it.
+        let [low, high] = shape.bounds();
+        let middle = scaled(plus(low, high), 0.5);
+        if middle.iter().all(|k| k.is_finite()) {
+            things.extend(self.at(middle));
+        }
+        let mut things: Vec<Thing> = things.into_iter().collect();
+        things.dedup_by_key(|thing| thing.owner());
+        things
+    }
+
+    fn thing(&self, body: BodyId, facet: &Facet) -> Thing {
+        soft(body, &self.world.bodies()[body], facet.element)
+    }
+}
+
+impl Thing {
+    /// What it is of: something rigid, or a piece of a body.
+    pub fn owner(self) -> (Option<RigidId>, Option<(BodyId, PieceId)>) {
+        match self {
+            Self::Rigid(rigid) => (Some(rigid), None),
+            Self::Soft { body, piece, .. } => (None, Some((body, piece))),
+        }
+    }
+}
+
+impl Filled {
+    fn new<D: Dim>(world: &World<D>) -> Self {
+        let (mut things, mut corners) = (Vec::new(), Vec::new());
+        for (id, body) in world.bodies().entries() {
+            for view in body.element_views() {
+                let whole = if view.level == 0 { 1 } else { D::CORNERS };
+                let children = (0..whole).filter(|child| view.children >> child & 1 == 1);
+                for child in children {
+                    things.push(soft(id, body, view.id));
+                    corners.extend(view.child_corners::<D>(child));
+                }
+            }
+        }
+        let boxes = corners.chunks(D::CORNERS);
+        let boxes = boxes.map(|corners| around_all(corners.iter().copied()));
+        Self {
+            tree: Tree::new(&boxes.collect::<Vec<Bounds>>()),
+            things,
+            corners,
+        }
+    }
+}
+
+fn soft<D: Dim>(id: BodyId, body: &Body<D>, element: ElementId) -> Thing {
+    let mesh = body.mesh();
+    let alive = mesh.element(element).expect("it was looked at just now");
+    Thing::Soft {
+        body: id,
+        piece: body.pieces().of_element(element),
+        element,
+        material: body.grid().material(mesh.first_voxel(alive)),
+    }
+}
+
+fn found(thing: Thing, from: Vector, direction: Vector, far: f32, normal: Vector) -> Found {
+    Found {
+        thing,
+        at: plus(from, scaled(direction, far)),
+        normal,
+        distance: far.abs(),
+    }
+}
+
+/// As a world of `D` sees it: in the plane third coordinates do not count.
+fn flat<D: Dim>(mut vector: Vector) -> Vector {
+    vector[D::N..].fill(0.0);
+    vector
+}
+
+/// The corners of a bare face.
+fn corners<D: Dim>(facet: &Facet) -> &[Vector] {
+    &facet.corners[..D::CORNERS / 2]
+}
+
+/// A quad as two triangles.
+fn triangles([a, b, c, d]: [Vector; 4]) -> [[Vector; 3]; 2] {
+    [[a, b, c], [a, c, d]]
+}
+
+/// How far along a ray, whose direction is of length 1, a bare face is [m].
+fn distance_to<D: Dim>(facet: &Facet, from: Vector, direction: Vector) -> Option<f32> {
+    let [a, b, ..] = facet.corners;
+    if D::N == 2 {
+        return ray_meets_segment(from, direction, [a, b]);
+    }
+    let met = triangles(facet.corners).map(|three| ray_meets_triangle(from, direction, three));
+    met.into_iter().flatten().reduce(f32::min)
+}
+
+/// The place on a bare face that is nearest.
+fn nearest_on<D: Dim>(facet: &Facet, at: Vector) -> Vector {
+    let [a, b, ..] = facet.corners;
+    if D::N == 2 {
+        return nearest_on_segment(at, [a, b]);
+    }
+    let [one, other] = triangles(facet.corners).map(|three| nearest_on_triangle(at, three));
+    let squared = |place: Vector| dot(minus(place, at), minus(place, at));
+    if squared(other) < squared(one) {
+        other
+    } else {
+        one
+    }
+}
+
+/// Whether a bare face reaches into a shape. Followed down the distance from its middle to the shape, which is convex.
+fn is_near<D: Dim>(facet: &Facet, shape: &Shape) -> bool {
+    let all = corners::<D>(facet);
+    let mut at = scaled(
+        all.iter().copied().fold([0.0; 3], plus),
+        1.0 / all.len() as f32,
+    );
+    for _ in 0..8 {
+        let (distance, normal) = shape.distance(at);
+        if distance <= 0.0 {
+            return true;
+        }
+        at = nearest_on::<D>(facet, minus(at, scaled(normal, distance)));
+    }
+    all.iter().any(|&corner| shape.distance(corner).0 <= 0.0)
+}
+
+/// How far along a ray, whose direction is of length 1, it meets the surface of a shape [m], and the normal there: it
+/// goes on by as much as nothing can be nearer.
+fn met(shape: &Shape, from: Vector, direction: Vector, most: f32) -> Option<(f32, Vector)> {
+    let mut far = 0.0;
+    for _ in 0..STEPS {
+        let (gap, normal) = shape.distance(plus(from, scaled(direction, far)));
+        if gap.abs() <= MET {
+            return Some((far, normal));
+        }
+        far += gap.abs();
+        if far > most {
+            return None;
+        }
+    }
+    None
+}

@@ -1,0 +1,248 @@
+//! What can be asked of a world: rays, places, shapes.
+
+use fuwafuwa::{
+    Blade, Body, Dim, Dim2, Dim3, Material, Queries, Rigid, Rotation, Settings, Shape, Thing,
+    VoxelGrid, World,
+};
+
+type Vector = [f32; 3];
+
+const WEIGHTLESS: Settings = Settings {
+    gravity: [0.0; 3],
+    drag: 0.0,
+    most_substeps: 64,
+};
+
+/// A ball of two materials, number 2 within a quarter of its middle, which is at the origin.
+fn ball<D: Dim>(n: usize) -> Body<D> {
+    let half = [0.5, 0.5, if D::N == 2 { 0.0 } else { 0.5 }];
+    let apart = |at: Vector| {
+        let squared = (0..D::N).map(|axis| (at[axis] - half[axis]).powi(2));
+        squared.sum::<f32>().sqrt()
+    };
+    let size = [n, n, D::depth(n)];
+    let grid = VoxelGrid::from_centres(size, 1.0 / n as f32, |at| match apart(at) {
+        distance if distance < 0.25 => 2,
+        distance if distance < 0.5 => 1,
+        _ => 0,
+    });
+    let body = Body::new(grid.unwrap(), &[Material::default(); 2]).unwrap();
+    body.moved(half.map(|k| -k))
+}
+
+/// Turned, so that nothing lies along an axis.
+fn world<D: Dim>() -> World<D> {
+    let mut world = World::new(WEIGHTLESS).unwrap();
+    world.add_body(ball::<D>(16).rotated(Rotation::in_plane(0.4), [0.0; 3]));
+    world
+        .add_rigid(Rigid::fixed(
+            Shape::half_space([0.0, 1.0, 0.0], [0.0, -2.0, 0.0]),
+            0.3,
+        ))
+        .unwrap();
+    let bar = Shape::Capsule {
+        from: [3.0, -1.0, 0.0],
+        to: [3.0, 1.0, 0.0],
+        radius: 0.25,
+    };
+    world.add_rigid(Rigid::fixed(bar, 0.3)).unwrap();
+    world
+}
+
+/// Directions all around.
+fn around<D: Dim>() -> Vec<Vector> {
+    let steps = (0..40).map(|k| k as f32 * 0.37);
+    let vectors = steps.map(|k| {
+        [
+            k.cos(),
+            k.sin(),
+            if D::N == 2 { 0.0 } else { (2.3 * k).sin() },
+        ]
+    });
+    vectors
+        .map(|v| {
+            let length = v.iter().map(|k| k * k).sum::<f32>().sqrt();
+            v.map(|k| k / length)
+        })
+        .collect()
+}
+
+fn check_rays<D: Dim>() {
+    let world = world::<D>();
+    let queries = Queries::new(&world);
+    let body = world.nth_body(0).unwrap();
+    let voxel = 1.0 / 16.0;
+    let is_soft = |thing: Thing| matches!(thing, Thing::Soft { .. });
+    for direction in around::<D>() {
+        let from = direction.map(|k| 5.0 * k);
+        let inwards = direction.map(|k| -k);
+        let found = queries.ray(from, inwards, 10.0, is_soft).unwrap();
+        // The surface is one of voxels: their corners are up to two of them from the sphere.
+        assert!(
+            (found.distance - 4.5).abs() < 2.0 * voxel,
+            "{direction:?} {found:?}"
+        );
+        assert!(matches!(found.thing, Thing::Soft { body: it, material: 1, .. } if it == body));
+        let facing: f32 = (0..3).map(|k| found.normal[k] * direction[k]).sum();
+        assert!(facing > 0.0, "{found:?}");
+        // From inside it is met on its way out.
+        let out = queries.ray([0.0; 3], direction, 10.0, is_soft).unwrap();
+        assert!((out.distance - 0.5).abs() < 2.0 * voxel, "{out:?}");
+        assert!((out.distance + found.distance - 5.0).abs() < 1e-4);
+        assert!(queries.ray(from, direction, 10.0, is_soft).is_none());
+        assert!(
+            queries
+                .ray(from, inwards, found.distance - 0.01, is_soft)
+                .is_none()
+        );
+        assert!(
+            queries
+                .ray(from, inwards, found.distance + 0.01, is_soft)
+                .is_some()
+        );
+    }
+    // Whatever is first.
+    let first = |from| queries.ray(from, [-1.0, 0.0, 0.0], 20.0, |_| true).unwrap();
+    let bar = first([9.0, 0.0, 0.0]);
+    assert!(matches!(bar.thing, Thing::Rigid(_)));
+    assert!(
+        (bar.distance - 5.75).abs() < 1e-3 && (bar.normal[0] - 1.0).abs() < 1e-3,
+        "{bar:?}"
+    );
+    assert!(is_soft(first([2.0, 0.0, 0.0]).thing));
+    let floor = queries
+        .ray([9.0, 0.0, 0.0], [0.1, -1.0, 0.0], 20.0, |_| true)
+        .unwrap();
+    assert!((floor.at[1] + 2.0).abs() < 1e-3, "{floor:?}");
+    for (from, direction) in [([f32::NAN; 3], [1.0, 0.0, 0.0]), ([0.0; 3], [0.0; 3])] {
+        assert!(queries.ray(from, direction, 9.0, |_| true).is_none());
+    }
+}
+
+#[test]
+fn a_ray_meets_the_first_surface() {
+    check_rays::<Dim2>();
+    check_rays::<Dim3>();
+}
+
+fn check_nearest<D: Dim>() {
+    let world = world::<D>();
+    let queries = Queries::new(&world);
+    for direction in around::<D>() {
+        for far in [0.2, 0.8, 1.4] {
+            let at = direction.map(|k| far * k);
+            let found = queries
+                .nearest(at, 9.0, |thing| matches!(thing, Thing::Soft { .. }))
+                .unwrap();
+            // No bare face is nearer than that.
+            let body = world.bodies().first().unwrap();
+            let corners = body
+                .facets()
+                .flat_map(|facet| facet.corners.into_iter().take(D::CORNERS / 2));
+            let apart = |corner: Vector| {
+                (0..3)
+                    .map(|k| (corner[k] - at[k]).powi(2))
+                    .sum::<f32>()
+                    .sqrt()
+            };
+            let corner = corners.map(apart).fold(f32::INFINITY, f32::min);
+            assert!(found.distance <= corner + 1e-5, "{found:?} {corner}");
+            assert!(corner - found.distance < 1.0 / 16.0, "{found:?} {corner}");
+            assert!((apart(found.at) - found.distance).abs() < 1e-5);
+        }
+    }
+    let floor = queries.nearest([0.0, -1.9, 0.0], 9.0, |_| true).unwrap();
+    assert!(matches!(floor.thing, Thing::Rigid(_)));
+    assert!(
+        (floor.at[1] + 2.0).abs() < 1e-5 && (floor.distance - 0.1).abs() < 1e-5,
+        "{floor:?}"
+    );
+    assert!(queries.nearest([0.0, 9.0, 0.0], 1.0, |_| true).is_none());
+    assert!(queries.nearest([f32::NAN; 3], 1.0, |_| true).is_none());
+}
+
+#[test]
+fn the_nearest_surface_is_found() {
+    check_nearest::<Dim2>();
+    check_nearest::<Dim3>();
+}
+
+fn check_places<D: Dim>() {
+    let world = world::<D>();
+    let queries = Queries::new(&world);
+    let material = |at: Vector| match queries.at(at)[..] {
+        [] => 0,
+        [Thing::Soft { material, .. }] => material,
+        ref other => panic!("{other:?}"),
+    };
+    for direction in around::<D>() {
+        for far in [0.0, 0.1, 0.17, 0.35, 0.42, 0.58, 1.0] {
+            let expect = match far {
+                far if far < 0.25 => 2,
+                far if far < 0.5 => 1,
+                _ => 0,
+            };
+            let at = direction.map(|k| far * k);
+            // Large elements are of one material, that of their first voxel.
+            let found = material(at);
+            assert_eq!(found > 0, expect > 0, "{at:?}");
+            if far < 0.1 || far > 0.4 {
+                assert_eq!(found, expect, "{at:?}");
+            }
+        }
+    }
+    assert!(matches!(queries.at([3.0, 0.0, 0.0])[..], [Thing::Rigid(_)]));
+    assert!(matches!(
+        queries.at([7.0, -3.0, 0.0])[..],
+        [Thing::Rigid(_)]
+    ));
+    assert!(queries.at([f32::NAN; 3]).is_empty());
+}
+
+#[test]
+fn what_is_at_a_place_is_known() {
+    check_places::<Dim2>();
+    check_places::<Dim3>();
+}
+
+fn check_overlaps<D: Dim>() {
+    let mut world = world::<D>();
+    let body = world.nth_body(0).unwrap();
+    let count = |world: &World<D>, shape: Shape| {
+        let things = Queries::new(world).overlapping(&shape);
+        let soft = things
+            .iter()
+            .filter(|thing| matches!(thing, Thing::Soft { .. }))
+            .count();
+        [things.len() - soft, soft]
+    };
+    let probe = |x: f32, radius: f32| Shape::Ball {
+        centre: [x, 0.0, 0.0],
+        radius,
+    };
+    assert_eq!(count(&world, probe(0.0, 0.05)), [0, 1], "inside");
+    assert_eq!(count(&world, probe(0.9, 0.45)), [0, 1], "over its edge");
+    assert_eq!(count(&world, probe(1.1, 0.3)), [0, 0], "beside it");
+    assert_eq!(count(&world, probe(0.0, 2.5)), [1, 1], "around it");
+    assert_eq!(count(&world, probe(0.0, 2.9)), [2, 1], "as far as the bar");
+    let needle = Shape::Capsule {
+        from: [-3.0, 0.013, 0.0],
+        to: [2.0, 0.013, 0.0],
+        radius: 0.001,
+    };
+    assert_eq!(count(&world, needle), [0, 1], "through it");
+    // In two pieces it is two.
+    let blade = Blade {
+        from: [0.0, -1.0, -1.0],
+        across: [0.0, 2.0, 0.0],
+        along: [0.0, 0.0, 2.0],
+    };
+    world.cut(body, &blade).unwrap();
+    assert_eq!(count(&world, probe(0.0, 0.3)), [0, 2], "across the cut");
+}
+
+#[test]
+fn what_overlaps_a_shape_is_known() {
+    check_overlaps::<Dim2>();
+    check_overlaps::<Dim3>();
+}
