@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
+use tamaire::exhibit::config::USUAL;
 use tamaire_logbook::{Error, Event, Kind, Logbook, Round};
 use tempfile::TempDir;
 
@@ -142,7 +143,7 @@ impl Stand {
             .args(["--mute", "--exhibit"])
             .arg(file)
             .env("DISPLAY", &screen.name);
-        parent.env_remove("WAYLAND_DISPLAY").stderr(Stdio::null());
+        parent.env_remove("WAYLAND_DISPLAY");
         Self {
             parent: parent.spawn().unwrap(),
         }
@@ -221,7 +222,9 @@ fn a_game_that_is_killed_while_it_is_played_is_back_and_loses_no_round_that_ende
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("exhibit.toml");
     let logbook: PathBuf = folder.path().join("visits.sqlite");
-    fs::write(&file, format!("[logbook]\nfolder = {:?}\n", folder.path())).unwrap();
+    let usual = "#folder = \"/var/lib/tam\"";
+    let text = USUAL.replace(usual, &format!("folder = {:?}", folder.path()));
+    fs::write(&file, text).unwrap();
     let screen = Screen::open();
     let mut hand = Hand::on(&screen);
     let (mut known, mut stopped) = (BTreeSet::new(), 0);
