@@ -3,12 +3,12 @@
 //! `cargo xtask stand` runs it; it needs Xvfb and xdotool, and takes ten minutes or so.
 #![cfg(target_os = "linux")]
 
-use std::collections::{BTreeMap, BTreeSet, HashSet};
+use std::collections::{BTreeSet, HashSet};
 use std::env;
 use std::fs;
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
+use std::process::{Child, ChildStdin, Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 use tamaire::exhibit::config::USUAL;
@@ -22,10 +22,6 @@ const KILLS: usize = 54;
 const BORNE: usize = 9;
 /// One of so many is stopped, not killed.
 const STOPPED: usize = 9;
-/// A stand is back after so long at most.
-const BACK: Duration = Duration::from_secs(5);
-/// A round that ended is in the logbook after so long at most.
-const WRITTEN: Duration = Duration::from_secs(2);
 /// Nothing that is waited for takes so long.
 const LONG: Duration = Duration::from_secs(60);
 const SIZE: (u32, u32) = (640, 400);
@@ -165,19 +161,26 @@ impl Stand {
     }
 
     /// Ends it as a system does.
-    fn end(mut self) -> ExitStatus {
+    fn end(mut self) {
         let parent = self.parent.id().to_string();
         let game = self.game();
         let sent = Command::new("kill").args(["-TERM", &parent]).status();
         assert!(sent.unwrap().success());
-        let status = self.parent.wait().unwrap();
+        self.parent.wait().unwrap();
         // The game ends with its parent.
         let began = Instant::now();
         while game.as_ref().is_some_and(|game| is_alive(game)) {
             assert!(began.elapsed() < LONG, "the game outlives its parent");
             thread::sleep(Duration::from_millis(20));
         }
-        status
+    }
+}
+
+impl Drop for Stand {
+    fn drop(&mut self) {
+        // Nothing is left where the trial breaks off: a game ends with its parent.
+        let _gone = self.parent.kill();
+        let _gone = self.parent.wait();
     }
 }
 
@@ -188,12 +191,12 @@ fn is_alive(process: &str) -> bool {
         .is_some_and(|rest| !rest.trim().is_empty() && !rest.trim().starts_with('Z'))
 }
 
-/// The rounds of a logbook that others write, by how long they lasted [s].
-fn rounds(logbook: &Path) -> BTreeMap<String, f32> {
-    let mut found = BTreeMap::new();
+/// The rounds of a logbook that others write.
+fn rounds(logbook: &Path) -> BTreeSet<String> {
+    let mut found = BTreeSet::new();
     if let Ok(logbook) = Logbook::read(logbook) {
         let each = |round: Round| {
-            found.insert(round.id.to_string(), round.seconds);
+            found.insert(round.id.to_string());
             Ok::<(), Error>(())
         };
         logbook.rounds(.., each).unwrap();
@@ -211,8 +214,10 @@ fn events(logbook: &Path) -> Vec<Kind> {
     found
 }
 
-fn worst(times: &[Duration]) -> Duration {
-    times.iter().copied().max().unwrap_or_default()
+/// The middle one and the longest, if there are any.
+fn told(times: &mut [Duration]) -> Option<[Duration; 2]> {
+    times.sort();
+    Some([*times.get(times.len() / 2)?, *times.last()?])
 }
 
 #[test]
@@ -244,16 +249,13 @@ fn a_game_that_is_killed_while_it_is_played_is_back_and_loses_no_round_that_ende
         hand.tell("key r");
         let pressed = Instant::now();
         while rounds(&logbook).len() == before {
-            assert!(
-                pressed.elapsed() < WRITTEN,
-                "{kill}: the round is not written"
-            );
+            assert!(pressed.elapsed() < LONG, "{kill}: the round is not written");
             thread::sleep(Duration::from_millis(10));
         }
         written.push(pressed.elapsed());
         let time = Duration::from_millis(hand.random.u64(..3000));
         hand.play(time);
-        known.extend(rounds(&logbook).into_keys());
+        known.extend(rounds(&logbook));
         if kill % STOPPED == STOPPED - 1 {
             stopped += 1;
             stand.signal("-STOP");
@@ -271,15 +273,20 @@ fn a_game_that_is_killed_while_it_is_played_is_back_and_loses_no_round_that_ende
     stand.end();
     let kept = rounds(&logbook);
     println!(
-        "{kills} times: back after {:.1?} at most, after {:.1?} when it was stopped; {} rounds; written after {:.0?} at most",
-        worst(&back),
-        worst(&back_from_stop),
-        kept.len(),
-        worst(&written)
+        "{kills} times, {stopped} of them stopped; {} rounds. Middle and worst time:",
+        kept.len()
     );
-    assert!(known.iter().all(|id| kept.contains_key(id)));
+    println!("  until it was back after a kill   {:.1?}", told(&mut back));
+    println!(
+        "  until it was back after a stop   {:.1?}",
+        told(&mut back_from_stop)
+    );
+    println!(
+        "  until a round was written        {:.2?}",
+        told(&mut written)
+    );
+    assert!(known.is_subset(&kept));
     assert!(known.len() >= kills);
-    assert!(worst(&back) < BACK && worst(&back_from_stop) < BACK);
     let events = events(&logbook);
     let count = |kind: Kind| events.iter().filter(|&event| *event == kind).count();
     assert_eq!(count(Kind::Crashed), kills - stopped);
@@ -288,10 +295,10 @@ fn a_game_that_is_killed_while_it_is_played_is_back_and_loses_no_round_that_ende
     let out = folder.path().join("report");
     let mut report = Command::new(TAMAIRE);
     report.args(["report", "--rerun", "--no-clips", "--out"]);
-    let told = report.arg(&out).arg(&logbook).output().unwrap();
-    let told = String::from_utf8_lossy(&told.stdout).into_owned();
+    let counted = report.arg(&out).arg(&logbook).output().unwrap();
+    let counted = String::from_utf8_lossy(&counted.stdout).into_owned();
     assert!(
-        told.ends_with(&format!(" {} rounds\n", kept.len())),
-        "{told}"
+        counted.ends_with(&format!(" {} rounds\n", kept.len())),
+        "{counted}"
     );
 }

@@ -28,6 +28,7 @@ use crate::solve::{Blocks, Row};
 use crate::vector::{as_row, dot, three};
 use blend::{Blend, elasticities};
 use cache::Cache;
+pub(crate) use state::MOST_GRAVITY;
 use state::State;
 use truth::Truth;
 

@@ -45,6 +45,9 @@ macro_rules! entries {
             $crate::Body::<$dim>::outlines,
             $crate::Body::<$dim>::element_view,
             $crate::Body::<$dim>::strain,
+            $crate::measure::strained::<$dim>,
+            $crate::Body::<$dim>::strained,
+            $crate::Body::<$dim>::energies,
             $crate::World::<$dim>::new,
             $crate::World::<$dim>::step,
             $crate::World::<$dim>::step_with,
@@ -64,6 +67,8 @@ macro_rules! entries {
             $crate::World::<$dim>::set_settings,
             $crate::World::<$dim>::hash,
             $crate::Queries::<$dim>::new,
+            $crate::Queries::<$dim>::ray,
+            $crate::Queries::<$dim>::nearest,
             $crate::Queries::<$dim>::at,
             $crate::Queries::<$dim>::overlapping,
             ; if "serde" {

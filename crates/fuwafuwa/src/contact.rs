@@ -132,11 +132,11 @@ impl Contacts {
                 .extend(contacts.into_iter().map(|(contact, pair)| NodeContact {
                     contact,
                     node: self.motion.row(pair.body, pair.node),
-                    hand: rigids.at(pair.rigid).is_driven().then_some(pair.rigid),
-                    lever: {
+                    hand: rigids.at(pair.rigid).is_driven().then(|| {
                         let at = bodies.at(pair.body).state.position[pair.node];
-                        minus(three(at), rigids.at(pair.rigid).position())
-                    },
+                        let lever = minus(three(at), rigids.at(pair.rigid).position());
+                        (pair.rigid, lever)
+                    }),
                 }));
         }
     }
@@ -324,9 +324,9 @@ impl Contacts {
         }
         motion.store(bodies);
         for row in &self.nodes {
-            if let Some(hand) = row.hand {
+            if let Some((hand, lever)) = row.hand {
                 let impulse = scaled(three(row.contact.start()), -1.0 / duration);
-                rigids.at_mut(hand).twist(cross(row.lever, impulse));
+                rigids.at_mut(hand).twist(cross(lever, impulse));
             }
         }
     }

@@ -93,7 +93,7 @@ impl Elasticity {
 /// A 3 × 3 matrix by rows; in 2D the third row and column are those of the identity.
 pub type Matrix = [[f64; 3]; 3];
 
-const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+pub(crate) const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// The force [N] of an element of width `size` [m] on each of its nodes, at `positions` [m].
 ///
@@ -121,6 +121,17 @@ fn endo<D: Dim>(
     size: f64,
     positions: &[Vector64],
 ) -> Vec<Vector64> {
+    let (stiffness, apart) = endo_offsets(elasticity, stencil, size, positions);
+    apart.into_iter().map(|d| scaled(d, stiffness)).collect()
+}
+
+/// Y V d / Σ|R0|², and M R0_i − r_i of each node.
+pub(crate) fn endo_offsets<D: Dim>(
+    elasticity: Elasticity,
+    stencil: &Stencil<D>,
+    size: f64,
+    positions: &[Vector64],
+) -> (f64, Vec<Vector64>) {
     let half = 0.5 * size;
     let rest: Vec<Vector64> = stencil.offsets.iter().map(|&r| scaled(r, half)).collect();
     let count = positions.len() as f64;
@@ -141,8 +152,8 @@ fn endo<D: Dim>(
     (D::N..3).for_each(|axis| moment[axis][axis] = spread);
     let rotation = rotation_of(&moment);
     let stiffness = elasticity.young * volume_of(stencil, half) * D::N as f64 / spread;
-    let pull = |(r, x): (&Vector64, &Vector64)| scaled(minus(apply(&rotation, *r), *x), stiffness);
-    rest.iter().zip(&now).map(pull).collect()
+    let apart = |(r, x): (&Vector64, &Vector64)| minus(apply(&rotation, *r), *x);
+    (stiffness, rest.iter().zip(&now).map(apart).collect())
 }
 
 fn patch_exact<D: Dim>(
@@ -151,33 +162,16 @@ fn patch_exact<D: Dim>(
     size: f64,
     positions: &[Vector64],
 ) -> Vec<Vector64> {
-    let half = 0.5 * size;
-    let volume = volume_of(stencil, half);
-    let area = volume_scale::<D>(half) / half;
-    let gradient = |k: usize| scaled(stencil.gradients[k], area);
-
-    let mut deformation = [[0.0; 3]; 3];
-    let mut centre = [0.0; 3];
-    for (k, &x) in positions.iter().enumerate() {
-        add_outer(&mut deformation, scaled(x, 1.0 / volume), gradient(k));
-        centre = plus(centre, scaled(x, stencil.volumes[k] / stencil.volume));
-    }
-    deformation[D::N..].copy_from_slice(&IDENTITY[D::N..]);
+    let volume = volume_of(stencil, 0.5 * size);
+    let gradient = |k: usize| gradient_of(stencil, size, k);
+    let (deformation, centre) = deformation_of(stencil, size, positions);
     let stress = stress(elasticity, &deformation);
-
-    let offset = |k: usize| scaled(stencil.offsets[k], half);
-    let hourglass: Vec<Vector64> = (0..positions.len())
-        .map(|k| {
-            let affine = plus(centre, apply(&deformation, offset(k)));
-            scaled(plus(positions[k], scaled(affine, -1.0)), stencil.volumes[k])
-        })
-        .collect();
+    let (stiffness, hourglass) =
+        hourglass(elasticity, stencil, size, positions, &deformation, centre);
     let mut skew = [[0.0; 3]; 3];
     for (k, &h) in hourglass.iter().enumerate() {
-        add_outer(&mut skew, h, offset(k));
+        add_outer(&mut skew, h, scaled(stencil.offsets[k], 0.5 * size));
     }
-    let hourglass_modulus = D::HOURGLASS * stencil.hourglass * elasticity.young;
-    let stiffness = (2..D::N).fold(hourglass_modulus, |stiffness, _| stiffness * size);
     (0..positions.len())
         .map(|k| {
             let b = gradient(k);
@@ -190,8 +184,51 @@ fn patch_exact<D: Dim>(
         .collect()
 }
 
+/// b of a node: what it adds to V F is x bᵀ.
+fn gradient_of<D: Dim>(stencil: &Stencil<D>, size: f64, node: usize) -> Vector64 {
+    let half = 0.5 * size;
+    scaled(stencil.gradients[node], volume_scale::<D>(half) / half)
+}
+
+/// The deformation gradient, and the volume centroid.
+pub(crate) fn deformation_of<D: Dim>(
+    stencil: &Stencil<D>,
+    size: f64,
+    positions: &[Vector64],
+) -> (Matrix, Vector64) {
+    let volume = volume_of(stencil, 0.5 * size);
+    let mut deformation = [[0.0; 3]; 3];
+    let mut centre = [0.0; 3];
+    for (k, &x) in positions.iter().enumerate() {
+        let gradient = gradient_of(stencil, size, k);
+        add_outer(&mut deformation, scaled(x, 1.0 / volume), gradient);
+        centre = plus(centre, scaled(x, stencil.volumes[k] / stencil.volume));
+    }
+    deformation[D::N..].copy_from_slice(&IDENTITY[D::N..]);
+    (deformation, centre)
+}
+
+/// The stiffness of the hourglass modes, and w h of each node.
+pub(crate) fn hourglass<D: Dim>(
+    elasticity: Elasticity,
+    stencil: &Stencil<D>,
+    size: f64,
+    positions: &[Vector64],
+    deformation: &Matrix,
+    centre: Vector64,
+) -> (f64, Vec<Vector64>) {
+    let offset = |k: usize| scaled(stencil.offsets[k], 0.5 * size);
+    let motion = (0..positions.len()).map(|k| {
+        let affine = plus(centre, apply(deformation, offset(k)));
+        scaled(plus(positions[k], scaled(affine, -1.0)), stencil.volumes[k])
+    });
+    let modulus = D::HOURGLASS * stencil.hourglass * elasticity.young;
+    let stiffness = (2..D::N).fold(modulus, |stiffness, _| stiffness * size);
+    (stiffness, motion.collect())
+}
+
 /// First Piola–Kirchhoff stress [Pa] of a deformation.
-fn stress(elasticity: Elasticity, deformation: &Matrix) -> Matrix {
+pub(crate) fn stress(elasticity: Elasticity, deformation: &Matrix) -> Matrix {
     let rotation = rotation_of(deformation);
     let stretch: f64 = (0..3).map(|i| dot(rotation[i], deformation[i])).sum();
     let pressure = elasticity.lame() * (stretch - 3.0);
@@ -335,7 +372,7 @@ fn turn_quaternion([x, y, z, w]: [f64; 4], turn: Vector64) -> [f64; 4] {
     next.map(|k| k / length)
 }
 
-fn cofactor(m: &Matrix) -> Matrix {
+pub(crate) fn cofactor(m: &Matrix) -> Matrix {
     [cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])]
 }
 
@@ -343,7 +380,7 @@ fn volume_scale<D: Dim>(half: f64) -> f64 {
     (0..D::N).fold(1.0, |scale, _| scale * half)
 }
 
-fn volume_of<D: Dim>(stencil: &Stencil<D>, half: f64) -> f64 {
+pub(crate) fn volume_of<D: Dim>(stencil: &Stencil<D>, half: f64) -> f64 {
     stencil.volume * volume_scale::<D>(half)
 }
 

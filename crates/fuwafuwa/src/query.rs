@@ -19,9 +19,11 @@ use std::cell::OnceCell;
 use std::collections::BTreeSet;
 use tree::{Bounds, Tree, around_all, distance_from, entry};
 
-/// A ray comes so near to something rigid [m] when it meets it, in so many steps at most.
-const MET: f32 = 1e-5;
-const STEPS: usize = 512;
+/// The distance of a face from a shape is narrowed down so many times.
+const NARROWINGS: usize = 24;
+
+/// Whether a thing counts.
+type Counts<'a> = &'a dyn Fn(Thing) -> bool;
 
 /// Something in a world that can be found.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -55,7 +57,7 @@ pub struct Found {
 }
 
 /// Answers about a world as it is now. To make them costs about as much as to look at all bare faces once; each answer
-/// costs little then. A filter says of each thing whether it counts.
+/// costs little then. A condition says of each thing whether it counts.
 ///
 /// ```
 /// use fuwafuwa::{Body, Dim3, Material, Queries, Settings, Thing, VoxelGrid, World};
@@ -64,7 +66,7 @@ pub struct Found {
 /// let grid = VoxelGrid::<Dim3>::ball(16, 1.0)?;
 /// let ball = world.add_body(Body::new(grid, &[Material::default()])?);
 /// let queries = Queries::new(&world);
-/// let from_above = queries.ray([0.5, 3.0, 0.5], [0.0, -1.0, 0.0], 10.0, |_| true);
+/// let from_above = queries.ray([0.5, 3.0, 0.5], [0.0, -1.0, 0.0], 10.0, &|_| true);
 /// let found = from_above.expect("the ball is below");
 /// assert!((found.distance - 2.0).abs() < 1e-3 && found.normal[1] > 0.99);
 /// assert!(matches!(found.thing, Thing::Soft { body, material: 1, .. } if body == ball));
@@ -94,7 +96,7 @@ impl<'a, D: Dim> Queries<'a, D> {
         for (id, body) in world.bodies().entries() {
             facets.extend(body.facets().map(|facet| (id, facet)));
         }
-        let bounds = |(_, facet): &(BodyId, Facet)| around_all(corners::<D>(facet).iter().copied());
+        let bounds = |(_, facet): &(BodyId, Facet)| around_all(corners::<D>(facet));
         let boxes: Vec<Bounds> = facets.iter().map(bounds).collect();
         Self {
             world,
@@ -104,94 +106,78 @@ impl<'a, D: Dim> Queries<'a, D> {
         }
     }
 
-    /// The first surface that a ray meets, from inside or from outside, no further than `most` [m] from where it begins.
-    /// Nothing when the direction has no length or a number is not finite.
+    /// The first surface that a ray meets, from inside or from outside, no further than `most` [m] from where it begins,
+    /// which may be infinite. Nothing when the direction has no length, another number is not finite, or `most` is
+    /// negative.
     #[inline(never)]
     pub fn ray(
         &self,
         from: Vector,
         direction: Vector,
         most: f32,
-        counts: impl Fn(Thing) -> bool,
+        counts: Counts<'_>,
     ) -> Option<Found> {
         let (from, direction) = (flat::<D>(from), flat::<D>(direction));
-        let direction = scaled(direction, 1.0 / length(direction));
-        if !direction.iter().chain(&from).all(|k| k.is_finite()) {
+        let long = direction.map(f64::from);
+        let direction = scaled(long, 1.0 / dot(long, long).sqrt()).map(|k| k as f32);
+        if !is_finite(direction) || !is_finite(from) {
             return None;
         }
-        let mut best: Option<Found> = None;
+        let mut best = Best::within(most)?;
         for (id, rigid) in self.world.rigids().entries() {
-            let thing = Thing::Rigid(id);
-            let least = best.map_or(most, |found| found.distance);
-            if let Some((distance, normal)) = met(rigid.shape(), from, direction, least)
-                && counts(thing)
-            {
-                best = Some(found(thing, from, direction, distance, normal));
-            }
+            let met = rigid.shape().ray(from, direction);
+            let met =
+                met.map(|(distance, normal)| (distance, along(from, direction, distance), normal));
+            best.consider(met, counts, || Thing::Rigid(id));
         }
-        let least = best.map_or(most, |found| found.distance);
         self.surface.search(
-            // Up to there, and not only before.
-            least.next_up(),
+            best.least,
             |bounds| entry(bounds, from, direction),
-            |place| {
-                let (body, facet) = &self.facets[place];
-                let thing = self.thing(*body, facet);
-                match distance_to::<D>(facet, from, direction) {
-                    Some(distance)
-                        if distance <= best.map_or(most, |best| best.distance) && counts(thing) =>
-                    {
-                        best = Some(found(thing, from, direction, distance, facet.normal));
-                        distance
-                    }
-                    _ => f32::INFINITY,
-                }
+            |index| {
+                let (body, facet) = &self.facets[index];
+                let distance = distance_to::<D>(facet, from, direction);
+                let met = distance.map(|far| (far, along(from, direction, far), facet.normal));
+                best.consider(met, counts, || self.thing(*body, facet))
             },
         );
-        best
+        best.found
     }
 
-    /// The place on any surface that is nearest to `at` [m], from inside or from outside, no further than `most` [m].
-    /// Nothing when a number is not finite.
+    /// The place on any surface that is nearest to `at` [m], from inside or from outside, no further than `most` [m], which
+    /// may be infinite. Nothing when another number is not finite, or `most` is negative.
     #[inline(never)]
-    pub fn nearest(&self, at: Vector, most: f32, counts: impl Fn(Thing) -> bool) -> Option<Found> {
+    pub fn nearest(&self, at: Vector, most: f32, counts: Counts<'_>) -> Option<Found> {
         let at = flat::<D>(at);
-        let mut best: Option<Found> = None;
+        if !is_finite(at) {
+            return None;
+        }
+        let mut best = Best::within(most)?;
         for (id, rigid) in self.world.rigids().entries() {
             let (gap, normal) = rigid.shape().distance(at);
-            let (thing, distance) = (Thing::Rigid(id), gap.abs());
-            if distance <= best.map_or(most, |best| best.distance) && counts(thing) {
-                best = Some(found(thing, at, normal, -gap, normal));
-            }
+            let met = (gap.abs(), along(at, normal, -gap), normal);
+            best.consider(Some(met), counts, || Thing::Rigid(id));
         }
-        let least = best.map_or(most, |found| found.distance);
         self.surface.search(
-            least.next_up(),
+            best.least,
             |bounds| distance_from(bounds, at),
-            |place| {
-                let (body, facet) = &self.facets[place];
+            |index| {
+                let (body, facet) = &self.facets[index];
                 let nearest = nearest_on::<D>(facet, at);
-                let distance = length(minus(nearest, at));
-                let thing = self.thing(*body, facet);
-                if distance > best.map_or(most, |best| best.distance) || !counts(thing) {
-                    return f32::INFINITY;
-                }
-                best = Some(Found {
-                    thing,
-                    at: nearest,
-                    normal: facet.normal,
-                    distance,
-                });
-                distance
+                let met = (length(minus(nearest, at)), nearest, facet.normal);
+                best.consider(Some(met), counts, || self.thing(*body, facet))
             },
         );
-        best
+        best.found
     }
 
-    /// All that is at a place [m]: things that are forced into each other may be more than one.
+    /// All that is at a place [m]: things that are forced into each other may be more than one. Nothing where a number is
+    /// not finite.
     #[inline(never)]
     pub fn at(&self, at: Vector) -> Vec<Thing> {
         let at = flat::<D>(at);
+        if !is_finite(at) {
+            return Vec::new();
+        }
         let rigids = self.world.rigids().entries();
         let rigids = rigids.filter(|(_, rigid)| rigid.shape().distance(at).0 <= 0.0);
         let mut things: Vec<Thing> = rigids.map(|(id, _)| Thing::Rigid(id)).collect();
@@ -217,13 +203,13 @@ impl<'a, D: Dim> Queries<'a, D> {
         things
     }
 
-    /// All that overlaps a shape: what is rigid, and each piece whose surface or middle is in it, or that it is in, with
-    /// one of its elements.
+    /// All that overlaps a shape: what is rigid, and each piece whose surface reaches into it or that has it all inside,
+    /// with one of its elements.
     #[inline(never)]
     pub fn overlapping(&self, shape: &Shape) -> Vec<Thing> {
         let shape = shape.seen_in::<D>();
         let rigids = self.world.rigids().entries();
-        let overlaps = |(_, rigid): &(RigidId, &Rigid)| rigid.shape().gap(&shape).0 <= 0.0;
+        let overlaps = |(_, rigid): &(RigidId, &Rigid)| overlap(rigid.shape(), &shape);
         let rigids = rigids.filter(overlaps);
         let mut things: BTreeSet<Thing> = rigids.map(|(id, _)| Thing::Rigid(id)).collect();
         self.surface.search(
@@ -301,13 +287,54 @@ fn soft<D: Dim>(id: BodyId, body: &Body<D>, element: ElementId) -> Thing {
     }
 }
 
-fn found(thing: Thing, from: Vector, direction: Vector, far: f32, normal: Vector) -> Found {
-    Found {
-        thing,
-        at: plus(from, scaled(direction, far)),
-        normal,
-        distance: far.abs(),
+/// The nearest that was found so far.
+struct Best {
+    found: Option<Found>,
+    /// What is nearer than this counts.
+    least: f32,
+}
+
+impl Best {
+    /// Nothing yet; nothing can be found within what is negative or not a number.
+    fn within(most: f32) -> Option<Self> {
+        let found = None;
+        // Up to there, and not only before.
+        let least = most.next_up();
+        (most >= 0.0).then_some(Self { found, least })
     }
+
+    /// Takes up what is nearer and counts: its distance, place and normal. Returns the distance if it is taken.
+    fn consider(
+        &mut self,
+        met: Option<(f32, Vector, Vector)>,
+        counts: Counts<'_>,
+        thing: impl FnOnce() -> Thing,
+    ) -> f32 {
+        if let Some((distance, at, normal)) = met
+            && distance < self.least
+        {
+            let thing = thing();
+            if counts(thing) {
+                self.least = distance;
+                self.found = Some(Found {
+                    thing,
+                    at,
+                    normal,
+                    distance,
+                });
+                return distance;
+            }
+        }
+        f32::INFINITY
+    }
+}
+
+fn along(from: Vector, direction: Vector, far: f32) -> Vector {
+    plus(from, scaled(direction, far))
+}
+
+fn is_finite(vector: Vector) -> bool {
+    vector.iter().all(|k| k.is_finite())
 }
 
 /// As a world of `D` sees it: in the plane third coordinates do not count.
@@ -317,8 +344,8 @@ fn flat<D: Dim>(mut vector: Vector) -> Vector {
 }
 
 /// The corners of a bare face.
-fn corners<D: Dim>(facet: &Facet) -> &[Vector] {
-    &facet.corners[..D::CORNERS / 2]
+fn corners<D: Dim>(facet: &Facet) -> impl Iterator<Item = Vector> {
+    facet.corners.into_iter().take(D::CORNERS / 2)
 }
 
 /// A quad as two triangles.
@@ -351,36 +378,52 @@ fn nearest_on<D: Dim>(facet: &Facet, at: Vector) -> Vector {
     }
 }
 
-/// Whether a bare face reaches into a shape. Followed down the distance from its middle to the shape, which is convex.
+/// Whether a bare face reaches into a shape: the least distance of its points is narrowed down, which is exact, as
+/// distances from something convex have one valley.
 fn is_near<D: Dim>(facet: &Facet, shape: &Shape) -> bool {
-    let all = corners::<D>(facet);
-    let mut at = scaled(
-        all.iter().copied().fold([0.0; 3], plus),
-        1.0 / all.len() as f32,
-    );
-    for _ in 0..8 {
-        let (distance, normal) = shape.distance(at);
-        if distance <= 0.0 {
+    let gap = |from: Vector, to: Vector| {
+        let radius = 0.0;
+        Shape::Capsule { from, to, radius }.gap(shape).0
+    };
+    let [a, b, ..] = facet.corners;
+    if D::N == 2 {
+        return gap(a, b) <= 0.0;
+    }
+    triangles(facet.corners).into_iter().any(|[a, b, c]| {
+        let across = |share: f32| {
+            let end = |to: Vector| plus(a, scaled(minus(to, a), share));
+            gap(end(b), end(c))
+        };
+        let (mut low, mut high) = (0.0f32, 1.0f32);
+        if across(low) <= 0.0 || across(high) <= 0.0 {
             return true;
         }
-        at = nearest_on::<D>(facet, minus(at, scaled(normal, distance)));
-    }
-    all.iter().any(|&corner| shape.distance(corner).0 <= 0.0)
+        for _ in 0..NARROWINGS {
+            let third = (high - low) / 3.0;
+            let [left, right] = [low + third, high - third];
+            let gaps = [across(left), across(right)];
+            if gaps[0] <= 0.0 || gaps[1] <= 0.0 {
+                return true;
+            }
+            match gaps[0] > gaps[1] {
+                true => low = left,
+                false => high = right,
+            }
+        }
+        false
+    })
 }
 
-/// How far along a ray, whose direction is of length 1, it meets the surface of a shape [m], and the normal there: it
-/// goes on by as much as nothing can be nearer.
-fn met(shape: &Shape, from: Vector, direction: Vector, most: f32) -> Option<(f32, Vector)> {
-    let mut far = 0.0;
-    for _ in 0..STEPS {
-        let (gap, normal) = shape.distance(plus(from, scaled(direction, far)));
-        if gap.abs() <= MET {
-            return Some((far, normal));
-        }
-        far += gap.abs();
-        if far > most {
-            return None;
-        }
+/// Whether two shapes overlap; half-spaces do unless they face each other with something in between.
+fn overlap(a: &Shape, b: &Shape) -> bool {
+    match (*a, *b) {
+        (
+            Shape::HalfSpace { normal, offset },
+            Shape::HalfSpace {
+                normal: other,
+                offset: beyond,
+            },
+        ) => dot(normal, other) > -1.0 + 1e-6 || offset + beyond >= 0.0,
+        _ => a.gap(b).0 <= 0.0,
     }
-    None
 }

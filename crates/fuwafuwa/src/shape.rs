@@ -4,6 +4,7 @@
 //! ball is a disc and a capsule a bar with round ends.
 
 mod between;
+mod ray;
 
 use crate::dim::Dim;
 use crate::vector::{dot, length, minus, plus, scaled};

@@ -112,6 +112,11 @@ impl<D: Dim> Blocks<D> {
         }
     }
 
+    /// By which law forces are computed.
+    pub fn law(&self) -> Law {
+        self.law
+    }
+
     /// Other stiffnesses for the materials, in their order.
     pub fn set_elasticities(&mut self, elasticities: &[Elasticity]) {
         self.moduli = moduli::<D>(elasticities);

@@ -37,7 +37,10 @@ fn places<D: Dim>(body: &Body<D>) -> Vec<Vector> {
 /// How far two bodies of the same nodes lie apart at most [m].
 fn apart<D: Dim>(a: &Body<D>, b: &Body<D>) -> f32 {
     let both = places(a).into_iter().zip(places(b));
-    let gaps = both.map(|(a, b)| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f32>().sqrt());
+    let gaps = both.map(|(a, b)| {
+        let squared = (0..3).map(|k| (a[k] - b[k]) * (a[k] - b[k]));
+        squared.sum::<f32>().sqrt()
+    });
     gaps.fold(0.0, f32::max)
 }
 
@@ -185,21 +188,66 @@ fn check_pushed<D: Dim>() {
     let impulse = [3.0, -1.0, 0.0];
     for radius in [0.0, 0.1, 10.0] {
         let before = world.bodies()[id].momentum();
-        // Above its middle: what is not spread over all of it turns it clockwise.
         world
             .apply_impulse(id, [0.5, 1.0, 0.0], radius, impulse)
             .unwrap();
         let gained = world.bodies()[id].momentum().less(before);
         assert!((0..2).all(|k| (gained.linear[k] - f64::from(impulse[k])).abs() < 1e-3));
     }
-    let before = world.bodies()[id].momentum();
     let mass = world.bodies()[id].total_mass();
-    world
-        .add_velocity(id, [0.0, 2.0, 0.0], [9.0, 9.0, 1.0])
-        .unwrap();
-    let gained = world.bodies()[id].momentum().less(before);
-    assert!((gained.linear[1] / mass - 2.0).abs() < 1e-3, "{gained:?}");
-    assert!(gained.angular[2] > 0.0);
+    let mut gained = |angular| {
+        let before = world.bodies()[id].momentum();
+        let linear = [0.0, 2.0, 0.0];
+        world.add_velocity(id, linear, angular).unwrap();
+        world.bodies()[id].momentum().less(before)
+    };
+    let straight = gained([0.0; 3]);
+    assert!((straight.linear[1] / mass - 2.0).abs() < 1e-3);
+    let turning = gained([0.0, 0.0, 3.0]);
+    assert!((turning.linear[1] / mass - 2.0).abs() < 1e-3);
+    // A disc about its middle has half of m r², a ball two fifths of it.
+    let share = if D::N == 2 { 0.5 } else { 0.4 };
+    let inertia = share * mass * 0.25;
+    let spin = turning.less(straight).angular[2] / inertia;
+    assert!((spin - 3.0).abs() < 0.6, "{spin}");
+}
+
+/// One that was slow for almost long enough to sleep does not when the world begins to pull, though that is slow too.
+#[test]
+fn who_is_about_to_sleep_is_kept_awake() {
+    let gravity = [0.0, -1.0, 0.0];
+    let pulls: [fn(&mut World<Dim2>, BodyId); 3] = [
+        |world, _| {
+            let gravity = [0.0, -1.0, 0.0];
+            let settings = Settings {
+                gravity,
+                ..WEIGHTLESS
+            };
+            world.set_settings(settings).unwrap();
+        },
+        |world, body| world.set_gravity_scale(body, 0.1).unwrap(),
+        |world, body| world.set_gravity_scale(body, -0.1).unwrap(),
+    ];
+    for (index, pull) in pulls.into_iter().enumerate() {
+        let gravity = [0.0, if index == 0 { 0.0 } else { 10.0 * gravity[1] }, 0.0];
+        let (mut world, body) = with(
+            Settings {
+                gravity,
+                ..WEIGHTLESS
+            },
+            ball(8),
+        );
+        world.set_gravity_scale(body, 0.0).unwrap();
+        (0..29).for_each(|_| _ = world.step());
+        if index == 0 {
+            world.set_gravity_scale(body, 1.0).unwrap();
+            (0..29).for_each(|_| _ = world.step());
+        }
+        pull(&mut world, body);
+        (0..60).for_each(|_| _ = world.step());
+        let speed = world.bodies()[body].momentum().linear[1] / world.bodies()[body].total_mass();
+        assert!(speed.abs() > 0.9, "{index}: {speed}");
+    }
 }
 
 #[test]

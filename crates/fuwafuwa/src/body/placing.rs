@@ -19,7 +19,7 @@ impl<D: Dim> Body<D> {
     }
 
     /// The same body, turned about a place [m]: nothing in it is strained by that, and nothing tears. In the plane only
-    /// turns about the third axis count.
+    /// turns about the third axis count. What is then not finite is quarantined in its first tick.
     ///
     /// ```
     /// use fuwafuwa::{Body, Dim2, Material, Rotation, VoxelGrid};
@@ -67,6 +67,7 @@ impl<D: Dim> Body<D> {
 
     pub(crate) fn turn(&mut self, rotation: Rotation, about: Vector) {
         let rotation = rotation.seen_in::<D>();
+        let about = flat::<D>(about);
         let State {
             position,
             velocity,
@@ -105,6 +106,7 @@ impl<D: Dim> Body<D> {
     pub(crate) fn add_impulse(&mut self, at: Vector, radius: f32, impulse: Vector) {
         let nodes = self.truth.mesh.nodes().map(|(id, _)| id);
         let free = nodes.filter(|&id| self.state.inverse_mass[id] > 0.0);
+        let at = flat::<D>(at);
         let squared = |id: NodeId| {
             let apart = minus(three(self.state.position[id]), at);
             apart.iter().map(|k| k * k).sum::<f32>()
@@ -121,6 +123,12 @@ impl<D: Dim> Body<D> {
             add::<D>(&mut self.state.velocity[id], impulse.map(|k| k / mass));
         }
     }
+}
+
+/// In the plane third coordinates do not count.
+fn flat<D: Dim>(mut vector: Vector) -> Vector {
+    vector[D::N..].fill(0.0);
+    vector
 }
 
 fn add<D: Dim>(row: &mut Row, vector: Vector) {

@@ -2,7 +2,7 @@
 //! it was written, not who wrote it.
 
 use super::Body;
-use super::state::State;
+use super::state::{MOST_GRAVITY, State};
 use super::truth::Truth;
 use crate::dim::Dim;
 use crate::ids::{NodeId, PieceId, Table};
@@ -27,7 +27,8 @@ impl<D: Dim> Body<D> {
             self.state.blocks.is_sound(&self.truth.mesh),
             "states of elements",
         )?;
-        ensure(self.state.gravity_scale.is_finite(), "pull")?;
+        let pull = self.state.gravity_scale;
+        ensure(pull.abs() <= MOST_GRAVITY, "pull of gravity")?;
         let points = self.state.cooldowns.points();
         let is_known = { points }.all(|at| self.truth.sharing.contains(at));
         ensure(is_known, "points that cool down")?;

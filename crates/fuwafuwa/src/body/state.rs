@@ -5,6 +5,9 @@ use crate::dim::Dim;
 use crate::ids::{NodeId, Table};
 use crate::solve::{Blocks, Row};
 
+/// How many times as strongly as on others gravity may pull on a body.
+pub const MOST_GRAVITY: f32 = 100.0;
+
 /// What changes in a body from substep to substep, and what the next one goes on from.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

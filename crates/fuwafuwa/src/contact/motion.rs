@@ -119,7 +119,7 @@ impl Motion {
         let own = self.rows[row.node];
         let other = row
             .hand
-            .map_or([0.0; 4], |hand| as_row(rigids.at(hand).velocity()));
+            .map_or([0.0; 4], |(hand, _)| as_row(rigids.at(hand).velocity()));
         with_fourth(minus(own, other), 0.0)
     }
 
@@ -134,7 +134,7 @@ impl Motion {
     ) {
         let own = &mut self.rows[row.node];
         *own = plus(*own, scaled(impulse, own[3]));
-        if let Some(hand) = row.hand {
+        if let Some((hand, _)) = row.hand {
             let hand = rigids.at_mut(hand);
             hand.push(three(scaled(impulse, -1.0)), duration);
         }

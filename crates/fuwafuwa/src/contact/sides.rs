@@ -15,10 +15,8 @@ id! {
 pub struct NodeContact {
     pub contact: Contact,
     pub node: NodeRow,
-    /// The hand, if it is one that the node touches.
-    pub hand: Option<RigidSlot>,
-    /// From the position of what it touches to it [m].
-    pub lever: Vector,
+    /// The hand, if it is one that the node touches, and how far from its position the node is [m].
+    pub hand: Option<(RigidSlot, Vector)>,
 }
 
 /// Two spheres against each other.

@@ -6,7 +6,7 @@ use crate::vector::{cross, dot, minus, plus, scaled};
 
 /// Rounds of Newton that find a place in a block that is not turned inside out.
 const ROUNDS: usize = 12;
-/// How far beyond its ends a block may reach, in terms of its width: rounding leaves no gap between neighbours.
+/// How far beyond its ends something may reach, in terms of its width: rounding leaves no gap between neighbours.
 const LITTLE: f32 = 1e-4;
 
 /// How far along a ray it crosses a segment of the plane, in lengths of its direction.
@@ -16,7 +16,8 @@ pub fn ray_meets_segment(from: Vector, direction: Vector, [a, b]: [Vector; 2]) -
     let across = flat(direction, along);
     let (far, share) = (flat(reach, along) / across, flat(reach, direction) / across);
     // Of lines side by side both are infinite, or not a number.
-    ((0.0..=1.0).contains(&share) && far >= 0.0 && far.is_finite()).then_some(far)
+    let is_in = (-LITTLE..=1.0 + LITTLE).contains(&share);
+    (is_in && far >= 0.0 && far.is_finite()).then_some(far)
 }
 
 /// How far along a ray it crosses a triangle, in lengths of its direction [Möller 1997].
@@ -28,7 +29,7 @@ pub fn ray_meets_triangle(from: Vector, direction: Vector, [a, b, c]: [Vector; 3
     let beside = cross(reach, one);
     let v = dot(direction, beside) / determinant;
     let far = dot(two, beside) / determinant;
-    let is_in = u >= 0.0 && v >= 0.0 && u + v <= 1.0;
+    let is_in = u >= -LITTLE && v >= -LITTLE && u + v <= 1.0 + LITTLE;
     (is_in && far >= 0.0 && far.is_finite()).then_some(far)
 }
 
@@ -65,11 +66,13 @@ pub fn nearest_on_triangle(at: Vector, [a, b, c]: [Vector; 3]) -> Vector {
 /// Whether a place is in a block whose corners are given in the order of [`corner`]: whether some shares of its
 /// widths, from 0 to 1, lead there.
 pub fn is_in_block<D: Dim>(at: Vector, corners: &[Vector]) -> bool {
+    // As seen from there, which may be far from the origin.
+    let corners: Vec<Vector> = corners.iter().map(|&corner| minus(corner, at)).collect();
     let mut shares = [0.5f32; 3];
     shares[D::N..].fill(0.0);
     for _ in 0..ROUNDS {
-        let (place, slopes) = in_block::<D>(shares, corners);
-        let Some(step) = solved(slopes, minus(at, place)) else {
+        let (place, slopes) = in_block::<D>(shares, &corners);
+        let Some(step) = solved(slopes, scaled(place, -1.0)) else {
             return false;
         };
         shares = plus(shares, step);
@@ -77,9 +80,8 @@ pub fn is_in_block<D: Dim>(at: Vector, corners: &[Vector]) -> bool {
             return false;
         }
     }
-    let (place, _) = in_block::<D>(shares, corners);
+    let (miss, _) = in_block::<D>(shares, &corners);
     let width = minus(corners[D::CORNERS - 1], corners[0]);
-    let miss = minus(at, place);
     let is_there = dot(miss, miss) <= LITTLE * LITTLE * dot(width, width);
     is_there
         && shares[..D::N]

@@ -1,6 +1,7 @@
 //! Boxes in boxes, so that what is near a place or on a ray is found without looking at all.
 
 use crate::shape::Vector;
+use crate::vector::length;
 use std::ops::Range;
 
 /// The low and the high corner of a box [m].
@@ -8,6 +9,9 @@ pub type Bounds = [Vector; 2];
 
 /// Most boxes that are not parted further.
 const LEAF: usize = 4;
+
+/// By how much a box reaches beyond what is in it, in terms of its width.
+const LITTLE: f32 = 1e-3;
 
 /// A tree over boxes that are known by their place in a list.
 #[derive(Clone, Debug, Default)]
@@ -112,22 +116,20 @@ pub fn around([a, b]: Bounds, [c, d]: Bounds) -> Bounds {
     [low, high]
 }
 
-/// The box around places.
-pub fn around_all(places: impl IntoIterator<Item = Vector>) -> Bounds {
+/// The box around points, with a little more, so that rounding leaves no gap.
+pub fn around_all(points: impl IntoIterator<Item = Vector>) -> Bounds {
     let nothing = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
-    places
-        .into_iter()
-        .fold(nothing, |bounds, at| around(bounds, [at, at]))
+    let points = points.into_iter();
+    let [low, high] = points.fold(nothing, |bounds, at| around(bounds, [at, at]));
+    let widths = [0, 1, 2].map(|axis: usize| high[axis] - low[axis]);
+    let little = LITTLE * widths.into_iter().fold(0.0, f32::max);
+    [low.map(|k| k - little), high.map(|k| k + little)]
 }
 
 /// How far a place is from a box [m]; 0 inside.
 pub fn distance_from([low, high]: &Bounds, at: Vector) -> f32 {
     let beyond = |axis: usize| (low[axis] - at[axis]).max(at[axis] - high[axis]).max(0.0);
-    [0, 1, 2]
-        .map(|axis| beyond(axis).powi(2))
-        .iter()
-        .sum::<f32>()
-        .sqrt()
+    length([0, 1, 2].map(beyond))
 }
 
 /// How far along a ray a box begins, in lengths of its direction; infinite where the ray misses it.

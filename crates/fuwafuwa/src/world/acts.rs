@@ -1,18 +1,16 @@
 //! What is done to bodies from outside: moved, turned, thrown, pushed, put to sleep.
 
 use super::{Refused, Settings, TICK, World};
-use crate::body::Body;
+use crate::body::{Body, MOST_GRAVITY};
 use crate::contact::Hit;
 use crate::dim::Dim;
+use crate::event::Event;
 use crate::handle::BodyId;
 use crate::ids::{PieceId, Table};
 use crate::rigid::FARTHEST;
 use crate::rotation::Rotation;
 use crate::shape::Vector;
 use crate::touch::leaning_on_body;
-
-/// How much stronger than on others gravity may pull on a body.
-const MOST_GRAVITY: f32 = 100.0;
 
 impl<D: Dim> World<D> {
     /// Moves a body `by` [m] at once, through whatever is in between. It and what leant on it wake; who follows it by a
@@ -55,8 +53,7 @@ impl<D: Dim> World<D> {
     ) -> Result<(), Refused> {
         let linear = within("velocity", linear, FARTHEST, "at most 1e6 m/s on each axis")?;
         let angular = within("spin", angular, FARTHEST, "at most 1e6 rad/s on each axis")?;
-        self.bodies.get(body)?;
-        self.wake_body(body);
+        self.wake_up(body)?;
         self.bodies.get_mut(body)?.add_velocity(linear, angular);
         Ok(())
     }
@@ -90,8 +87,7 @@ impl<D: Dim> World<D> {
         let at = within("place", at, FARTHEST, "within 1e6 m of the origin")?;
         let impulse = within("impulse", impulse, FARTHEST, "at most 1e6 N s on each axis")?;
         require((0.0..=FARTHEST).contains(&radius), "radius", "0 to 1e6 m")?;
-        self.bodies.get(body)?;
-        self.wake_body(body);
+        self.wake_up(body)?;
         self.bodies.get_mut(body)?.add_impulse(at, radius, impulse);
         Ok(())
     }
@@ -103,13 +99,12 @@ impl<D: Dim> World<D> {
     #[inline(never)]
     pub fn set_gravity_scale(&mut self, body: BodyId, scale: f32) -> Result<(), Refused> {
         require(scale.abs() <= MOST_GRAVITY, "gravity scale", "-100 to 100")?;
-        self.bodies.get(body)?;
-        self.wake_body(body);
+        self.wake_up(body)?;
         self.bodies.get_mut(body)?.state.gravity_scale = scale;
         Ok(())
     }
 
-    /// Wakes a body, and keeps it awake for half a second at the least.
+    /// Wakes a body, and keeps it awake for half a second at the least, however slow it is.
     ///
     /// # Errors
     /// [`Refused::Gone`] when there is no such body.
@@ -117,11 +112,12 @@ impl<D: Dim> World<D> {
     pub fn wake_up(&mut self, body: BodyId) -> Result<(), Refused> {
         self.bodies.get(body)?;
         self.wake_body(body);
+        self.keep_awake(body);
         Ok(())
     }
 
     /// Puts a body to sleep where it is, at rest: it costs next to nothing, and stands like a wall until something moves
-    /// against it.
+    /// against it. Nodes that are [held](Body::hold) stop too.
     ///
     /// # Errors
     /// [`Refused::Gone`] when there is no such body.
@@ -132,6 +128,9 @@ impl<D: Dim> World<D> {
         let awake: Table<PieceId, bool> = awake.collect();
         sleeper.set_asleep(&awake, true);
         sleeper.refresh_awake();
+        let fallen = awake.ids().filter(|&piece| awake[piece]);
+        let fallen = fallen.map(|piece| Event::FellAsleep { body, piece });
+        self.events.extend(fallen);
         Ok(())
     }
 
@@ -145,11 +144,15 @@ impl<D: Dim> World<D> {
         settings.check()?;
         self.settings = settings;
         let shortest = f64::from(TICK) / f64::from(settings.most_substeps);
-        let all: Vec<BodyId> = self.bodies.ids().collect();
-        for body in all {
-            self.bodies.get_mut(body)?.scale_stiffness_for(shortest);
-            self.wake_body(body);
+        let mut all: Vec<Hit> = Vec::new();
+        for (slot, body) in self.bodies.by_slot_mut() {
+            body.scale_stiffness_for(shortest);
+            let pieces = body.truth.pieces.list.ids();
+            all.extend(pieces.map(|piece| (slot, piece)));
         }
+        self.wake(&all);
+        let all: Vec<BodyId> = self.bodies.ids().collect();
+        all.into_iter().for_each(|body| self.keep_awake(body));
         Ok(())
     }
 
@@ -161,9 +164,17 @@ impl<D: Dim> World<D> {
         let leaning: Vec<Hit> = leaning.into_iter().filter(|hit| hit.0 != own).collect();
         self.nearby.remove_body(own);
         change(self.bodies.get_mut(id)?);
-        self.wake_body(id);
+        self.wake_up(id)?;
         self.wake(&leaning);
         Ok(())
+    }
+
+    /// Counts anew for how long a body has been slow.
+    fn keep_awake(&mut self, body: BodyId) {
+        if let Ok(body) = self.bodies.get_mut(body) {
+            let pieces = body.truth.pieces.list.iter_mut();
+            pieces.for_each(|piece| piece.still = 0.0);
+        }
     }
 }
 

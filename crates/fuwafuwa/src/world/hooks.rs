@@ -52,7 +52,8 @@ impl<'a> Substep<'a> {
 }
 
 /// A field that pulls towards a place [m], or away from it where `strength` [m/s²] is negative: with that strength up to
-/// `reach` [m], and with the square of the distance less beyond; within a hundredth of the reach it fades to nothing.
+/// `reach` [m], and with the square of the distance less beyond; within a hundredth of the reach it fades to nothing. Where
+/// the reach is not positive and finite it pulls nothing.
 ///
 /// ```
 /// use fuwafuwa::field_around;
@@ -65,10 +66,10 @@ pub fn field_around(centre: Vector, strength: f32, reach: f32) -> impl Fn(Vector
     move |at| {
         let apart = [0, 1, 2].map(|axis: usize| centre[axis] - at[axis]);
         let distance = apart.iter().map(|k| k * k).sum::<f32>().sqrt();
-        let far = (reach / distance.max(reach)).powi(2);
+        let far = reach / distance.max(reach);
         let near = (100.0 * distance / reach).min(1.0);
-        let share = match distance > 0.0 {
-            true => strength * far * near / distance,
+        let share = match distance > 0.0 && reach > 0.0 && reach.is_finite() {
+            true => strength * far * far * near / distance,
             false => 0.0,
         };
         apart.map(|k| k * share)

@@ -1,0 +1,297 @@
+//! What researchers measure in a body: how elements are strained and stressed, how far nodes have given way, and where the
+//! energy of a piece is.
+
+use crate::body::Body;
+use crate::dim::Dim;
+use crate::ids::{ElementId, NodeId};
+use crate::law::{
+    Elasticity, IDENTITY, Law, Matrix, SQUASH_LIMIT, cofactor, deformation_of, endo_offsets,
+    hourglass, rotation_of, stress, volume_of,
+};
+use crate::shape::Vector;
+use crate::stencil::{Stencil, Vector64};
+use crate::vector::{dot, three};
+
+/// How an element is deformed, what that does in it, and the energy that it stores.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct Strained {
+    /// The deformation gradient F, by rows.
+    pub deformation: Matrix,
+    /// Biot's strain, the symmetric part of RᵀF less 1: along the axes of the body at rest, 0.1 where it is stretched by a
+    /// tenth.
+    pub strain: Matrix,
+    /// Cauchy's stress [Pa], along the axes of the world; under [`Law::Endo2004`], which knows of none, 0.
+    pub stress: Matrix,
+    /// Elastic energy [J]; in the plane of a metre of depth.
+    pub energy: f64,
+}
+
+/// The state of an element of width `size` [m] whose nodes are at `positions` [m]. The forces of [`crate::law::forces`] are
+/// the slope of its energy.
+///
+/// # Panics
+/// When the number of positions is not the number of nodes of the stencil.
+#[inline(never)]
+pub fn strained<D: Dim>(
+    law: Law,
+    elasticity: Elasticity,
+    stencil: &Stencil<D>,
+    size: f64,
+    positions: &[Vector64],
+) -> Strained {
+    assert_eq!(positions.len(), stencil.slots.len(), "one position a node");
+    let (deformation, centre) = deformation_of(stencil, size, positions);
+    let rotation = rotation_of(&deformation);
+    let column = |m: &Matrix, k: usize| [m[0][k], m[1][k], m[2][k]];
+    let mut stretch = [[0.0; 3]; 3];
+    for i in 0..3 {
+        for j in 0..3 {
+            stretch[i][j] = dot(column(&rotation, i), column(&deformation, j));
+        }
+    }
+    let mut strain = IDENTITY;
+    for i in 0..3 {
+        for j in 0..3 {
+            strain[i][j] = 0.5 * (stretch[i][j] + stretch[j][i]) - IDENTITY[i][j];
+        }
+    }
+    if law == Law::Endo2004 {
+        let (stiffness, apart) = endo_offsets(elasticity, stencil, size, positions);
+        let energy = apart.iter().map(|&d| 0.5 * stiffness * dot(d, d)).sum();
+        return Strained {
+            deformation,
+            strain,
+            energy,
+            ..Strained::default()
+        };
+    }
+    let squash = dot(deformation[0], cofactor(&deformation)[0]);
+    let nominal = stress(elasticity, &deformation);
+    let mut cauchy = [[0.0; 3]; 3];
+    for i in 0..3 {
+        for j in 0..3 {
+            cauchy[i][j] = dot(nominal[i], deformation[j]) / squash;
+        }
+    }
+    let squared: f64 = strain.iter().map(|&row| dot(row, row)).sum();
+    let spread = strain[0][0] + strain[1][1] + strain[2][2];
+    let below = (SQUASH_LIMIT - squash).max(0.0);
+    let density = elasticity.shear_modulus() * squared
+        + 0.5 * elasticity.lame() * spread * spread
+        + 0.5 * elasticity.young * below * below;
+    let half = 0.5 * size;
+    let (stiffness, hourglass) =
+        hourglass(elasticity, stencil, size, positions, &deformation, centre);
+    let weights = stencil.volumes.iter().zip(&hourglass);
+    let swings = weights.map(|(&weight, &h)| dot(h, h) / weight);
+    let energy = density * volume_of(stencil, half) + 0.5 * stiffness * swings.sum::<f64>();
+    Strained {
+        deformation,
+        strain,
+        stress: cauchy,
+        energy,
+    }
+}
+
+/// The energy of a piece [J]; in the plane of a metre of depth. What damping, friction and cracks took is gone.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct Energy {
+    /// Of motion.
+    pub kinetic: f64,
+    /// Of elastic strain.
+    pub elastic: f64,
+    /// Of height in the gravity that it was asked with, 0 at the origin.
+    pub gravitational: f64,
+}
+
+impl Energy {
+    /// All of it [J].
+    pub fn total(self) -> f64 {
+        self.kinetic + self.elastic + self.gravitational
+    }
+}
+
+impl<D: Dim> Body<D> {
+    /// How an element is strained and stressed, and the energy in it, if it is alive: worked out in double precision from
+    /// where its nodes are, with the stiffness that it has (see [`Body::stiffness_scale`]).
+    #[inline(never)]
+    pub fn strained(&self, id: ElementId) -> Option<Strained> {
+        let element = self.truth.mesh.element(id)?;
+        let at = |&node: &NodeId| three(self.state.position[node]).map(f64::from);
+        let positions: Vec<[f64; 3]> = element.nodes.iter().map(at).collect();
+        let mut elasticity = self.material(element).elasticity;
+        elasticity.young *= self.truth.stiffness_scale;
+        let size = f64::from(self.truth.grid.voxel_size()) * f64::from(element.cell.width());
+        let stencil = self.truth.mesh.stencil(element);
+        let law = self.state.blocks.law();
+        Some(strained(law, elasticity, stencil, size, &positions))
+    }
+
+    /// How far a node has given way to what is more than it bears: from 0, not at all, to 1, at which it comes off.
+    ///
+    /// # Panics
+    /// When the id was never used.
+    pub fn damage(&self, node: NodeId) -> f32 {
+        self.state.damage[node]
+    }
+
+    /// The energy of each piece, by number, under `gravity` [m/s²]; of numbers without a piece, none.
+    ///
+    /// ```
+    /// use fuwafuwa::{Body, Dim2, Material, VoxelGrid};
+    ///
+    /// let body = Body::new(VoxelGrid::<Dim2>::ball(8, 1.0)?, &[Material::default()])?;
+    /// let mass = body.total_mass();
+    /// let energy = body.thrown([2.0, 0.0, 0.0]).energies([0.0, -9.81, 0.0])[0];
+    /// assert!((energy.kinetic - 2.0 * mass).abs() < 1e-3 && energy.elastic < 1e-6);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[inline(never)]
+    pub fn energies(&self, gravity: Vector) -> Vec<Energy> {
+        let Self { truth, state, .. } = self;
+        let mut energies = vec![Energy::default(); truth.pieces.list.len()];
+        let pull = f64::from(state.gravity_scale);
+        for (id, _) in truth.mesh.nodes() {
+            let (at, velocity, mass) = self.node_state(id);
+            let [at, velocity, gravity] = [at, velocity, gravity].map(|v| v.map(f64::from));
+            let mass = f64::from(mass);
+            let energy = &mut energies[truth.pieces.of_node(id).index()];
+            energy.kinetic += 0.5 * mass * dot(velocity, velocity);
+            energy.gravitational -= mass * pull * dot(gravity, at);
+        }
+        for (id, _) in truth.mesh.elements() {
+            let strained = self.strained(id).expect("it is alive");
+            energies[truth.pieces.of_element(id).index()].elastic += strained.energy;
+        }
+        energies
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dim::{Dim2, Dim3};
+    use crate::grid::VoxelGrid;
+    use crate::law::forces;
+    use crate::material::Material;
+    use crate::rotation::Rotation;
+
+    /// Moves every node a little, all of them differently.
+    fn crooked<D: Dim>(amount: f32) -> Body<D> {
+        let grid = VoxelGrid::<D>::ball(12, 1.0).unwrap();
+        let mut body = Body::new(grid, &[Material::default()]).unwrap();
+        let nodes: Vec<NodeId> = body.mesh().nodes().map(|(id, _)| id).collect();
+        for id in nodes {
+            let ([x, y, z], velocity, _) = body.node_state(id);
+            let sway = [4.0 * y * y - y, 3.0 * z * x + y, 5.0 * x * y - 2.0 * z];
+            let at =
+                [0, 1, 2].map(|k: usize| [x, y, z][k] * (1.0 - amount) + amount * 0.1 * sway[k]);
+            body.set_node_state(id, at, velocity);
+        }
+        body
+    }
+
+    fn check_slope<D: Dim>(law: Law) {
+        let body = crooked::<D>(0.1);
+        let elasticity = Material::default().elasticity;
+        let size = f64::from(body.grid().voxel_size());
+        for (_, element) in body.mesh().elements().step_by(7) {
+            let stencil = body.mesh().stencil(element);
+            let size = size * f64::from(element.cell.width());
+            let at = |&node: &NodeId| body.node_state(node).0.map(f64::from);
+            let positions: Vec<Vector64> = element.nodes.iter().map(at).collect();
+            let energy =
+                |positions: &[Vector64]| strained(law, elasticity, stencil, size, positions).energy;
+            let forces = forces(law, elasticity, stencil, size, &positions);
+            let most = forces
+                .iter()
+                .flatten()
+                .fold(0.0f64, |most, k| most.max(k.abs()));
+            for node in 0..positions.len() {
+                for axis in 0..D::N {
+                    let step = 1e-5 * size;
+                    let moved = |by: f64| {
+                        let mut moved = positions.clone();
+                        moved[node][axis] += by;
+                        energy(&moved)
+                    };
+                    let slope = (moved(step) - moved(-step)) / (2.0 * step);
+                    let force = forces[node][axis];
+                    assert!(
+                        (slope + force).abs() < 1e-4 * most,
+                        "{law:?}: {slope} {force}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn forces_are_the_slope_of_the_energy() {
+        for law in [Law::PatchExact, Law::Endo2004] {
+            check_slope::<Dim2>(law);
+            check_slope::<Dim3>(law);
+        }
+    }
+
+    /// Drawn out by a twentieth along the first axis, and turned.
+    fn check_stretch<D: Dim>() {
+        let grid = VoxelGrid::<D>::cube(8, 1.0).unwrap();
+        let mut body = Body::new(grid, &[Material::default()]).unwrap();
+        let nodes: Vec<NodeId> = body.mesh().nodes().map(|(id, _)| id).collect();
+        for id in nodes {
+            let ([x, y, z], ..) = body.node_state(id);
+            body.set_node_state(id, [1.05 * x, y, z], [0.0; 3]);
+        }
+        let body = body.rotated(Rotation::in_plane(1.0), [0.0; 3]);
+        let Elasticity { young, poisson } = Material::default().elasticity;
+        let elasticity = Elasticity { young, poisson };
+        let along = (2.0 * elasticity.shear_modulus() + elasticity.lame()) * 0.05;
+        let size = f64::from(body.grid().voxel_size());
+        let voxel = (0..D::N).fold(1.0, |volume, _| volume * size);
+        let volume = voxel * body.grid().solid_count() as f64;
+        let energy = body.energies([0.0; 3])[0].elastic;
+        assert!(
+            (energy / (0.5 * along * 0.05 * volume) - 1.0).abs() < 1e-3,
+            "{energy}"
+        );
+        for (id, _) in body.mesh().elements() {
+            let Strained { strain, stress, .. } = body.strained(id).unwrap();
+            assert!((strain[0][0] - 0.05).abs() < 1e-4 && strain[1][1].abs() < 1e-4);
+            // Along the axis that has turned by one radian; the stretch thins nothing, so areas are as they were.
+            let direction = [libm::cos(1.0), libm::sin(1.0), 0.0];
+            let pulled = stress.map(|row| dot(row, direction));
+            assert!(
+                (dot(pulled, direction) / along - 1.0).abs() < 1e-3,
+                "{stress:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_stretch_is_measured_as_what_it_is() {
+        check_stretch::<Dim2>();
+        check_stretch::<Dim3>();
+    }
+
+    #[test]
+    fn energy_stays_where_nothing_takes_it() {
+        let calm = Material {
+            damping: 0.0,
+            strength: f32::INFINITY,
+            ..Material::default()
+        };
+        let grid = VoxelGrid::<Dim2>::ball(12, 1.0).unwrap();
+        let mut body = Body::new(grid, &[calm]).unwrap().thrown([1.0, 2.0, 0.0]);
+        let gravity = [0.0, -9.81, 0.0];
+        let before = body.energies(gravity)[0];
+        let duration = 1.0 / 960.0;
+        (0..480).for_each(|_| body.advance(duration, gravity));
+        let after = body.energies(gravity)[0];
+        assert!((after.kinetic - before.kinetic).abs() > 1.0);
+        assert!(
+            (after.total() / before.total() - 1.0).abs() < 0.01,
+            "{before:?} {after:?}"
+        );
+    }
+}
