@@ -27,6 +27,8 @@ const ROOM: egui::Vec2 = egui::vec2(900.0, 640.0);
 const TALL_ROOM: egui::Vec2 = egui::vec2(600.0, 760.0);
 /// In so many steps a screen grows from nothing to its usual size.
 const STEPS: f32 = 32.0;
+/// A frame that took longer than this [s] counts as this long at a stand: a machine that was asleep has not waited.
+const LONGEST: f32 = 1.0;
 
 /// Keys that menus understand.
 const OF_MENUS: [Key; 8] = [
@@ -392,6 +394,8 @@ impl eframe::App for App {
             .pass(&mut self.game, &self.presses, &ctx, seconds);
         self.game.pass(seconds);
         if let Some(attendant) = &mut self.attendant {
+            // However slow the frames are, who waits does so for as long as is said.
+            let seconds = ctx.input(|input| input.stable_dt).min(LONGEST);
             attendant.pass(&mut self.game, &ctx, seconds);
         }
         if self.screen_before != self.game.screen() {

@@ -17,6 +17,7 @@ use std::process::ExitCode;
 
 /// Keeps a stand running until staff ends it.
 pub(super) fn keep_running(file: &Path, mute: bool) -> ExitCode {
+    let is_new = !file.exists();
     let text = TextFile(file.into()).read_or(USUAL);
     let config = text.and_then(|text| {
         Config::read(&text).map_err(|error| format!("{}: {error}", file.display()))
@@ -25,6 +26,12 @@ pub(super) fn keep_running(file: &Path, mute: bool) -> ExitCode {
         Ok(config) => config,
         Err(error) => return refused(&error, BAD_USAGE),
     };
+    if is_new {
+        eprintln!(
+            "tamaire: {} was written: it says what the stand is like",
+            file.display()
+        );
+    }
     if !has_display() {
         return refused("there is no display to set a stand up on", 1);
     }

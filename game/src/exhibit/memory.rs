@@ -170,7 +170,7 @@ impl Memory {
         if trouble != self.trouble {
             // The recorder notes what is worth noting once it can.
             if let Some(trouble) = &trouble {
-                eprintln!("tamaire: {trouble}");
+                eprintln!("tamaire: visits are not written down: {trouble}");
             }
             self.trouble = trouble;
         }

@@ -83,6 +83,11 @@ impl Entrance {
         (self.closed_until - now).max(0.0)
     }
 
+    /// Whether the last number was wrong, and none is being entered since.
+    pub fn was_wrong(&self) -> bool {
+        self.wrong > 0 && self.entered.is_empty()
+    }
+
     /// A digit was entered, at a time on the stand's clock [s].
     pub fn enter(&mut self, digit: char, pin: &Pin, now: f64) -> Answer {
         if self.pause(now) > 0.0 {

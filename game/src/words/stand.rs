@@ -15,6 +15,7 @@ pub struct StandWords {
     pub opens: fn(Time) -> String,
     pub rests: &'static str,
     pub door: &'static str,
+    pub wrong: &'static str,
     pub wait: fn(f64) -> String,
     /// What staff can look at.
     pub pages: [&'static str; 3],
@@ -54,6 +55,7 @@ const ENGLISH: StandWords = StandWords {
     opens: |open| format!("We open at {}", open.strftime("%H:%M")),
     rests: "This game takes a rest. Please tell the staff.",
     door: "Staff",
+    wrong: "Not this number",
     wait: |seconds| format!("Wait {seconds:.0} s"),
     pages: ["Today", "Health", "Stand"],
     figures: [
@@ -102,6 +104,7 @@ const JAPANESE: StandWords = StandWords {
     opens: |open| format!("{}に ひらきます", open.strftime("%H:%M")),
     rests: "いま おやすみちゅうです。かかりの人に しらせてください。",
     door: "スタッフ",
+    wrong: "ばんごうが ちがいます",
     wait: |seconds| format!("あと{seconds:.0}秒 まってください"),
     pages: ["今日", "状態", "スタンド"],
     figures: [

@@ -23,6 +23,7 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
     let entered = "●".repeat(stand.entrance.entered.len());
     let shown = match pause > 0.0 {
         true => (said.wait)(pause.ceil()),
+        false if stand.entrance.was_wrong() => said.wrong.into(),
         false => entered,
     };
     let typed = typed_digit(ui);

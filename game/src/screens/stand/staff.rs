@@ -74,7 +74,7 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, shown: Page, ui: &mut Ui)
             });
             ui.add_space(GAP);
             if let Some(answer) = &stand.answer {
-                ui.label(RichText::new(answer).size(19.0).color(theme.accent));
+                ui.label(RichText::new(answer).size(19.0).color(theme.ink));
                 ui.add_space(GAP);
             }
             card(ui, &theme, |ui| {
