@@ -8,8 +8,8 @@ use crate::dim::Dim;
 use crate::handle::{BodyId, RigidId};
 use crate::ids::{ElementId, PieceId};
 use crate::rigid::Rigid;
-use crate::shape::{Shape, Vector};
-use crate::vector::{dot, length, minus, plus, scaled};
+use crate::shape::{Shape, Vector, flat};
+use crate::vector::{dot, is_finite, length, minus, plus, scaled};
 use crate::view::Facet;
 use crate::world::World;
 use figure::{
@@ -229,10 +229,7 @@ impl<'a, D: Dim> Queries<'a, D> {
         );
         // One that is all inside a piece is near no face of it.
         let [low, high] = shape.bounds();
-        let middle = scaled(plus(low, high), 0.5);
-        if middle.iter().all(|k| k.is_finite()) {
-            things.extend(self.at(middle));
-        }
+        things.extend(self.at(scaled(plus(low, high), 0.5)));
         let mut things: Vec<Thing> = things.into_iter().collect();
         things.dedup_by_key(|thing| thing.owner());
         things
@@ -331,16 +328,6 @@ impl Best {
 
 fn along(from: Vector, direction: Vector, far: f32) -> Vector {
     plus(from, scaled(direction, far))
-}
-
-fn is_finite(vector: Vector) -> bool {
-    vector.iter().all(|k| k.is_finite())
-}
-
-/// As a world of `D` sees it: in the plane third coordinates do not count.
-fn flat<D: Dim>(mut vector: Vector) -> Vector {
-    vector[D::N..].fill(0.0);
-    vector
 }
 
 /// The corners of a bare face.

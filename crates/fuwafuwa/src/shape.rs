@@ -218,6 +218,12 @@ impl Shape {
     }
 }
 
+/// A vector as a world of `D` sees it: in the plane third coordinates do not count.
+pub(crate) fn flat<D: Dim>(mut vector: Vector) -> Vector {
+    vector[D::N..].fill(0.0);
+    vector
+}
+
 /// Length and direction of a vector; upwards where it has none.
 #[inline]
 fn away(v: Vector) -> (f32, Vector) {

@@ -70,6 +70,12 @@ pub fn three([x, y, z, _]: [f32; 4]) -> [f32; 3] {
     [x, y, z]
 }
 
+/// Whether all of a is finite.
+#[inline(always)]
+pub fn is_finite<const K: usize>(a: [f32; K]) -> bool {
+    a.iter().all(|k| k.is_finite())
+}
+
 /// |a|
 #[inline(always)]
 pub fn length<const K: usize>(a: [f32; K]) -> f32 {

@@ -5,7 +5,7 @@ use crate::dim::{Dim, Point};
 use crate::ids::{NodeId, PieceId, Table};
 use crate::mesh::Node;
 use crate::solve::Row;
-use crate::vector::{dot, plus};
+use crate::vector::{dot, is_finite, plus};
 
 impl<D: Dim> Body<D> {
     /// Wakes or puts to sleep all pieces whose number is marked.
@@ -89,8 +89,4 @@ impl<D: Dim> Body<D> {
         let [x, y, z] = apart(point).map(|k| k as f32 * self.truth.grid.voxel_size());
         plus(row, [x, y, z, 0.0])
     }
-}
-
-fn is_finite(row: Row) -> bool {
-    row.iter().all(|k| k.is_finite())
 }

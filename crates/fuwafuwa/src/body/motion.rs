@@ -8,7 +8,7 @@ use crate::momentum::RoughMotion;
 use crate::shape::Vector;
 use crate::solve::Kick;
 use crate::threads;
-use crate::vector::{as_row, dot, minus, plus, scaled, three};
+use crate::vector::{as_row, dot, is_finite, minus, plus, scaled, three};
 
 impl<D: Dim> Body<D> {
     /// Moves a free body on by `duration` seconds under `gravity` [m/s²], without contact or
@@ -42,7 +42,7 @@ impl<D: Dim> Body<D> {
     pub(crate) fn pull(&mut self, duration: f32, field: &dyn Fn(Vector) -> Vector) {
         for &id in &self.cache.awake {
             let pull = as_row(field(three(self.state.position[id])));
-            if self.state.inverse_mass[id] > 0.0 && pull.iter().all(|k| k.is_finite()) {
+            if self.state.inverse_mass[id] > 0.0 && is_finite(pull) {
                 for axis in 0..D::N {
                     self.state.velocity[id][axis] += pull[axis] * duration;
                 }

@@ -6,7 +6,7 @@ use crate::dim::Dim;
 use crate::ids::NodeId;
 use crate::momentum::centre_of;
 use crate::rotation::Rotation;
-use crate::shape::Vector;
+use crate::shape::{Vector, flat};
 use crate::solve::Row;
 use crate::vector::{as_row, cross, minus, plus, three};
 
@@ -123,12 +123,6 @@ impl<D: Dim> Body<D> {
             add::<D>(&mut self.state.velocity[id], impulse.map(|k| k / mass));
         }
     }
-}
-
-/// In the plane third coordinates do not count.
-fn flat<D: Dim>(mut vector: Vector) -> Vector {
-    vector[D::N..].fill(0.0);
-    vector
 }
 
 fn add<D: Dim>(row: &mut Row, vector: Vector) {
