@@ -24,7 +24,8 @@ function listen() {
 
 /** In the page: what was heard over the last half second or so. */
 function hear() {
-  const [{ context, sides } = { sides: [] }] = globalThis.heard;
+  const { heard = [] } = globalThis;
+  const [{ context, sides } = { sides: [] }] = heard;
   const samples = sides.map((side) => {
     const samples = new Float32Array(side.fftSize);
     side.getFloatTimeDomainData(samples);
@@ -32,7 +33,7 @@ function hear() {
   });
   const all = samples.flatMap((side) => [...side]);
   return {
-    count: globalThis.heard.length,
+    count: heard.length,
     state: context?.state ?? "none",
     rate: context?.sampleRate,
     time: context?.currentTime,
@@ -44,6 +45,18 @@ function hear() {
     // A click is a wide step from one sample to the next.
     step: Math.max(0, ...samples.map((side) => side.reduce((most, sample, at) => Math.max(most, Math.abs(sample - side[Math.max(at, 1) - 1])), 0))),
   };
+}
+
+/**
+ * In the page, before it begins: says by itself what is heard a second after the game began. A test that asks a page
+ * something is, to the browser, somebody who uses it.
+ */
+function confess() {
+  const look = setInterval(() => {
+    if (!globalThis.tamaire?.report()) return;
+    clearInterval(look);
+    setTimeout(() => console.debug(`heard: ${JSON.stringify(hear())}`), 1000);
+  }, 100);
 }
 
 const rest = (seconds) => new Promise((done) => setTimeout(done, 1000 * seconds));
@@ -63,11 +76,22 @@ async function open(browser, url, first) {
   const complaints = [];
   page.on("console", (message) => /error|warn/.test(message.type()) && complaints.push(message.text()));
   page.on("pageerror", (error) => complaints.push(error.message));
-  await page.evaluateOnNewDocument(first);
-  await page.goto(url, { waitUntil: "load" });
-  await page.waitForFunction(() => globalThis.tamaire?.report(), { polling: 100, timeout: 90_000 });
-  await rest(1);
-  return { page, complaints };
+  await page.evaluateOnNewDocument(`(${first})(); ${hear}; (${confess})();`);
+  const [before] = await Promise.all([confession(page), page.goto(url, { waitUntil: "load" })]);
+  return { page, complaints, before };
+}
+
+/** What a page says that was heard. @param {import("puppeteer-core").Page} page */
+function confession(page, seconds = 90) {
+  return new Promise((done, fail) => {
+    const late = setTimeout(() => fail(new Error(`the game did not begin within ${seconds} s`)), 1000 * seconds);
+    page.on("console", (message) => {
+      const [, heard] = /^heard: (.*)$/.exec(message.text()) ?? [];
+      if (!heard) return;
+      clearTimeout(late);
+      done(JSON.parse(heard));
+    });
+  });
 }
 
 /**
@@ -77,8 +101,7 @@ async function open(browser, url, first) {
  * @param {string} url
  */
 export async function checkSound(browser, url, seconds = 5) {
-  const { page, complaints } = await open(browser, url, listen);
-  const before = await page.evaluate(hear);
+  const { page, complaints, before } = await open(browser, url, listen);
   assert.notEqual(before.state, "running", "it plays before a gesture");
   assert.equal(before.peak, 0);
 
@@ -126,8 +149,8 @@ export async function checkSound(browser, url, seconds = 5) {
 export async function checkSilence(browser, url) {
   const { page, complaints } = await open(browser, url, () => delete globalThis.AudioWorkletNode);
   await page.mouse.click(100, 100);
-  const before = await page.evaluate(() => globalThis.tamaire.report().ticks);
-  await page.waitForFunction((before) => globalThis.tamaire.report().ticks !== before, { timeout: 30_000 }, before);
+  const ticks = await page.evaluate(() => globalThis.tamaire.report().ticks);
+  await page.waitForFunction((ticks) => globalThis.tamaire.report().ticks !== ticks, { timeout: 30_000 }, ticks);
   assert.deepEqual(complaints, []);
   await page.close();
   console.log("sound: without audio worklets the page goes on in silence");
