@@ -8,33 +8,28 @@
 
 mod exit;
 mod motion;
+mod rigid_rows;
 mod row;
 mod sides;
 
 use crate::body::{Bodies, Body};
 use crate::dim::Dim;
-use crate::handle::BodySlot;
+use crate::handle::{BodySlot, RigidSlot};
 use crate::ids::{PieceId, Table};
 use crate::rigid::Rigids;
 use crate::solve::Row;
 use crate::threads;
-use crate::touch::{ContactSphere, Impulse, MARGIN, Nearby, NodePairs};
+use crate::touch::{ContactSphere, MARGIN, Nearby, NodePairs};
 use crate::vector::{as_row, cross, minus, scaled, three};
 use exit::Exit;
 use motion::Motion;
-use row::{Contact, inner};
-use sides::{HandContact, NodeContact, SphereContact};
+use rigid_rows::{find_free, find_hands};
+use row::{AHEAD, CLOSE, Contact, WAKE_SPEED, inner, is_close};
+use sides::{FreeContact, HandContact, NodeContact, SphereContact};
+use std::collections::BTreeSet;
 
 /// A crumb is behind a sphere when the way to it goes this far inwards (cosine).
 const BEHIND: f32 = 0.3;
-/// A sleeper wakes when what touches it moves at this speed [m/s]: what it did move, since deep in
-/// a heap the forces of a substep alone would give as much to what rests. Five times as fast as what falls
-/// asleep: less, and a heap would keep itself awake.
-const WAKE_SPEED: f32 = 0.15;
-/// A contact matters when the gap closes to so many voxels within so many substeps: one, and half of another, for
-/// other contacts may make it close faster.
-const CLOSE: f32 = 0.05;
-const AHEAD: f32 = 1.5;
 
 /// The contacts of one substep.
 #[derive(Clone, Debug, Default)]
@@ -43,11 +38,19 @@ pub struct Contacts {
     spheres: Vec<SphereContact>,
     exits: Vec<Exit>,
     hands: Vec<HandContact>,
+    free: Vec<FreeContact>,
     motion: Motion,
 }
 
 /// A sleeping piece that was hit: body and piece number.
 pub type Hit = (BodySlot, PieceId);
+
+/// The sleepers that were hit in a substep, each once and ascending.
+#[derive(Clone, Debug, Default)]
+pub struct Hits {
+    pub pieces: Vec<Hit>,
+    pub rigids: Vec<RigidSlot>,
+}
 
 impl Contacts {
     /// Finds the contacts of this substep among what is nearby. Returns the sleepers that were hit.
@@ -57,20 +60,21 @@ impl Contacts {
         rigids: &Rigids,
         nearby: &mut Nearby,
         duration: f32,
-    ) -> Vec<Hit> {
-        let mut hits = Vec::new();
+    ) -> Hits {
+        let mut hits = Hits::default();
         self.motion.clear(bodies);
         self.find_nodes(bodies, rigids, &mut nearby.nodes, duration, &mut hits);
-        self.find_spheres(bodies, nearby, duration, &mut hits);
+        self.find_spheres(bodies, nearby, duration, &mut hits.pieces);
         self.exits.clear();
         let (spheres, motion) = (&nearby.spheres, &mut self.motion);
         let exits = nearby.captives.list.iter();
         let exits =
             exits.filter_map(|captive| Exit::new(captive, bodies, spheres, motion, duration));
         self.exits.extend(exits);
-        self.find_hands(rigids, duration);
-        hits.sort_unstable();
-        hits.dedup();
+        find_hands(rigids, duration, &mut self.hands);
+        let woken = find_free::<D>(rigids, &nearby.rigids, duration, &mut self.free);
+        hits.rigids.extend(woken);
+        hits.settle();
         hits
     }
 
@@ -80,31 +84,33 @@ impl Contacts {
         rigids: &Rigids,
         pairs: &mut NodePairs,
         duration: f32,
-        hits: &mut Vec<Hit>,
+        hits: &mut Hits,
     ) {
         self.nodes.clear();
         let travel = pairs.travel;
         let shares = threads::shares(&mut pairs.list);
         let found = threads::map(shares, |(first, pairs)| {
-            let (mut contacts, mut hits) = (Vec::new(), Vec::new());
+            let (mut contacts, mut hits) = (Vec::new(), Hits::default());
             for (pair, index) in pairs.iter_mut().zip(first..) {
                 let body = bodies.at(pair.body);
                 let rigid = rigids.at(pair.rigid);
                 let node = pair.node;
-                // What sleeps is touched by hands alone.
-                if body.state.inverse_mass[node] == 0.0 && !rigid.is_driven() {
+                // What sleeps is touched by what moves alone.
+                if body.state.inverse_mass[node] == 0.0 && !rigid.moves() {
                     pair.impulse.release();
                     continue;
                 }
                 let (at, velocity) = (body.state.position[node], body.state.velocity[node]);
                 // Most are so far from a wall that they could not come to it at any direction.
                 let reachable = (pair.clear - travel).max(0.0) / (AHEAD * duration);
-                if !rigid.is_driven() && inner::<D>(velocity, velocity) < reachable * reachable {
+                if !rigid.moves() && inner::<D>(velocity, velocity) < reachable * reachable {
                     continue;
                 }
                 let (gap, normal) = rigid.shape().distance(three(at));
                 let normal = as_row(normal);
-                let relative = minus(velocity, as_row(rigid.velocity()));
+                let lever = minus(three(at), rigid.position());
+                let own = as_row(rigid.velocity_at(lever));
+                let relative = minus(velocity, own);
                 let size = body.truth.grid.voxel_size();
                 if !is_close(gap, inner::<D>(relative, normal), size, duration) {
                     pair.impulse.release();
@@ -113,10 +119,18 @@ impl Contacts {
                     continue;
                 }
                 pair.clear = 0.0;
-                if rigid.is_driven() && gap < 0.1 * size && body.truth.pieces.sleeps(pair.node) {
-                    hits.push((pair.body, body.truth.pieces.of_node(pair.node)));
+                if gap < 0.1 * size {
+                    let is_fast = |speed: Row| inner::<D>(speed, speed) > WAKE_SPEED * WAKE_SPEED;
+                    let wakes = rigid.is_driven() || rigid.moves() && is_fast(own);
+                    if wakes && body.truth.pieces.sleeps(pair.node) {
+                        let piece = body.truth.pieces.of_node(pair.node);
+                        hits.pieces.push((pair.body, piece));
+                    }
+                    if rigid.is_asleep() && is_fast(velocity) {
+                        hits.rigids.push(pair.rigid);
+                    }
                 }
-                let inverse_mass = body.state.inverse_mass[node] + rigid.inverse_mass();
+                let inverse_mass = body.state.inverse_mass[node] + rigid.yields_at_most(lever);
                 if body.state.inverse_mass[node] == 0.0 {
                     continue;
                 }
@@ -127,12 +141,13 @@ impl Contacts {
             (contacts, hits)
         });
         for (contacts, hit) in found {
-            hits.extend(hit);
+            hits.pieces.extend(hit.pieces);
+            hits.rigids.extend(hit.rigids);
             self.nodes
                 .extend(contacts.into_iter().map(|(contact, pair)| NodeContact {
                     contact,
                     node: self.motion.row(pair.body, pair.node),
-                    hand: rigids.at(pair.rigid).is_driven().then(|| {
+                    mover: rigids.at(pair.rigid).moves().then(|| {
                         let at = bodies.at(pair.body).state.position[pair.node];
                         let lever = minus(three(at), rigids.at(pair.rigid).position());
                         (pair.rigid, lever)
@@ -221,33 +236,11 @@ impl Contacts {
         }
     }
 
-    /// Finds the contacts of the hands with what is fixed, and with each other.
-    fn find_hands(&mut self, rigids: &Rigids, duration: f32) {
-        self.hands.clear();
-        for (own, hand) in rigids.by_slot().filter(|(_, rigid)| rigid.is_driven()) {
-            let others = rigids.by_slot();
-            for (other, rigid) in others.filter(|&(at, rigid)| at < own || !rigid.is_driven()) {
-                let inverse_mass = hand.inverse_mass() + rigid.inverse_mass();
-                let relative = minus(as_row(hand.velocity()), as_row(rigid.velocity()));
-                if inverse_mass == 0.0 || !relative.iter().all(|k| k.is_finite()) {
-                    continue;
-                }
-                let (gap, normal) = hand.shape().gap(rigid.shape());
-                // What is not finite touches nothing.
-                if gap.is_nan() || gap >= hand.shape().inradius() {
-                    continue;
-                }
-                let friction = match rigid.is_driven() {
-                    true => 0.5 * (hand.friction + rigid.friction),
-                    false => hand.friction,
-                };
-                let (normal, inertia) = (as_row(normal), 1.0 / inverse_mass);
-                self.hands.push(HandContact {
-                    contact: Contact::new(normal, gap, duration, inertia, friction),
-                    both: [own, other],
-                });
-            }
-        }
+    /// What is free and pressed on by a hand.
+    pub fn handled(&self, rigids: &Rigids) -> BTreeSet<RigidSlot> {
+        let pressed = self.free.iter().filter(|row| row.contact.pressed > 0.0);
+        let handled = pressed.filter(|row| rigids.at(row.both[1]).is_driven());
+        handled.map(|row| row.both[0]).collect()
     }
 
     /// Changes velocities so that the contacts hold.
@@ -265,6 +258,9 @@ impl Contacts {
         }
         for row in self.spheres.iter().filter(|row| row.contact.pressed > 0.0) {
             motion.push_spheres::<D>(&row.grips, row.contact.start());
+        }
+        for row in &self.free {
+            row.start(rigids, duration);
         }
         // Once only: what is held fast inside must not pull its way out.
         for exit in &self.exits {
@@ -289,6 +285,9 @@ impl Contacts {
                 let other = rigids.at_mut(row.both[1]);
                 other.push(three(scaled(change, -1.0)), duration);
             });
+            for_each(&mut self.free, backwards, |row| {
+                row.solve::<D>(rigids, duration)
+            });
         }
         motion.store(bodies);
         for NodeContact { contact, .. } in &self.nodes {
@@ -301,6 +300,9 @@ impl Contacts {
                 .impulse
                 .note(contact);
         }
+        nearby
+            .rigids
+            .renew(self.free.iter().map(FreeContact::touch));
     }
 
     /// After the move: takes back the speed of what was pushed out.
@@ -322,30 +324,25 @@ impl Contacts {
                 motion.push_node(row, rigids, change, duration);
             }
         }
+        for row in &mut self.free {
+            row.relax::<D>(rigids, duration);
+        }
         motion.store(bodies);
         for row in &self.nodes {
-            if let Some((hand, lever)) = row.hand {
+            if let Some((mover, lever)) = row.mover {
                 let impulse = scaled(three(row.contact.start()), -1.0 / duration);
-                rigids.at_mut(hand).twist(cross(lever, impulse));
+                rigids.at_mut(mover).twist(cross(lever, impulse));
             }
         }
     }
 }
 
-impl Impulse {
-    /// They do not touch any more.
-    #[inline(always)]
-    fn release(&mut self) {
-        // Most never did; what does not press does not drag.
-        if self.pressed > 0.0 {
-            (self.pressed, self.dragged) = (0.0, [0.0; 4]);
-        }
-    }
-
-    fn note(&mut self, contact: &Contact) {
-        self.pressed = contact.pressed;
-        self.dragged = contact.dragged;
-        self.total += contact.pressed;
+impl Hits {
+    fn settle(&mut self) {
+        self.pieces.sort_unstable();
+        self.pieces.dedup();
+        self.rigids.sort_unstable();
+        self.rigids.dedup();
     }
 }
 
@@ -367,12 +364,6 @@ fn behind_surface<D: Dim>(
     let ahead = inner::<D>(apart, normal);
     let is_behind = ahead < -BEHIND * inner::<D>(apart, apart).sqrt();
     (is_behind && length > 0.2 * wall.radius).then_some((normal, ahead))
-}
-
-/// Whether a contact may matter in this substep: it overlaps, or will if nothing is done. What is not
-/// finite touches nothing, so that it spoils nothing else.
-fn is_close(gap: f32, approach: f32, size: f32, duration: f32) -> bool {
-    approach.is_finite() && gap + AHEAD * duration * approach.min(0.0) < CLOSE * size
 }
 
 fn for_each<T>(rows: &mut [T], backwards: bool, mut solve: impl FnMut(&mut T)) {

@@ -68,6 +68,8 @@ pub enum With {
     Obstacle(RigidId),
     /// A hand.
     Hand(RigidId),
+    /// Something rigid that is free.
+    Free(RigidId),
     /// Another piece, or itself.
     Piece {
         /// The body.

@@ -2,12 +2,18 @@
 //!
 //! Between the goal of a hand, which the input moves, and the hand stands a spring with a damper, the
 //! *virtual coupling* [Colgate 1995]. Its force is smooth, because the hand has inertia, and it is
-//! what a force-feedback device should play; the raw contact force jumps. Nothing rigid turns.
+//! what a force-feedback device should play; the raw contact force jumps. Hands do not turn; what is *free* falls, turns and
+//! is pushed around, and what is kinematic goes and turns as it is told.
+
+mod free;
+mod inertia;
 
 use crate::dim::Dim;
 use crate::handle::{Arena, RigidId};
+use crate::rotation::Rotation;
 use crate::shape::{BadShape, Shape, Vector};
-use crate::vector::{length, minus, plus, scaled};
+use crate::vector::{is_finite, length, minus, plus, scaled};
+use inertia::{Inertia, Matrix};
 use std::fmt;
 
 /// The rigid things of a world.
@@ -38,6 +44,12 @@ pub enum Drive {
         /// The strongest pull of the coupling [N]; infinite = no limit.
         limit: f32,
     },
+    /// It falls, and is moved and turned by what it touches. Its shape has an end, and its middle at the origin: see
+    /// [`Rigid::free`].
+    Free {
+        /// Its mass, 1e-6 to 1e6 [kg], spread evenly. Heavier than a soft body by a thousand, it squashes it flat.
+        mass: f32,
+    },
 }
 
 impl Default for Drive {
@@ -51,12 +63,15 @@ impl Default for Drive {
     }
 }
 
-/// Something rigid: an obstacle, which stands still, or a hand, which follows its goal.
+/// Something rigid: an obstacle, which stands still, a hand, which follows its goal, or what is free.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rigid {
     /// Coulomb friction with what it touches; about 0.2.
     pub friction: f32,
+    /// Share of its speed with which it bounces off something else that is rigid, 0 to 1, where one of both is free; the
+    /// larger one counts. About 0; soft bodies bounce by themselves.
+    pub restitution: f32,
     /// What moves it.
     pub drive: Drive,
     /// As it would be at the origin, and where it is.
@@ -66,10 +81,22 @@ pub struct Rigid {
     pub(crate) position: Vector,
     /// [m/s]
     pub(crate) velocity: Vector,
-    /// Where it was at the start of the tick [m].
+    /// How it is turned from its form.
+    pub(crate) rotation: Rotation,
+    /// [rad/s]
+    pub(crate) spin: Vector,
+    /// Whether it rests, and for how long it has been slow [s].
+    pub(crate) asleep: bool,
+    pub(crate) still: f32,
+    /// Where it was at the start of the tick [m], and how it was turned.
     position_before: Vector,
+    rotation_before: Rotation,
+    /// What it turns by, if it is free, and the inverse of that about the axes of the world.
+    inertia: Option<Inertia>,
+    inverse_inertia: Matrix,
     /// Where it is to go [m].
     goal: Vector,
+    rotation_goal: Rotation,
     /// Where the goal was at the end of the last tick [m], and how fast it moves [m/s].
     goal_before: Vector,
     goal_velocity: Vector,
@@ -138,12 +165,62 @@ impl Rigid {
             form,
             shape: form.moved(position),
             position,
+            restitution: 0.0,
             velocity: [0.0; 3],
+            rotation: Rotation::NONE,
+            spin: [0.0; 3],
+            asleep: false,
+            still: 0.0,
             position_before: position,
+            rotation_before: Rotation::NONE,
+            inertia: None,
+            inverse_inertia: [[0.0; 3]; 3],
             goal: position,
+            rotation_goal: Rotation::NONE,
             goal_before: position,
             goal_velocity: [0.0; 3],
             reactions: Vec::new(),
+        }
+    }
+
+    /// Something that falls, of a mass [kg], at rest where the shape is.
+    ///
+    /// ```
+    /// use fuwafuwa::{Dim3, Rigid, Rotation, Settings, Shape, World};
+    ///
+    /// let mut world = World::<Dim3>::new(Settings::default())?;
+    /// world.add_rigid(Rigid::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.5))?;
+    /// let cube = Shape::Box { centre: [0.0, 2.0, 0.0], half: [0.5; 3] };
+    /// let turned = Rotation::about([1.0, 1.0, 0.0], 0.4);
+    /// let cube = world.add_rigid(Rigid::free(cube, 10.0).rotated(turned))?;
+    /// for _ in 0..180 {
+    ///     world.step();
+    /// }
+    /// let cube = &world.rigids()[cube];
+    /// assert!((cube.position()[1] - 0.5).abs() < 0.01 && cube.is_asleep());
+    /// # Ok::<(), fuwafuwa::Refused>(())
+    /// ```
+    pub fn free(shape: Shape, mass: f32) -> Self {
+        let [low, high] = shape.bounds();
+        let middle = scaled(plus(low, high), 0.5);
+        let middle = if is_finite(middle) { middle } else { [0.0; 3] };
+        let form = shape.moved(scaled(middle, -1.0));
+        Self {
+            friction: 0.5,
+            ..Self::driven(form, middle, Drive::Free { mass })
+        }
+    }
+
+    /// The same turned about its [`position`](Rigid::position).
+    #[must_use]
+    pub fn rotated(self, by: Rotation) -> Self {
+        let rotation = self.rotation.then(by);
+        Self {
+            rotation,
+            rotation_before: rotation,
+            rotation_goal: rotation,
+            shape: self.form.rotated(rotation).moved(self.position),
+            ..self
         }
     }
 
@@ -160,12 +237,21 @@ impl Rigid {
         for vector in positions.into_iter().chain(others) {
             vector[D::N..].fill(0.0);
         }
-        if !self.is_driven() {
+        let rotations = [&mut self.rotation_before, &mut self.rotation_goal];
+        for rotation in rotations.into_iter().chain([&mut self.rotation]) {
+            *rotation = rotation.seen_in::<D>();
+        }
+        if D::N == 2 {
+            self.spin[..2].fill(0.0);
+        }
+        if self.drive == Drive::Fixed {
             // It may have been a hand.
             (self.velocity, self.goal_velocity) = ([0.0; 3], [0.0; 3]);
             (self.goal, self.goal_before) = (self.position, self.position);
+            self.spin = [0.0; 3];
         }
-        self.shape = self.form.moved(self.position);
+        self.take_inertia::<D>();
+        self.stand_at(self.position, self.rotation);
         self
     }
 
@@ -191,11 +277,12 @@ impl Rigid {
                 "within 1e6 m of the origin",
             )?;
         }
-        let is_finite = self.velocity.iter().all(|k| k.is_finite());
-        require(is_finite, "velocity", "finite")?;
+        require(is_finite(self.velocity), "velocity", "finite")?;
+        require(is_finite(self.spin), "angular velocity", "finite")?;
+        require(self.still >= 0.0, "time at rest", "0 or more")?;
         self.form.check()?;
-        let is_moved = self.shape == self.form.moved(self.position);
-        let expected = "what it is at the origin, moved to its position";
+        let is_moved = self.shape == self.form.rotated(self.rotation).moved(self.position);
+        let expected = "what it is at the origin, turned and moved to its position";
         require(is_moved, "shape", expected)?;
         within(
             "friction",
@@ -204,12 +291,19 @@ impl Rigid {
             huge,
             "0 or more, and finite",
         )?;
-        if self.is_driven() {
+        within("restitution", self.restitution, 0.0, 1.0, "0 to 1")?;
+        if self.drive != Drive::Fixed {
             let ends = self.form.bounds().into_iter().all(is_within_reach);
             require(ends, "shape", "one that ends within 1e6 m of its middle")?;
         }
         match self.drive {
             Drive::Fixed | Drive::Kinematic => Ok(()),
+            Drive::Free { mass } => {
+                within("mass", mass, 1e-6, 1e6, "1e-6 to 1e6 kg")?;
+                let [low, high] = self.form.bounds();
+                let off = length(plus(low, high)) <= 1e-3 * length(minus(high, low));
+                require(off, "shape", "one with its middle at the origin")
+            }
             Drive::Coupled {
                 mass,
                 stiffness,
@@ -234,6 +328,16 @@ impl Rigid {
         self.velocity
     }
 
+    /// How it is turned from its form.
+    pub fn rotation(&self) -> Rotation {
+        self.rotation
+    }
+
+    /// Angular velocity [rad/s]; in the plane the third component alone.
+    pub fn angular_velocity(&self) -> Vector {
+        self.spin
+    }
+
     /// Where it is to go [m].
     pub fn goal(&self) -> Vector {
         self.goal
@@ -256,7 +360,7 @@ impl Rigid {
 
     /// Whether it follows a goal: a hand, no obstacle.
     pub fn is_driven(&self) -> bool {
-        self.drive != Drive::Fixed
+        matches!(self.drive, Drive::Kinematic | Drive::Coupled { .. })
     }
 
     /// Sends it to a goal [m]; the third coordinate does not count in the plane.
@@ -271,14 +375,19 @@ impl Rigid {
     pub(crate) fn inverse_mass(&self) -> f32 {
         match self.drive {
             Drive::Fixed | Drive::Kinematic => 0.0,
-            Drive::Coupled { mass, .. } => 1.0 / mass,
+            Drive::Free { .. } if self.asleep => 0.0,
+            Drive::Coupled { mass, .. } | Drive::Free { mass } => 1.0 / mass,
         }
     }
 
     /// Takes up the goal at the start of a tick of `duration` [s]: it moves there evenly.
     pub(crate) fn start_tick(&mut self, duration: f32) {
-        self.position_before = self.position;
+        (self.position_before, self.rotation_before) = (self.position, self.rotation);
         self.goal_velocity = scaled(minus(self.goal, self.goal_before), 1.0 / duration);
+        if self.drive == Drive::Kinematic {
+            let way = self.rotation.inverse().then(self.rotation_goal);
+            self.spin = scaled(way.scaled_axis(), 1.0 / duration);
+        }
         self.reactions.clear();
     }
 
@@ -286,10 +395,13 @@ impl Rigid {
     /// where it was, at rest.
     pub(crate) fn end_tick(&mut self) {
         self.goal_before = self.goal;
-        let is_finite = self.velocity.iter().all(|k| k.is_finite());
+        if self.drive == Drive::Kinematic && self.rotation != self.rotation_goal {
+            self.stand_at(self.position, self.rotation_goal);
+        }
+        let is_finite = is_finite(self.velocity) && is_finite(self.spin);
         if !is_finite || !is_within_reach(self.position) {
-            self.stand_at(self.position_before);
-            self.velocity = [0.0; 3];
+            self.stand_at(self.position_before, self.rotation_before);
+            (self.velocity, self.spin) = ([0.0; 3], [0.0; 3]);
             self.reactions.fill(Reaction::default());
         }
     }
@@ -300,6 +412,7 @@ impl Rigid {
         let mut reaction = Reaction::default();
         match self.drive {
             Drive::Fixed => return,
+            Drive::Free { .. } => {}
             Drive::Kinematic => {
                 self.velocity = scaled(minus(self.goal_before, self.position), 1.0 / duration);
             }
@@ -328,13 +441,6 @@ impl Rigid {
         self.reactions.push(reaction);
     }
 
-    /// Moves the hand by its velocity.
-    pub(crate) fn drift(&mut self, duration: f32) {
-        if self.is_driven() {
-            self.stand_at(plus(self.position, scaled(self.velocity, duration)));
-        }
-    }
-
     /// Feels an impulse [N s] of something that it touches, within a substep of `duration` [s].
     #[inline(always)]
     pub(crate) fn push(&mut self, impulse: Vector, duration: f32) {
@@ -356,9 +462,12 @@ impl Rigid {
         }
     }
 
-    fn stand_at(&mut self, position: Vector) {
-        self.position = position;
-        self.shape = self.form.moved(position);
+    fn stand_at(&mut self, position: Vector, rotation: Rotation) {
+        (self.position, self.rotation) = (position, rotation);
+        self.shape = self.form.rotated(rotation).moved(position);
+        if let Some(inertia) = &self.inertia {
+            self.inverse_inertia = inertia.inverse(rotation);
+        }
     }
 }
 

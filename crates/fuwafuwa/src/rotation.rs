@@ -1,11 +1,11 @@
 //! Turning things.
 
 use crate::dim::Dim;
-use crate::shape::Vector;
-use crate::vector::{cross, dot, minus, plus, scaled};
+use crate::vector::{Vector, cross, dot, minus, plus, scaled};
 
 /// A rotation, kept as a unit quaternion. The same on every machine: no sine of a system's own library is in it.
 #[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rotation {
     /// x, y, z, w.
     quaternion: [f64; 4],
@@ -62,6 +62,36 @@ impl Rotation {
         self.turn(vector.map(f64::from)).map(|part| part as f32)
     }
 
+    /// The rotation back.
+    #[must_use]
+    pub fn inverse(self) -> Self {
+        let [x, y, z, w] = self.quaternion;
+        Self {
+            quaternion: [-x, -y, -z, w],
+        }
+    }
+
+    /// This one, and then another.
+    #[must_use]
+    pub fn then(self, next: Self) -> Self {
+        Self::unit(product(next.quaternion, self.quaternion))
+    }
+
+    /// Axis times angle [rad], the shorter way round.
+    pub fn scaled_axis(self) -> Vector {
+        let [x, y, z, w] = self.quaternion;
+        let (axis, sign) = ([x, y, z], if w < 0.0 { -1.0 } else { 1.0 });
+        let sine = dot(axis, axis).sqrt();
+        let angle = 2.0 * libm::atan2(sine, sign * w);
+        let stretch = if sine > 1e-12 { angle / sine } else { 2.0 };
+        scaled(axis, sign * stretch).map(|part| part as f32)
+    }
+
+    /// What it makes of the three axes.
+    pub fn axes(self) -> [Vector; 3] {
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| self.apply(axis))
+    }
+
     /// A place [m], turned about another one.
     pub(crate) fn apply_about(self, place: Vector, centre: Vector) -> Vector {
         let (place, centre) = (place.map(f64::from), centre.map(f64::from));
@@ -79,16 +109,8 @@ impl Rotation {
     }
 
     /// This one after another, as a quaternion that need not be of length 1.
-    pub(crate) fn after(self, [bx, by, bz, bw]: [f32; 4]) -> [f32; 4] {
-        let [x, y, z, w] = self.quaternion;
-        let [bx, by, bz, bw] = [bx, by, bz, bw].map(f64::from);
-        let product = [
-            w * bx + x * bw + y * bz - z * by,
-            w * by - x * bz + y * bw + z * bx,
-            w * bz + x * by - y * bx + z * bw,
-            w * bw - x * bx - y * by - z * bz,
-        ];
-        product.map(|part| part as f32)
+    pub(crate) fn after(self, other: [f32; 4]) -> [f32; 4] {
+        product(self.quaternion, other.map(f64::from)).map(|part| part as f32)
     }
 
     fn turn(self, vector: [f64; 3]) -> [f64; 3] {
@@ -108,6 +130,16 @@ impl Rotation {
     }
 }
 
+/// a b: the second rotation, then the first.
+fn product([x, y, z, w]: [f64; 4], [bx, by, bz, bw]: [f64; 4]) -> [f64; 4] {
+    [
+        w * bx + x * bw + y * bz - z * by,
+        w * by - x * bz + y * bw + z * bx,
+        w * bz + x * by - y * bx + z * bw,
+        w * bw - x * bx - y * by - z * bz,
+    ]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -122,6 +154,19 @@ mod tests {
         let vector = [0.3, -0.8, 2.0];
         let (one, two) = (both.apply(vector), second.apply(first.apply(vector)));
         assert!((0..3).all(|axis| (one[axis] - two[axis]).abs() < 1e-5));
+        let three = first.then(second).apply(vector);
+        assert!((0..3).all(|axis| (one[axis] - three[axis]).abs() < 1e-5));
+        assert_eq!(first.then(first.inverse()), Rotation::NONE);
+    }
+
+    #[test]
+    fn a_rotation_is_an_axis_times_an_angle() {
+        for angle in [0.0, 1e-7, 0.5, 3.0] {
+            let axis = Rotation::about([0.0, -2.0, 0.0], angle).scaled_axis();
+            assert!((axis[1] + angle).abs() < 1e-6 && axis[0] == 0.0, "{axis:?}");
+        }
+        let far = Rotation::in_plane(6.0).scaled_axis();
+        assert!((far[2] - (6.0 - 2.0 * PI)).abs() < 1e-6);
     }
 
     #[test]

@@ -4,14 +4,15 @@
 //! ball is a disc and a capsule a bar with round ends.
 
 mod between;
+mod brick;
+mod manifold;
 mod ray;
 
 use crate::dim::Dim;
+use crate::rotation::Rotation;
+pub use crate::vector::Vector;
 use crate::vector::{dot, length, minus, plus, scaled};
 use std::fmt;
-
-/// A vector or a place in space; the third coordinate is 0 in 2D.
-pub type Vector = [f32; 3];
 
 /// A rigid shape.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -30,6 +31,15 @@ pub enum Shape {
         centre: Vector,
         /// Half of its width on each axis [m]; in 2D the third one does not count.
         half: Vector,
+    },
+    /// A box that is turned.
+    OrientedBox {
+        /// Its middle [m].
+        centre: Vector,
+        /// Half of its width on each of its own axes [m]; in 2D the third one does not count.
+        half: Vector,
+        /// From its own axes to those of the world.
+        rotation: Rotation,
     },
     /// All points within `radius` of a segment: a bar with round ends.
     Capsule {
@@ -97,7 +107,7 @@ impl Shape {
                 let field = "normal";
                 good.then_some(()).ok_or(BadShape { field, expected })
             }
-            Self::Box { centre, half } => {
+            Self::Box { centre, half } | Self::OrientedBox { centre, half, .. } => {
                 finite("centre", centre)?;
                 half.iter().try_for_each(|&k| positive("half", k))
             }
@@ -119,6 +129,15 @@ impl Shape {
         match *self {
             Self::HalfSpace { normal, offset } => (dot(normal, point) - offset, normal),
             Self::Box { centre, half } => distance_from_box(minus(point, centre), half),
+            Self::OrientedBox {
+                centre,
+                half,
+                rotation,
+            } => {
+                let own = rotation.inverse().apply(minus(point, centre));
+                let (distance, normal) = distance_from_box(own, half);
+                (distance, rotation.apply(normal))
+            }
             Self::Capsule { from, to, radius } => {
                 let (axis, reach) = (minus(to, from), minus(point, from));
                 let along = dot(axis, reach) / dot(axis, axis).max(1e-12);
@@ -147,6 +166,18 @@ impl Shape {
                 centre,
                 half.map(|k| if k == f32::MAX { 0.0 } else { k }),
             ),
+            Self::OrientedBox {
+                centre,
+                half,
+                rotation,
+            } => {
+                let axes = rotation.axes();
+                let reach = |axis: usize| {
+                    let own = (0..3).map(|own| reach_of(axes[own][axis], half[own]));
+                    own.sum::<f32>()
+                };
+                around(centre, centre, [0, 1, 2].map(reach))
+            }
             Self::Capsule { from, to, radius } => around(from, to, [radius; 3]),
             Self::Ball { centre, radius } => around(centre, centre, [radius; 3]),
         }
@@ -156,7 +187,9 @@ impl Shape {
     pub fn inradius(&self) -> f32 {
         match *self {
             Self::HalfSpace { .. } => f32::INFINITY,
-            Self::Box { half, .. } => half.into_iter().fold(f32::INFINITY, f32::min),
+            Self::Box { half, .. } | Self::OrientedBox { half, .. } => {
+                half.into_iter().fold(f32::INFINITY, f32::min)
+            }
             Self::Capsule { radius, .. } | Self::Ball { radius, .. } => radius,
         }
     }
@@ -182,6 +215,15 @@ impl Shape {
                 centre: flat(centre),
                 half: [half[0], half[1], f32::MAX],
             },
+            Self::OrientedBox {
+                centre,
+                half,
+                rotation,
+            } => Self::OrientedBox {
+                centre: flat(centre),
+                half: [half[0], half[1], f32::MAX],
+                rotation: rotation.seen_in::<D>(),
+            },
             Self::Capsule { from, to, radius } => Self::Capsule {
                 from: flat(from),
                 to: flat(to),
@@ -205,6 +247,15 @@ impl Shape {
                 centre: plus(centre, by),
                 half,
             },
+            Self::OrientedBox {
+                centre,
+                half,
+                rotation,
+            } => Self::OrientedBox {
+                centre: plus(centre, by),
+                half,
+                rotation,
+            },
             Self::Capsule { from, to, radius } => Self::Capsule {
                 from: plus(from, by),
                 to: plus(to, by),
@@ -215,6 +266,53 @@ impl Shape {
                 radius,
             },
         }
+    }
+}
+
+impl Shape {
+    /// The same shape turned about the origin.
+    #[must_use]
+    pub fn rotated(self, by: Rotation) -> Self {
+        if by == Rotation::NONE {
+            return self;
+        }
+        match self {
+            Self::HalfSpace { normal, offset } => Self::HalfSpace {
+                normal: by.apply(normal),
+                offset,
+            },
+            Self::Box { centre, half } => Self::OrientedBox {
+                centre: by.apply(centre),
+                half,
+                rotation: by,
+            },
+            Self::OrientedBox {
+                centre,
+                half,
+                rotation,
+            } => Self::OrientedBox {
+                centre: by.apply(centre),
+                half,
+                rotation: rotation.then(by),
+            },
+            Self::Capsule { from, to, radius } => Self::Capsule {
+                from: by.apply(from),
+                to: by.apply(to),
+                radius,
+            },
+            Self::Ball { centre, radius } => Self::Ball {
+                centre: by.apply(centre),
+                radius,
+            },
+        }
+    }
+}
+
+/// How far a half width reaches along an axis of the world; what has no end on it has no side there.
+fn reach_of(cosine: f32, half: f32) -> f32 {
+    match half == f32::MAX {
+        true => 0.0,
+        false => cosine.abs() * half,
     }
 }
 

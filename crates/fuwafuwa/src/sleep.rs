@@ -8,8 +8,10 @@ use crate::body::Bodies;
 use crate::contact::Hit;
 use crate::damping::PieceMotion;
 use crate::dim::Dim;
-use crate::handle::BodySlot;
+use crate::handle::{BodySlot, RigidSlot};
 use crate::ids::{PieceId, Table};
+use crate::rigid::Rigids;
+use std::collections::BTreeSet;
 
 /// Pieces slower than this [m/s], on the average over their nodes, are on their way to sleep: what falls is
 /// faster after 3 ms.
@@ -37,6 +39,21 @@ pub fn fall_asleep<D: Dim>(
     change(bodies, true, |_, _, piece| {
         !piece.asleep && piece.still >= STILL_TIME
     })
+}
+
+/// The same for what is free of the rigid things; `handled` are those that a hand presses on.
+pub fn fall_asleep_rigid(rigids: &mut Rigids, handled: &BTreeSet<RigidSlot>, duration: f32) {
+    for (slot, rigid) in rigids.by_slot_mut() {
+        if !rigid.is_free() || rigid.asleep {
+            continue;
+        }
+        let slow = f64::from(rigid.top_speed()) < SLOW && !handled.contains(&slot);
+        rigid.still = if slow { rigid.still + duration } else { 0.0 };
+        if rigid.still >= STILL_TIME {
+            rigid.asleep = true;
+            (rigid.velocity, rigid.spin) = ([0.0; 3], [0.0; 3]);
+        }
+    }
 }
 
 /// Wakes the pieces that were hit; returns who woke.

@@ -14,6 +14,7 @@ mod nodes;
 mod pair;
 mod pairs;
 mod path;
+mod rigids;
 mod sphere;
 mod spheres;
 
@@ -30,6 +31,7 @@ pub use nodes::{NodePair, NodePairs};
 pub use pair::MARGIN;
 use pair::renumber;
 pub use pairs::SpherePairs;
+pub use rigids::{RigidTouch, RigidTouches};
 pub use sphere::{ContactSphere, SphereId, mean};
 pub use spheres::Spheres;
 
@@ -44,6 +46,8 @@ pub struct Nearby {
     pub spheres: Spheres,
     /// Those of them that are close to each other.
     pub pairs: SpherePairs,
+    /// What passes between rigid things.
+    pub rigids: RigidTouches,
     /// Those inside another piece.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub captives: Captives,
@@ -91,6 +95,7 @@ impl Nearby {
     #[cfg(feature = "serde")]
     pub fn keep_known<D: Dim>(&mut self, bodies: &Bodies<D>, rigids: &Rigids) {
         self.nodes.keep_known(bodies, rigids);
+        self.rigids.keep_known::<D>(rigids);
         let known = self.spheres.count_keys();
         let is_known = |pair: &pair::SpherePair| {
             let [a, b] = pair.spheres;
@@ -107,6 +112,7 @@ impl Nearby {
     /// Something rigid was taken out.
     pub fn remove_rigid(&mut self, slot: RigidSlot) {
         self.nodes.list.retain(|pair| pair.rigid != slot);
+        self.rigids.remove(slot);
     }
 
     /// Pieces woke, given by body and number in ascending order.

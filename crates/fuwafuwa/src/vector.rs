@@ -2,6 +2,9 @@
 
 use std::ops::{Add, Mul, Sub};
 
+/// A vector or a place in space; the third coordinate is 0 in 2D.
+pub type Vector = [f32; 3];
+
 /// A number that vectors are made of.
 pub trait Number:
     Copy + Default + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>

@@ -5,19 +5,19 @@ mod contents;
 mod hooks;
 
 use crate::body::{Bodies, Body};
-use crate::contact::{Contacts, Hit};
+use crate::contact::{Contacts, Hit, Hits};
 use crate::damping::{PieceMotion, Slowing, motions, slow_down};
 use crate::dim::{Dim, Point};
 use crate::event::{Event, StepReport, With};
 use crate::fracture::{Failure, failures};
-use crate::handle::{BodyId, BodySlot, Gone};
+use crate::handle::{BodyId, BodySlot, Gone, RigidSlot};
 use crate::ids::{PieceId, Table};
-use crate::rigid::{BadRigid, Rigids};
+use crate::rigid::{BadRigid, Drive, Rigids};
 use crate::shape::Vector;
-use crate::sleep::{fall_asleep, wake};
+use crate::sleep::{fall_asleep, fall_asleep_rigid, wake};
 use crate::solve::Row;
 use crate::touch::{Nearby, NodePair};
-use crate::vector::three;
+use crate::vector::{is_finite, plus, three};
 pub use hooks::{Hooks, Substep, field_around};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -219,7 +219,8 @@ impl<D: Dim> World<D> {
             self.push(duration, hooks);
             let hits = self.touch(duration);
             self.drift(duration);
-            self.wake(&hits);
+            self.wake(&hits.pieces);
+            self.wake_rigids(&hits.rigids);
             if let Some(after) = &mut hooks.after_substep {
                 after(&Substep::new(substep, duration, &self.rigids));
             }
@@ -309,14 +310,19 @@ impl<D: Dim> World<D> {
                 body.pull(duration, field);
             }
         }
+        let Settings { gravity, drag, .. } = self.settings;
         for rigid in self.rigids.iter_mut() {
             rigid.pull(duration);
+            let field = hooks.field.map(|field| field(rigid.position()));
+            let field = field.filter(|pull| is_finite(*pull));
+            let pull = field.map_or(gravity, |field| plus(gravity, field));
+            rigid.fall::<D>(pull, drag, duration);
         }
     }
 
     /// Changes velocities so that nothing goes through anything else. Returns the sleepers that were hit: in
     /// this substep they are walls still.
-    fn touch(&mut self, duration: f32) -> Vec<Hit> {
+    fn touch(&mut self, duration: f32) -> Hits {
         let (bodies, rigids) = (&mut self.bodies, &mut self.rigids);
         let nearby = &mut self.nearby;
         nearby.follow(bodies, rigids, duration);
@@ -378,6 +384,18 @@ impl<D: Dim> World<D> {
             piece,
         });
         self.events.extend(events);
+        let handled = self.contacts.handled(&self.rigids);
+        fall_asleep_rigid(&mut self.rigids, &handled, TICK);
+    }
+
+    /// Wakes free things that were hit.
+    fn wake_rigids(&mut self, hits: &[RigidSlot]) {
+        for &slot in hits {
+            self.rigids.at_mut(slot).wake();
+        }
+        if !hits.is_empty() {
+            self.nearby.nodes.look_again();
+        }
     }
 
     /// Wakes the sleepers that were hit.
@@ -428,9 +446,10 @@ impl<D: Dim> World<D> {
         let pairs = self.nearby.nodes.list.iter();
         for pair in pairs.filter(|pair| pair.impulse.total > 0.0) {
             let rigid = self.rigids.id(pair.rigid);
-            let with = match self.rigids[rigid].is_driven() {
-                true => With::Hand(rigid),
-                false => With::Obstacle(rigid),
+            let with = match self.rigids[rigid].drive {
+                Drive::Fixed => With::Obstacle(rigid),
+                Drive::Free { .. } => With::Free(rigid),
+                _ => With::Hand(rigid),
             };
             let id = self.bodies.id(pair.body);
             let body = &self.bodies[id];

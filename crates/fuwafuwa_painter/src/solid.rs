@@ -6,6 +6,7 @@ pub use crate::canvas::{Camera, Triangle};
 use crate::canvas::{Canvas, unit};
 use crate::role::Role;
 use crate::shadow::Shadow;
+use fuwafuwa::Rotation;
 use fuwafuwa::shape::Vector;
 use fuwafuwa::vector::{cross, minus, plus, scaled};
 use tiny_skia::Pixmap;
@@ -104,12 +105,13 @@ impl Solid {
         }
     }
 
-    /// Adds an upright block.
-    pub fn block(&mut self, centre: Vector, half: Vector, role: Role) {
+    /// Adds a block.
+    pub fn block(&mut self, centre: Vector, half: Vector, rotation: Rotation, role: Role) {
         for axis in 0..3 {
             for side in [-1.0, 1.0] {
                 let corners = [[-1.0, -side], [1.0, -side], [1.0, side], [-1.0, side]];
-                let corners = corners.map(|[u, v]| corner(centre, half, axis, [side, u, v]));
+                let corners = corners.map(|[u, v]| corner(half, axis, [side, u, v]));
+                let corners = corners.map(|corner| plus(centre, rotation.apply(corner)));
                 self.quad(corners, role);
             }
         }
@@ -146,8 +148,8 @@ impl Solid {
 }
 
 /// The corner of a block that is on these sides of its middle, -1 or 1: along an axis, and along the two that follow it.
-fn corner(centre: Vector, half: Vector, axis: usize, sides: [f32; 3]) -> Vector {
-    let mut corner = centre;
+fn corner(half: Vector, axis: usize, sides: [f32; 3]) -> Vector {
+    let mut corner = [0.0; 3];
     for (step, side) in sides.into_iter().enumerate() {
         let along = (axis + step) % 3;
         corner[along] += side * half[along];
@@ -194,7 +196,7 @@ mod tests {
                 let mut solid = Solid::new(Camera { eye, ..CAMERA });
                 match is_bar {
                     true => solid.bar([[-0.5, 0.0, -0.5], [0.5, 0.0, 0.5]], 0.3, Role::Hand),
-                    false => solid.block([0.0; 3], [0.4, 0.3, 0.5], Role::Hand),
+                    false => solid.block([0.0; 3], [0.4, 0.3, 0.5], Rotation::NONE, Role::Hand),
                 }
                 let [red, _, blue] = at(&solid.pixels(60, 60).unwrap(), 30, 30);
                 assert!(blue > red, "{eye:?} {is_bar}");

@@ -5,7 +5,7 @@ use crate::{Frame, Painter, Role, Spot};
 use fuwafuwa::shape::{Shape, Vector};
 use fuwafuwa::vector::{cross, minus, plus, scaled};
 use fuwafuwa::view::{ElementView, Facet, Outline, faces, ring};
-use fuwafuwa::{Body, Dim, Dim2, Dim3, ElementId, NodeId, PieceId, World};
+use fuwafuwa::{Body, Dim, Dim2, Dim3, ElementId, NodeId, PieceId, Rotation, World};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// How a body of the plane is painted.
@@ -18,7 +18,7 @@ const ROUND: usize = 24;
 
 /// Paints a world of the plane, each body as `draw` does.
 pub fn plane(painter: &mut Painter, frame: Frame, world: &World<Dim2>, draw: DrawPlane) {
-    for obstacle in world.obstacles() {
+    for obstacle in world.rigids().iter().filter(|rigid| !rigid.is_driven()) {
         rigid(painter, frame, *obstacle.shape(), Role::Obstacle);
     }
     for body in world.bodies() {
@@ -110,7 +110,7 @@ pub fn outline(frame: Frame, view: &ElementView) -> Vec<Spot> {
 
 /// Paints a world of space, each body as `draw` does.
 pub fn space(solid: &mut Solid, world: &World<Dim3>, draw: DrawSpace) {
-    for obstacle in world.obstacles() {
+    for obstacle in world.rigids().iter().filter(|rigid| !rigid.is_driven()) {
         match *obstacle.shape() {
             Shape::HalfSpace { normal, offset } if normal[1] > 0.99 => solid.floor(offset),
             // The other walls would hide what is inside.
@@ -130,7 +130,12 @@ pub fn space(solid: &mut Solid, world: &World<Dim3>, draw: DrawSpace) {
 fn solid_shape(solid: &mut Solid, shape: Shape, role: Role) {
     match shape {
         Shape::HalfSpace { .. } => {}
-        Shape::Box { centre, half } => solid.block(centre, half, role),
+        Shape::Box { centre, half } => solid.block(centre, half, Rotation::NONE, role),
+        Shape::OrientedBox {
+            centre,
+            half,
+            rotation,
+        } => solid.block(centre, half, rotation, role),
         Shape::Capsule { from, to, radius } => solid.bar([from, to], radius, role),
         Shape::Ball { centre, radius } => solid.ball(centre, radius, role),
     }
@@ -250,6 +255,15 @@ fn rigid(painter: &mut Painter, frame: Frame, shape: Shape, role: Role) {
             let signs = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
             let corner = |[x, y]: [f32; 2]| plus(centre, [x * half[0], y * half[1], 0.0]);
             signs.map(corner).to_vec()
+        }
+        Shape::OrientedBox {
+            centre,
+            half,
+            rotation,
+        } => {
+            let signs = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+            let corner = |[x, y]: [f32; 2]| rotation.apply([x * half[0], y * half[1], 0.0]);
+            signs.map(|sign| plus(centre, corner(sign))).to_vec()
         }
         Shape::Capsule { from, to, radius } => {
             let along = (to[1] - from[1]).atan2(to[0] - from[0]);

@@ -18,7 +18,7 @@ pub struct RigidInstance {
     pub from: Vec2,
     /// The other end, or half of a box [m].
     pub to: Vec2,
-    /// [m]; 0 for a box.
+    /// [m]; of a box the angle by which it is turned [rad].
     pub radius: f32,
     /// 0 = capsule, 1 = box, 2 = ball.
     pub form: f32,
@@ -67,7 +67,7 @@ impl RigidShapes {
         self.walls.clear();
         self.shapes.clear();
         self.dots.clear();
-        for obstacle in world.obstacles() {
+        for obstacle in world.rigids().iter().filter(|rigid| !rigid.is_driven()) {
             if let Shape::HalfSpace { normal, offset } = *obstacle.shape() {
                 self.walls.push([normal[0], normal[1], offset, 0.0]);
             }
@@ -100,6 +100,11 @@ fn instance(shape: Shape, colour: Colour, number: f32) -> Option<RigidInstance> 
         Shape::HalfSpace { .. } => return None,
         Shape::Capsule { from, to, radius } => (from, to, radius, 0.0),
         Shape::Box { centre, half } => (centre, half, 0.0, 1.0),
+        Shape::OrientedBox {
+            centre,
+            half,
+            rotation,
+        } => (centre, half, rotation.scaled_axis()[2], 1.0),
         Shape::Ball { centre, radius } => (centre, centre, radius, 2.0),
     };
     Some(RigidInstance {
@@ -115,7 +120,7 @@ fn instance(shape: Shape, colour: Colour, number: f32) -> Option<RigidInstance> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::{Rigid, Settings};
+    use fuwafuwa::{Rigid, Rotation, Settings};
 
     #[test]
     fn walls_bars_hands_and_basket_each_have_their_place() {
@@ -137,6 +142,13 @@ mod tests {
             half: [0.25; 3],
         };
         let basket = Basket { region, fill: 0.5 };
+        let crate_shape = Shape::Box {
+            centre: [0.0; 3],
+            half: [0.3, 0.2, 1.0],
+        };
+        let turned = Rotation::in_plane(0.5);
+        let fallen = Rigid::free(crate_shape, 1.0).rotated(turned);
+        world.add_rigid(fallen).unwrap();
         let dot = Particle {
             at: [1.0, 2.0, 0.0],
             radius: 0.01,
@@ -149,9 +161,10 @@ mod tests {
         assert_eq!(rigid.walls, [[0.0, 1.0, -2.0, 0.0]]);
         assert_eq!(
             (rigid.bar_count, rigid.hand_count, rigid.shapes.len()),
-            (1, 2, 4)
+            (2, 2, 5)
         );
-        assert_ne!(rigid.shapes[1].colour, rigid.shapes[2].colour);
-        assert_eq!((rigid.shapes[3].number, rigid.dots.len()), (0.5, 1));
+        assert!((rigid.shapes[1].radius - 0.5).abs() < 1e-5);
+        assert_ne!(rigid.shapes[2].colour, rigid.shapes[3].colour);
+        assert_eq!((rigid.shapes[4].number, rigid.dots.len()), (0.5, 1));
     }
 }

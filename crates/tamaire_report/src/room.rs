@@ -1,5 +1,6 @@
 //! The room of a level as a map: its cells, and what stands in it.
 
+use fuwafuwa::vector::plus;
 use fuwafuwa::{Dim, Shape, Vector, World};
 use tamaire_play::{AnyRound, Level};
 
@@ -112,23 +113,37 @@ fn of_world<D: Dim>(grid: Grid, world: &World<D>) -> Vec<Stroke> {
 
 /// Walls and floors are the border of a map already.
 fn of_shape(grid: Grid, shape: &Shape, of: Thing) -> Option<Stroke> {
-    let flat = |at: Vector| grid.axes.map(|axis| at[axis]);
+    let on_map = |at: Vector| grid.axes.map(|axis| at[axis]);
     match *shape {
         Shape::HalfSpace { .. } => None,
         Shape::Box { centre, half } => {
-            let ([x, y], [width, height]) = (flat(centre), flat(half));
+            let ([x, y], [width, height]) = (on_map(centre), on_map(half));
             let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
             let corners = corners.map(|[a, b]| [x + a * width, y + b * height]);
             Some(closed(of, corners.into()))
         }
+        Shape::OrientedBox {
+            centre,
+            half,
+            rotation,
+        } => {
+            let corner = |number: usize| {
+                let sign = |axis: usize| if number >> axis & 1 == 1 { 1.0 } else { -1.0 };
+                let own = [0, 1, 2].map(|axis: usize| sign(axis) * half[axis].min(1e6));
+                plus(centre, rotation.apply(own))
+            };
+            // In the plane the third axis does not count.
+            let corners: Vec<Vector> = (0..8).map(corner).collect();
+            Some(closed(of, hull(flat(grid, &corners))))
+        }
         Shape::Capsule { from, to, radius } => Some(Stroke {
             of,
-            points: vec![flat(from), flat(to)],
+            points: vec![on_map(from), on_map(to)],
             width: 2.0 * radius,
         }),
         Shape::Ball { centre, radius } => Some(Stroke {
             of,
-            points: vec![flat(centre), flat(centre)],
+            points: vec![on_map(centre), on_map(centre)],
             width: 2.0 * radius,
         }),
     }

@@ -3,6 +3,7 @@
 
 use super::{Look, View};
 use egui::{Color32, Painter, Pos2, Rect, Shape as Drawn, Stroke, pos2, vec2};
+use fuwafuwa::vector::plus;
 use fuwafuwa::{Dim2, Shape, Vector};
 use tamaire_play::Round;
 
@@ -85,6 +86,18 @@ fn shine(painter: &Painter, view: &View, shape: Shape, strength: f32) {
                 let half = view.scale * (vec2(half[0], half[1]) + vec2(reach, reach));
                 let rect = Rect::from_center_size(view.on_screen(centre), 2.0 * half);
                 painter.rect_filled(rect, reach * view.scale, light);
+            }
+            Shape::OrientedBox {
+                centre,
+                half,
+                rotation,
+            } => {
+                let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+                let corners = corners.map(|[x, y]| {
+                    let own = [x * (half[0] + reach), y * (half[1] + reach), 0.0];
+                    view.on_screen(plus(centre, rotation.apply(own)))
+                });
+                painter.add(Drawn::convex_polygon(corners.into(), light, Stroke::NONE));
             }
             Shape::Ball { centre, radius } => {
                 let radius = (radius + reach) * view.scale;

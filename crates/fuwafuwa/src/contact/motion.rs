@@ -117,13 +117,13 @@ impl Motion {
     #[inline(always)]
     pub fn of_node(&self, row: &NodeContact, rigids: &Rigids) -> Row {
         let own = self.rows[row.node];
-        let other = row
-            .hand
-            .map_or([0.0; 4], |(hand, _)| as_row(rigids.at(hand).velocity()));
+        let other = row.mover.map_or([0.0; 4], |(mover, lever)| {
+            as_row(rigids.at(mover).velocity_at(lever))
+        });
         with_fourth(minus(own, other), 0.0)
     }
 
-    /// Pushes a node, and the hand that touches it the other way.
+    /// Pushes a node, and what moves against it the other way.
     #[inline(always)]
     pub fn push_node(
         &mut self,
@@ -134,9 +134,9 @@ impl Motion {
     ) {
         let own = &mut self.rows[row.node];
         *own = plus(*own, scaled(impulse, own[3]));
-        if let Some((hand, _)) = row.hand {
-            let hand = rigids.at_mut(hand);
-            hand.push(three(scaled(impulse, -1.0)), duration);
+        if let Some((mover, lever)) = row.mover {
+            let mover = rigids.at_mut(mover);
+            mover.push_at(three(scaled(impulse, -1.0)), lever, duration);
         }
     }
 }

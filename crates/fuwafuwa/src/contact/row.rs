@@ -12,6 +12,15 @@ const WARM_START: f32 = 0.9;
 const PUSH_OUT: f32 = 0.2;
 pub const PUSH_OUT_SPEED: f32 = 0.5;
 
+/// A sleeper wakes when what touches it moves at this speed [m/s]: what it did move, since deep in
+/// a heap the forces of a substep alone would give as much to what rests. Five times as fast as what falls
+/// asleep: less, and a heap would keep itself awake.
+pub const WAKE_SPEED: f32 = 0.15;
+/// A contact matters when the gap closes to so many voxels within so many substeps: one, and half of another, for
+/// other contacts may make it close faster.
+pub const CLOSE: f32 = 0.05;
+pub const AHEAD: f32 = 1.5;
+
 /// One contact in one substep.
 #[derive(Copy, Clone, Debug)]
 pub struct Contact {
@@ -77,10 +86,16 @@ impl Contact {
     /// the second.
     #[inline(always)]
     pub fn solve<D: Dim>(&mut self, relative: Row) -> Row {
+        self.solve_across::<D>(relative, self.inertia)
+    }
+
+    /// The same for sides that turn: across the normal they yield otherwise, `across` [kg].
+    #[inline(always)]
+    pub fn solve_across<D: Dim>(&mut self, relative: Row, across: f32) -> Row {
         let approach = inner::<D>(relative, self.normal);
         let pressed = (self.pressed + (self.least - approach) * self.inertia).max(0.0);
         let slip = minus(relative, scaled(self.normal, approach));
-        let mut dragged = minus(self.dragged, scaled(slip, self.inertia));
+        let mut dragged = minus(self.dragged, scaled(slip, across));
         let (held, wanted) = (self.friction * pressed, inner::<D>(dragged, dragged));
         if wanted > held * held {
             dragged = scaled(dragged, held / wanted.sqrt());
@@ -107,6 +122,23 @@ impl Contact {
     }
 }
 
+impl Impulse {
+    /// They do not touch any more.
+    #[inline(always)]
+    pub fn release(&mut self) {
+        // Most never did; what does not press does not drag.
+        if self.pressed > 0.0 {
+            (self.pressed, self.dragged) = (0.0, [0.0; 4]);
+        }
+    }
+
+    pub fn note(&mut self, contact: &Contact) {
+        self.pressed = contact.pressed;
+        self.dragged = contact.dragged;
+        self.total += contact.pressed;
+    }
+}
+
 /// a · b of the components that a dimension has; the others are 0.
 #[inline(always)]
 pub fn inner<D: Dim>(a: Row, b: Row) -> f32 {
@@ -115,4 +147,10 @@ pub fn inner<D: Dim>(a: Row, b: Row) -> f32 {
         sum += a[axis] * b[axis];
     }
     sum
+}
+
+/// Whether a contact may matter in this substep: it overlaps, or will if nothing is done. What is not
+/// finite touches nothing, so that it spoils nothing else.
+pub fn is_close(gap: f32, approach: f32, size: f32, duration: f32) -> bool {
+    approach.is_finite() && gap + AHEAD * duration * approach.min(0.0) < CLOSE * size
 }

@@ -15,8 +15,8 @@ id! {
 pub struct NodeContact {
     pub contact: Contact,
     pub node: NodeRow,
-    /// The hand, if it is one that the node touches, and how far from its position the node is [m].
-    pub hand: Option<(RigidSlot, Vector)>,
+    /// What is rigid, if it moves, and how far from its position the node is [m].
+    pub mover: Option<(RigidSlot, Vector)>,
 }
 
 /// Two spheres against each other.
@@ -28,6 +28,22 @@ pub struct SphereContact {
 
 /// The corner nodes of a sphere; the first four in 2D.
 pub type Grip = [NodeRow; 8];
+
+/// What is free against something else that is rigid, at one place.
+#[derive(Copy, Clone, Debug)]
+pub struct FreeContact {
+    pub contact: Contact,
+    /// The one that is free, and the other.
+    pub both: [RigidSlot; 2],
+    /// How far the place is from the position of each [m].
+    pub levers: [Vector; 2],
+    /// One over the speed across the normal that a unit of impulse gives at the most [kg].
+    pub across: f32,
+    /// How fast it is to go away from the other [m/s].
+    pub bounce: f32,
+    /// Which corner or edge it is.
+    pub key: u32,
+}
 
 /// A hand against something else that is rigid.
 #[derive(Copy, Clone, Debug)]

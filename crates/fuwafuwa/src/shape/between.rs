@@ -1,5 +1,6 @@
 //! How far two shapes are from each other.
 
+use super::brick::Brick;
 use super::{Shape, Vector, distance_from_box};
 use crate::vector::{dot, minus, plus, scaled};
 
@@ -9,7 +10,7 @@ const NARROWINGS: usize = 40;
 
 impl Shape {
     /// How far it is from another shape [m], negative where they overlap, and the direction in which it gets away
-    /// from it.
+    /// from it. Boxes that are turned and apart corner to corner may be further apart than that.
     pub fn gap(&self, other: &Self) -> (f32, Vector) {
         match (*self, *other) {
             (Self::Ball { centre, radius }, _) => {
@@ -18,7 +19,7 @@ impl Shape {
             }
             (_, Self::Ball { .. }) => turned(other.gap(self)),
             (Self::Capsule { from, to, radius }, _) => {
-                let (distance, normal) = nearest_of_segment(from, to, other);
+                let (distance, normal, _) = other.nearest_of_segment(from, to);
                 (distance - radius, normal)
             }
             (_, Self::Capsule { .. }) => turned(other.gap(self)),
@@ -34,7 +35,20 @@ impl Shape {
                 let reach = reach.into_iter().sum::<f32>();
                 (dot(normal, centre) - offset - reach, normal)
             }
-            (Self::HalfSpace { .. }, Self::Box { .. }) => turned(other.gap(self)),
+            (Self::HalfSpace { .. }, Self::Box { .. } | Self::OrientedBox { .. }) => {
+                turned(other.gap(self))
+            }
+            (Self::OrientedBox { centre, .. }, Self::HalfSpace { normal, offset }) => {
+                let reach = Brick::of(self).map_or(0.0, |brick| brick.reach(normal));
+                (dot(normal, centre) - offset - reach, normal)
+            }
+            (Self::Box { .. } | Self::OrientedBox { .. }, _) => {
+                let both = Brick::of(self).zip(Brick::of(other));
+                let separation = both.map(|(own, other)| own.separation(&other));
+                separation.map_or((f32::INFINITY, [0.0, 1.0, 0.0]), |found| {
+                    (found.gap, found.normal)
+                })
+            }
             // Each fills half of everything: no push would part them.
             (Self::HalfSpace { normal, .. }, Self::HalfSpace { .. }) => (f32::INFINITY, normal),
         }
@@ -46,29 +60,33 @@ fn turned((gap, normal): (f32, Vector)) -> (f32, Vector) {
     (gap, scaled(normal, -1.0))
 }
 
-/// The least distance of the points of a segment from a shape, and the normal there: along a segment the distance
-/// from something convex has one valley.
-fn nearest_of_segment(from: Vector, to: Vector, shape: &Shape) -> (f32, Vector) {
-    let at = |share: f32| shape.distance(plus(from, scaled(minus(to, from), share)));
-    let (mut low, mut high) = (0.0f32, 1.0f32);
-    for _ in 0..NARROWINGS {
-        let third = (high - low) / 3.0;
-        let [left, right] = [low + third, high - third];
-        if at(left).0 > at(right).0 {
-            low = left;
-        } else {
-            high = right;
+impl Shape {
+    /// The least distance of the points of a segment from it, the normal there, and where on the segment that is, from 0 to
+    /// 1: along a segment the distance from something convex has one valley.
+    pub(super) fn nearest_of_segment(&self, from: Vector, to: Vector) -> (f32, Vector, f32) {
+        let at = |share: f32| self.distance(plus(from, scaled(minus(to, from), share)));
+        let (mut low, mut high) = (0.0f32, 1.0f32);
+        for _ in 0..NARROWINGS {
+            let third = (high - low) / 3.0;
+            let [left, right] = [low + third, high - third];
+            if at(left).0 > at(right).0 {
+                low = left;
+            } else {
+                high = right;
+            }
         }
+        [0.5 * (low + high), 0.0, 1.0]
+            .map(|share| (at(share).0, at(share).1, share))
+            .into_iter()
+            .reduce(|best, end| if end.0 < best.0 { end } else { best })
+            .expect("there are three")
     }
-    let ends = [at(0.0), at(1.0)];
-    let within = at(0.5 * (low + high));
-    ends.into_iter()
-        .fold(within, |best, end| if end.0 < best.0 { end } else { best })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rotation::Rotation;
 
     /// Gap and direction, and the same from the other side.
     fn check(a: Shape, b: Shape, gap: f32, normal: Vector) {
@@ -122,5 +140,16 @@ mod tests {
             up,
         );
         assert_eq!(floor.gap(&floor).0, f32::INFINITY);
+        let quarter = Rotation::about([0.0, 0.0, 1.0], std::f32::consts::FRAC_PI_4);
+        let edge = |y| {
+            Shape::Box {
+                centre: [0.0; 3],
+                half: [1.0; 3],
+            }
+            .rotated(quarter)
+            .moved([0.0, y, 0.0])
+        };
+        check(edge(2.0), floor, 2.0 - 2.0f32.sqrt(), up);
+        check(edge(2.0), cube([0.0; 3]), 1.5 - 2.0f32.sqrt(), up);
     }
 }

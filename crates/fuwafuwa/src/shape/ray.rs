@@ -18,6 +18,15 @@ impl Shape {
             Self::Box { centre, half } => {
                 through_box(minus(from, centre).map(f64::from), way, half)
             }
+            Self::OrientedBox {
+                centre,
+                half,
+                rotation,
+            } => {
+                let back = rotation.inverse();
+                let begin = back.apply(minus(from, centre)).map(f64::from);
+                through_box(begin, back.apply(direction).map(f64::from), half)
+            }
             Self::Ball { centre, radius } => through_ball(minus(from, centre), way, radius),
             Self::Capsule {
                 from: low,
@@ -107,6 +116,7 @@ fn roots(a: f64, b: f64, c: f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rotation::Rotation;
 
     #[test]
     fn rays_meet_every_shape_from_outside_and_from_inside() {
@@ -116,6 +126,11 @@ mod tests {
                 centre: [0.1, 0.0, 0.0],
                 half: [0.5, 0.3, 0.7],
             },
+            Shape::Box {
+                centre: [0.0, 0.1, 0.0],
+                half: [0.5, 0.3, 0.7],
+            }
+            .rotated(Rotation::about([1.0, 2.0, 3.0], 0.8)),
             Shape::Ball {
                 centre: [0.1, 0.2, 0.0],
                 radius: 0.6,
@@ -153,7 +168,7 @@ mod tests {
                 met += 1;
             }
         }
-        assert!(met > 900 && missed > 100, "{met} {missed}");
+        assert!(met > 1100 && missed > 100, "{met} {missed}");
         // Far away, and along a floor.
         let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
         assert_eq!(

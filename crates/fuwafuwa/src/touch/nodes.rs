@@ -85,6 +85,11 @@ impl NodePairs {
         self.changed.clear();
     }
 
+    /// Something rigid moves that stood: all will be looked for.
+    pub fn look_again(&mut self) {
+        self.leeways.clear();
+    }
+
     /// Forgets what is of no body, node or rigid thing that is there; leaves each pair once, in their order.
     #[cfg(feature = "serde")]
     pub fn keep_known<D: Dim>(&mut self, bodies: &Bodies<D>, rigids: &Rigids) {
@@ -135,7 +140,7 @@ impl NodePairs {
             return;
         }
         for (leeway, rigid) in self.leeways.iter_mut().zip(rigids.iter()) {
-            leeway.come += length(rigid.velocity()) * duration;
+            leeway.come += rigid.top_speed() * duration;
         }
         let outrun = self.leeways.iter().any(|leeway| leeway.come > leeway.most);
         if outrun || self.leeways.is_empty() {
@@ -183,12 +188,12 @@ impl NodePairs {
         self.spare = self.least_slack;
         let size = sizes.fold(0.0, f32::max);
         let leeway = |rigid: &Rigid| {
-            let slack = if rigid.is_driven() {
+            let slack = if rigid.moves() {
                 HAND_SLACK * size
             } else {
                 0.0
             };
-            let most = slack + length(rigid.velocity()) * left;
+            let most = slack + rigid.top_speed() * left;
             Leeway { most, come: 0.0 }
         };
         self.leeways.clear();
@@ -208,7 +213,7 @@ impl NodePairs {
             for (slot, body, squares) in &squares {
                 near.clear();
                 squares.within(leeway.most, rigid.shape(), &mut near);
-                if rigid.is_driven() && body.cache.awake.len() < body.truth.mesh.node_count() {
+                if rigid.moves() && body.cache.awake.len() < body.truth.mesh.node_count() {
                     let reach = leeway.most + MARGIN * body.truth.grid.voxel_size();
                     let is_near = |&node: &NodeId| {
                         let at = three(body.state.position[node]);

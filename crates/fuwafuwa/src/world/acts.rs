@@ -5,12 +5,13 @@ use crate::body::{Body, MOST_GRAVITY};
 use crate::contact::Hit;
 use crate::dim::Dim;
 use crate::event::Event;
-use crate::handle::BodyId;
+use crate::handle::{BodyId, RigidId};
 use crate::ids::{PieceId, Table};
-use crate::rigid::FARTHEST;
+use crate::rigid::{FARTHEST, Rigid};
 use crate::rotation::Rotation;
-use crate::shape::Vector;
-use crate::touch::leaning_on_body;
+use crate::shape::{Vector, flat};
+use crate::touch::{leaning_on_body, leaning_on_rigid};
+use crate::vector::minus;
 
 impl<D: Dim> World<D> {
     /// Moves a body `by` [m] at once, through whatever is in between. It and what leant on it wake; who follows it by a
@@ -92,6 +93,66 @@ impl<D: Dim> World<D> {
         Ok(())
     }
 
+    /// Puts something rigid somewhere [m] at once, turned from its form as `rotation` says, with the velocity that it has; a
+    /// hand with its goal. Everything wakes that leant on it, and all that is free.
+    ///
+    /// # Errors
+    /// [`Refused`], and it stays where it was, when there is no such thing or the position is out of reach.
+    #[inline(never)]
+    pub fn place_rigid(
+        &mut self,
+        rigid: RigidId,
+        position: Vector,
+        rotation: Rotation,
+    ) -> Result<(), Refused> {
+        let leaning = leaning_on_rigid(self.rigids.get(rigid)?, &self.bodies);
+        self.rigids.get_mut(rigid)?.place::<D>(position, rotation)?;
+        self.nearby.remove_rigid(rigid.slot());
+        self.nearby.nodes.look_again();
+        self.wake(&leaning);
+        self.wake_all_rigids();
+        Ok(())
+    }
+
+    /// Sets the velocity [m/s] and the angular velocity [rad/s] of something that is free; in the plane the third component
+    /// of that counts alone. It wakes.
+    ///
+    /// # Errors
+    /// [`Refused`] when there is no such thing, when it is not free, or when a component is more than 1e6 or not finite.
+    #[inline(never)]
+    pub fn set_velocity(
+        &mut self,
+        rigid: RigidId,
+        linear: Vector,
+        angular: Vector,
+    ) -> Result<(), Refused> {
+        let linear = within("velocity", linear, FARTHEST, "at most 1e6 m/s on each axis")?;
+        let angular = within("spin", angular, FARTHEST, "at most 1e6 rad/s on each axis")?;
+        let free = self.free_mut(rigid)?;
+        free.velocity = flat::<D>(linear);
+        free.spin = turning::<D>(angular);
+        Ok(())
+    }
+
+    /// Gives something that is free an impulse [N s] at a place [m]. It wakes.
+    ///
+    /// # Errors
+    /// As [`World::set_velocity`].
+    #[inline(never)]
+    pub fn push_rigid(
+        &mut self,
+        rigid: RigidId,
+        at: Vector,
+        impulse: Vector,
+    ) -> Result<(), Refused> {
+        let at = within("place", at, FARTHEST, "within 1e6 m of the origin")?;
+        let impulse = within("impulse", impulse, FARTHEST, "at most 1e6 N s on each axis")?;
+        let free = self.free_mut(rigid)?;
+        let lever = minus(flat::<D>(at), free.position());
+        free.kick(flat::<D>(impulse), lever);
+        Ok(())
+    }
+
     /// Lets gravity pull on a body `scale` times as strongly as on others: 0 not at all, negative upwards. It wakes.
     ///
     /// # Errors
@@ -151,6 +212,7 @@ impl<D: Dim> World<D> {
             all.extend(pieces.map(|piece| (slot, piece)));
         }
         self.wake(&all);
+        self.wake_all_rigids();
         let all: Vec<BodyId> = self.bodies.ids().collect();
         all.into_iter().for_each(|body| self.keep_awake(body));
         Ok(())
@@ -166,7 +228,19 @@ impl<D: Dim> World<D> {
         change(self.bodies.get_mut(id)?);
         self.wake_up(id)?;
         self.wake(&leaning);
+        self.wake_all_rigids();
         Ok(())
+    }
+
+    /// Something that is free, awake.
+    fn free_mut(&mut self, rigid: RigidId) -> Result<&mut Rigid, Refused> {
+        require(
+            self.rigids.get(rigid)?.is_free(),
+            "rigid thing",
+            "one that is free",
+        )?;
+        self.wake_rigids(&[rigid.slot()]);
+        Ok(self.rigids.get_mut(rigid)?)
     }
 
     /// Counts anew for how long a body has been slow.
@@ -175,6 +249,14 @@ impl<D: Dim> World<D> {
             let pieces = body.truth.pieces.list.iter_mut();
             pieces.for_each(|piece| piece.still = 0.0);
         }
+    }
+}
+
+/// An angular velocity as a world of `D` sees it.
+fn turning<D: Dim>(angular: Vector) -> Vector {
+    match D::N {
+        2 => [0.0, 0.0, angular[2]],
+        _ => angular,
     }
 }
 

@@ -7,9 +7,10 @@ use crate::changes::History;
 use crate::contact::Hit;
 use crate::dim::Dim;
 use crate::event::Event;
-use crate::handle::{BodyId, Gone, RigidId};
+use crate::handle::{BodyId, Gone, RigidId, RigidSlot};
 use crate::hash::Hash;
-use crate::rigid::{Rigid, Rigids};
+use crate::rigid::{Drive, Rigid, Rigids};
+use crate::rotation::Rotation;
 use crate::shape::Vector;
 use crate::touch::{leaning_on_body, leaning_on_rigid};
 
@@ -30,7 +31,7 @@ impl<D: Dim> World<D> {
         id
     }
 
-    /// Puts a hand or an obstacle into the world. In the plane its third coordinates do not count.
+    /// Puts a hand, an obstacle or something free into the world. In the plane its third coordinates do not count.
     ///
     /// # Errors
     /// [`Refused::Rigid`] when a field of it is out of range.
@@ -48,6 +49,15 @@ impl<D: Dim> World<D> {
     /// [`FARTHEST`](crate::rigid::FARTHEST), or when there is no such hand.
     pub fn set_goal(&mut self, hand: RigidId, goal: Vector) -> Result<(), Refused> {
         Ok(self.rigids.get_mut(hand)?.send::<D>(goal)?)
+    }
+
+    /// Lets what is kinematic turn, too, until it is at the end of the next tick as `rotation` says; in the plane about the
+    /// third axis alone.
+    ///
+    /// # Errors
+    /// [`Refused`], and the goal stays as it was, when there is no such thing or its drive is another one.
+    pub fn set_goal_rotation(&mut self, rigid: RigidId, rotation: Rotation) -> Result<(), Refused> {
+        Ok(self.rigids.get_mut(rigid)?.turn_to::<D>(rotation)?)
     }
 
     /// Cuts a body along a blade at once, whatever it bears; returns how many nodes were released.
@@ -96,6 +106,7 @@ impl<D: Dim> World<D> {
         self.nearby.remove_body(body.slot());
         let leaning = leaning_on_body(&removed, &self.bodies);
         self.wake(&leaning);
+        self.wake_all_rigids();
         Ok(removed)
     }
 
@@ -109,6 +120,7 @@ impl<D: Dim> World<D> {
         self.nearby.remove_rigid(rigid.slot());
         let leaning = leaning_on_rigid(&removed, &self.bodies);
         self.wake(&leaning);
+        self.wake_all_rigids();
         Ok(removed)
     }
 
@@ -129,7 +141,9 @@ impl<D: Dim> World<D> {
 
     /// What is rigid and stands still.
     pub fn obstacles(&self) -> impl Iterator<Item = &Rigid> + Clone {
-        self.rigids.iter().filter(|rigid| !rigid.is_driven())
+        self.rigids
+            .iter()
+            .filter(|rigid| rigid.drive == Drive::Fixed)
     }
 
     /// What is rigid and follows goals, by handle.
@@ -172,9 +186,19 @@ impl<D: Dim> World<D> {
                 }
             }
         }
-        for (_, hand) in self.hands() {
-            for value in hand.position.iter().chain(&hand.velocity) {
+        for rigid in self
+            .rigids
+            .iter()
+            .filter(|rigid| rigid.drive != Drive::Fixed)
+        {
+            for value in rigid.position.iter().chain(&rigid.velocity) {
                 hash.add(u64::from(value.to_bits()));
+            }
+            if rigid.is_free() {
+                let turned = rigid.rotation.quaternion();
+                for value in turned.iter().chain(&rigid.spin) {
+                    hash.add(u64::from(value.to_bits()));
+                }
             }
         }
         hash.number()
@@ -205,6 +229,13 @@ impl<D: Dim> World<D> {
     pub(crate) fn rebuild(&mut self) {
         self.bodies.iter_mut().for_each(Body::restore);
         self.nearby.keep_known(&self.bodies, &self.rigids);
+    }
+
+    /// Wakes whatever is free: who of them leant on something that is gone shows within a moment.
+    pub(super) fn wake_all_rigids(&mut self) {
+        let sleepers = self.rigids.by_slot().filter(|(_, rigid)| rigid.is_asleep());
+        let sleepers: Vec<RigidSlot> = sleepers.map(|(slot, _)| slot).collect();
+        self.wake_rigids(&sleepers);
     }
 
     /// Wakes all pieces of a body.

@@ -1,7 +1,7 @@
 // Bars, hands, the basket and particles: a rectangle each, into which a shape is drawn.
 struct Shape {
     @location(0) from_to: vec4f,
-    // Radius [m], form, number.
+    // Radius [m], of a box the angle by which it is turned; form, number.
     @location(1) form: vec3f,
     @location(2) colour: vec3f,
 }
@@ -14,14 +14,25 @@ struct ShapeCorner {
     @location(3) @interpolate(flat) colour: vec3f,
 }
 
+// A place as seen from the middle of a box, along its own axes.
+fn within(at: vec2f, from_to: vec4f, angle: f32) -> vec2f {
+    let place = at - from_to.xy;
+    let way = vec2f(cos(angle), sin(angle));
+    return vec2f(dot(place, way), dot(place, vec2f(-way.y, way.x)));
+}
+
 fn shape_corner(index: u32, shape: Shape, margin: f32) -> ShapeCorner {
     var low = min(shape.from_to.xy, shape.from_to.zw);
     var high = max(shape.from_to.xy, shape.from_to.zw);
+    var radius = shape.form.x;
     if shape.form.y == 1.0 {
-        low = shape.from_to.xy - shape.from_to.zw;
-        high = shape.from_to.xy + shape.from_to.zw;
+        let way = abs(vec2f(cos(radius), sin(radius)));
+        let half = vec2f(dot(way, shape.from_to.zw), dot(way.yx, shape.from_to.zw));
+        low = shape.from_to.xy - half;
+        high = shape.from_to.xy + half;
+        radius = 0.0;
     }
-    let reach = vec2f(shape.form.x + margin);
+    let reach = vec2f(radius + margin);
     let at = mix(low - reach, high + reach, vec2f(f32(index & 1u), f32(index >> 1u)));
     return ShapeCorner(to_clip(at), at, shape.from_to, shape.form, shape.colour);
 }
@@ -38,7 +49,7 @@ fn wide_corner(@builtin(vertex_index) index: u32, shape: Shape) -> ShapeCorner {
 
 fn distance_to(at: vec2f, in: ShapeCorner) -> f32 {
     if in.form.y == 1.0 {
-        let beyond = abs(at - in.from_to.xy) - in.from_to.zw;
+        let beyond = abs(within(at, in.from_to, in.form.x)) - in.from_to.zw;
         return length(max(beyond, vec2f(0.0))) + min(max(beyond.x, beyond.y), 0.0);
     }
     let axis = in.from_to.zw - in.from_to.xy;
@@ -82,7 +93,7 @@ fn bar(in: ShapeCorner) -> @location(0) vec4f {
         along = select(vec2f(0.0, 1.0), vec2f(1.0, 0.0), in.from_to.z > in.from_to.w);
     }
     along = normalize(along + vec2f(1e-6, 0.0));
-    let place = in.at - in.from_to.xy;
+    let place = select(in.at - in.from_to.xy, within(in.at, in.from_to, in.form.x), in.form.y == 1.0);
     let wood = vec2f(dot(place, along), dot(place, vec2f(-along.y, along.x)));
     let rings = noise(vec2f(wood.x * 2.5, wood.y * 55.0 + 2.0 * noise(wood * vec2f(5.0, 9.0)))) * 0.65
         + noise(wood * vec2f(9.0, 190.0)) * 0.35;
@@ -118,7 +129,7 @@ fn hand(in: ShapeCorner) -> @location(0) vec4f {
 
 // Dashes around the border of the region march slowly.
 fn dashes(at: vec2f, in: ShapeCorner) -> f32 {
-    let place = at - in.from_to.xy;
+    let place = select(at - in.from_to.xy, within(at, in.from_to, in.form.x), in.form.y == 1.0);
     var along = atan2(place.y, place.x) * in.form.x;
     if in.form.y == 1.0 {
         let beyond = abs(place) - in.from_to.zw;

@@ -111,6 +111,17 @@ impl RoundedInstance {
                     ..plain
                 })
             }
+            Shape::OrientedBox {
+                centre,
+                half,
+                rotation,
+            } => Self::of(Shape::Box { centre, half }, [red, green, blue], number).map(|upright| {
+                let [x, y, z] = rotation.axes().map(Vec3::from);
+                Self {
+                    axes: Mat3::from_cols(x, y, z),
+                    ..upright
+                }
+            }),
             Shape::Capsule { from, to, radius } => {
                 let (from, to) = (Vec3::from(from), Vec3::from(to));
                 Some(Self {
@@ -172,10 +183,12 @@ mod tests {
         let long = length([0.6, 1.0, 0.3]);
         let half = [0.5, 1.0, 0.25];
         let round = 4.0 / 3.0 * pi * 0.125;
+        let turned = fuwafuwa::Rotation::about([1.0, 2.0, 3.0], 0.7);
         for (shape, expected) in [
             (ball, round),
             (capsule, round + pi * 0.25 * long),
             (Shape::Box { centre, half }, 1.0),
+            (Shape::Box { centre, half }.rotated(turned), 1.0),
         ] {
             let instance = RoundedInstance::of(shape, [1.0; 3], 0.0).unwrap();
             let found = volume(&instance);

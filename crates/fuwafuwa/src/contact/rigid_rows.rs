@@ -1,0 +1,224 @@
+//! Contacts between rigid things: hands against walls and each other at one place, what is free at as many as it lies on.
+
+use super::row::{AHEAD, CLOSE, Contact, WAKE_SPEED, inner, is_close};
+use super::sides::{FreeContact, HandContact};
+use crate::dim::Dim;
+use crate::handle::RigidSlot;
+use crate::rigid::{Drive, Rigid, Rigids};
+use crate::shape::Vector;
+use crate::solve::Row;
+use crate::touch::{Impulse, RigidTouch, RigidTouches};
+use crate::vector::{as_row, cross, dot, length, minus, plus, scaled, three};
+
+/// What comes slower than this [m/s] does not bounce: else nothing would come to rest.
+const BOUNCE_SPEED: f32 = 0.5;
+
+/// The contacts of the hands with what is fixed, and with each other.
+pub fn find_hands(rigids: &Rigids, duration: f32, found: &mut Vec<HandContact>) {
+    found.clear();
+    for (own, hand) in rigids.by_slot().filter(|(_, rigid)| rigid.is_driven()) {
+        let others = rigids.by_slot().filter(|(_, rigid)| !rigid.is_free());
+        for (other, rigid) in others.filter(|&(at, rigid)| at < own || !rigid.is_driven()) {
+            let inverse_mass = hand.inverse_mass() + rigid.inverse_mass();
+            let relative = minus(as_row(hand.velocity()), as_row(rigid.velocity()));
+            if inverse_mass == 0.0 || !relative.iter().all(|k| k.is_finite()) {
+                continue;
+            }
+            let (gap, normal) = hand.shape().gap(rigid.shape());
+            // What is not finite touches nothing.
+            if gap.is_nan() || gap >= hand.shape().inradius() {
+                continue;
+            }
+            let friction = match rigid.is_driven() {
+                true => 0.5 * (hand.friction + rigid.friction),
+                false => hand.friction,
+            };
+            let (normal, inertia) = (as_row(normal), 1.0 / inverse_mass);
+            found.push(HandContact {
+                contact: Contact::new(normal, gap, duration, inertia, friction),
+                both: [own, other],
+            });
+        }
+    }
+}
+
+/// The contacts of what is free with everything rigid. Returns the sleepers that were hit.
+pub fn find_free<D: Dim>(
+    rigids: &Rigids,
+    known: &RigidTouches,
+    duration: f32,
+    found: &mut Vec<FreeContact>,
+) -> Vec<RigidSlot> {
+    found.clear();
+    let mut hits = Vec::new();
+    if !rigids.iter().any(Rigid::is_free) {
+        return hits;
+    }
+    let boxes = rigids.by_slot().map(|(slot, rigid)| {
+        let [low, high] = rigid.shape().bounds();
+        let margin = margin(rigid, duration);
+        let by = [margin; 3];
+        (slot, rigid, [minus(low, by), plus(high, by)])
+    });
+    let boxes: Vec<(RigidSlot, &Rigid, [Vector; 2])> = boxes.collect();
+    for &(own, rigid, [low, high]) in boxes.iter().filter(|(_, rigid, _)| rigid.is_free()) {
+        for &(other, against, [others_low, others_high]) in &boxes {
+            let is_once = other < own || !against.is_free();
+            let is_apart = (0..D::N)
+                .any(|axis| low[axis] > others_high[axis] || high[axis] < others_low[axis]);
+            if !is_once || is_apart || other == own || !(rigid.moves() || against.moves()) {
+                continue;
+            }
+            let both = [own, other];
+            let margin = margin(rigid, duration) + margin_of_other(against, duration);
+            touch::<D>(
+                both,
+                [rigid, against],
+                margin,
+                known,
+                duration,
+                found,
+                &mut hits,
+            );
+        }
+    }
+    hits.sort_unstable();
+    hits.dedup();
+    hits
+}
+
+/// How far something may be from what it touches within a substep [m].
+fn margin(rigid: &Rigid, duration: f32) -> f32 {
+    CLOSE * rigid.shape().inradius().min(1.0) + margin_of_other(rigid, duration)
+}
+
+fn margin_of_other(rigid: &Rigid, duration: f32) -> f32 {
+    AHEAD * duration * rigid.top_speed()
+}
+
+/// The contacts of two.
+fn touch<D: Dim>(
+    slots: [RigidSlot; 2],
+    both: [&Rigid; 2],
+    margin: f32,
+    known: &RigidTouches,
+    duration: f32,
+    found: &mut Vec<FreeContact>,
+    hits: &mut Vec<RigidSlot>,
+) {
+    let manifold = both[0].shape().manifold(both[1].shape(), margin);
+    let size = both[0].shape().inradius().min(1.0);
+    let friction = match both[1].drive {
+        Drive::Fixed => both[1].friction,
+        _ => 0.5 * (both[0].friction + both[1].friction),
+    };
+    let restitution = both[0].restitution.max(both[1].restitution);
+    let normal = as_row(manifold.normal);
+    for place in &manifold.places {
+        let levers = both.map(|rigid| minus(place.at, rigid.position()));
+        let [own, other] = [0, 1].map(|k: usize| both[k].velocity_at(levers[k]));
+        let relative = minus(as_row(own), as_row(other));
+        let approach = inner::<D>(relative, normal);
+        if !is_close(place.gap, approach, size, duration) {
+            continue;
+        }
+        let speed = length(own).max(length(other));
+        if place.gap < CLOSE * size && speed > WAKE_SPEED {
+            let sleepers = [0, 1].into_iter().filter(|&k: &usize| both[k].is_asleep());
+            hits.extend(sleepers.map(|k| slots[k]));
+        }
+        let yields = |way: Vector| {
+            let each = [0, 1].map(|k: usize| both[k].yields(levers[k], way));
+            each[0] + each[1]
+        };
+        let along = yields(manifold.normal);
+        if along <= 0.0 {
+            continue;
+        }
+        let across: f32 = tangents::<D>(manifold.normal).map(yields).iter().sum();
+        let impulse = known.known(slots, place.key);
+        let mut contact = Contact::new(normal, place.gap, duration, 1.0 / along, friction);
+        contact = contact.known_as::<D>(0, &impulse);
+        let is_new = impulse.pressed == 0.0 && approach < -BOUNCE_SPEED;
+        let bounce = if is_new { -restitution * approach } else { 0.0 };
+        if bounce > 0.0 {
+            contact.least = contact.least.max(bounce);
+        }
+        found.push(FreeContact {
+            contact,
+            both: slots,
+            levers,
+            across: 1.0 / across,
+            bounce,
+            key: place.key,
+        });
+    }
+}
+
+/// Directions across a normal: in the plane one, and one that does not count.
+fn tangents<D: Dim>(normal: Vector) -> [Vector; 2] {
+    if D::N == 2 {
+        return [[normal[1], -normal[0], 0.0], [0.0; 3]];
+    }
+    let least = (0..3).fold(0, |least, k| match normal[k].abs() < normal[least].abs() {
+        true => k,
+        false => least,
+    });
+    let mut other = [0.0; 3];
+    other[least] = 1.0;
+    let first = cross(normal, other);
+    let first = scaled(first, 1.0 / dot(first, first).sqrt());
+    [first, cross(normal, first)]
+}
+
+impl FreeContact {
+    /// What passed at its place.
+    pub fn touch(&self) -> RigidTouch {
+        let mut impulse = Impulse::default();
+        impulse.note(&self.contact);
+        RigidTouch {
+            both: self.both,
+            key: self.key,
+            impulse,
+        }
+    }
+
+    /// Starts from what passed so far.
+    pub fn start(&self, rigids: &mut Rigids, duration: f32) {
+        self.push(rigids, self.contact.start(), duration);
+    }
+
+    pub fn solve<D: Dim>(&mut self, rigids: &mut Rigids, duration: f32) {
+        let relative = self.relative(rigids);
+        let change = self.contact.solve_across::<D>(relative, self.across);
+        self.push(rigids, change, duration);
+    }
+
+    /// After the move: takes back the speed of what was pushed out, but for that of a bounce.
+    pub fn relax<D: Dim>(&mut self, rigids: &mut Rigids, duration: f32) {
+        if self.contact.was_pushed_out() {
+            let kept = scaled(self.contact.normal, self.bounce);
+            let relative = minus(self.relative(rigids), kept);
+            let change = self.contact.relax::<D>(relative);
+            self.push(rigids, change, duration);
+        }
+    }
+
+    /// How fast the first moves there as seen from the second.
+    fn relative(&self, rigids: &Rigids) -> Row {
+        let [own, other] =
+            [0, 1].map(|k: usize| rigids.at(self.both[k]).velocity_at(self.levers[k]));
+        as_row(minus(own, other))
+    }
+
+    fn push(&self, rigids: &mut Rigids, impulse: Row, duration: f32) {
+        let impulse = three(impulse);
+        rigids
+            .at_mut(self.both[0])
+            .push_at(impulse, self.levers[0], duration);
+        let back = scaled(impulse, -1.0);
+        rigids
+            .at_mut(self.both[1])
+            .push_at(back, self.levers[1], duration);
+    }
+}

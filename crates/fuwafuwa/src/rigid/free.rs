@@ -1,0 +1,167 @@
+//! What falls: how it is moved, turned, pushed and put to sleep.
+
+use super::inertia::{Inertia, times};
+use super::{BadRigid, Drive, Rigid, is_within_reach, require};
+use crate::dim::Dim;
+use crate::rotation::Rotation;
+use crate::shape::{Vector, flat};
+use crate::vector::{cross, dot, length, plus, scaled};
+
+impl Rigid {
+    /// Whether it is free to fall.
+    pub fn is_free(&self) -> bool {
+        matches!(self.drive, Drive::Free { .. })
+    }
+
+    /// Whether it is free and came to rest, until something moves against it.
+    pub fn is_asleep(&self) -> bool {
+        self.asleep
+    }
+
+    /// Whether it may be somewhere else a moment later.
+    #[inline(always)]
+    pub(crate) fn moves(&self) -> bool {
+        self.drive != Drive::Fixed && !self.asleep
+    }
+
+    /// Velocity of a place on it [m/s], so far from its [`position`](Rigid::position) [m].
+    #[inline(always)]
+    pub(crate) fn velocity_at(&self, lever: Vector) -> Vector {
+        match self.turns() {
+            true => plus(self.velocity, cross(self.spin, lever)),
+            false => self.velocity,
+        }
+    }
+
+    /// The speed that none of its places exceeds [m/s].
+    pub(crate) fn top_speed(&self) -> f32 {
+        let speed = length(self.velocity);
+        match self.turns() && self.spin != [0.0; 3] {
+            true => speed + length(self.spin) * self.extent(),
+            false => speed,
+        }
+    }
+
+    /// How far its form reaches from its position [m].
+    pub(crate) fn extent(&self) -> f32 {
+        let [low, high] = self.form.bounds();
+        length([0, 1, 2].map(|axis: usize| low[axis].abs().max(high[axis].abs())))
+    }
+
+    /// Lets it turn to a rotation.
+    pub(crate) fn turn_to<D: Dim>(&mut self, rotation: Rotation) -> Result<(), BadRigid> {
+        let is_kinematic = self.drive == Drive::Kinematic;
+        require(is_kinematic, "drive", "kinematic, for it to turn to a goal")?;
+        self.rotation_goal = rotation.seen_in::<D>();
+        Ok(())
+    }
+
+    /// Puts it somewhere at once, turned in a way, awake, with the velocity that it has.
+    pub(crate) fn place<D: Dim>(
+        &mut self,
+        position: Vector,
+        rotation: Rotation,
+    ) -> Result<(), BadRigid> {
+        let expected = "within 1e6 m of the origin";
+        require(is_within_reach(position), "position", expected)?;
+        (self.position, self.rotation) = (position, rotation);
+        (self.goal, self.goal_before, self.position_before) = (position, position, position);
+        (self.rotation_goal, self.rotation_before) = (rotation, rotation);
+        *self = self.clone().seen_in::<D>();
+        self.wake();
+        Ok(())
+    }
+
+    /// It does not rest any more.
+    pub(crate) fn wake(&mut self) {
+        (self.asleep, self.still) = (false, 0.0);
+    }
+
+    /// Works out anew what it turns by, as a world of `D` sees it.
+    pub(super) fn take_inertia<D: Dim>(&mut self) {
+        self.inertia = match self.drive {
+            Drive::Free { mass } => Some(Inertia::of::<D>(&self.form, mass)),
+            _ => None,
+        };
+    }
+
+    /// Lets what is free gain speed for `duration` [s]; everything loses a share `drag` [1/s] of it to the air.
+    pub(crate) fn fall<D: Dim>(&mut self, acceleration: Vector, drag: f32, duration: f32) {
+        if !self.is_free() || self.asleep {
+            return;
+        }
+        let gain = scaled(flat::<D>(acceleration), duration);
+        let left = 1.0 / (1.0 + drag * duration);
+        self.velocity = scaled(plus(self.velocity, gain), left);
+        self.spin = scaled(self.spin, left);
+    }
+
+    /// Moves and turns it by its velocities.
+    pub(crate) fn drift(&mut self, duration: f32) {
+        if !self.moves() {
+            return;
+        }
+        let position = plus(self.position, scaled(self.velocity, duration));
+        if self.spin == [0.0; 3] {
+            return self.stand_at(position, self.rotation);
+        }
+        let way = Rotation::about(self.spin, length(self.spin) * duration);
+        let rotation = self.rotation.then(way);
+        if let Some(inertia) = &self.inertia {
+            // No torque: the angular momentum stays.
+            self.spin = inertia.spin_kept(self.spin, self.rotation, rotation);
+        }
+        self.stand_at(position, rotation);
+    }
+
+    /// Gains what an impulse [N s] gives it so far from its position [m].
+    pub(crate) fn kick(&mut self, impulse: Vector, lever: Vector) {
+        self.velocity = plus(self.velocity, scaled(impulse, self.inverse_mass()));
+        self.twirl(impulse, lever);
+    }
+
+    /// Feels an impulse [N s] of something that touches it so far from its position [m], within a substep of `duration`
+    /// [s].
+    #[inline(always)]
+    pub(crate) fn push_at(&mut self, impulse: Vector, lever: Vector, duration: f32) {
+        self.push(impulse, duration);
+        self.twirl(impulse, lever);
+    }
+
+    #[inline(always)]
+    fn twirl(&mut self, impulse: Vector, lever: Vector) {
+        if self.inertia.is_some() && !self.asleep {
+            let twist = times(&self.inverse_inertia, cross(lever, impulse));
+            self.spin = plus(self.spin, twist);
+        }
+    }
+
+    /// The speed [m/s] that an impulse of 1 N s at a place so far from its position [m] gives that place along a direction
+    /// of length 1.
+    pub(crate) fn yields(&self, lever: Vector, way: Vector) -> f32 {
+        let mut gain = self.inverse_mass();
+        if self.inertia.is_some() && !self.asleep {
+            let arm = cross(lever, way);
+            let turned = times(&self.inverse_inertia, arm);
+            gain += dot(arm, turned);
+        }
+        gain
+    }
+
+    /// No less than that, whatever the direction.
+    #[inline(always)]
+    pub(crate) fn yields_at_most(&self, lever: Vector) -> f32 {
+        let gain = self.inverse_mass();
+        if self.inertia.is_none() || self.asleep {
+            return gain;
+        }
+        let [x, y, z] = self.inverse_inertia;
+        gain + (x[0] + y[1] + z[2]) * dot(lever, lever)
+    }
+
+    /// Whether it turns.
+    #[inline(always)]
+    fn turns(&self) -> bool {
+        matches!(self.drive, Drive::Kinematic | Drive::Free { .. })
+    }
+}

@@ -1,0 +1,227 @@
+//! How hard it is to turn what is rigid: its principal moments of inertia, of an even density.
+
+use crate::dim::Dim;
+use crate::rotation::Rotation;
+use crate::shape::{Shape, Vector};
+use crate::vector::{cross, dot, length, minus, plus, scaled};
+use std::f32::consts::PI;
+
+/// A symmetric matrix, by its rows.
+pub type Matrix = [Vector; 3];
+
+/// Moments of inertia about the principal axes of a form.
+#[derive(Copy, Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Inertia {
+    axes: [Vector; 3],
+    /// [kg m²]; in the plane the third alone, and 0 on the others.
+    moments: Vector,
+    /// One over each of those; 0 about axes that it does not turn about.
+    inverse: Vector,
+}
+
+impl Inertia {
+    /// Of a form with its middle at the origin, by its mass [kg].
+    pub fn of<D: Dim>(form: &Shape, mass: f32) -> Self {
+        let (axes, shares) = match *form {
+            Shape::HalfSpace { .. } => (Rotation::NONE.axes(), [0.0; 3]),
+            Shape::Ball { radius, .. } => (Rotation::NONE.axes(), ball::<D>(radius)),
+            Shape::Box { half, .. } => (Rotation::NONE.axes(), cuboid(half)),
+            Shape::OrientedBox { half, rotation, .. } => (rotation.axes(), cuboid(half)),
+            Shape::Capsule { from, to, radius } => (
+                axes_along(minus(to, from)),
+                bar::<D>(length(minus(to, from)), radius),
+            ),
+        };
+        let mut moments = scaled(shares, mass);
+        if D::N == 2 {
+            moments = [0.0, 0.0, moments[2]];
+        }
+        let inverse = moments.map(|moment| if moment > 0.0 { 1.0 / moment } else { 0.0 });
+        // In the plane all turn about the third axis, wherever a bar leads.
+        let axes = if D::N == 2 {
+            Rotation::NONE.axes()
+        } else {
+            axes
+        };
+        Self {
+            axes,
+            moments,
+            inverse,
+        }
+    }
+
+    /// The inverse of its matrix about the axes of the world [1/(kg m²)], where it is turned so.
+    pub fn inverse(&self, rotation: Rotation) -> Matrix {
+        let mut matrix = [[0.0; 3]; 3];
+        for (axis, inverse) in self.axes.into_iter().zip(self.inverse) {
+            let axis = rotation.apply(axis);
+            for row in 0..3 {
+                matrix[row] = plus(matrix[row], scaled(axis, inverse * axis[row]));
+            }
+        }
+        matrix
+    }
+
+    /// The angular velocity [rad/s] with which it keeps its angular momentum when it has turned.
+    pub fn spin_kept(&self, spin: Vector, before: Rotation, after: Rotation) -> Vector {
+        let axes = self.axes.into_iter().zip(self.moments);
+        let momentum = axes.fold([0.0; 3], |sum, (axis, moment)| {
+            let axis = before.apply(axis);
+            plus(sum, scaled(axis, moment * dot(axis, spin)))
+        });
+        let axes = self.axes.into_iter().zip(self.inverse);
+        axes.fold([0.0; 3], |sum, (axis, inverse)| {
+            let axis = after.apply(axis);
+            plus(sum, scaled(axis, inverse * dot(axis, momentum)))
+        })
+    }
+}
+
+/// A matrix times a vector.
+#[inline(always)]
+pub fn times(matrix: &Matrix, vector: Vector) -> Vector {
+    [0, 1, 2].map(|row: usize| dot(matrix[row], vector))
+}
+
+// What follows is for a mass of 1.
+
+fn cuboid([x, y, z]: Vector) -> Vector {
+    let about = |a: f32, b: f32| (a * a + b * b) / 3.0;
+    // What has no end on the third axis is of the plane, and turns about that one.
+    [about(y, z), about(z, x), about(x, y)]
+}
+
+fn ball<D: Dim>(radius: f32) -> Vector {
+    let share = if D::N == 2 { 0.5 } else { 0.4 };
+    [share * radius * radius; 3]
+}
+
+/// A bar with round ends, whose first axis is its own: what is between the ends, and both halves of a ball.
+fn bar<D: Dim>(long: f32, radius: f32) -> Vector {
+    let squared = radius * radius;
+    // How far the middle of half a ball is from its flat side.
+    let (between, round, middle) = match D::N {
+        2 => (2.0 * radius * long, PI * squared, 4.0 * radius / (3.0 * PI)),
+        _ => (
+            PI * squared * long,
+            4.0 / 3.0 * PI * squared * radius,
+            3.0 / 8.0 * radius,
+        ),
+    };
+    let whole = between + round;
+    let (between, round) = (between / whole, round / whole);
+    let [own, ..] = ball::<D>(radius);
+    let ends = own + 0.25 * long * long + long * middle;
+    let side = match D::N {
+        2 => (long * long + 4.0 * squared) / 12.0,
+        _ => long * long / 12.0 + 0.25 * squared,
+    };
+    let across = between * side + round * ends;
+    [0.5 * between * squared + round * own, across, across]
+}
+
+/// Three axes, the first along a direction.
+fn axes_along(way: Vector) -> [Vector; 3] {
+    let long = length(way);
+    if long <= 0.0 {
+        return Rotation::NONE.axes();
+    }
+    let first = scaled(way, 1.0 / long);
+    let least = (0..3).min_by(|&a, &b| first[a].abs().total_cmp(&first[b].abs()));
+    let mut other = [0.0; 3];
+    other[least.unwrap_or(0)] = 1.0;
+    let second = cross(first, other);
+    let second = scaled(second, 1.0 / length(second));
+    [first, second, cross(first, second)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dim::{Dim2, Dim3};
+
+    /// Against a sum over small cells.
+    fn check<D: Dim>(form: Shape) {
+        let [low, high] = form.bounds();
+        let count = if D::N == 2 { 200 } else { 60 };
+        let (mut mass, mut sums) = (0.0f64, [0.0f64; 3]);
+        let depth = if D::N == 2 { 1 } else { count };
+        for cell in 0..count * count * depth {
+            let cell = [cell % count, cell / count % count, cell / count / count];
+            let share = cell.map(|k| (k as f32 + 0.5) / count as f32);
+            let mut at = [0, 1, 2].map(|k: usize| low[k] + share[k] * (high[k] - low[k]));
+            at[D::N..].fill(0.0);
+            if form.distance(at).0 > 0.0 {
+                continue;
+            }
+            mass += 1.0;
+            for (axis, sum) in sums.iter_mut().enumerate() {
+                let others = (0..3).filter(|&k| k != axis);
+                *sum += others.map(|k| f64::from(at[k] * at[k])).sum::<f64>();
+            }
+        }
+        let inertia = Inertia::of::<D>(&form, 3.0);
+        let inverse = inertia.inverse(Rotation::NONE);
+        for axis in if D::N == 2 { 2..3 } else { 0..3 } {
+            let expected = 3.0 * sums[axis] / mass;
+            let found = 1.0 / f64::from(inverse[axis][axis]);
+            assert!(
+                (found / expected - 1.0).abs() < 0.01,
+                "{form:?} {found} {expected}"
+            );
+        }
+    }
+
+    #[test]
+    fn moments_are_those_of_the_shapes() {
+        let [x, y, z] = [0.3, 0.5, 0.9];
+        let long = Shape::Capsule {
+            from: [-x, 0.0, 0.0],
+            to: [x, 0.0, 0.0],
+            radius: 0.2,
+        };
+        let ball = Shape::Ball {
+            centre: [0.0; 3],
+            radius: x,
+        };
+        let cuboid = |half| Shape::Box {
+            centre: [0.0; 3],
+            half,
+        };
+        check::<Dim3>(cuboid([x, y, z]));
+        check::<Dim2>(cuboid([x, y, f32::MAX]));
+        check::<Dim3>(long);
+        check::<Dim2>(long);
+        check::<Dim3>(ball);
+        check::<Dim2>(ball);
+    }
+
+    #[test]
+    fn what_tumbles_keeps_its_momentum() {
+        let form = Shape::Box {
+            centre: [0.0; 3],
+            half: [0.3, 0.5, 0.9],
+        };
+        let inertia = Inertia::of::<Dim3>(&form, 3.0);
+        let momentum = |spin: Vector, rotation: Rotation| {
+            let axes = rotation.axes().into_iter().zip(inertia.moments);
+            axes.fold([0.0; 3], |sum, (axis, moment)| {
+                plus(sum, scaled(axis, moment * dot(axis, spin)))
+            })
+        };
+        let (mut spin, mut rotation) = ([0.1, 5.0, 0.0], Rotation::NONE);
+        let before = momentum(spin, rotation);
+        let mut most = 0.0f32;
+        for _ in 0..5000 {
+            let next = rotation.then(Rotation::about(spin, length(spin) * 0.001));
+            spin = inertia.spin_kept(spin, rotation, next);
+            rotation = next;
+            most = most.max(spin[0].abs());
+        }
+        let off = minus(momentum(spin, rotation), before);
+        assert!(length(off) < 1e-3 * length(before), "{off:?}");
+        // The middle axis is the one that does not hold [Euler].
+        assert!(most > 2.0, "{most}");
+    }
+}

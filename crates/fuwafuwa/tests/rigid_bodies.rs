@@ -1,0 +1,402 @@
+//! Rigid bodies that fall, turn, stack, bounce, and lie on soft ones.
+
+use fuwafuwa::{
+    Body, Dim, Dim2, Dim3, Drive, Elasticity, Material, Rigid, RigidId, Rotation, Settings, Shape,
+    VoxelGrid, World,
+};
+use std::f32::consts::{FRAC_PI_4, PI};
+
+type Vector = [f32; 3];
+
+const UP: Vector = [0.0, 1.0, 0.0];
+
+fn world<D: Dim>(gravity: f32) -> World<D> {
+    let settings = Settings {
+        gravity: [0.0, gravity, 0.0],
+        ..Settings::default()
+    };
+    World::new(settings).unwrap()
+}
+
+fn floored<D: Dim>() -> World<D> {
+    let mut world = world::<D>(-9.81);
+    let floor = Rigid::fixed(Shape::half_space(UP, [0.0; 3]), 0.5);
+    world.add_rigid(floor).unwrap();
+    world
+}
+
+fn cube(centre: Vector, half: f32) -> Shape {
+    Shape::Box {
+        centre,
+        half: [half; 3],
+    }
+}
+
+fn bar(centre: Vector) -> Shape {
+    Shape::Capsule {
+        from: [-0.4, 0.0, 0.0],
+        to: [0.4, 0.0, 0.0],
+        radius: 0.2,
+    }
+    .moved(centre)
+}
+
+fn ball(centre: Vector) -> Shape {
+    Shape::Ball {
+        centre,
+        radius: 0.3,
+    }
+}
+
+/// What is upwards on a slope of an angle [rad] that falls to the right.
+fn upright(angle: f32) -> Vector {
+    Rotation::in_plane(-angle).apply(UP)
+}
+
+fn speed(rigid: &Rigid) -> f32 {
+    let squared = rigid.velocity().map(|k| k * k);
+    squared.iter().sum::<f32>().sqrt()
+}
+
+/// Each shape falls askew and comes to rest on the floor, as low as it can.
+fn all_come_to_rest<D: Dim>() {
+    let turned = match D::N {
+        2 => Rotation::in_plane(0.5),
+        _ => Rotation::about([1.0, 0.3, 0.7], 0.6),
+    };
+    for (shape, height) in [
+        (cube([0.0, 1.0, 0.0], 0.3), 0.3),
+        (bar([0.0, 1.0, 0.0]), 0.2),
+        (ball(UP), 0.3),
+    ] {
+        let mut world = floored::<D>();
+        let id = world
+            .add_rigid(Rigid::free(shape, 5.0).rotated(turned))
+            .unwrap();
+        for _ in 0..300 {
+            world.step();
+        }
+        let rigid = &world.rigids()[id];
+        assert!(
+            (rigid.position()[1] - height).abs() < 0.01,
+            "{shape:?} {:?}",
+            rigid.position()
+        );
+        assert!(
+            rigid.is_asleep() || matches!(shape, Shape::Ball { .. } | Shape::Capsule { .. }),
+            "{rigid:?}"
+        );
+    }
+}
+
+#[test]
+fn all_shapes_come_to_rest() {
+    all_come_to_rest::<Dim2>();
+    all_come_to_rest::<Dim3>();
+}
+
+fn a_tower_stands<D: Dim>() {
+    let mut world = floored::<D>();
+    let ids: Vec<RigidId> = (0..10)
+        .map(|n| {
+            let shape = cube([0.01 * (n % 3) as f32, 0.25 + 0.5 * n as f32, 0.0], 0.25);
+            world.add_rigid(Rigid::free(shape, 2.0)).unwrap()
+        })
+        .collect();
+    for _ in 0..600 {
+        world.step();
+    }
+    for (n, &id) in ids.iter().enumerate() {
+        let rigid = &world.rigids()[id];
+        let [x, y, z] = rigid.position();
+        assert!(x.abs() < 0.03 && z.abs() < 0.03, "{n}: {x} {z}");
+        assert!((y - 0.25 - 0.5 * n as f32).abs() < 0.02, "{n}: {y}");
+        assert!(
+            rigid.is_asleep(),
+            "{n} {:?} {:?}",
+            rigid.velocity(),
+            rigid.angular_velocity()
+        );
+    }
+}
+
+#[test]
+fn towers_of_ten_stand_and_sleep() {
+    a_tower_stands::<Dim2>();
+    a_tower_stands::<Dim3>();
+}
+
+#[test]
+fn what_is_pulled_away_from_under_a_tower_wakes_it() {
+    let mut world = floored::<Dim3>();
+    let low = world
+        .add_rigid(Rigid::fixed(cube([0.0, 0.25, 0.0], 0.25), 0.5))
+        .unwrap();
+    let high = world
+        .add_rigid(Rigid::free(cube([0.0, 0.75, 0.0], 0.25), 2.0))
+        .unwrap();
+    for _ in 0..120 {
+        world.step();
+    }
+    assert!(world.rigids()[high].is_asleep());
+    world.remove_rigid(low).unwrap();
+    for _ in 0..120 {
+        world.step();
+    }
+    assert!((world.rigids()[high].position()[1] - 0.25).abs() < 0.01);
+}
+
+/// A ball on a slope rolls without slipping: it gains 5/7 (2D: 2/3) of what slides freely.
+fn it_rolls<D: Dim>() {
+    let mut world = world::<D>(-9.81);
+    let slope = 0.3f32;
+    let normal = upright(slope);
+    world
+        .add_rigid(Rigid::fixed(Shape::half_space(normal, [0.0; 3]), 0.9))
+        .unwrap();
+    let start = normal.map(|k| 0.3 * k);
+    let id = world.add_rigid(Rigid::free(ball(start), 2.0)).unwrap();
+    for _ in 0..60 {
+        world.step();
+    }
+    let share = if D::N == 2 { 2.0 / 3.0 } else { 5.0 / 7.0 };
+    let expected = share * 9.81 * normal[0];
+    let rigid = &world.rigids()[id];
+    assert!(
+        (speed(rigid) / expected - 1.0).abs() < 0.03,
+        "{} {expected}",
+        speed(rigid)
+    );
+    assert!((rigid.angular_velocity()[2] * 0.3 + speed(rigid)).abs() < 0.05);
+}
+
+#[test]
+fn a_ball_rolls_down_a_slope_as_it_must() {
+    it_rolls::<Dim2>();
+    it_rolls::<Dim3>();
+}
+
+#[test]
+fn friction_holds_a_box_on_a_slope_below_its_angle_and_not_above() {
+    for (angle, holds) in [(0.3f32, true), (0.6, false)] {
+        let mut world = world::<Dim3>(-9.81);
+        let normal = upright(angle);
+        // tan 0.3 = 0.31, tan 0.6 = 0.68
+        world
+            .add_rigid(Rigid::fixed(Shape::half_space(normal, [0.0; 3]), 0.5))
+            .unwrap();
+        let shape = cube([0.0; 3], 0.3).rotated(Rotation::in_plane(-angle));
+        let shape = shape.moved(normal.map(|k| 0.3 * k));
+        let id = world.add_rigid(Rigid::free(shape, 2.0)).unwrap();
+        let start = world.rigids()[id].position();
+        for _ in 0..120 {
+            world.step();
+        }
+        let rigid = &world.rigids()[id];
+        let way = rigid.position()[0] - start[0];
+        // Sliding for 2 s: g (sin - 0.5 cos) t²/2 along the slope.
+        let along = 9.81 * (normal[0] - 0.5 * normal[1]) * 2.0 * normal[1];
+        let expected = if holds { 0.0 } else { along };
+        assert!(
+            (way - expected).abs() < 0.01 + 0.05 * along.abs() * f32::from(!holds),
+            "{angle}: {way} {expected}"
+        );
+    }
+}
+
+#[test]
+fn what_bounces_comes_back_as_high_as_its_restitution_says() {
+    for restitution in [0.0f32, 0.5, 0.8] {
+        let mut world = floored::<Dim3>();
+        let mut rigid = Rigid::free(ball([0.0, 2.3, 0.0]), 1.0);
+        rigid.restitution = restitution;
+        let id = world.add_rigid(rigid).unwrap();
+        let (mut hit, mut highest) = (false, 0.0f32);
+        for _ in 0..100 {
+            let before = world.rigids()[id].velocity()[1];
+            world.step();
+            let rigid = &world.rigids()[id];
+            hit |= before < 0.0 && rigid.velocity()[1] >= 0.0;
+            if hit {
+                highest = highest.max(rigid.position()[1] - 0.3);
+            }
+        }
+        let expected = 2.0 * restitution * restitution;
+        assert!(
+            (highest - expected).abs() < 0.06,
+            "{restitution}: {highest} {expected}"
+        );
+    }
+}
+
+/// Linear and angular momentum about the origin of two free boxes.
+fn momentum<D: Dim>(world: &World<D>, ids: &[RigidId], mass: f32) -> Vector {
+    ids.iter().fold([0.0; 3], |sum, &id| {
+        let velocity = world.rigids()[id].velocity();
+        [0, 1, 2].map(|k: usize| sum[k] + mass * velocity[k])
+    })
+}
+
+#[test]
+fn what_collides_in_the_air_keeps_its_momentum() {
+    let mut world = world::<Dim3>(0.0);
+    let ids = [[0.0, 0.0, 0.0], [2.0, 0.2, 0.1]]
+        .map(|at| world.add_rigid(Rigid::free(cube(at, 0.3), 2.0)).unwrap());
+    world
+        .set_velocity(ids[0], [5.0, 0.0, 0.0], [0.0, 1.0, 2.0])
+        .unwrap();
+    let before = momentum(&world, &ids, 2.0);
+    for _ in 0..60 {
+        world.step();
+    }
+    let after = momentum(&world, &ids, 2.0);
+    for axis in 0..3 {
+        assert!(
+            (before[axis] - after[axis]).abs() < 1e-3,
+            "{before:?} {after:?}"
+        );
+    }
+    assert!(world.rigids()[ids[1]].velocity()[0] > 2.0);
+    assert!(world.rigids()[ids[1]].angular_velocity() != [0.0; 3]);
+}
+
+/// Rigid on soft: it sinks in a little, and comes to rest; the soft one is squashed by it, and both keep their places.
+fn it_lies_on_a_soft_body<D: Dim>(mass: f32) {
+    let mut world = floored::<D>();
+    let grid = VoxelGrid::<D>::cube(12, 1.0).unwrap();
+    let material = Material {
+        elasticity: Elasticity {
+            young: 2e5,
+            ..Material::default().elasticity
+        },
+        strength: f32::INFINITY,
+        toughness: f32::INFINITY,
+        ..Material::default()
+    };
+    world.add_body(Body::new(grid, &[material]).unwrap());
+    for _ in 0..240 {
+        world.step();
+    }
+    let shape = Shape::Box {
+        centre: [0.5, 1.11, if D::N == 2 { 0.0 } else { 0.5 }],
+        half: [0.4, 0.1, 0.4],
+    };
+    let id = world.add_rigid(Rigid::free(shape, mass)).unwrap();
+    for _ in 0..480 {
+        world.step();
+    }
+    let rigid = &world.rigids()[id];
+    let [_, y, _] = rigid.position();
+    assert!((0.5..1.12).contains(&y), "{mass}: {:?}", rigid.position());
+    let tilt = rigid.rotation().apply(UP)[1];
+    assert!(tilt > 0.97, "{mass}: tilted, {tilt}");
+    assert!(speed(rigid) < 0.1, "{mass}: {:?}", rigid.velocity());
+}
+
+#[test]
+fn light_and_heavy_boxes_lie_on_a_soft_one() {
+    for mass in [0.5, 20.0, 200.0] {
+        it_lies_on_a_soft_body::<Dim2>(mass);
+        it_lies_on_a_soft_body::<Dim3>(mass);
+    }
+}
+
+#[test]
+fn a_soft_ball_rolls_a_rigid_one_away() {
+    let mut world = floored::<Dim3>();
+    let id = world
+        .add_rigid(Rigid::free(ball([1.6, 0.3, 0.5]), 1.0))
+        .unwrap();
+    let grid = VoxelGrid::<Dim3>::ball(12, 1.0).unwrap();
+    let soft = world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+    for _ in 0..60 {
+        world.step();
+    }
+    world.add_velocity(soft, [3.0, 0.0, 0.0], [0.0; 3]).unwrap();
+    for _ in 0..60 {
+        world.step();
+    }
+    let rigid = &world.rigids()[id];
+    assert!(rigid.velocity()[0] > 0.5, "{:?}", rigid.velocity());
+    assert!(
+        rigid.angular_velocity()[2] < -1.0,
+        "{:?}",
+        rigid.angular_velocity()
+    );
+}
+
+#[test]
+fn what_is_kinematic_turns_to_its_goal_and_takes_along_what_lies_on_it() {
+    let mut world = world::<Dim3>(-9.81);
+    let disc = Shape::Box {
+        centre: [0.0; 3],
+        half: [2.0, 0.1, 2.0],
+    };
+    let table = Rigid::driven(disc, [0.0; 3], Drive::Kinematic);
+    let table = world.add_rigid(table).unwrap();
+    let id = world
+        .add_rigid(Rigid::free(cube([1.0, 0.31, 0.0], 0.2), 1.0))
+        .unwrap();
+    for tick in 1..=120 {
+        // It begins and ends gently: what lies there must not slip.
+        let share = tick as f32 / 120.0;
+        let angle = 0.5 * PI * share * share * (3.0 - 2.0 * share);
+        world
+            .set_goal_rotation(table, Rotation::about(UP, angle))
+            .unwrap();
+        world.step();
+    }
+    let [x, _, z] = world.rigids()[id].position();
+    assert!(x.abs() < 0.05 && (z + 1.0).abs() < 0.05, "{x} {z}");
+    let turned = world.rigids()[table].rotation().apply([1.0, 0.0, 0.0]);
+    assert!((turned[2] + 1.0).abs() < 1e-4, "{turned:?}");
+}
+
+#[test]
+fn a_turned_wall_is_a_wall() {
+    let mut world = world::<Dim2>(-9.81);
+    let ramp = Rigid::fixed(cube([0.0; 3], 1.0), 0.0).rotated(Rotation::in_plane(FRAC_PI_4));
+    world.add_rigid(ramp).unwrap();
+    let id = world
+        .add_rigid(Rigid::free(ball([0.3, 2.5, 0.0]), 1.0))
+        .unwrap();
+    for _ in 0..60 {
+        world.step();
+    }
+    let [x, y, _] = world.rigids()[id].position();
+    assert!(x > 1.0 && y < 1.2, "{x} {y}");
+}
+
+#[test]
+fn bad_rigid_things_are_refused_by_field() {
+    let mut world = floored::<Dim3>();
+    let endless = Rigid::free(Shape::half_space(UP, [0.0; 3]), 1.0);
+    let heavy = Rigid::free(cube([0.0; 3], 1.0), f32::NAN);
+    let off = Rigid::driven(cube(UP, 1.0), [0.0; 3], Drive::Free { mass: 1.0 });
+    let mut bouncy = Rigid::free(cube([0.0; 3], 1.0), 1.0);
+    bouncy.restitution = 2.0;
+    for (rigid, word) in [
+        (endless, "shape"),
+        (heavy, "mass"),
+        (off, "middle"),
+        (bouncy, "restitution"),
+    ] {
+        let refused = world.add_rigid(rigid).unwrap_err().to_string();
+        assert!(refused.contains(word), "{refused}");
+    }
+    let id = world
+        .add_rigid(Rigid::free(cube([0.0; 3], 1.0), 1.0))
+        .unwrap();
+    assert!(world.set_velocity(id, [f32::NAN; 3], [0.0; 3]).is_err());
+    assert!(world.push_rigid(id, [0.0; 3], [f32::INFINITY; 3]).is_err());
+    assert!(world.set_goal(id, [0.0; 3]).is_err());
+    assert!(
+        world
+            .place_rigid(id, [2e6, 0.0, 0.0], Rotation::NONE)
+            .is_err()
+    );
+    let floor = world.rigids().ids().next().unwrap();
+    assert!(world.set_velocity(floor, [0.0; 3], [0.0; 3]).is_err());
+    world.remove_rigid(id).unwrap();
+    assert!(world.set_velocity(id, [0.0; 3], [0.0; 3]).is_err());
+}
