@@ -23,7 +23,9 @@ use tamaire::app::App;
 use tamaire::exhibit::Stand;
 use tamaire::exhibit::config::USUAL;
 use tamaire::game::{Game, Screen};
-use tamaire::platform::{Clock, Files, Pads, Sound, StandFolder, TextFile, memory};
+use tamaire::platform::{
+    Clock, Files, Pads, Sound, StandFolder, TextFile, in_small_blocks, memory,
+};
 use tamaire_logbook::{Error, Logbook, Round};
 use tamaire_play::{Bot, BotKind, Playback, Replay};
 
@@ -429,7 +431,8 @@ fn main() -> ExitCode {
     };
     let mut pad = Device::at_rest(DeviceId(1), about, 6, 0, 0);
     pad.pad = Some(Pad::default());
-    let gpu = create_render_state(default_wgpu_setup(), RendererOptions::PREDICTABLE);
+    let setup = in_small_blocks(default_wgpu_setup());
+    let gpu = create_render_state(setup, RendererOptions::PREDICTABLE);
     let mut day = Day {
         window: open(folder.path(), gpu.clone()),
         gpu,

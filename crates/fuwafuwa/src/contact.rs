@@ -119,7 +119,8 @@ impl Contacts {
                     continue;
                 }
                 pair.clear = 0.0;
-                if gap < 0.1 * size {
+                let may_wake = rigid.moves() || rigid.is_asleep();
+                if may_wake && gap < 0.1 * size {
                     let is_fast = |speed: Row| inner::<D>(speed, speed) > WAKE_SPEED * WAKE_SPEED;
                     let wakes = rigid.is_driven() || rigid.moves() && is_fast(own);
                     if wakes && body.truth.pieces.sleeps(pair.node) {

@@ -372,6 +372,7 @@ impl Rigid {
     }
 
     /// One over its mass as contact sees it [1/kg]; 0 when nothing can push it.
+    #[inline(always)]
     pub(crate) fn inverse_mass(&self) -> f32 {
         match self.drive {
             Drive::Fixed | Drive::Kinematic => 0.0,

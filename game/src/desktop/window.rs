@@ -2,7 +2,7 @@
 
 use crate::app::App;
 use crate::game::Game;
-use crate::platform::GpuWatch;
+use crate::platform::{GpuWatch, in_small_blocks};
 use crate::screens::Attendant;
 use std::any::Any;
 use std::cell::RefCell;
@@ -59,13 +59,15 @@ fn run_window(
     gpu: Rc<RefCell<Option<GpuWatch>>>,
     make: impl FnOnce() -> (Game, Option<Box<dyn Attendant>>) + 'static,
 ) -> eframe::Result {
-    let options = eframe::NativeOptions {
+    let mut options = eframe::NativeOptions {
         viewport: viewport
             .with_title("玉入れ tamaire")
             .with_inner_size([1280.0, 800.0])
             .with_min_inner_size([640.0, 400.0]),
         ..Default::default()
     };
+    let setup = options.wgpu_options.wgpu_setup;
+    options.wgpu_options.wgpu_setup = in_small_blocks(setup);
     let create = move |context: &eframe::CreationContext<'_>| {
         let (game, attendant) = make();
         let mut app = App::new(context, game)?;

@@ -1,11 +1,11 @@
 //! What pictures are drawn with: a device of their own.
 
+use crate::platform::in_small_blocks;
 use eframe::egui_wgpu::{
     RenderState, RendererOptions, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew,
 };
 use pollster::block_on;
-use std::sync::Arc;
-use wgpu::{Backends, DeviceDescriptor, MemoryHints};
+use wgpu::Backends;
 
 /// What egui needs to draw; none where there is nothing to draw with, not even software.
 pub fn open(options: RendererOptions) -> Option<RenderState> {
@@ -23,13 +23,7 @@ fn state_of(backends: Backends, options: RendererOptions) -> Option<RenderState>
     if setup.instance_descriptor.backends.is_empty() {
         return None;
     }
-    // Images in blocks of 128 MB would leave these to the allocator, which keeps them, touched, for as long as the device.
-    let described = setup.device_descriptor;
-    setup.device_descriptor = Arc::new(move |adapter| DeviceDescriptor {
-        memory_hints: MemoryHints::MemoryUsage,
-        ..described(adapter)
-    });
-    let wgpu_setup = WgpuSetup::CreateNew(setup);
+    let wgpu_setup = in_small_blocks(WgpuSetup::CreateNew(setup));
     let instance = block_on(wgpu_setup.new_instance());
     let configuration = WgpuConfiguration {
         wgpu_setup,

@@ -1,9 +1,22 @@
 //! Whether the GPU is still there: a driver that starts anew, a laptop that wakes or a card that is pulled takes all
 //! that was on it along.
 
-use eframe::egui_wgpu::RenderState;
+use eframe::egui_wgpu::{RenderState, WgpuSetup};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The same, but for memory that is asked for as it is needed: in blocks of 64 MB and more, of which each is kept once it was
+/// touched, what a stand needs would go up and down by as much all day, where the GPU is in software or shares its memory.
+pub fn in_small_blocks(mut setup: WgpuSetup) -> WgpuSetup {
+    if let WgpuSetup::CreateNew(new) = &mut setup {
+        let described = new.device_descriptor.clone();
+        new.device_descriptor = Arc::new(move |adapter| wgpu::DeviceDescriptor {
+            memory_hints: wgpu::MemoryHints::MemoryUsage,
+            ..described(adapter)
+        });
+    }
+    setup
+}
 
 /// An eye on a GPU.
 #[derive(Clone)]

@@ -51,7 +51,7 @@ pub use forces::Forces;
 pub use given::{Given, Picked, dropped};
 #[cfg(not(target_family = "wasm"))]
 pub use given::{level_at, replay_in};
-pub use gpu::GpuWatch;
+pub use gpu::{GpuWatch, in_small_blocks};
 #[cfg(target_family = "wasm")]
 pub use here::{Host, set_host};
 #[cfg(not(target_family = "wasm"))]

@@ -21,7 +21,7 @@ impl Rigid {
     /// Whether it may be somewhere else a moment later.
     #[inline(always)]
     pub(crate) fn moves(&self) -> bool {
-        self.drive != Drive::Fixed && !self.asleep
+        !matches!(self.drive, Drive::Fixed) && !self.asleep
     }
 
     /// Velocity of a place on it [m/s], so far from its [`position`](Rigid::position) [m].
@@ -130,7 +130,7 @@ impl Rigid {
 
     #[inline(always)]
     fn twirl(&mut self, impulse: Vector, lever: Vector) {
-        if self.inertia.is_some() && !self.asleep {
+        if self.is_free() && !self.asleep {
             let twist = times(&self.inverse_inertia, cross(lever, impulse));
             self.spin = plus(self.spin, twist);
         }
@@ -140,7 +140,7 @@ impl Rigid {
     /// of length 1.
     pub(crate) fn yields(&self, lever: Vector, way: Vector) -> f32 {
         let mut gain = self.inverse_mass();
-        if self.inertia.is_some() && !self.asleep {
+        if self.is_free() && !self.asleep {
             let arm = cross(lever, way);
             let turned = times(&self.inverse_inertia, arm);
             gain += dot(arm, turned);
@@ -152,7 +152,7 @@ impl Rigid {
     #[inline(always)]
     pub(crate) fn yields_at_most(&self, lever: Vector) -> f32 {
         let gain = self.inverse_mass();
-        if self.inertia.is_none() || self.asleep {
+        if !self.is_free() || self.asleep {
             return gain;
         }
         let [x, y, z] = self.inverse_inertia;
