@@ -1,5 +1,6 @@
 //! The chores of this repository, run as `cargo xtask <task>`. Plain std, so that it builds in a moment.
 
+mod bevy;
 mod fuzz;
 mod kernel;
 mod packages;
@@ -58,6 +59,7 @@ fn main() -> ExitCode {
         }
         Task::Fuzz(words) => fuzz::run(&words),
         Task::Rapier => run_all(RAPIER),
+        Task::Bevy(wish, if_missing) => bevy::run(wish, if_missing),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,5 +1,6 @@
 //! What can be asked for on the command line.
 
+use crate::bevy::Bevy;
 use crate::packages::IfMissing;
 use crate::web::Web;
 
@@ -28,6 +29,10 @@ tasks:
                    nine minutes of scenes, levels, pictures, replays, settings … that nobody
                    meant, each looking for a way that none before it took
   rapier           whether crates/against_rapier, a workspace of its own, still compiles
+  bevy             crates/bevy_fuwafuwa, a workspace of its own: formatting, lints, tests without a
+                   window, documentation, and whether its examples compile
+  bevy --pictures  pictures of its scene, taken on a screen that nobody sees
+                   with --install what is missing comes from Debian's packages
   help             this text, as does --help after any task; that of the game: play -- --help
 
 On Debian and Ubuntu, `play`, `test` and `check` install the system packages that are missing, as
@@ -52,6 +57,7 @@ pub enum Task {
     /// With how long, and through which doors.
     Fuzz(Vec<String>),
     Rapier,
+    Bevy(Bevy, IfMissing),
     Help,
 }
 
@@ -91,6 +97,9 @@ impl Task {
             ["stand", "--install"] => Task::Stand(IfMissing::Install),
             ["fuzz", ..] => Task::Fuzz(own[1..].to_vec()),
             ["rapier"] => Task::Rapier,
+            ["bevy"] => Task::Bevy(Bevy::Check, IfMissing::Say),
+            ["bevy", "--pictures"] => Task::Bevy(Bevy::Pictures, IfMissing::Say),
+            ["bevy", "--pictures", "--install"] => Task::Bevy(Bevy::Pictures, IfMissing::Install),
             ["help"] => Task::Help,
             _ => return Err(format!("there is no task `{}`", arguments.join(" "))),
         };
@@ -179,6 +188,12 @@ mod tests {
             "soak 2 hoop",
             Ok(Task::Soak(vec!["2".into(), "hoop".into()])),
         );
+        check("bevy", Ok(Task::Bevy(Bevy::Check, IfMissing::Say)));
+        check(
+            "bevy --pictures --install",
+            Ok(Task::Bevy(Bevy::Pictures, IfMissing::Install)),
+        );
+        check("bevy --install", Err("there is no task `bevy --install`"));
         check("fuzz 1 png", Ok(Task::Fuzz(vec!["1".into(), "png".into()])));
         for line in [
             "help",

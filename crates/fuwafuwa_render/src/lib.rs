@@ -12,16 +12,21 @@
 //! [`space`] is the same for worlds in space; it shares the themes, frames, buffers and stages, and has
 //! a camera, a skin and a renderer of its own, for a surface is no outline.
 //!
-//! It needs no more than WebGL2 has: [`wgpu::Limits::downlevel_webgl2_defaults`].
+//! Who draws another way leaves the feature `gpu` out, and takes the vertices: of [`space::Skin`], for one,
+//! or what takes the stairs out of a shape in the plane, [`Rest`].
+//!
+//! It needs no more than WebGL2 has, `wgpu::Limits::downlevel_webgl2_defaults`.
 #![deny(unsafe_code)]
 #![warn(missing_docs)]
 #![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
+#![cfg_attr(not(feature = "gpu"), allow(dead_code))] // nobody reads most vertices then
 
 pub mod ages;
 pub mod anchor;
 mod elements;
 pub mod frame;
 pub mod geometry;
+#[cfg(feature = "gpu")]
 mod gpu;
 pub mod palette;
 mod plane;
@@ -36,8 +41,13 @@ pub use ages::Ages;
 pub use anchor::{Anchor, anchor, anchor_at};
 pub use frame::{Basket, Camera, Frame, Look, Mark, Particle, Sticker};
 pub use geometry::Geometry;
+#[cfg(feature = "gpu")]
 pub use gpu::Renderer;
+#[cfg(feature = "gpu")]
 pub use gpu::cost::Cost;
+#[cfg(feature = "gpu")]
 pub use gpu::image::{ImageError, Step, image, image_later, pass_into};
+#[cfg(feature = "gpu")]
 pub use gpu::targets::new_image;
 pub use palette::{Colour, Palette};
+pub use rest::Rest;

@@ -12,6 +12,7 @@ pub mod camera;
 mod cut;
 mod faces;
 pub mod geometry;
+#[cfg(feature = "gpu")]
 mod gpu;
 mod pool;
 mod rest;
@@ -22,5 +23,6 @@ mod stickers;
 
 pub use camera::{Camera, Cut};
 pub use geometry::Geometry;
+#[cfg(feature = "gpu")]
 pub use gpu::Renderer;
 pub use skin::Skin;

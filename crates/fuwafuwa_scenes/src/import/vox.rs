@@ -71,6 +71,11 @@ impl Model {
         self.size
     }
 
+    /// Red, green and blue by palette index, 1 first; none where the file leaves them to the program that reads it.
+    pub fn palette(&self) -> Option<&[[u8; 3]]> {
+        self.palette.as_deref()
+    }
+
     /// Its shape, with voxels of edge length `voxel_size` [m].
     ///
     /// Without `colours` the palette index of a voxel, 1 to 255 as stored in the file, is the number of

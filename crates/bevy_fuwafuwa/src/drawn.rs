@@ -1,0 +1,103 @@
+//! The mesh of a body, brought up to date in place.
+
+use crate::colours::SoftColours;
+use crate::dimension::Dimension;
+use crate::pose::Pose;
+use crate::surface::{Surface, Vertex};
+use bevy_asset::{Assets, Handle, RenderAssetUsages};
+use bevy_ecs::component::Component;
+use bevy_math::Vec3;
+use bevy_mesh::{Indices, Mesh, MeshVertexAttribute, PrimitiveTopology, VertexAttributeValues};
+use fuwafuwa::Body;
+
+/// The mesh of a body, and what it is drawn from.
+#[derive(Component)]
+pub struct Drawn<D: Dimension> {
+    mesh: Handle<Mesh>,
+    colours: SoftColours,
+    surface: D::Surface,
+    /// From where it was written last, once it was while all of it slept.
+    asleep_at: Option<Pose>,
+}
+
+/// A mesh without triangles.
+pub fn empty_mesh() -> Mesh {
+    let mut mesh = Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::all());
+    mesh.insert_attribute(Mesh::ATTRIBUTE_POSITION, Vec::<[f32; 3]>::new());
+    mesh.insert_attribute(Mesh::ATTRIBUTE_NORMAL, Vec::<[f32; 3]>::new());
+    mesh.insert_attribute(Mesh::ATTRIBUTE_COLOR, Vec::<[f32; 4]>::new());
+    mesh.insert_indices(Indices::U32(Vec::new()));
+    mesh
+}
+
+impl<D: Dimension> Drawn<D> {
+    pub fn new(mesh: Handle<Mesh>, colours: SoftColours) -> Self {
+        Self {
+            mesh,
+            colours,
+            surface: D::Surface::default(),
+            asleep_at: None,
+        }
+    }
+
+    pub fn mesh(&self) -> Handle<Mesh> {
+        self.mesh.clone()
+    }
+
+    /// Writes the mesh of a body that is seen from a pose; nothing where nothing can have changed.
+    pub fn follow(&mut self, body: &Body<D>, pose: &Pose, meshes: &mut Assets<Mesh>) {
+        let is_asleep = body.pieces().list.iter().all(|piece| piece.asleep);
+        if is_asleep && self.asleep_at == Some(*pose) {
+            return;
+        }
+        self.asleep_at = is_asleep.then_some(*pose);
+        let Some(mut mesh) = meshes.get_mut(&self.mesh) else {
+            // Somebody took it away.
+            return;
+        };
+        let is_new = self.surface.follow(body, &self.colours);
+        self.write_places(&mut mesh, pose);
+        if is_new {
+            self.write_triangles(&mut mesh);
+        }
+    }
+
+    fn write_places(&self, mesh: &mut Mesh, pose: &Pose) {
+        // A place that nobody has is in the midst of the body, so that bounds are no wider for it.
+        let local = |vertex: Option<Vertex>| vertex.map_or(Vec3::ZERO, |own| pose.local(own.at));
+        let back = pose.rotation.inverse();
+        let normal = |vertex: Option<Vertex>| vertex.map_or(Vec3::Z, |own| back * own.normal);
+        let places = self.surface.vertices().map(|own| local(own).into());
+        overwrite(mesh, Mesh::ATTRIBUTE_POSITION, places);
+        let normals = self.surface.vertices().map(|own| normal(own).into());
+        overwrite(mesh, Mesh::ATTRIBUTE_NORMAL, normals);
+    }
+
+    fn write_triangles(&self, mesh: &mut Mesh) {
+        let colours = self.surface.colours(&self.colours);
+        if let Ok(VertexAttributeValues::Float32x4(known)) =
+            mesh.try_attribute_mut(Mesh::ATTRIBUTE_COLOR)
+        {
+            refill(known, colours);
+        }
+        if let Ok(Indices::U32(known)) = mesh.try_indices_mut() {
+            refill(known, self.surface.indices());
+        }
+    }
+}
+
+fn overwrite(
+    mesh: &mut Mesh,
+    attribute: MeshVertexAttribute,
+    values: impl Iterator<Item = [f32; 3]>,
+) {
+    if let Ok(VertexAttributeValues::Float32x3(known)) = mesh.try_attribute_mut(attribute) {
+        refill(known, values);
+    }
+}
+
+/// Other contents in the same memory, as long as that is enough.
+fn refill<T>(known: &mut Vec<T>, values: impl Iterator<Item = T>) {
+    known.clear();
+    known.extend(values);
+}

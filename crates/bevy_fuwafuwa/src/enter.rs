@@ -1,0 +1,236 @@
+//! Who enters the world and who leaves it, in the order in which that was asked for.
+
+use crate::asset::Voxels;
+use crate::component::{
+    GravityScale, RigidBody, RigidBodyId, SoftBody, SoftBodyId, SoftColours, SoftMaterials,
+    SoftVelocity, Source, WithoutMesh,
+};
+use crate::dimension::Dimension;
+use crate::drawn::{Drawn, empty_mesh};
+use crate::message::Rejection;
+use crate::pose::Pose;
+use crate::problem::{Problem, Rejected};
+use crate::queue::{Queue, Request};
+use crate::world::SoftWorld;
+use crate::write::Followed;
+use bevy_asset::{AssetServer, Assets, Handle, LoadState};
+use bevy_ecs::entity::Entity;
+use bevy_ecs::hierarchy::ChildOf;
+use bevy_ecs::world::World;
+use bevy_mesh::Mesh;
+use bevy_transform::components::Transform;
+use fuwafuwa::{Body, Drive, Material, Rigid, VoxelGrid};
+
+/// What becomes of somebody who wants to enter.
+enum Entry {
+    Entered,
+    /// Its asset is not there yet.
+    Waits,
+    /// It is no more.
+    Left,
+}
+
+/// Lets in and out all who asked for it since the last tick.
+pub fn enter_and_leave<D: Dimension>(world: &mut World) {
+    let Some(mut queue) = world.get_resource_mut::<Queue<D>>() else {
+        return;
+    };
+    let requests = queue.take();
+    let mut waiting = Vec::new();
+    for (entity, request) in requests {
+        let entry = match request {
+            Request::AddBody => add_body::<D>(world, entity),
+            Request::AddRigid => add_rigid::<D>(world, entity),
+            Request::RemoveBody => {
+                // Who leaves before its shape is there waits no longer.
+                waiting.retain(|request| *request != (entity, Request::AddBody));
+                remove_body::<D>(world, entity)
+            }
+            Request::RemoveRigid => remove_rigid::<D>(world, entity),
+        };
+        match entry {
+            Ok(Entry::Waits) => waiting.push((entity, request)),
+            Ok(Entry::Entered | Entry::Left) => {}
+            Err(problem) => reject(world, entity, problem),
+        }
+    }
+    if let Some(mut queue) = world.get_resource_mut::<Queue<D>>() {
+        queue.wait(waiting);
+    }
+}
+
+fn reject(world: &mut World, entity: Entity, problem: Problem) {
+    if let Ok(mut entity) = world.get_entity_mut(entity) {
+        entity.insert(Rejected(problem.clone()));
+    }
+    let entity = Some(entity);
+    world.write_message(Rejection { entity, problem });
+}
+
+fn add_body<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, Problem> {
+    let Some(soft) = world.get::<SoftBody<D>>(entity) else {
+        return Ok(Entry::Left);
+    };
+    let voxels = match &soft.source {
+        Source::Grid(grid) => Some(Voxels {
+            grid: grid.clone()?,
+            colours: Vec::new(),
+        }),
+        Source::Asset(handle) => find_voxels(world, handle)?,
+    };
+    let Some(Voxels { grid, colours }) = voxels else {
+        return Ok(Entry::Waits);
+    };
+    let transform = transform_of(world, entity)?;
+    let pose = Pose::of(&transform)?;
+    let materials = materials_of(world, entity, &grid);
+    let body = Body::new(grid.scaled(pose.scale)?, &materials)?;
+    let body = pose.place(body);
+
+    let velocity = world.get::<SoftVelocity>(entity).copied();
+    let gravity = world.get::<GravityScale>(entity).copied();
+    let mut soft_world = world.resource_mut::<SoftWorld<D>>();
+    let id = soft_world.add_body(entity, body);
+    let engine = soft_world.engine_mut();
+    let mut outcome = Ok(());
+    if let Some(SoftVelocity { linear, angular }) = velocity {
+        outcome = engine.add_velocity(id, linear.into(), angular.into());
+    }
+    if let Some(GravityScale(scale)) = gravity {
+        outcome = outcome.and_then(|()| engine.set_gravity_scale(id, scale));
+    }
+    if let Err(refused) = outcome {
+        // It entered in this very moment: nothing leant on it, and nobody saw it.
+        soft_world.remove_body(entity);
+        return Err(refused.into());
+    }
+    show::<D>(world, entity, colours);
+    let mut entity = world.entity_mut(entity);
+    entity.remove::<Rejected>();
+    entity.insert((
+        SoftBodyId(id),
+        Followed::new(pose, transform, velocity, gravity),
+    ));
+    Ok(Entry::Entered)
+}
+
+/// What the voxels of a grid are made of; the last material serves all above.
+fn materials_of<D: Dimension>(world: &World, entity: Entity, grid: &VoxelGrid<D>) -> Vec<Material> {
+    let materials = world.get::<SoftMaterials>(entity).cloned();
+    let SoftMaterials(mut materials) = materials.unwrap_or_default();
+    let numbers = grid.voxels().map(|voxel| usize::from(grid.material(voxel)));
+    let most = numbers.max().unwrap_or(0);
+    if let Some(&last) = materials.last() {
+        materials.resize(most.max(materials.len()), last);
+    }
+    materials
+}
+
+/// The voxels of an asset, if it is there already.
+fn find_voxels<D: Dimension>(
+    world: &World,
+    handle: &Handle<Voxels<D>>,
+) -> Result<Option<Voxels<D>>, Problem> {
+    let Some(assets) = world.get_resource::<Assets<Voxels<D>>>() else {
+        return Err(Problem::Asset("the app has no AssetPlugin".into()));
+    };
+    if let Some(voxels) = assets.get(handle) {
+        return Ok(Some(voxels.clone()));
+    }
+    let server = world.get_resource::<AssetServer>();
+    match server.and_then(|server| server.get_load_state(handle)) {
+        Some(LoadState::Failed(error)) => Err(Problem::Asset(error.to_string())),
+        Some(LoadState::NotLoaded) | None => Err(Problem::Asset("nobody loads it".into())),
+        Some(LoadState::Loading | LoadState::Loaded) => Ok(None),
+    }
+}
+
+/// Gives a body that entered a mesh, where meshes are drawn at all: the one that it has, when it was made anew.
+fn show<D: Dimension>(world: &mut World, entity: Entity, of_file: Vec<[f32; 3]>) {
+    let is_shown = world.get::<WithoutMesh>(entity).is_none();
+    let mut usual = SoftColours::default();
+    if !of_file.is_empty() {
+        usual.materials = of_file;
+    }
+    let colours = world.get::<SoftColours>(entity).cloned().unwrap_or(usual);
+    let known = world.get::<Drawn<D>>(entity).map(Drawn::mesh);
+    let Some(mut meshes) = world.get_resource_mut::<Assets<Mesh>>() else {
+        return;
+    };
+    if !is_shown {
+        return;
+    }
+    let mesh = known.unwrap_or_else(|| meshes.add(empty_mesh()));
+    let drawn = Drawn::<D>::new(mesh.clone(), colours);
+    let mut entity = world.entity_mut(entity);
+    D::show(&mut entity, mesh);
+    entity.insert(drawn);
+}
+
+fn add_rigid<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, Problem> {
+    let Some(rigid) = world.get::<RigidBody<D>>(entity).cloned() else {
+        return Ok(Entry::Left);
+    };
+    let transform = transform_of(world, entity)?;
+    let pose = Pose::of(&transform)?;
+    let id = put_rigid(
+        &mut world.resource_mut::<SoftWorld<D>>(),
+        entity,
+        &rigid,
+        pose,
+    )?;
+    let mut entity = world.entity_mut(entity);
+    entity.remove::<Rejected>();
+    entity.insert((RigidBodyId(id), Followed::new(pose, transform, None, None)));
+    Ok(Entry::Entered)
+}
+
+/// Puts the rigid thing of an entity into the world.
+pub fn put_rigid<D: Dimension>(
+    soft_world: &mut SoftWorld<D>,
+    entity: Entity,
+    rigid: &RigidBody<D>,
+    pose: Pose,
+) -> Result<fuwafuwa::RigidId, Problem> {
+    let form = pose.form(rigid.shape)?;
+    let at = pose.translation.into();
+    let mut own = match rigid.drive {
+        Drive::Fixed => Rigid::fixed(form.moved(at), 0.0),
+        drive => Rigid::driven(form, at, drive),
+    };
+    own.friction = rigid.friction;
+    Ok(soft_world.add_rigid(entity, own)?)
+}
+
+fn remove_body<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, Problem> {
+    // One that was taken out of the engine by hand is gone already.
+    let _ = world.resource_mut::<SoftWorld<D>>().remove_body(entity);
+    // It may live on, and may have got a new body since.
+    if let Ok(mut entity) = world.get_entity_mut(entity) {
+        entity.remove::<(SoftBodyId, Followed)>();
+        if !entity.contains::<SoftBody<D>>() {
+            D::hide(&mut entity);
+            entity.remove::<Drawn<D>>();
+        }
+    }
+    Ok(Entry::Left)
+}
+
+fn remove_rigid<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, Problem> {
+    let _ = world.resource_mut::<SoftWorld<D>>().remove_rigid(entity);
+    if let Ok(mut entity) = world.get_entity_mut(entity) {
+        entity.remove::<(RigidBodyId, Followed)>();
+    }
+    Ok(Entry::Left)
+}
+
+/// Where an entity that is about to enter is to be put.
+fn transform_of(world: &World, entity: Entity) -> Result<Transform, Problem> {
+    if world.get::<SoftBodyId>(entity).is_some() || world.get::<RigidBodyId>(entity).is_some() {
+        return Err(Problem::Twice);
+    }
+    if world.get::<ChildOf>(entity).is_some() {
+        return Err(Problem::Pose("be that of an entity without a parent"));
+    }
+    Ok(world.get::<Transform>(entity).copied().unwrap_or_default())
+}

@@ -1,0 +1,121 @@
+//! What makes soft bodies move.
+
+use crate::asset::Voxels;
+use crate::component::SoftBody;
+use crate::dimension::Dimension;
+use crate::enter::enter_and_leave;
+use crate::message::{FellAsleep, Parted, Quarantined, Rejection, Torn, Touched, Woke};
+use crate::push::{change_settings, push_bodies, push_rigids};
+use crate::queue::Queue;
+use crate::step::step;
+use crate::world::{SoftSettings, SoftWorld};
+use crate::write::{write_meshes, write_motion};
+use bevy_app::{App, FixedPostUpdate, Plugin};
+use bevy_asset::{AssetApp, AssetServer, Assets};
+use bevy_ecs::intern::Interned;
+use bevy_ecs::schedule::{IntoScheduleConfigs, ScheduleLabel, SystemSet};
+use bevy_math::Vec3;
+use bevy_mesh::Mesh;
+use fuwafuwa::Settings;
+use std::marker::PhantomData;
+
+/// Soft bodies in the plane or in space. Add it after `DefaultPlugins`: without an `AssetPlugin` before it there are no
+/// meshes and no files, for servers and tests.
+#[derive(Debug)]
+pub struct FuwafuwaPlugin<D: Dimension> {
+    schedule: Interned<dyn ScheduleLabel>,
+    settings: Settings,
+    dim: PhantomData<D>,
+}
+
+/// What happens in a run of the schedule, one after the other.
+#[derive(SystemSet, Copy, Clone, Debug, PartialEq, Eq, Hash)]
+pub enum FuwafuwaSystems {
+    /// Entities enter and leave, and what was asked of them is done.
+    Prepare,
+    /// A tick passes, and messages tell what happened.
+    Step,
+    /// Transforms, velocities and meshes follow.
+    Writeback,
+}
+
+impl<D: Dimension> Default for FuwafuwaPlugin<D> {
+    /// In `FixedPostUpdate`, with the engine's usual settings.
+    fn default() -> Self {
+        Self {
+            schedule: FixedPostUpdate.intern(),
+            settings: Settings::default(),
+            dim: PhantomData,
+        }
+    }
+}
+
+impl<D: Dimension> FuwafuwaPlugin<D> {
+    /// The same in another schedule; each run of it is a tick of 1/60 s.
+    pub fn in_schedule(self, schedule: impl ScheduleLabel) -> Self {
+        let schedule = schedule.intern();
+        Self { schedule, ..self }
+    }
+
+    /// The same with other settings; [`SoftSettings`] is where to change them later.
+    pub fn with_settings(self, settings: Settings) -> Self {
+        Self { settings, ..self }
+    }
+
+    /// The same with another gravity [m/s²].
+    pub fn with_gravity(self, gravity: Vec3) -> Self {
+        let settings = Settings {
+            gravity: gravity.into(),
+            ..self.settings
+        };
+        Self { settings, ..self }
+    }
+}
+
+impl<D: Dimension> Plugin for FuwafuwaPlugin<D> {
+    fn build(&self, app: &mut App) {
+        app.insert_resource(SoftSettings(self.settings))
+            .init_resource::<SoftWorld<D>>()
+            .init_resource::<Queue<D>>()
+            .add_message::<Torn>()
+            .add_message::<Parted>()
+            .add_message::<Touched>()
+            .add_message::<FellAsleep>()
+            .add_message::<Woke>()
+            .add_message::<Quarantined>()
+            .add_message::<Rejection>();
+        if app.world().contains_resource::<AssetServer>() {
+            app.init_asset::<Voxels<D>>();
+            D::read_files(app);
+            if !app.world().contains_resource::<Assets<Mesh>>() {
+                app.init_asset::<Mesh>();
+            }
+        }
+        let sets = (
+            FuwafuwaSystems::Prepare,
+            FuwafuwaSystems::Step,
+            FuwafuwaSystems::Writeback,
+        );
+        app.configure_sets(self.schedule, sets.chain());
+        let prepare = (
+            change_settings::<D>,
+            enter_and_leave::<D>,
+            push_bodies::<D>,
+            push_rigids::<D>,
+        );
+        app.add_systems(
+            self.schedule,
+            (
+                prepare.chain().in_set(FuwafuwaSystems::Prepare),
+                step::<D>.in_set(FuwafuwaSystems::Step),
+                (write_motion::<D>, write_meshes::<D>)
+                    .chain()
+                    .in_set(FuwafuwaSystems::Writeback),
+            ),
+        );
+    }
+
+    fn name(&self) -> &str {
+        std::any::type_name::<SoftBody<D>>()
+    }
+}

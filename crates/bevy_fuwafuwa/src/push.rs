@@ -1,0 +1,228 @@
+//! What was asked of entities that are in the world: to be elsewhere, to go faster, to be pushed.
+
+use crate::component::{
+    ExternalImpulse, Goal, GravityScale, RigidBody, RigidBodyId, SoftBodyId, SoftVelocity,
+};
+use crate::dimension::Dimension;
+use crate::enter::put_rigid;
+use crate::message::Rejection;
+use crate::pose::{Pose, engine_rotation};
+use crate::problem::Problem;
+use crate::world::{SoftSettings, SoftWorld};
+use crate::write::Followed;
+use bevy_ecs::change_detection::{DetectChanges, Res, ResMut};
+use bevy_ecs::entity::Entity;
+use bevy_ecs::message::MessageWriter;
+use bevy_ecs::query::Without;
+use bevy_ecs::system::{Commands, Query};
+use bevy_math::{Quat, Vec3};
+use bevy_transform::components::Transform;
+use fuwafuwa::{BodyId, Drive};
+
+/// Takes settings over that were changed.
+pub fn change_settings<D: Dimension>(
+    settings: Res<SoftSettings>,
+    mut world: ResMut<SoftWorld<D>>,
+    mut rejections: MessageWriter<Rejection>,
+) {
+    if settings.is_changed()
+        && settings.0 != *world.engine().settings()
+        && let Err(refused) = world.engine_mut().set_settings(settings.0)
+    {
+        let (entity, problem) = (None, refused.into());
+        rejections.write(Rejection { entity, problem });
+    }
+}
+
+/// What a soft body may have been asked for.
+type Asked<'a> = (
+    &'a SoftBodyId,
+    &'a mut Transform,
+    &'a mut Followed,
+    Option<&'a mut SoftVelocity>,
+    Option<&'a ExternalImpulse>,
+    Option<&'a GravityScale>,
+);
+
+/// Moves, turns, throws and pushes soft bodies as was asked since the last tick.
+pub fn push_bodies<D: Dimension>(
+    mut world: ResMut<SoftWorld<D>>,
+    mut bodies: Query<Asked<'_>>,
+    mut commands: Commands,
+    mut rejections: MessageWriter<Rejection>,
+) {
+    for (id, entity) in world.soft_entities() {
+        let Ok((own, mut transform, mut followed, velocity, impulse, gravity)) =
+            bodies.get_mut(entity)
+        else {
+            continue;
+        };
+        if own.0 != id || world.engine().bodies().get(id).is_err() {
+            continue;
+        }
+        let mut reject = |problem| {
+            let entity = Some(entity);
+            rejections.write(Rejection { entity, problem });
+        };
+        let mut before = followed.velocity;
+        if !is_same(&transform, &followed.transform) {
+            match displace(&mut world, id, &transform, &mut followed) {
+                // All of it was turned, and how it moves too; of that nobody spoke.
+                Ok(turn) => {
+                    before.linear = turn * before.linear;
+                    before.angular = turn * before.angular;
+                }
+                Err(problem) => {
+                    *transform = followed.transform;
+                    reject(problem);
+                }
+            }
+        }
+        let wanted = velocity.as_deref().copied().unwrap_or(followed.velocity);
+        if wanted != before {
+            let linear = wanted.linear - before.linear;
+            let angular = wanted.angular - before.angular;
+            let engine = world.engine_mut();
+            if let Err(refused) = engine.add_velocity(id, linear.into(), angular.into()) {
+                reject(refused.into());
+                if let Some(mut velocity) = velocity {
+                    *velocity = followed.velocity;
+                }
+            } else {
+                followed.velocity = wanted;
+            }
+        }
+        let scale = gravity.map_or(1.0, |gravity| gravity.0);
+        if scale.to_bits() != followed.gravity.to_bits() {
+            if let Err(refused) = world.engine_mut().set_gravity_scale(id, scale) {
+                reject(refused.into());
+            }
+            followed.gravity = scale;
+        }
+        if let Some(ExternalImpulse {
+            impulse,
+            at,
+            radius,
+        }) = impulse.copied()
+        {
+            let engine = world.engine_mut();
+            let outcome = engine.apply_impulse(id, at.into(), radius, impulse.into());
+            if let Err(refused) = outcome {
+                reject(refused.into());
+            }
+            commands.entity(entity).try_remove::<ExternalImpulse>();
+        }
+    }
+}
+
+/// Moves and turns a body from where it was last to where a transform says; by how much it was turned.
+fn displace<D: Dimension>(
+    world: &mut SoftWorld<D>,
+    id: BodyId,
+    transform: &Transform,
+    followed: &mut Followed,
+) -> Result<Quat, Problem> {
+    let (from, mut to) = (followed.pose, Pose::of(transform)?);
+    if transform.scale != followed.transform.scale {
+        return Err(Problem::Pose(
+            "keep its scale: a body is of one size once it has entered",
+        ));
+    }
+    let engine = world.engine_mut();
+    let mut by = to.translation - from.translation;
+    if D::N == 2 {
+        by.z = 0.0;
+    }
+    if by != Vec3::ZERO {
+        engine.move_body(id, by.into())?;
+    }
+    // What was not written is not turned, not even by what rounding leaves.
+    let mut turn = Quat::IDENTITY;
+    if transform.rotation == followed.transform.rotation {
+        to.rotation = from.rotation;
+    } else {
+        turn = to.rotation * from.rotation.inverse();
+        engine.rotate_body(id, engine_rotation(turn), to.translation.into())?;
+    }
+    followed.pose = to;
+    followed.transform = *transform;
+    followed.is_settled = false;
+    Ok(turn)
+}
+
+/// Whether two transforms are the same to the last bit: what is no number is told once, and not in each tick.
+fn is_same(a: &Transform, b: &Transform) -> bool {
+    let bits = |transform: &Transform| {
+        let (translation, scale) = (transform.translation, transform.scale);
+        let vectors = [translation, scale].map(|own| own.to_array().map(f32::to_bits));
+        (vectors, transform.rotation.to_array().map(f32::to_bits))
+    };
+    bits(a) == bits(b)
+}
+
+/// What something rigid may have been asked for.
+type AskedOfRigid<'a, D> = (
+    &'a mut RigidBodyId,
+    &'a RigidBody<D>,
+    &'a Transform,
+    &'a mut Followed,
+    Option<&'a Goal>,
+);
+
+/// Sends hands to their goals, and puts obstacles that were moved where they are now.
+pub fn push_rigids<D: Dimension>(
+    mut world: ResMut<SoftWorld<D>>,
+    mut rigids: Query<AskedOfRigid<'_, D>, Without<SoftBodyId>>,
+    mut rejections: MessageWriter<Rejection>,
+) {
+    for (id, entity) in world.rigid_entities() {
+        let Ok((mut own, rigid, transform, mut followed, goal)) = rigids.get_mut(entity) else {
+            continue;
+        };
+        if own.0 != id {
+            continue;
+        }
+        let is_moved = !is_same(transform, &followed.transform);
+        let goal = goal.map(|goal| goal.0);
+        let bits = |goal: Vec3| goal.to_array().map(f32::to_bits);
+        let is_sent = goal.map(bits) != followed.goal.map(bits);
+        let outcome = match (rigid.drive, goal) {
+            (Drive::Coupled { .. }, Some(goal)) if is_sent => send(&mut world, id, goal),
+            (Drive::Kinematic, _) if is_moved => send(&mut world, id, transform.translation),
+            (Drive::Fixed, _) if is_moved => {
+                replace(&mut world, entity, rigid, transform).map(|id| own.0 = id)
+            }
+            _ => Ok(()),
+        };
+        // Once, and not again in each tick.
+        (followed.transform, followed.goal) = (*transform, goal);
+        if let Err(problem) = outcome {
+            let entity = Some(entity);
+            rejections.write(Rejection { entity, problem });
+        }
+    }
+}
+
+fn send<D: Dimension>(
+    world: &mut SoftWorld<D>,
+    hand: fuwafuwa::RigidId,
+    goal: Vec3,
+) -> Result<(), Problem> {
+    Ok(world.engine_mut().set_goal(hand, goal.into())?)
+}
+
+/// Puts an obstacle elsewhere; where that cannot be, it stays as it is.
+fn replace<D: Dimension>(
+    world: &mut SoftWorld<D>,
+    entity: Entity,
+    rigid: &RigidBody<D>,
+    transform: &Transform,
+) -> Result<fuwafuwa::RigidId, Problem> {
+    let pose = Pose::of(transform)?;
+    let before = world.rigid_of(entity);
+    let id = put_rigid(world, entity, rigid, pose)?;
+    if let Some(before) = before {
+        world.engine_mut().remove_rigid(before).ok();
+    }
+    Ok(id)
+}

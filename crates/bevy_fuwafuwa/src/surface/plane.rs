@@ -1,0 +1,329 @@
+//! A body in the plane as a sheet of triangles: a vertex for each node, and the elements between them.
+//!
+//! ```text
+//!   o───o─o─o      A whole element is a fan of the nodes around it, hanging ones too; where one was remodelled each child
+//!   │   ├─o─o      that is left is a square of its own, and a corner without a node stands where the mean of its
+//!   o───o─o─o      neighbours is.
+//! ```
+//!
+//! The points of the outline are moved by what takes the stairs out of the shape at rest, carried along by their voxels.
+//! Then it is drawn together and apart by turns, for what presses on a body presses on its stairs; that leaves the area as
+//! it is [Taubin 1995].
+
+use super::pool::Pool;
+use super::{Surface, Vertex, light_of};
+use crate::colours::SoftColours;
+use bevy_math::{Vec2, Vec3};
+use fuwafuwa::dim::{add, corner, face_corners};
+use fuwafuwa::ids::Table;
+use fuwafuwa::mesh::Element;
+use fuwafuwa::stencil::{slot_at, slot_index};
+use fuwafuwa::{Body, Bookmark, Changes, Dim, Dim2, ElementId, NodeId};
+use fuwafuwa_render::Rest;
+
+/// By how much of the way to the middle of its neighbours a point of the outline goes in each round.
+const ROUNDS: [f32; 6] = [0.5, -0.5, 0.5, -0.5, 0.5, -0.5];
+/// No vertex.
+const NONE: u32 = u32::MAX;
+/// The sides of a voxel that hangs together with nothing.
+const ALL_SIDES: u8 = 0b1111;
+/// The slots around an element, counterclockwise, the middle of an edge first.
+const AROUND: [usize; 8] = [1, 2, 5, 8, 7, 6, 3, 0];
+
+/// A body in the plane as triangles.
+#[derive(Default)]
+pub struct Sheet {
+    vertices: Pool<Place>,
+    triangles: Pool<[u32; 3]>,
+    /// What was put up for each element.
+    forms: Table<ElementId, Form>,
+    /// The vertex of each node, or none.
+    of_node: Table<NodeId, u32>,
+    /// The sides of the outline that begin and end at each node.
+    next: Table<NodeId, Side>,
+    last: Table<NodeId, Side>,
+    /// How the stairs of the shape are smoothed.
+    rest: Rest,
+    places: Vec<Vec2>,
+    smoothed: Vec<Vec2>,
+    followed: Bookmark,
+}
+
+/// What a vertex stands for: the mean of eight nodes, the same one eight times for one of its own.
+#[derive(Copy, Clone, Debug)]
+struct Place {
+    nodes: [NodeId; 8],
+    material: u8,
+}
+
+/// What was put up for an element.
+#[derive(Clone, Debug, Default)]
+struct Form {
+    triangles: Vec<u32>,
+    /// Vertices that stand for no node.
+    means: Vec<u32>,
+    sides: Vec<[NodeId; 2]>,
+}
+
+/// A side of the outline, seen from one of its ends.
+#[derive(Copy, Clone, Debug)]
+struct Side {
+    /// The vertex at its other end, or none.
+    to: u32,
+    is_fresh: bool,
+    /// How far its end is moved [voxels], in the frame of the voxel.
+    offset: Vec2,
+    /// The corners of the voxel.
+    corners: [NodeId; 4],
+}
+
+const NO_SIDE: Side = Side {
+    to: NONE,
+    is_fresh: false,
+    offset: Vec2::ZERO,
+    corners: [NodeId(u32::MAX); 4],
+};
+
+impl Surface<Dim2> for Sheet {
+    fn follow(&mut self, body: &Body<Dim2>, _: &SoftColours) -> bool {
+        let changes = body.changes_since(&mut self.followed);
+        let changes = changes.unwrap_or_else(|| {
+            // A new reader, or too much: all of it is looked at.
+            let rest = std::mem::take(&mut self.rest);
+            *self = Self {
+                followed: self.followed,
+                rest: match rest.fits(body.grid()) {
+                    true => rest,
+                    false => Rest::new(body.grid()),
+                },
+                ..Self::default()
+            };
+            let mesh = body.mesh();
+            Changes {
+                nodes: mesh.nodes().map(|(id, _)| id).collect(),
+                elements: mesh.elements().map(|(id, _)| id).collect(),
+                parted: Vec::new(),
+            }
+        });
+        self.change(body, &changes);
+        self.place(body);
+        ROUNDS.iter().for_each(|&share| self.smooth(share));
+        !changes.elements.is_empty() || !changes.nodes.is_empty()
+    }
+
+    fn vertices(&self) -> impl Iterator<Item = Option<Vertex>> {
+        let places = self.vertices.all.iter().zip(&self.places);
+        places.map(|(place, at)| {
+            place.map(|_| Vertex {
+                at: at.extend(0.0),
+                normal: Vec3::Z,
+            })
+        })
+    }
+
+    fn colours(&self, colours: &SoftColours) -> impl Iterator<Item = [f32; 4]> {
+        self.vertices.all.iter().map(|place| {
+            place.map_or([0.0; 4], |place| {
+                let node = place.nodes[0];
+                let is_fresh = self.next[node].is_fresh || self.last[node].is_fresh;
+                light_of(colours, place.material, is_fresh)
+            })
+        })
+    }
+
+    fn indices(&self) -> impl Iterator<Item = u32> {
+        let triangles = self.triangles.all.iter();
+        triangles.flat_map(|triangle| triangle.unwrap_or([0; 3]))
+    }
+}
+
+impl Sheet {
+    /// Takes down what is no more, and puts up what is new.
+    fn change(&mut self, body: &Body<Dim2>, changes: &Changes) {
+        let mesh = body.mesh();
+        self.forms.resize(mesh.element_capacity(), Form::default());
+        self.of_node.resize(mesh.node_capacity(), NONE);
+        self.next.resize(mesh.node_capacity(), NO_SIDE);
+        self.last.resize(mesh.node_capacity(), NO_SIDE);
+        for &id in &changes.elements {
+            let form = std::mem::take(&mut self.forms[id]);
+            let triangles = form.triangles.into_iter();
+            triangles.for_each(|place| self.triangles.give_back(place));
+            let means = form.means.into_iter();
+            means.for_each(|place| self.vertices.give_back(place));
+            for [from, to] in form.sides {
+                (self.next[from], self.last[to]) = (NO_SIDE, NO_SIDE);
+            }
+        }
+        for &id in &changes.nodes {
+            let known = std::mem::replace(&mut self.of_node[id], NONE);
+            if known != NONE {
+                self.vertices.give_back(known);
+            }
+        }
+        for &id in changes.nodes.iter().filter(|&&id| mesh.is_alive(id)) {
+            self.of_node[id] = self.vertices.take(Place {
+                nodes: [id; 8],
+                material: 0,
+            });
+        }
+        for &id in &changes.elements {
+            if let Some(element) = mesh.element(id) {
+                self.put_up(body, id, element);
+            }
+        }
+    }
+
+    fn put_up(&mut self, body: &Body<Dim2>, id: ElementId, element: &Element) {
+        let material = body.grid().material(body.mesh().first_voxel(element));
+        let mut form = Form::default();
+        let slots = &body.mesh().stencil(element).slots;
+        let mut nodes = [None; 9];
+        for (&slot, &node) in slots.iter().zip(&element.nodes) {
+            nodes[usize::from(slot)] = Some(node);
+            if let Some(place) = &mut self.vertices.all[self.of_node[node] as usize] {
+                place.material = material;
+            }
+        }
+        let mut vertices = nodes.map(|node| node.map_or(NONE, |node| self.of_node[node]));
+        let is_whole = element.children == Dim2::ALL_CORNERS;
+        let polygons: Vec<Vec<usize>> = match is_whole {
+            true => vec![AROUND.to_vec()],
+            false => squares(element.children),
+        };
+        for slot in polygons.iter().flatten().copied() {
+            if vertices[slot] == NONE && !is_whole {
+                let nodes = mean_of(slot, &nodes);
+                let mean = nodes.map(|nodes| self.vertices.take(Place { nodes, material }));
+                form.means.extend(mean);
+                vertices[slot] = mean.unwrap_or(NONE);
+            }
+        }
+        for polygon in polygons {
+            let ring = polygon.into_iter().map(|slot| vertices[slot]);
+            let ring: Vec<u32> = ring.filter(|&vertex| vertex != NONE).collect();
+            let Some((&first, rest)) = ring.split_first() else {
+                continue;
+            };
+            let fan = rest.windows(2).map(|pair| [first, pair[0], pair[1]]);
+            form.triangles
+                .extend(fan.map(|triangle| self.triangles.take(triangle)));
+        }
+        self.add_sides(body, id, element, &mut form);
+        self.forms[id] = form;
+    }
+
+    /// Notes the bare sides of an element; a voxel on its own is small enough to keep its corners.
+    fn add_sides(&mut self, body: &Body<Dim2>, id: ElementId, element: &Element, form: &mut Form) {
+        let bare = body.bare_faces(id);
+        if bare == ALL_SIDES {
+            return;
+        }
+        for face in (0..4).filter(|face| bare >> face & 1 == 1) {
+            let [from, to, ..] = face_corners::<Dim2>(face).map(|corner| element.nodes[corner]);
+            let mut beyond = element.cell.at;
+            beyond[face / 2] += 2 * (face % 2) as i32 - 1;
+            let is_fresh = body.grid().is_solid(beyond);
+            let [start, end] = [from, to].map(|node| body.mesh().node(node).at);
+            let step = [end[0] - start[0], end[1] - start[1]];
+            let offsets = match is_fresh {
+                true => Default::default(),
+                false => self.rest.offsets(body.grid(), element.cell.at, step),
+            };
+            let side = |to: NodeId, end: usize| Side {
+                to: self.of_node[to],
+                is_fresh,
+                offset: offsets[end].to_array().into(),
+                corners: std::array::from_fn(|corner| element.nodes[corner]),
+            };
+            (self.next[from], self.last[to]) = (side(to, 0), side(from, 1));
+            form.sides.push([from, to]);
+        }
+    }
+
+    fn place(&mut self, body: &Body<Dim2>) {
+        let positions = body.positions();
+        let at = |node: NodeId| Vec2::new(positions[node][0], positions[node][1]);
+        let places = self.vertices.all.iter().map(|place| match place {
+            Some(Place { nodes, .. }) if nodes.iter().all(|node| *node == nodes[0]) => at(nodes[0]),
+            Some(Place { nodes, .. }) => nodes.iter().map(|&node| at(node)).sum::<Vec2>() / 8.0,
+            None => Vec2::ZERO,
+        });
+        self.places.clear();
+        self.places.extend(places);
+        let moved = |side: &Side| {
+            let [a, b, c, d] = side.corners.map(at);
+            let (right, up) = (0.5 * (b - a + d - c), 0.5 * (c - a + d - b));
+            side.offset.x * right + side.offset.y * up
+        };
+        for (node, next) in self.next.entries() {
+            let (own, last) = (self.of_node[node], &self.last[node]);
+            if own == NONE || next.to == NONE || last.to == NONE {
+                continue;
+            }
+            self.places[own as usize] += match (last.is_fresh, next.is_fresh) {
+                (false, false) => moved(last).midpoint(moved(next)),
+                (false, true) => moved(last),
+                _ => moved(next),
+            };
+        }
+    }
+
+    fn smooth(&mut self, share: f32) {
+        self.smoothed.clone_from(&self.places);
+        for (node, next) in self.next.entries() {
+            let (own, last) = (self.of_node[node], self.last[node]);
+            if own == NONE || next.to == NONE || last.to == NONE {
+                continue;
+            }
+            let place = |vertex: u32| self.places[vertex as usize];
+            let middle = place(next.to).midpoint(place(last.to));
+            self.smoothed[own as usize] = place(own).lerp(middle, share);
+        }
+        std::mem::swap(&mut self.places, &mut self.smoothed);
+    }
+}
+
+/// The corners of each child that is left, counterclockwise, as slots.
+fn squares(children: u8) -> Vec<Vec<usize>> {
+    let left = (0..Dim2::CORNERS).filter(|child| children >> child & 1 == 1);
+    let square = |child| {
+        let corners = [0, 1, 3, 2].map(|vertex| slot_index(add(corner(child), corner(vertex))));
+        corners.to_vec()
+    };
+    left.map(square).collect()
+}
+
+/// The nodes whose mean a slot without one is: the ends of its edge, or the middles around the centre.
+fn mean_of(slot: usize, nodes: &[Option<NodeId>; 9]) -> Option<[NodeId; 8]> {
+    let halves = |slot: usize, axis: usize| {
+        [0, 2].map(|end| {
+            let mut at = slot_at(slot);
+            at[axis] = end;
+            slot_index(at)
+        })
+    };
+    let edge = |slot: usize, axis: usize| match nodes[slot] {
+        Some(node) => Some([node; 2]),
+        None => {
+            let [from, to] = halves(slot, axis);
+            Some([nodes[from]?, nodes[to]?])
+        }
+    };
+    match slot_at(slot) {
+        [1, 1, _] => {
+            let [left, right] = halves(slot, 0);
+            let [low, high] = halves(slot, 1);
+            let around = [
+                edge(left, 1)?,
+                edge(right, 1)?,
+                edge(low, 0)?,
+                edge(high, 0)?,
+            ];
+            let [[a, b], [c, d], [e, f], [g, h]] = around;
+            Some([a, b, c, d, e, f, g, h])
+        }
+        [1, ..] => edge(slot, 0).map(|[a, b]| [a, a, a, a, b, b, b, b]),
+        _ => edge(slot, 1).map(|[a, b]| [a, a, a, a, b, b, b, b]),
+    }
+}

@@ -1,0 +1,107 @@
+//! The surface of a body in space: the smooth skin that the game draws, and behind it a small box for each crumb.
+//!
+//! ```text
+//!   vertices   │ skin ············ │ crumbs: 8 each │      The skin keeps its places; crumbs move up when it grows,
+//!   triangles  │ skin: 2 a face ·· │ crumbs: 12 each│      in a tick in which something tore.
+//! ```
+//!
+//! So there are two triangles for each bare face of the body, crumbs or not.
+
+use super::{Surface, Vertex};
+use crate::colours::SoftColours;
+use bevy_math::Vec3;
+use fuwafuwa::dim::face_corners;
+use fuwafuwa::{Body, Dim3, ElementId};
+use fuwafuwa_render::space::Skin;
+use fuwafuwa_render::space::skin::SkinVertex;
+
+/// A crumb is so much smaller than its voxel that with its round shading it looks like a grain.
+const CRUMB: f32 = 0.85;
+/// `SkinVertex::other` is beyond the border between two materials from here on.
+const BORDER: u8 = 128;
+
+/// The surface of a body in space.
+#[derive(Default)]
+pub struct Hull {
+    skin: Skin,
+    crumbs: Vec<Crumb>,
+}
+
+struct Crumb {
+    material: u8,
+    corners: [Vertex; 8],
+}
+
+impl Surface<Dim3> for Hull {
+    fn follow(&mut self, body: &Body<Dim3>, colours: &SoftColours) -> bool {
+        let count = self.crumbs.len();
+        let is_new = self.skin.follow(body, &colours.materials);
+        self.crumbs.clear();
+        let crumbs = self.skin.crumbs().iter();
+        self.crumbs
+            .extend(crumbs.filter_map(|&id| Crumb::of(body, id)));
+        is_new || self.crumbs.len() != count
+    }
+
+    fn vertices(&self) -> impl Iterator<Item = Option<Vertex>> {
+        let skin = self.skin.vertices().iter().map(|corner| {
+            let [x, y, z, _] = corner.normal;
+            let normal = Vec3::new(x.into(), y.into(), z.into()) / 32767.0;
+            let at = Vec3::from(corner.at);
+            is_used(corner).then_some(Vertex { at, normal })
+        });
+        let crumbs = self.crumbs.iter().flat_map(|crumb| crumb.corners);
+        skin.chain(crumbs.map(Some))
+    }
+
+    fn colours(&self, colours: &SoftColours) -> impl Iterator<Item = [f32; 4]> {
+        let fresh = colours.fresh.map(super::linear);
+        let skin = self.skin.vertices().iter().map(move |corner| {
+            let nearest = if corner.other[3] > BORDER {
+                corner.other
+            } else {
+                corner.colour
+            };
+            let own = [0, 1, 2].map(|k| super::linear(f32::from(nearest[k]) / 255.0));
+            let share = 0.5 * f32::from(corner.colour[3]) / 255.0;
+            let [red, green, blue] = [0, 1, 2].map(|k| own[k] + (fresh[k] - own[k]) * share);
+            [red, green, blue, 1.0]
+        });
+        let crumbs = self.crumbs.iter();
+        let crumbs = crumbs.flat_map(|crumb| [super::light_of(colours, crumb.material, true); 8]);
+        skin.chain(crumbs)
+    }
+
+    fn indices(&self) -> impl Iterator<Item = u32> {
+        let first = self.skin.vertices().len() as u32;
+        let count = self.crumbs.len() as u32;
+        let crumbs = (0..count).flat_map(move |crumb| {
+            let faces = (0..6).flat_map(|face| {
+                let [a, b, c, d] = face_corners::<Dim3>(face);
+                [a, b, c, a, c, d]
+            });
+            faces.map(move |corner| first + 8 * crumb + corner as u32)
+        });
+        self.skin.indices().iter().copied().chain(crumbs)
+    }
+}
+
+impl Crumb {
+    fn of(body: &Body<Dim3>, id: ElementId) -> Option<Self> {
+        let element = body.mesh().element(id)?;
+        let place = |corner: usize| Vec3::from(body.node_state(element.nodes[corner]).0);
+        let places: [Vec3; 8] = std::array::from_fn(place);
+        let middle = places.iter().sum::<Vec3>() / 8.0;
+        let corners = places.map(|at| Vertex {
+            at: middle.lerp(at, CRUMB),
+            normal: (at - middle).normalize_or(Vec3::Y),
+        });
+        let material = body.grid().material(element.cell.at);
+        Some(Self { material, corners })
+    }
+}
+
+/// Whether somebody has the place of a vertex: the skin writes nothing but noughts to the others.
+fn is_used(corner: &SkinVertex) -> bool {
+    *corner != SkinVertex::default()
+}

@@ -1,0 +1,118 @@
+//! Who enters, who leaves, and when time passes.
+
+use super::{app, at, run, transform, world};
+use bevy_app::{App, Update};
+use bevy_ecs::entity::Entity;
+use bevy_ecs::resource::Resource;
+use bevy_ecs::schedule::IntoScheduleConfigs;
+use bevy_ecs::system::ResMut;
+use bevy_fuwafuwa::component::SoftBodyId;
+use bevy_fuwafuwa::prelude::*;
+use bevy_math::Vec3;
+use bevy_mesh::Mesh2d;
+
+fn ball(app: &mut App, height: f32) -> Entity {
+    let ball = (SoftBody2d::ball(8, 1.0), at(0.0, height));
+    app.world_mut().spawn(ball).id()
+}
+
+#[test]
+fn who_is_despawned_or_loses_the_component_leaves_the_world() {
+    let mut app = app::<Dim2>();
+    let floor = app.world_mut().spawn(RigidBody2d::floor()).id();
+    let [low, high, top] = [1.0, 3.0, 5.0].map(|height| ball(&mut app, height));
+    app.update();
+    let id = world::<Dim2>(&app).body_of(high).expect("it has entered");
+    assert_eq!(world::<Dim2>(&app).entity_of_body(id), Some(high));
+    assert_eq!(app.world().get::<SoftBodyId>(high), Some(&SoftBodyId(id)));
+
+    app.world_mut().despawn(low);
+    app.world_mut().despawn(floor);
+    app.world_mut().entity_mut(high).remove::<SoftBody2d>();
+    app.update();
+    let own = world::<Dim2>(&app);
+    assert_eq!(
+        (own.engine().bodies().len(), own.engine().rigids().len()),
+        (1, 0)
+    );
+    assert_eq!((own.body_of(low), own.body_of(high)), (None, None));
+    assert_eq!(own.entity_of_body(id), None);
+    assert!(own.body_of(top).is_some());
+    let entity = app.world().entity(high);
+    assert!(!entity.contains::<SoftBodyId>() && !entity.contains::<Mesh2d>());
+
+    // One that never entered leaves without a trace, and one that is inserted again is made anew.
+    let brief = ball(&mut app, 9.0);
+    app.world_mut().despawn(brief);
+    app.world_mut()
+        .entity_mut(top)
+        .insert(SoftBody2d::ball(10, 1.0));
+    app.update();
+    let own = world::<Dim2>(&app);
+    assert_eq!(own.engine().bodies().len(), 1);
+    let size = own
+        .body_of(top)
+        .map(|id| own.engine().bodies()[id].grid().size());
+    assert_eq!(size, Some([10, 10, 1]));
+}
+
+#[test]
+fn time_stands_still_while_it_is_paused() {
+    let mut app = app::<Dim2>();
+    let ball = ball(&mut app, 1.0);
+    run(&mut app, 5);
+    app.world_mut().resource_mut::<SoftWorld<Dim2>>().pause();
+    let before = transform(&app, ball);
+    run(&mut app, 5);
+    assert_eq!(
+        (transform(&app, ball), world::<Dim2>(&app).engine().ticks()),
+        (before, 5)
+    );
+    app.world_mut()
+        .resource_mut::<SoftWorld<Dim2>>()
+        .step_once();
+    run(&mut app, 5);
+    assert_eq!(world::<Dim2>(&app).engine().ticks(), 6);
+    app.world_mut().resource_mut::<SoftWorld<Dim2>>().resume();
+    run(&mut app, 5);
+    assert_eq!(world::<Dim2>(&app).engine().ticks(), 11);
+    assert!(transform(&app, ball).translation.y < before.translation.y);
+}
+
+#[derive(Resource, Default)]
+struct Seen(Vec<Option<(Entity, f32)>>);
+
+#[test]
+fn rays_find_entities() {
+    let mut app = app::<Dim2>();
+    app.init_resource::<Seen>();
+    let look = |queries: SoftQueries<Dim2>, mut seen: ResMut<Seen>| {
+        let down = queries.ray(Vec3::new(0.0, 10.0, 0.0), Vec3::NEG_Y, 100.0);
+        seen.0
+            .push(down.and_then(|hit| Some((hit.entity?, hit.distance))));
+        let beside = queries.nearest(Vec3::new(4.0, 0.5, 0.0), 1.0);
+        seen.0
+            .push(beside.and_then(|hit| Some((hit.entity?, hit.distance))));
+        let centre = [0.0, 3.0, 0.0];
+        let inside = queries.overlapping(&Shape::Ball {
+            centre,
+            radius: 0.1,
+        });
+        seen.0.push(inside.first().map(|&entity| (entity, 0.0)));
+    };
+    app.add_systems(Update, look.after(FuwafuwaSystems::Writeback));
+    let floor = app.world_mut().spawn(RigidBody2d::floor()).id();
+    let ball = ball(&mut app, 3.0);
+    app.update();
+    let Some([Some(down), Some(beside), Some(inside)]) =
+        app.world().resource::<Seen>().0.first_chunk::<3>()
+    else {
+        panic!("three answers");
+    };
+    assert!(down.0 == ball && (6.5..6.7).contains(&down.1), "{down:?}");
+    assert!(
+        beside.0 == floor && (beside.1 - 0.5).abs() < 1e-5,
+        "{beside:?}"
+    );
+    assert_eq!(inside.0, ball);
+}

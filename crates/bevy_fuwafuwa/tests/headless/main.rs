@@ -1,0 +1,62 @@
+//! The plugin in apps without a window.
+
+mod assets;
+mod bits;
+mod life;
+mod meshes;
+mod mistakes;
+mod motion;
+
+use bevy_app::{App, TaskPoolPlugin, Update};
+use bevy_asset::{AssetPlugin, Assets};
+use bevy_ecs::entity::Entity;
+use bevy_ecs::message::{Message, Messages};
+use bevy_fuwafuwa::prelude::*;
+use bevy_fuwafuwa::{Dimension, fuwafuwa::Body};
+use bevy_mesh::Mesh;
+use bevy_transform::components::Transform;
+
+/// An app in which each update is a tick.
+fn app<D: Dimension>() -> App {
+    let mut app = App::new();
+    app.add_plugins((TaskPoolPlugin::default(), AssetPlugin::default()));
+    app.add_plugins(FuwafuwaPlugin::<D>::default().in_schedule(Update));
+    app
+}
+
+fn run(app: &mut App, ticks: usize) {
+    (0..ticks).for_each(|_| app.update());
+}
+
+fn at(x: f32, y: f32) -> Transform {
+    Transform::from_xyz(x, y, 0.0)
+}
+
+fn transform(app: &App, entity: Entity) -> Transform {
+    *app.world().get::<Transform>(entity).expect("it has one")
+}
+
+fn world<D: Dimension>(app: &App) -> &SoftWorld<D> {
+    app.world().resource::<SoftWorld<D>>()
+}
+
+fn body<D: Dimension>(app: &App, entity: Entity) -> &Body<D> {
+    let world = world::<D>(app);
+    let id = world.body_of(entity).expect("it has entered");
+    &world.engine().bodies()[id]
+}
+
+fn mesh(app: &App, entity: Entity) -> &Mesh {
+    let entity = app.world().entity(entity);
+    let flat = entity.get::<bevy_mesh::Mesh2d>().map(|mesh| &mesh.0);
+    let deep = entity.get::<bevy_mesh::Mesh3d>().map(|mesh| &mesh.0);
+    let handle = flat.or(deep).expect("it has a mesh");
+    let meshes = app.world().resource::<Assets<Mesh>>();
+    meshes.get(handle).expect("the mesh is there")
+}
+
+/// All messages of a kind of the last two ticks.
+fn messages<M: Message + Clone>(app: &App) -> Vec<M> {
+    let messages = app.world().resource::<Messages<M>>();
+    messages.iter_current_update_messages().cloned().collect()
+}

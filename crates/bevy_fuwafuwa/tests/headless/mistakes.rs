@@ -1,0 +1,192 @@
+//! What cannot be is told, and nothing else minds.
+
+use super::{app, at, messages, run, transform, world};
+use bevy_app::{App, Update};
+use bevy_asset::Handle;
+use bevy_ecs::bundle::Bundle;
+use bevy_fuwafuwa::asset::Voxels;
+use bevy_fuwafuwa::component::WithoutMesh;
+use bevy_fuwafuwa::fuwafuwa::{BuildError, Settings};
+use bevy_fuwafuwa::prelude::*;
+use bevy_fuwafuwa::{Problem, Rejected};
+use bevy_math::{Quat, Vec3};
+use bevy_transform::components::Transform;
+
+/// What becomes of an entity in a world with a ball.
+fn rejected(bad: impl Bundle) -> String {
+    let mut app = app::<Dim2>();
+    let ball = app
+        .world_mut()
+        .spawn((SoftBody2d::ball(8, 1.0), at(0.0, 2.0)))
+        .id();
+    let bad = app.world_mut().spawn(bad).id();
+    app.update();
+    let Some(Rejected(problem)) = app.world().get::<Rejected>(bad).cloned() else {
+        panic!("it was let in");
+    };
+    let told = messages::<Rejection>(&app);
+    let texts = |own: &Rejection| (own.entity, own.problem.to_string());
+    assert_eq!(
+        told.iter().map(texts).collect::<Vec<_>>(),
+        [(Some(bad), problem.to_string())]
+    );
+    run(&mut app, 10);
+    assert!(
+        transform(&app, ball).translation.y < 2.0,
+        "the ball does not fall"
+    );
+    let own = world::<Dim2>(&app);
+    assert_eq!(
+        (own.engine().bodies().len(), own.engine().rigids().len()),
+        (1, 0)
+    );
+    problem.to_string()
+}
+
+#[test]
+fn who_cannot_be_does_not_enter_and_hears_why() {
+    let ball = || SoftBody2d::ball(8, 1.0);
+    let check = |problem: String, expect: &str| assert!(problem.contains(expect), "{problem}");
+    check(rejected(SoftBody2d::ball(0, 1.0)), "empty");
+    check(rejected(SoftBody2d::ball(8, f32::NAN)), "voxel");
+    check(rejected(SoftBody2d::cube(100_000, 1.0)), "too large");
+    let material = SoftMaterial {
+        density: f32::NAN,
+        ..SoftMaterial::default()
+    };
+    check(rejected((ball(), SoftMaterials::from(material))), "density");
+    check(rejected((ball(), SoftMaterials(Vec::new()))), "material 1");
+    check(rejected((ball(), at(f32::NAN, 0.0))), "finite translation");
+    check(
+        rejected((ball(), Transform::from_scale(Vec3::new(1.0, 2.0, 1.0)))),
+        "same factor",
+    );
+    check(
+        rejected((ball(), Transform::from_scale(Vec3::ZERO))),
+        "positive",
+    );
+    check(
+        rejected((
+            ball(),
+            Transform::from_rotation(Quat::from_xyzw(0.0, 0.0, 0.0, 0.0)),
+        )),
+        "have a rotation",
+    );
+    let fast = SoftVelocity {
+        linear: Vec3::splat(f32::INFINITY),
+        ..SoftVelocity::default()
+    };
+    check(rejected((ball(), fast)), "velocity");
+    check(rejected((ball(), GravityScale(1e9))), "gravity scale");
+    let nowhere = Handle::<Voxels<Dim2>>::default();
+    check(rejected(SoftBody2d::asset(nowhere)), "nobody loads it");
+    check(rejected(RigidBody2d::hand(-1.0)), "radius");
+    let turned = Transform::from_rotation(Quat::from_rotation_z(0.5));
+    let (centre, half) = ([0.0; 3], [1.0; 3]);
+    let shape = Shape::Box { centre, half };
+    check(rejected((RigidBody2d::fixed(shape), turned)), "turn a box");
+}
+
+#[test]
+fn what_cannot_be_done_to_who_is_there_is_told_and_leaves_it_as_it_was() {
+    let mut app = app::<Dim3>();
+    app.insert_resource(SoftSettings(Settings {
+        gravity: [0.0; 3],
+        ..Settings::default()
+    }));
+    let ball = (
+        SoftBody3d::ball(8, 1.0),
+        at(0.0, 2.0),
+        SoftVelocity::default(),
+    );
+    let ball = app.world_mut().spawn(ball).id();
+    app.update();
+    let before = transform(&app, ball);
+    let hash_without = world::<Dim3>(&app).engine().hash();
+    let check = |app: &mut App, expect: &str| {
+        app.update();
+        let told = messages::<Rejection>(app);
+        let texts: Vec<String> = told.iter().map(|own| own.problem.to_string()).collect();
+        assert!(texts.len() == 1 && texts[0].contains(expect), "{texts:?}");
+        assert_eq!(transform(app, ball), before);
+    };
+    let bad = Transform::from_xyz(f32::INFINITY, 0.0, 0.0);
+    app.world_mut().entity_mut(ball).insert(bad);
+    check(&mut app, "finite translation");
+    app.world_mut()
+        .entity_mut(ball)
+        .insert(before.with_scale(Vec3::splat(2.0)));
+    check(&mut app, "keep its scale");
+    let fast = SoftVelocity {
+        linear: Vec3::splat(f32::NAN),
+        ..SoftVelocity::default()
+    };
+    app.world_mut().entity_mut(ball).insert(fast);
+    check(&mut app, "velocity");
+    let push = ExternalImpulse {
+        impulse: Vec3::NAN,
+        at: Vec3::ZERO,
+        radius: 1.0,
+    };
+    app.world_mut().entity_mut(ball).insert(push);
+    check(&mut app, "impulse");
+    app.world_mut()
+        .entity_mut(ball)
+        .insert(GravityScale(f32::NAN));
+    check(&mut app, "gravity scale");
+    app.world_mut().resource_mut::<SoftSettings>().0.drag = -1.0;
+    check(&mut app, "drag");
+    app.update();
+    assert_eq!(messages::<Rejection>(&app), [], "each is told once");
+    assert_ne!(
+        world::<Dim3>(&app).engine().hash(),
+        hash_without,
+        "time went on"
+    );
+}
+
+#[test]
+fn nobody_is_two_things() {
+    let mut app = app::<Dim2>();
+    let both = (SoftBody2d::ball(8, 1.0), RigidBody2d::floor());
+    let both = app.world_mut().spawn(both).id();
+    app.update();
+    let own = world::<Dim2>(&app);
+    assert!(own.body_of(both).is_some() && own.rigid_of(both).is_none());
+    let twice = app.world().get::<Rejected>(both);
+    assert_eq!(twice, Some(&Rejected(Problem::Twice)));
+}
+
+#[test]
+fn who_is_mended_enters() {
+    let mut app = app::<Dim2>();
+    let ball = app.world_mut().spawn(SoftBody2d::ball(0, 1.0)).id();
+    app.update();
+    let expect = Rejected(Problem::Grid(BuildError::Empty));
+    assert_eq!(app.world().get::<Rejected>(ball), Some(&expect));
+    app.world_mut()
+        .entity_mut(ball)
+        .insert(SoftBody2d::ball(4, 1.0));
+    app.update();
+    assert_eq!(app.world().get::<Rejected>(ball), None);
+    assert!(world::<Dim2>(&app).body_of(ball).is_some());
+}
+
+#[test]
+fn without_assets_there_are_bodies_and_no_meshes() {
+    let mut app = App::new();
+    app.add_plugins(FuwafuwaPlugin2d::default().in_schedule(Update));
+    let ball = app.world_mut().spawn(SoftBody2d::ball(8, 1.0)).id();
+    app.update();
+    assert!(world::<Dim2>(&app).body_of(ball).is_some());
+    assert!(!app.world().entity(ball).contains::<bevy_mesh::Mesh2d>());
+
+    let mut app = super::app::<Dim2>();
+    let ball = app
+        .world_mut()
+        .spawn((SoftBody2d::ball(8, 1.0), WithoutMesh))
+        .id();
+    app.update();
+    assert!(world::<Dim2>(&app).body_of(ball).is_some());
+    assert!(!app.world().entity(ball).contains::<bevy_mesh::Mesh2d>());
+}

@@ -1,0 +1,181 @@
+//! What entities are told of how they move, and what they ask for.
+
+use super::{app, at, body, messages, run, transform, world};
+use bevy_fuwafuwa::component::RigidBodyId;
+use bevy_fuwafuwa::prelude::*;
+use bevy_math::{Quat, Vec3};
+use bevy_transform::components::Transform;
+
+#[test]
+fn a_ball_falls_rests_and_sleeps() {
+    let mut app = app::<Dim2>();
+    let floor = app.world_mut().spawn(RigidBody2d::floor()).id();
+    let ball = (
+        SoftBody2d::ball(16, 1.0),
+        at(3.0, 1.0),
+        SoftVelocity::default(),
+    );
+    let ball = app.world_mut().spawn(ball).id();
+    run(&mut app, 10);
+    let speed = app
+        .world()
+        .get::<SoftVelocity>(ball)
+        .map(|own| own.linear.y);
+    assert!(
+        speed.is_some_and(|speed| (-1.7..-1.5).contains(&speed)),
+        "{speed:?}"
+    );
+
+    let (mut has_touched, mut has_slept) = (false, false);
+    for _ in 0..600 {
+        app.update();
+        let touches = messages::<Touched>(&app);
+        has_touched |= touches
+            .iter()
+            .any(|touch| (touch.body, touch.with) == (ball, Some(floor)));
+        has_slept |= messages::<FellAsleep>(&app)
+            .iter()
+            .any(|own| own.body == ball);
+    }
+    assert!(has_touched && has_slept);
+    let place = transform(&app, ball).translation;
+    assert!(
+        (place.x - 3.0).abs() < 0.02 && (0.3..0.45).contains(&place.y),
+        "{place}"
+    );
+}
+
+#[test]
+fn a_transform_turns_moves_and_scales_what_enters_and_follows_it() {
+    let mut app = app::<Dim3>();
+    app.insert_resource(SoftSettings(bevy_fuwafuwa::fuwafuwa::Settings {
+        gravity: [0.0; 3],
+        ..Default::default()
+    }));
+    let grid = VoxelGrid::<Dim3>::from_fn([8, 4, 4], 0.25, |_| 1);
+    let pose = Transform {
+        translation: Vec3::new(1.0, 2.0, 3.0),
+        rotation: Quat::from_rotation_z(1.0),
+        scale: Vec3::splat(0.5),
+    };
+    let spin = SoftVelocity {
+        linear: Vec3::X,
+        angular: Vec3::new(0.0, 0.0, 0.6),
+    };
+    let stick = app
+        .world_mut()
+        .spawn((SoftBody3d::from(grid), pose, spin))
+        .id();
+    app.update();
+    // A metre long, half a metre thick.
+    let volume = body::<Dim3>(&app, stick).total_mass() / 100.0;
+    assert!((volume - 0.25).abs() < 1e-4, "{volume}");
+    run(&mut app, 59);
+    let now = transform(&app, stick);
+    assert!(
+        now.translation.distance(Vec3::new(2.0, 2.0, 3.0)) < 0.02,
+        "{now:?}"
+    );
+    let expect = Quat::from_rotation_z(1.6);
+    assert!(now.rotation.angle_between(expect) < 0.05, "{now:?}");
+    assert_eq!(now.scale, pose.scale);
+    let velocity = app
+        .world()
+        .get::<SoftVelocity>(stick)
+        .copied()
+        .unwrap_or_default();
+    assert!(velocity.linear.distance(Vec3::X) < 0.01, "{velocity:?}");
+    assert!(
+        velocity.angular.distance(spin.angular) < 0.05,
+        "{velocity:?}"
+    );
+
+    // What is written moves and turns it at once.
+    let there = Transform {
+        translation: Vec3::new(-5.0, 1.0, 0.0),
+        rotation: Quat::from_rotation_x(0.5),
+        ..now
+    };
+    app.world_mut()
+        .entity_mut(stick)
+        .insert((there, SoftVelocity::default()));
+    run(&mut app, 30);
+    let now = transform(&app, stick);
+    assert!(
+        now.translation.distance(there.translation) < 0.02,
+        "{now:?}"
+    );
+    assert!(now.rotation.angle_between(there.rotation) < 0.05, "{now:?}");
+    let centre = Vec3::from(body::<Dim3>(&app, stick).centre_of_mass());
+    assert!(centre.distance(there.translation) < 0.02, "{centre}");
+}
+
+#[test]
+fn an_impulse_is_given_once_and_a_scale_of_gravity_lifts() {
+    let mut app = app::<Dim2>();
+    let push = ExternalImpulse {
+        impulse: Vec3::new(20.0, 0.0, 0.0),
+        at: Vec3::ZERO,
+        radius: 2.0,
+    };
+    let soft = (
+        SoftBody2d::ball(16, 1.0),
+        push,
+        GravityScale(-0.5),
+        SoftVelocity::default(),
+    );
+    let ball = app.world_mut().spawn(soft).id();
+    run(&mut app, 10);
+    assert!(app.world().get::<ExternalImpulse>(ball).is_none());
+    let mass = body::<Dim2>(&app, ball).total_mass() as f32;
+    let velocity = app.world().get::<SoftVelocity>(ball).map(|own| own.linear);
+    let expect = Vec3::new(20.0 / mass, 0.5 * 9.81 / 6.0, 0.0);
+    assert!(
+        velocity.is_some_and(|own| own.distance(expect) < 0.02),
+        "{velocity:?} {expect}"
+    );
+}
+
+#[test]
+fn hands_go_to_their_goals_and_obstacles_where_they_are_put() {
+    let mut app = app::<Dim3>();
+    let hand = app
+        .world_mut()
+        .spawn((RigidBody3d::hand(0.1), at(0.0, 5.0)))
+        .id();
+    let coupled = RigidBody3d::hand(0.1).with_drive(Drive::default());
+    let coupled = (coupled, at(3.0, 5.0), Goal(Vec3::new(3.0, 6.0, 0.0)));
+    let coupled = app.world_mut().spawn(coupled).id();
+    let half = [0.5; 3];
+    let table = RigidBody3d::fixed(Shape::Box {
+        centre: [0.0; 3],
+        half,
+    });
+    let table = app.world_mut().spawn((table, at(9.0, 0.0))).id();
+    app.update();
+    app.world_mut().entity_mut(hand).insert(at(0.5, 5.0));
+    app.world_mut().entity_mut(table).insert(at(9.0, 2.0));
+    run(&mut app, 60);
+    let place = |entity| {
+        let id = world::<Dim3>(&app)
+            .rigid_of(entity)
+            .expect("it has entered");
+        assert_eq!(
+            app.world().get::<RigidBodyId>(entity),
+            Some(&RigidBodyId(id))
+        );
+        assert_eq!(world::<Dim3>(&app).entity_of_rigid(id), Some(entity));
+        let [low, high] = world::<Dim3>(&app).engine().rigids()[id].shape().bounds();
+        0.5 * (Vec3::from(low) + Vec3::from(high))
+    };
+    assert!(place(hand).distance(Vec3::new(0.5, 5.0, 0.0)) < 1e-4);
+    assert!(place(coupled).distance(Vec3::new(3.0, 6.0, 0.0)) < 1e-2);
+    assert!(
+        transform(&app, coupled)
+            .translation
+            .distance(place(coupled))
+            < 1e-6
+    );
+    assert_eq!(place(table), Vec3::new(9.0, 2.0, 0.0));
+    assert_eq!(world::<Dim3>(&app).engine().rigids().len(), 3);
+}
