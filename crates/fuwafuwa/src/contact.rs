@@ -16,6 +16,7 @@ use crate::body::{Bodies, Body};
 use crate::dim::Dim;
 use crate::handle::{BodySlot, RigidSlot};
 use crate::ids::{PieceId, Table};
+use crate::layers::Layers;
 use crate::rigid::Rigids;
 use crate::solve::Row;
 use crate::threads;
@@ -112,13 +113,15 @@ impl Contacts {
                 let own = as_row(rigid.velocity_at(lever));
                 let relative = minus(velocity, own);
                 let size = body.truth.grid.voxel_size();
-                if !is_close(gap, inner::<D>(relative, normal), size, duration) {
+                let approach = inner::<D>(relative, normal);
+                if !is_close(gap, approach, size, duration) {
                     pair.impulse.release();
                     // With a little for rounding.
                     pair.clear = travel + gap - 1.1 * CLOSE * size;
                     continue;
                 }
                 pair.clear = 0.0;
+                pair.impulse.speed = pair.impulse.speed.max(-approach);
                 let may_wake = rigid.moves() || rigid.is_asleep();
                 if may_wake && gap < 0.1 * size {
                     let is_fast = |speed: Row| inner::<D>(speed, speed) > WAKE_SPEED * WAKE_SPEED;
@@ -168,6 +171,11 @@ impl Contacts {
         let waking = WAKE_SPEED * duration;
         let friction = |body: Option<&Body<D>>| body.map_or(0.0, Body::friction);
         let frictions: Table<BodySlot, f32> = bodies.slots().map(friction).collect();
+        let has_layers = bodies
+            .iter()
+            .any(|body| body.state.layers != Layers::default());
+        let layers = |sphere: &ContactSphere| bodies.at(sphere.body).state.layers;
+        let meet = |both: [&ContactSphere; 2]| layers(both[0]).meet(layers(both[1]));
         let (all, captives) = (&nearby.spheres, &nearby.captives);
         let widths = bodies.iter().map(|body| body.truth.grid.voxel_size());
         let widest = widths.fold(0.0, f32::max);
@@ -189,6 +197,11 @@ impl Contacts {
                     pair.impulse.release();
                     continue;
                 }
+                if has_layers && !meet(both) {
+                    pair.met_in_front = false;
+                    pair.impulse.release();
+                    continue;
+                }
                 let touching = both[0].radius + both[1].radius;
                 if captives.is_inside(pair.spheres, both) {
                     // What came out is not to be drawn in again.
@@ -206,10 +219,12 @@ impl Contacts {
                     }
                 }
                 let relative = minus(all.velocities[a], all.velocities[b]);
-                if !is_close(gap, inner::<D>(relative, normal), touching, duration) {
+                let approach = inner::<D>(relative, normal);
+                if !is_close(gap, approach, touching, duration) {
                     pair.impulse.release();
                     continue;
                 }
+                pair.impulse.speed = pair.impulse.speed.max(-approach);
                 let moved = all.moved[a].max(all.moved[b]);
                 if gap < 0.05 * touching && moved > waking * waking {
                     let sleepers = both.into_iter().filter(|sphere| sphere.asleep);
@@ -301,6 +316,8 @@ impl Contacts {
                 .impulse
                 .note(contact);
         }
+        let passed = self.free.iter().filter_map(FreeContact::passed);
+        nearby.rigids.passed.extend(passed);
         nearby
             .rigids
             .renew(self.free.iter().map(FreeContact::touch));

@@ -34,8 +34,53 @@ pub enum Event {
         with: With,
         /// Where, at the strongest contact [m].
         at: Vector,
+        /// Which way it got away from that there, of length 1.
+        normal: Vector,
         /// Along the normals, over the whole tick [N s].
         impulse: f32,
+    },
+    /// Rigid things pressed on each other, of which one is free.
+    RigidTouched {
+        /// The one that is free.
+        rigid: RigidId,
+        /// The other.
+        with: RigidId,
+        /// Where, at the strongest contact [m].
+        at: Vector,
+        /// Which way the first got away from the other there, of length 1.
+        normal: Vector,
+        /// Along the normals, over the whole tick [N s].
+        impulse: f32,
+    },
+    /// Two began to touch.
+    ContactBegan {
+        /// Who.
+        both: [Party; 2],
+        /// Where, at the strongest contact [m].
+        at: Vector,
+        /// Which way the first got away from the second there, of length 1.
+        normal: Vector,
+        /// How fast they approached each other [m/s].
+        speed: f32,
+    },
+    /// Two touch no more, or one of them is gone. What rests side by side still touches.
+    ContactEnded {
+        /// Who.
+        both: [Party; 2],
+    },
+    /// Somebody came into a sensor.
+    Entered {
+        /// The sensor.
+        sensor: RigidId,
+        /// Who.
+        who: Party,
+    },
+    /// Somebody left a sensor, or is gone, or the sensor is.
+    Left {
+        /// The sensor.
+        sensor: RigidId,
+        /// Who.
+        who: Party,
     },
     /// A piece came to rest.
     FellAsleep {
@@ -77,6 +122,30 @@ pub enum With {
         /// Number of the piece.
         piece: PieceId,
     },
+}
+
+/// Who can touch and be touched.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Party {
+    /// A piece of a soft body.
+    Piece {
+        /// The body.
+        body: BodyId,
+        /// Number of the piece.
+        piece: PieceId,
+    },
+    /// Something rigid.
+    Rigid(RigidId),
+}
+
+impl From<With> for Party {
+    fn from(with: With) -> Self {
+        match with {
+            With::Obstacle(id) | With::Hand(id) | With::Free(id) => Self::Rigid(id),
+            With::Piece { body, piece } => Self::Piece { body, piece },
+        }
+    }
 }
 
 /// What a tick did.

@@ -5,23 +5,23 @@
 //! what a force-feedback device should play; the raw contact force jumps. Hands do not turn; what is *free* falls, turns and
 //! is pushed around, and what is kinematic goes and turns as it is told.
 
+mod bad;
+mod check;
 mod free;
 mod inertia;
 
 use crate::dim::Dim;
 use crate::handle::{Arena, RigidId};
+use crate::layers::Layers;
 use crate::rotation::Rotation;
-use crate::shape::{BadShape, Shape, Vector};
+use crate::shape::{Shape, Vector};
 use crate::vector::{is_finite, length, minus, plus, scaled};
+pub use bad::{BadRigid, FARTHEST};
+use bad::{is_within_reach, require};
 use inertia::{Inertia, Matrix};
-use std::fmt;
 
 /// The rigid things of a world.
 pub type Rigids = Arena<RigidId, Rigid>;
-
-/// Hands and goals further from the origin than this on an axis [m] are refused, like those that
-/// are not finite: single precision has no millimetres out there, and no such speeds.
-pub const FARTHEST: f32 = 1e6;
 
 /// What moves a rigid thing.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -74,6 +74,13 @@ pub struct Rigid {
     pub restitution: f32,
     /// What moves it.
     pub drive: Drive,
+    /// Who touches it.
+    pub layers: Layers,
+    /// Whether it touches nobody, and tells who comes into it: [`Event::Entered`](crate::Event::Entered) and
+    /// [`Event::Left`](crate::Event::Left).
+    pub is_sensor: bool,
+    /// What whoever put it into a world wants to know of it.
+    pub user_data: u64,
     /// As it would be at the origin, and where it is.
     form: Shape,
     shape: Shape,
@@ -117,30 +124,6 @@ pub struct Reaction {
     pub coupling: Vector,
 }
 
-/// Something rigid that cannot be: which field, and what it must be.
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub struct BadRigid {
-    /// The field.
-    pub field: &'static str,
-    /// What was expected.
-    pub expected: &'static str,
-}
-
-impl fmt::Display for BadRigid {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { field, expected } = self;
-        write!(f, "the {field} of what is rigid must be {expected}")
-    }
-}
-
-impl std::error::Error for BadRigid {}
-
-impl From<BadShape> for BadRigid {
-    fn from(BadShape { field, expected }: BadShape) -> Self {
-        Self { field, expected }
-    }
-}
-
 impl Rigid {
     /// A shape that stands still where it is; of friction about 0.2.
     pub fn fixed(shape: Shape, friction: f32) -> Self {
@@ -162,6 +145,9 @@ impl Rigid {
         Self {
             friction: 0.2,
             drive,
+            layers: Layers::default(),
+            is_sensor: false,
+            user_data: 0,
             form,
             shape: form.moved(position),
             position,
@@ -253,69 +239,6 @@ impl Rigid {
         self.take_inertia::<D>();
         self.stand_at(self.position, self.rotation);
         self
-    }
-
-    /// Checks every field.
-    ///
-    /// # Errors
-    /// [`BadRigid`] names the first field that is out of range.
-    pub fn check(&self) -> Result<(), BadRigid> {
-        let within = |field, k: f32, low: f32, high: f32, expected| {
-            require(k >= low && k <= high, field, expected)
-        };
-        let (tiny, huge) = (f32::MIN_POSITIVE, f32::MAX);
-        let positions = [
-            ("position", self.position),
-            ("goal", self.goal),
-            ("goal", self.goal_before),
-            ("position", self.position_before),
-        ];
-        for (field, position) in positions {
-            require(
-                is_within_reach(position),
-                field,
-                "within 1e6 m of the origin",
-            )?;
-        }
-        require(is_finite(self.velocity), "velocity", "finite")?;
-        require(is_finite(self.spin), "angular velocity", "finite")?;
-        require(self.still >= 0.0, "time at rest", "0 or more")?;
-        self.form.check()?;
-        let is_moved = self.shape == self.form.rotated(self.rotation).moved(self.position);
-        let expected = "what it is at the origin, turned and moved to its position";
-        require(is_moved, "shape", expected)?;
-        within(
-            "friction",
-            self.friction,
-            0.0,
-            huge,
-            "0 or more, and finite",
-        )?;
-        within("restitution", self.restitution, 0.0, 1.0, "0 to 1")?;
-        if self.drive != Drive::Fixed {
-            let ends = self.form.bounds().into_iter().all(is_within_reach);
-            require(ends, "shape", "one that ends within 1e6 m of its middle")?;
-        }
-        match self.drive {
-            Drive::Fixed | Drive::Kinematic => Ok(()),
-            Drive::Free { mass } => {
-                within("mass", mass, 1e-6, 1e6, "1e-6 to 1e6 kg")?;
-                let [low, high] = self.form.bounds();
-                let off = length(plus(low, high)) <= 1e-3 * length(minus(high, low));
-                require(off, "shape", "one with its middle at the origin")
-            }
-            Drive::Coupled {
-                mass,
-                stiffness,
-                damping,
-                limit,
-            } => {
-                within("mass", mass, 1e-6, 1e6, "1e-6 to 1e6 kg")?;
-                within("stiffness", stiffness, tiny, huge, "positive and finite")?;
-                within("damping", damping, tiny, 10.0, "positive, at most 10")?;
-                within("limit", limit, tiny, f32::INFINITY, "positive")
-            }
-        }
     }
 
     /// How far what it would be at the origin was moved [m]: of a hand of the usual form, its middle.
@@ -470,13 +393,4 @@ impl Rigid {
             self.inverse_inertia = inertia.inverse(rotation);
         }
     }
-}
-
-fn require(good: bool, field: &'static str, expected: &'static str) -> Result<(), BadRigid> {
-    good.then_some(()).ok_or(BadRigid { field, expected })
-}
-
-/// Whether something rigid or its goal may be there.
-fn is_within_reach(at: Vector) -> bool {
-    at.iter().all(|k| k.abs() <= FARTHEST)
 }

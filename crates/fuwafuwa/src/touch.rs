@@ -31,7 +31,7 @@ pub use nodes::{NodePair, NodePairs};
 pub use pair::MARGIN;
 use pair::renumber;
 pub use pairs::SpherePairs;
-pub use rigids::{RigidTouch, RigidTouches};
+pub use rigids::{Passed, RigidTouch, RigidTouches};
 pub use sphere::{ContactSphere, SphereId, mean};
 pub use spheres::Spheres;
 
@@ -63,6 +63,7 @@ impl Nearby {
     /// anything and anywhere.
     pub fn start_tick<D: Dim>(&mut self, bodies: &Bodies<D>, duration: f32) {
         self.nodes.start_tick();
+        self.rigids.start_tick();
         let numbers = self.spheres.start_tick(bodies, &mut self.pairs.changed);
         self.pairs.start_tick(numbers.is_some());
         if let Some(numbers) = numbers {

@@ -3,23 +3,23 @@
 mod acts;
 mod contents;
 mod hooks;
+mod touches;
 
 use crate::body::{Bodies, Body};
 use crate::contact::{Contacts, Hit, Hits};
 use crate::damping::{PieceMotion, Slowing, motions, slow_down};
 use crate::dim::{Dim, Point};
-use crate::event::{Event, StepReport, With};
+use crate::event::{Event, Party, StepReport};
 use crate::fracture::{Failure, failures};
-use crate::handle::{BodyId, BodySlot, Gone, RigidSlot};
+use crate::handle::{BodySlot, Gone, RigidId, RigidSlot};
 use crate::ids::{PieceId, Table};
-use crate::rigid::{BadRigid, Drive, Rigids};
+use crate::rigid::{BadRigid, Rigids};
 use crate::shape::Vector;
 use crate::sleep::{fall_asleep, fall_asleep_rigid, wake};
 use crate::solve::Row;
 use crate::touch::{Nearby, NodePair};
 use crate::vector::{is_finite, plus, three};
 pub use hooks::{Hooks, Substep, field_around};
-use std::collections::BTreeMap;
 use std::fmt;
 
 /// Length of a tick [s].
@@ -150,6 +150,9 @@ pub struct World<D: Dim> {
     ticks: u64,
     nearby: Nearby,
     events: Vec<Event>,
+    /// Who touched whom in the last tick, and who was in which sensor, ascending.
+    touching: Vec<[Party; 2]>,
+    inside: Vec<(RigidId, Party)>,
     #[cfg_attr(feature = "serde", serde(skip))]
     contacts: Contacts,
 }
@@ -169,6 +172,8 @@ impl<D: Dim> World<D> {
             ticks: 0,
             nearby: Nearby::default(),
             events: Vec::new(),
+            touching: Vec::new(),
+            inside: Vec::new(),
             contacts: Contacts::default(),
         })
     }
@@ -429,53 +434,6 @@ impl<D: Dim> World<D> {
             }
         }
         touching
-    }
-
-    /// Adds up what pressed on what over the tick.
-    fn note_touches(&mut self) {
-        let mut sums: BTreeMap<(BodyId, PieceId, With), (f32, f32, Vector)> = BTreeMap::new();
-        let mut add = |body, piece, with, impulse: f32, at: Row| {
-            let sum = sums
-                .entry((body, piece, with))
-                .or_insert((0.0, 0.0, [0.0; 3]));
-            sum.0 += impulse;
-            if impulse > sum.1 {
-                (sum.1, sum.2) = (impulse, three(at));
-            }
-        };
-        let pairs = self.nearby.nodes.list.iter();
-        for pair in pairs.filter(|pair| pair.impulse.total > 0.0) {
-            let rigid = self.rigids.id(pair.rigid);
-            let with = match self.rigids[rigid].drive {
-                Drive::Fixed => With::Obstacle(rigid),
-                Drive::Free { .. } => With::Free(rigid),
-                _ => With::Hand(rigid),
-            };
-            let id = self.bodies.id(pair.body);
-            let body = &self.bodies[id];
-            let piece = body.truth.pieces.of_node(pair.node);
-            let at = body.state.position[pair.node];
-            add(id, piece, with, pair.impulse.total, at);
-        }
-        let spheres = &self.nearby.spheres;
-        let pairs = self.nearby.pairs.list.iter();
-        for pair in pairs.filter(|pair| pair.impulse.total > 0.0) {
-            let [a, b] = pair.both(&spheres.list);
-            let (body, piece) = (self.bodies.id(b.body), b.piece);
-            let with = With::Piece { body, piece };
-            let at = spheres.centres[pair.spheres[0]];
-            let id = self.bodies.id(a.body);
-            add(id, a.piece, with, pair.impulse.total, at);
-        }
-        for ((body, piece, with), (impulse, _, at)) in sums {
-            self.events.push(Event::Touched {
-                body,
-                piece,
-                with,
-                at,
-                impulse,
-            });
-        }
     }
 }
 

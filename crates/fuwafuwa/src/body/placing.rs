@@ -4,6 +4,7 @@ use super::Body;
 use super::state::State;
 use crate::dim::Dim;
 use crate::ids::NodeId;
+use crate::layers::Layers;
 use crate::momentum::centre_of;
 use crate::rotation::Rotation;
 use crate::shape::{Vector, flat};
@@ -11,6 +12,16 @@ use crate::solve::Row;
 use crate::vector::{as_row, cross, minus, plus, three};
 
 impl<D: Dim> Body<D> {
+    /// The layers that it is in and those that it meets: [`World::set_layers`](crate::World::set_layers).
+    pub fn layers(&self) -> Layers {
+        self.state.layers
+    }
+
+    /// What whoever put it into a world wanted to know of it: [`World::set_user_data`](crate::World::set_user_data).
+    pub fn user_data(&self) -> u64 {
+        self.state.user_data
+    }
+
     /// The same body, moved `by` [m]. What is then not finite is quarantined in its first tick.
     #[inline(never)]
     pub fn moved(mut self, by: Vector) -> Self {

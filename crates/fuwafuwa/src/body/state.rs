@@ -3,6 +3,7 @@
 use super::cooldowns::Cooldowns;
 use crate::dim::Dim;
 use crate::ids::{NodeId, Table};
+use crate::layers::Layers;
 use crate::solve::{Blocks, Row};
 
 /// How many times as strongly as on others gravity may pull on a body.
@@ -28,6 +29,10 @@ pub struct State<D: Dim> {
     pub ahead: Table<NodeId, Row>,
     /// How many times as strongly as on others gravity pulls on it.
     pub gravity_scale: f32,
+    /// Who touches it.
+    pub layers: Layers,
+    /// What whoever put it into a world wants to know of it.
+    pub user_data: u64,
     /// Whether nodes were placed from outside since forces were last computed.
     pub placed: bool,
     /// How each element has turned, and the forces of the last substep: where an element has come to turns
@@ -48,6 +53,8 @@ impl<D: Dim> State<D> {
             cooldowns: Cooldowns::default(),
             ahead: Table::default(),
             gravity_scale: 1.0,
+            layers: Layers::default(),
+            user_data: 0,
             placed: false,
             blocks,
         }

@@ -7,7 +7,7 @@ use crate::handle::RigidSlot;
 use crate::rigid::{Drive, Rigid, Rigids};
 use crate::shape::Vector;
 use crate::solve::Row;
-use crate::touch::{Impulse, RigidTouch, RigidTouches};
+use crate::touch::{Impulse, Passed, RigidTouch, RigidTouches};
 use crate::vector::{as_row, cross, dot, length, minus, plus, scaled, three};
 
 /// What comes slower than this [m/s] does not bounce: else nothing would come to rest.
@@ -16,8 +16,13 @@ const BOUNCE_SPEED: f32 = 0.5;
 /// The contacts of the hands with what is fixed, and with each other.
 pub fn find_hands(rigids: &Rigids, duration: f32, found: &mut Vec<HandContact>) {
     found.clear();
-    for (own, hand) in rigids.by_slot().filter(|(_, rigid)| rigid.is_driven()) {
-        let others = rigids.by_slot().filter(|(_, rigid)| !rigid.is_free());
+    let hands = rigids
+        .by_slot()
+        .filter(|(_, rigid)| rigid.is_driven() && !rigid.is_sensor);
+    for (own, hand) in hands {
+        let others = rigids
+            .by_slot()
+            .filter(|(_, rigid)| !rigid.is_free() && hand.meets_rigid(rigid));
         for (other, rigid) in others.filter(|&(at, rigid)| at < own || !rigid.is_driven()) {
             let inverse_mass = hand.inverse_mass() + rigid.inverse_mass();
             let relative = minus(as_row(hand.velocity()), as_row(rigid.velocity()));
@@ -66,7 +71,8 @@ pub fn find_free<D: Dim>(
             let is_once = other < own || !against.is_free();
             let is_apart = (0..D::N)
                 .any(|axis| low[axis] > others_high[axis] || high[axis] < others_low[axis]);
-            if !is_once || is_apart || other == own || !(rigid.moves() || against.moves()) {
+            let is_idle = !rigid.moves() && !against.moves();
+            if !is_once || is_apart || other == own || is_idle || !rigid.meets_rigid(against) {
                 continue;
             }
             let both = [own, other];
@@ -149,6 +155,8 @@ fn touch<D: Dim>(
             both: slots,
             levers,
             across: 1.0 / across,
+            at: place.at,
+            speed: -approach,
             bounce,
             key: place.key,
         });
@@ -181,6 +189,18 @@ impl FreeContact {
             key: self.key,
             impulse,
         }
+    }
+
+    /// What passed at it in this substep, if anything.
+    pub fn passed(&self) -> Option<Passed> {
+        let passed = Passed {
+            both: self.both,
+            impulse: self.contact.pressed,
+            speed: self.speed,
+            at: self.at,
+            normal: three(self.contact.normal),
+        };
+        (passed.impulse > 0.0).then_some(passed)
     }
 
     /// Starts from what passed so far.

@@ -39,6 +39,9 @@ pub struct FreeContact {
     pub levers: [Vector; 2],
     /// One over the speed across the normal that a unit of impulse gives at the most [kg].
     pub across: f32,
+    /// Where [m], and how fast both approach each other there [m/s].
+    pub at: Vector,
+    pub speed: f32,
     /// How fast it is to go away from the other [m/s].
     pub bounce: f32,
     /// Which corner or edge it is.

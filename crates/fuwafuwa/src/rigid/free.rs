@@ -1,8 +1,10 @@
 //! What falls: how it is moved, turned, pushed and put to sleep.
 
+use super::bad::{BadRigid, is_within_reach, require};
 use super::inertia::{Inertia, times};
-use super::{BadRigid, Drive, Rigid, is_within_reach, require};
+use super::{Drive, Rigid};
 use crate::dim::Dim;
+use crate::layers::Layers;
 use crate::rotation::Rotation;
 use crate::shape::{Vector, flat};
 use crate::vector::{cross, dot, length, plus, scaled};
@@ -16,6 +18,18 @@ impl Rigid {
     /// Whether it is free and came to rest, until something moves against it.
     pub fn is_asleep(&self) -> bool {
         self.asleep
+    }
+
+    /// Whether it touches something soft of these layers.
+    #[inline(always)]
+    pub(crate) fn meets(&self, layers: Layers) -> bool {
+        !self.is_sensor && self.layers.meet(layers)
+    }
+
+    /// Whether it touches something rigid.
+    #[inline(always)]
+    pub(crate) fn meets_rigid(&self, other: &Self) -> bool {
+        !self.is_sensor && other.meets(self.layers)
     }
 
     /// Whether it may be somewhere else a moment later.

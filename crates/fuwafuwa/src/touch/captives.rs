@@ -77,7 +77,9 @@ impl Captives {
                 let captor = (outer.body, outer.piece);
                 let is_smaller = own(&pieces, sphere) < own(&pieces, pair.spheres[1 - inner]);
                 let body = bodies.at(outer.body);
-                if is_smaller && body.holds(outer.element, three(at)) {
+                let layers = bodies.at(spheres.list[sphere].body).state.layers;
+                let may_be = is_smaller && layers.meet(body.state.layers);
+                if may_be && body.holds(outer.element, three(at)) {
                     self.captors[sphere] = Some(captor);
                 }
             }
@@ -119,7 +121,10 @@ impl Captives {
                     let number = bins.numbers()[at as usize] as usize;
                     let (sphere, at) = (near[number], three(centres[number]));
                     let body = bodies.at(inner.captor.0);
-                    if own(&pieces, sphere) < inner.count && body.holds(inner.element, at) {
+                    let layers = bodies.at(spheres.list[sphere].body).state.layers;
+                    let is_smaller = own(&pieces, sphere) < inner.count;
+                    let may_be = is_smaller && layers.meet(body.state.layers);
+                    if may_be && body.holds(inner.element, at) {
                         self.captors[sphere] = Some(inner.captor);
                     }
                 }

@@ -14,6 +14,8 @@ pub struct Impulse {
     pub dragged: Row,
     /// Along the normal, since the start of the tick.
     pub total: f32,
+    /// How fast the two approached each other at the most since then [m/s].
+    pub speed: f32,
 }
 
 #[cfg(feature = "serde")]

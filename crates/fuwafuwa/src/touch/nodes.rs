@@ -79,7 +79,7 @@ impl NodePairs {
     /// What passed in the last tick is settled. All will be looked for.
     pub fn start_tick(&mut self) {
         for pair in &mut self.list {
-            pair.impulse.total = 0.0;
+            (pair.impulse.total, pair.impulse.speed) = (0.0, 0.0);
         }
         self.leeways.clear();
         self.changed.clear();
@@ -165,7 +165,8 @@ impl NodePairs {
                 let body = bodies.at(slot);
                 let reach = self.reach(slot, node, body.truth.grid.voxel_size());
                 let at = three(body.state.position[node]);
-                body.truth.mesh.is_alive(node)
+                rigid.meets(body.state.layers)
+                    && body.truth.mesh.is_alive(node)
                     && rigid.shape().distance(at).0 <= reach + leeway.most
             };
             let near = changed.iter().filter(is_near);
@@ -210,7 +211,9 @@ impl NodePairs {
         let mut found = Vec::new();
         let mut near: Vec<NodeId> = Vec::new();
         for ((own, rigid), leeway) in rigids.by_slot().zip(&self.leeways) {
-            for (slot, body, squares) in &squares {
+            let met = squares.iter();
+            let met = met.filter(|(_, body, _)| rigid.meets(body.state.layers));
+            for (slot, body, squares) in met {
                 near.clear();
                 squares.within(leeway.most, rigid.shape(), &mut near);
                 if rigid.moves() && body.cache.awake.len() < body.truth.mesh.node_count() {

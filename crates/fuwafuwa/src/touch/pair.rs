@@ -133,6 +133,7 @@ mod tests {
                 pressed,
                 dragged: [pressed; 4],
                 total: 0.0,
+                speed: 0.0,
             },
             met_in_front: true,
         };

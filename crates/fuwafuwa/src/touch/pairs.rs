@@ -108,7 +108,7 @@ impl SpherePairs {
         }
         self.is_new_tick = true;
         for pair in &mut self.list {
-            pair.impulse.total = 0.0;
+            (pair.impulse.total, pair.impulse.speed) = (0.0, 0.0);
         }
     }
 

@@ -7,6 +7,7 @@ use crate::dim::Dim;
 use crate::handle::RigidSlot;
 #[cfg(feature = "serde")]
 use crate::rigid::Rigids;
+use crate::shape::Vector;
 
 /// A place at which two rigid things touch.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -20,12 +21,30 @@ pub struct RigidTouch {
     pub impulse: Impulse,
 }
 
+/// What passed at a place in one substep.
+#[derive(Copy, Clone, Debug)]
+pub struct Passed {
+    /// The one that is free, and the other.
+    pub both: [RigidSlot; 2],
+    /// Along the normal [N s].
+    pub impulse: f32,
+    /// How fast they approached each other [m/s].
+    pub speed: f32,
+    /// Where [m].
+    pub at: Vector,
+    /// Which way the first gets away from the other.
+    pub normal: Vector,
+}
+
 /// All of those places, in ascending order.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RigidTouches {
     /// By both, and by key.
     pub list: Vec<RigidTouch>,
+    /// What passed in this tick.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub passed: Vec<Passed>,
 }
 
 impl RigidTouch {
@@ -35,6 +54,11 @@ impl RigidTouch {
 }
 
 impl RigidTouches {
+    /// What passed in the last tick is settled.
+    pub fn start_tick(&mut self) {
+        self.passed.clear();
+    }
+
     /// What passed at a place so far.
     pub fn known(&self, both: [RigidSlot; 2], key: u32) -> Impulse {
         let found = self
@@ -53,6 +77,7 @@ impl RigidTouches {
     /// Something rigid was taken out.
     pub fn remove(&mut self, slot: RigidSlot) {
         self.list.retain(|touch| !touch.both.contains(&slot));
+        self.passed.retain(|passed| !passed.both.contains(&slot));
     }
 
     /// Forgets what is of nothing that is there; leaves each place once, in order.

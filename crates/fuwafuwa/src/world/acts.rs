@@ -7,6 +7,7 @@ use crate::dim::Dim;
 use crate::event::Event;
 use crate::handle::{BodyId, RigidId};
 use crate::ids::{PieceId, Table};
+use crate::layers::Layers;
 use crate::rigid::{FARTHEST, Rigid};
 use crate::rotation::Rotation;
 use crate::shape::{Vector, flat};
@@ -107,11 +108,8 @@ impl<D: Dim> World<D> {
     ) -> Result<(), Refused> {
         let leaning = leaning_on_rigid(self.rigids.get(rigid)?, &self.bodies);
         self.rigids.get_mut(rigid)?.place::<D>(position, rotation)?;
-        self.nearby.remove_rigid(rigid.slot());
-        self.nearby.nodes.look_again();
         self.wake(&leaning);
-        self.wake_all_rigids();
-        Ok(())
+        self.forget_rigid(rigid)
     }
 
     /// Sets the velocity [m/s] and the angular velocity [rad/s] of something that is free; in the plane the third component
@@ -150,6 +148,60 @@ impl<D: Dim> World<D> {
         let free = self.free_mut(rigid)?;
         let lever = minus(flat::<D>(at), free.position());
         free.kick(flat::<D>(impulse), lever);
+        Ok(())
+    }
+
+    /// Changes what may be changed of something rigid: friction, restitution, drive, layers, whether it is a sensor. What it
+    /// touched counts as new; it wakes, with all that leant on it.
+    ///
+    /// ```
+    /// use fuwafuwa::{Dim2, Drive, Rigid, Settings, Shape, World};
+    ///
+    /// let mut world = World::<Dim2>::new(Settings::default())?;
+    /// let ball = Shape::Ball { centre: [0.0; 3], radius: 0.2 };
+    /// let ball = world.add_rigid(Rigid::free(ball, 1.0))?;
+    /// world.change_rigid(ball, |ball| ball.drive = Drive::Fixed)?;
+    /// world.step();
+    /// assert_eq!(world.rigids()[ball].position(), [0.0; 3]);
+    /// assert!(world.change_rigid(ball, |ball| ball.friction = -1.0).is_err());
+    /// # Ok::<(), fuwafuwa::Refused>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Refused`], and it stays as it was, when there is no such thing or a field is out of range.
+    #[inline(never)]
+    pub fn change_rigid(
+        &mut self,
+        rigid: RigidId,
+        change: impl FnOnce(&mut Rigid),
+    ) -> Result<(), Refused> {
+        let mut changed = self.rigids.get(rigid)?.clone();
+        change(&mut changed);
+        let mut changed = changed.seen_in::<D>();
+        changed.check()?;
+        changed.wake();
+        *self.rigids.get_mut(rigid)? = changed;
+        self.forget_rigid(rigid)
+    }
+
+    /// Says which layers a body is in and which it meets. It and what leant on it wake.
+    ///
+    /// # Errors
+    /// [`Refused::Gone`] when there is no such body.
+    #[inline(never)]
+    pub fn set_layers(&mut self, body: BodyId, layers: Layers) -> Result<(), Refused> {
+        self.displace(body, |body| body.state.layers = layers)?;
+        self.nearby.nodes.look_again();
+        Ok(())
+    }
+
+    /// Keeps a number with a body: [`Body::user_data`].
+    ///
+    /// # Errors
+    /// [`Refused::Gone`] when there is no such body.
+    #[inline(never)]
+    pub fn set_user_data(&mut self, body: BodyId, data: u64) -> Result<(), Refused> {
+        self.bodies.get_mut(body)?.state.user_data = data;
         Ok(())
     }
 
@@ -227,6 +279,16 @@ impl<D: Dim> World<D> {
         self.nearby.remove_body(own);
         change(self.bodies.get_mut(id)?);
         self.wake_up(id)?;
+        self.wake(&leaning);
+        self.wake_all_rigids();
+        Ok(())
+    }
+
+    /// Something rigid is not what or where it was: nothing of what pressed on it counts, and who leans on it wakes.
+    fn forget_rigid(&mut self, id: RigidId) -> Result<(), Refused> {
+        let leaning = leaning_on_rigid(self.rigids.get(id)?, &self.bodies);
+        self.nearby.remove_rigid(id.slot());
+        self.nearby.nodes.look_again();
         self.wake(&leaning);
         self.wake_all_rigids();
         Ok(())

@@ -229,6 +229,10 @@ impl<D: Dim> World<D> {
     pub(crate) fn rebuild(&mut self) {
         self.bodies.iter_mut().for_each(Body::restore);
         self.nearby.keep_known(&self.bodies, &self.rigids);
+        self.touching.sort_unstable();
+        self.touching.dedup();
+        self.inside.sort_unstable();
+        self.inside.dedup();
     }
 
     /// Wakes whatever is free: who of them leant on something that is gone shows within a moment.

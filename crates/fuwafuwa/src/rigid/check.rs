@@ -1,0 +1,70 @@
+//! What something rigid may be.
+
+use super::bad::{BadRigid, is_within_reach, require};
+use super::{Drive, Rigid};
+use crate::vector::{is_finite, length, minus, plus};
+
+impl Rigid {
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// [`BadRigid`] names the first field that is out of range.
+    pub fn check(&self) -> Result<(), BadRigid> {
+        let within = |field, k: f32, low: f32, high: f32, expected| {
+            require(k >= low && k <= high, field, expected)
+        };
+        let (tiny, huge) = (f32::MIN_POSITIVE, f32::MAX);
+        let positions = [
+            ("position", self.position),
+            ("goal", self.goal),
+            ("goal", self.goal_before),
+            ("position", self.position_before),
+        ];
+        for (field, position) in positions {
+            require(
+                is_within_reach(position),
+                field,
+                "within 1e6 m of the origin",
+            )?;
+        }
+        require(is_finite(self.velocity), "velocity", "finite")?;
+        require(is_finite(self.spin), "angular velocity", "finite")?;
+        require(self.still >= 0.0, "time at rest", "0 or more")?;
+        self.form.check()?;
+        let is_moved = self.shape == self.form.rotated(self.rotation).moved(self.position);
+        let expected = "what it is at the origin, turned and moved to its position";
+        require(is_moved, "shape", expected)?;
+        within(
+            "friction",
+            self.friction,
+            0.0,
+            huge,
+            "0 or more, and finite",
+        )?;
+        within("restitution", self.restitution, 0.0, 1.0, "0 to 1")?;
+        if self.drive != Drive::Fixed {
+            let ends = self.form.bounds().into_iter().all(is_within_reach);
+            require(ends, "shape", "one that ends within 1e6 m of its middle")?;
+        }
+        match self.drive {
+            Drive::Fixed | Drive::Kinematic => Ok(()),
+            Drive::Free { mass } => {
+                within("mass", mass, 1e-6, 1e6, "1e-6 to 1e6 kg")?;
+                let [low, high] = self.form.bounds();
+                let off = length(plus(low, high)) <= 1e-3 * length(minus(high, low));
+                require(off, "shape", "one with its middle at the origin")
+            }
+            Drive::Coupled {
+                mass,
+                stiffness,
+                damping,
+                limit,
+            } => {
+                within("mass", mass, 1e-6, 1e6, "1e-6 to 1e6 kg")?;
+                within("stiffness", stiffness, tiny, huge, "positive and finite")?;
+                within("damping", damping, tiny, 10.0, "positive, at most 10")?;
+                within("limit", limit, tiny, f32::INFINITY, "positive")
+            }
+        }
+    }
+}

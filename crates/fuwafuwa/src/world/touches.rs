@@ -1,0 +1,195 @@
+//! What pressed on what in a tick, what of it began and ended, and who is in a sensor.
+
+use super::World;
+use crate::body::Body;
+use crate::dim::Dim;
+use crate::event::{Event, Party, With};
+use crate::handle::{BodyId, RigidId};
+use crate::ids::PieceId;
+use crate::rigid::{Drive, Rigid};
+use crate::shape::Vector;
+use crate::vector::{length, minus, scaled, three};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// What passed between two over a tick.
+#[derive(Copy, Clone, Debug, Default)]
+struct Press {
+    /// Over the whole tick, and at the strongest contact [N s].
+    impulse: f32,
+    strongest: f32,
+    /// Where that was [m], and which way the first got away from the second there.
+    at: Vector,
+    normal: Vector,
+    /// How fast they approached each other at the most [m/s].
+    speed: f32,
+}
+
+impl Press {
+    fn add(&mut self, impulse: f32, speed: f32, at: Vector, normal: Vector) {
+        self.impulse += impulse;
+        self.speed = self.speed.max(speed);
+        if impulse > self.strongest {
+            (self.strongest, self.at, self.normal) = (impulse, at, normal);
+        }
+    }
+}
+
+impl<D: Dim> World<D> {
+    /// Tells what pressed on what over the tick, what began and ended, and who came into a sensor and left it.
+    pub(super) fn note_touches(&mut self) {
+        let soft = self.soft_presses();
+        let rigid = self.rigid_presses();
+        let mut presses: BTreeMap<[Party; 2], Press> = rigid
+            .iter()
+            .map(|(&both, press)| (both.map(Party::Rigid), *press))
+            .collect();
+        for ((body, piece, with), press) in soft {
+            self.events.push(Event::Touched {
+                body,
+                piece,
+                with,
+                at: press.at,
+                normal: press.normal,
+                impulse: press.impulse,
+            });
+            let both = [Party::Piece { body, piece }, with.into()];
+            // What is folded touches itself all the time.
+            if both[0] != both[1] {
+                presses.insert(both, press);
+            }
+        }
+        for ([rigid, with], press) in rigid {
+            self.events.push(Event::RigidTouched {
+                rigid,
+                with,
+                at: press.at,
+                normal: press.normal,
+                impulse: press.impulse,
+            });
+        }
+        self.note_changes(&presses);
+        self.note_sensors();
+    }
+
+    /// By piece, and by what it pressed on.
+    fn soft_presses(&self) -> BTreeMap<(BodyId, PieceId, With), Press> {
+        let mut presses: BTreeMap<_, Press> = BTreeMap::new();
+        let pairs = self.nearby.nodes.list.iter();
+        for pair in pairs.filter(|pair| pair.impulse.total > 0.0) {
+            let id = self.rigids.id(pair.rigid);
+            let rigid = &self.rigids[id];
+            let with = match rigid.drive {
+                Drive::Fixed => With::Obstacle(id),
+                Drive::Free { .. } => With::Free(id),
+                _ => With::Hand(id),
+            };
+            let id = self.bodies.id(pair.body);
+            let body = &self.bodies[id];
+            let piece = body.truth.pieces.of_node(pair.node);
+            let at = three(body.state.position[pair.node]);
+            let (_, normal) = rigid.shape().distance(at);
+            let press = presses.entry((id, piece, with)).or_default();
+            press.add(pair.impulse.total, pair.impulse.speed, at, normal);
+        }
+        let spheres = &self.nearby.spheres;
+        let pairs = self.nearby.pairs.list.iter();
+        for pair in pairs.filter(|pair| pair.impulse.total > 0.0) {
+            let [a, b] = pair.both(&spheres.list);
+            let (body, piece) = (self.bodies.id(b.body), b.piece);
+            let with = With::Piece { body, piece };
+            let [at, other] = pair.spheres.map(|sphere| three(spheres.centres[sphere]));
+            let apart = minus(at, other);
+            let normal = scaled(apart, 1.0 / length(apart).max(1e-9));
+            let press = presses.entry((self.bodies.id(a.body), a.piece, with));
+            let press = press.or_default();
+            press.add(pair.impulse.total, pair.impulse.speed, at, normal);
+        }
+        presses
+    }
+
+    /// By both.
+    fn rigid_presses(&self) -> BTreeMap<[RigidId; 2], Press> {
+        let mut presses: BTreeMap<_, Press> = BTreeMap::new();
+        for touch in &self.nearby.rigids.passed {
+            let both = touch.both.map(|slot| self.rigids.id(slot));
+            let press = presses.entry(both).or_default();
+            press.add(touch.impulse, touch.speed, touch.at, touch.normal);
+        }
+        presses
+    }
+
+    /// Compares who touches whom with the last tick. Two that rest side by side still touch.
+    fn note_changes(&mut self, presses: &BTreeMap<[Party; 2], Press>) {
+        let before = std::mem::take(&mut self.touching);
+        let known: BTreeSet<&[Party; 2]> = before.iter().collect();
+        for (both, press) in presses.iter().filter(|(both, _)| !known.contains(both)) {
+            self.events.push(Event::ContactBegan {
+                both: *both,
+                at: press.at,
+                normal: press.normal,
+                speed: press.speed,
+            });
+        }
+        let mut touching: BTreeSet<[Party; 2]> = presses.keys().copied().collect();
+        for both in before {
+            if touching.contains(&both) {
+                continue;
+            }
+            match both.iter().all(|&party| self.rests(party)) {
+                true => drop(touching.insert(both)),
+                false => self.events.push(Event::ContactEnded { both }),
+            }
+        }
+        self.touching = touching.into_iter().collect();
+    }
+
+    /// Whether somebody is there and does not move.
+    fn rests(&self, party: Party) -> bool {
+        match party {
+            Party::Rigid(id) => self.rigids.get(id).is_ok_and(|rigid| !rigid.moves()),
+            Party::Piece { body, piece } => self.bodies.get(body).is_ok_and(|body| {
+                let piece = body.truth.pieces.list.get(piece.index());
+                piece.is_some_and(|piece| piece.asleep)
+            }),
+        }
+    }
+
+    /// Compares who is in a sensor with the last tick.
+    fn note_sensors(&mut self) {
+        let sensors = self.rigids.entries().filter(|(_, rigid)| rigid.is_sensor);
+        let mut inside: BTreeSet<(RigidId, Party)> = BTreeSet::new();
+        for (sensor, rigid) in sensors {
+            inside.extend(self.within(sensor, rigid).map(|party| (sensor, party)));
+        }
+        let before: BTreeSet<(RigidId, Party)> =
+            std::mem::take(&mut self.inside).into_iter().collect();
+        let entered = inside.difference(&before);
+        let left = before.difference(&inside);
+        self.events
+            .extend(entered.map(|&(sensor, who)| Event::Entered { sensor, who }));
+        self.events
+            .extend(left.map(|&(sensor, who)| Event::Left { sensor, who }));
+        self.inside = inside.into_iter().collect();
+    }
+
+    /// Who is within a sensor, some more than once.
+    fn within(&self, own: RigidId, sensor: &Rigid) -> impl Iterator<Item = Party> {
+        let shape = sensor.shape();
+        let bodies = self.bodies.entries();
+        let bodies = bodies.filter(|(_, body)| sensor.layers.meet(body.state.layers));
+        let pieces = bodies.flat_map(move |(id, body): (BodyId, &Body<D>)| {
+            let nodes = body.truth.mesh.nodes().map(|(node, _)| node);
+            let inside =
+                nodes.filter(|&node| shape.distance(three(body.state.position[node])).0 < 0.0);
+            inside.map(move |node| Party::Piece {
+                body: id,
+                piece: body.truth.pieces.of_node(node),
+            })
+        });
+        let rigids = self.rigids.entries().filter(move |&(id, rigid)| {
+            let counts = id != own && rigid.drive != Drive::Fixed && !rigid.is_sensor;
+            counts && sensor.layers.meet(rigid.layers) && rigid.shape().gap(shape).0 < 0.0
+        });
+        pieces.chain(rigids.map(|(id, _)| Party::Rigid(id)))
+    }
+}

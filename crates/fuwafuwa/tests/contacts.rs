@@ -1,0 +1,237 @@
+//! What is told of contacts: when they begin and end, who comes into a sensor, and who touches whom at all.
+
+use fuwafuwa::{
+    Body, BodyId, Dim, Dim2, Dim3, Elasticity, Event, Layers, Material, Party, Rigid, RigidId,
+    Rotation, Settings, Shape, VoxelGrid, World,
+};
+
+const UP: [f32; 3] = [0.0, 1.0, 0.0];
+
+fn floored<D: Dim>() -> (World<D>, RigidId) {
+    let mut world = World::new(Settings::default()).unwrap();
+    let floor = Rigid::fixed(Shape::half_space(UP, [0.0; 3]), 0.5);
+    let floor = world.add_rigid(floor).unwrap();
+    (world, floor)
+}
+
+/// A ball of a width of 1 m that does not tear, so high above the floor.
+fn ball<D: Dim>(world: &mut World<D>, height: f32) -> BodyId {
+    let rubber = Material {
+        elasticity: Elasticity {
+            young: 5e4,
+            poisson: 0.3,
+        },
+        strength: f32::INFINITY,
+        toughness: f32::INFINITY,
+        ..Material::default()
+    };
+    let grid = VoxelGrid::<D>::ball(10, 1.0).unwrap();
+    let body = Body::new(grid, &[rubber]).unwrap();
+    world.add_body(body.moved([0.0, height, 0.0]))
+}
+
+fn crate_of(height: f32, half: f32) -> Rigid {
+    let shape = Shape::Box {
+        centre: [0.5, height, 0.5],
+        half: [half; 3],
+    };
+    Rigid::free(shape, 1.0)
+}
+
+fn of_body(party: Party, body: BodyId) -> bool {
+    matches!(party, Party::Piece { body: found, .. } if found == body)
+}
+
+/// A ball falls for 0.45 s, rests, and is taken up again: one beginning, with the speed of its fall, and one end.
+fn contacts_begin_and_end<D: Dim>() {
+    let (mut world, floor) = floored::<D>();
+    let id = ball(&mut world, 1.0);
+    let (mut began, mut ended) = (Vec::new(), 0);
+    for tick in 0..500 {
+        if tick == 450 {
+            world.move_body(id, [0.0, 2.0, 0.0]).unwrap();
+        }
+        world.step();
+        for event in world.events() {
+            match *event {
+                Event::ContactBegan {
+                    both,
+                    normal,
+                    speed,
+                    at,
+                } => {
+                    assert!(of_body(both[0], id) && both[1] == Party::Rigid(floor));
+                    assert_eq!(normal, UP);
+                    assert!(at[1] < 0.1);
+                    began.push((tick, speed));
+                }
+                Event::ContactEnded { both } => {
+                    assert!(of_body(both[0], id));
+                    ended += 1;
+                }
+                _ => {}
+            }
+        }
+    }
+    let (first, speed) = began[0];
+    // √(2 g h), h = 1 m
+    assert!(
+        (26..30).contains(&first) && (speed - 4.43).abs() < 0.3,
+        "{first} {speed}"
+    );
+    assert_eq!(began.len(), ended, "it bounces, and each bounce ends");
+    assert!(ended < 30, "{ended}");
+    let asleep = world.bodies()[id].piece_views();
+    assert_eq!(asleep.len(), 1);
+}
+
+#[test]
+fn contacts_begin_with_a_speed_and_end() {
+    contacts_begin_and_end::<Dim2>();
+    contacts_begin_and_end::<Dim3>();
+}
+
+#[test]
+fn what_falls_asleep_still_touches() {
+    let (mut world, _) = floored::<Dim3>();
+    let id = world.add_rigid(crate_of(0.3, 0.25)).unwrap();
+    let mut ends = 0;
+    for _ in 0..240 {
+        world.step();
+        let ended = |event: &&Event| matches!(event, Event::ContactEnded { .. });
+        ends += world.events().iter().filter(ended).count();
+    }
+    assert!(world.rigids()[id].is_asleep());
+    assert_eq!(ends, 0);
+    world.remove_rigid(id).unwrap();
+    world.step();
+    let told = world.events().iter().any(
+        |event| matches!(event, Event::ContactEnded { both } if both.contains(&Party::Rigid(id))),
+    );
+    assert!(told, "{:?}", world.events());
+}
+
+#[test]
+fn rigid_things_tell_what_they_hit() {
+    let (mut world, floor) = floored::<Dim3>();
+    let id = world.add_rigid(crate_of(1.25, 0.25)).unwrap();
+    let (mut impulse, mut speed) = (0.0, 0.0f32);
+    for _ in 0..60 {
+        world.step();
+        for event in world.events() {
+            match *event {
+                Event::RigidTouched {
+                    rigid,
+                    with,
+                    normal,
+                    impulse: felt,
+                    ..
+                } => {
+                    assert_eq!((rigid, with, normal), (id, floor, UP));
+                    impulse += felt;
+                }
+                Event::ContactBegan { speed: found, .. } => speed = speed.max(found),
+                _ => {}
+            }
+        }
+    }
+    // It stopped: all that gravity gave it in a second.
+    assert!((impulse - 9.81).abs() < 0.3, "{impulse}");
+    assert!((speed - 4.43).abs() < 0.3, "{speed}");
+}
+
+/// A sensor above the floor: what falls through it comes in and goes out, untouched.
+fn sensors_tell<D: Dim>() {
+    let (mut world, _) = floored::<D>();
+    let gate = Shape::Box {
+        centre: [0.5, 2.5, 0.5],
+        half: [4.0, 0.2, 2.0],
+    };
+    let mut gate = Rigid::fixed(gate, 0.5);
+    gate.is_sensor = true;
+    let gate = world.add_rigid(gate).unwrap();
+    let soft = ball(&mut world, 3.0);
+    let free = world.add_rigid(crate_of(5.5, 0.2)).unwrap();
+    // Beside the ball, where it does not bounce back.
+    world
+        .place_rigid(free, [3.0, 5.5, 0.5], Rotation::NONE)
+        .unwrap();
+    let (mut entered, mut left) = (Vec::new(), Vec::new());
+    for _ in 0..60 {
+        world.step();
+        for event in world.events() {
+            match *event {
+                Event::Entered { sensor, who } if sensor == gate => entered.push(who),
+                Event::Left { sensor, who } if sensor == gate => left.push(who),
+                Event::ContactBegan { both, .. } => assert!(!both.contains(&Party::Rigid(gate))),
+                _ => {}
+            }
+        }
+    }
+    assert_eq!(entered.len(), 2, "{entered:?}");
+    assert!(of_body(entered[0], soft) && entered[1] == Party::Rigid(free));
+    assert_eq!(left, entered);
+}
+
+#[test]
+fn sensors_tell_who_comes_and_goes() {
+    sensors_tell::<Dim2>();
+    sensors_tell::<Dim3>();
+}
+
+/// Two balls on each other's heads: they meet or not, as their layers say; the floor holds both.
+fn layers_part<D: Dim>() {
+    for (filters, meets) in [(u32::MAX, true), (1, false)] {
+        let (mut world, _) = floored::<D>();
+        let low = ball(&mut world, 0.0);
+        let high = ball(&mut world, 1.2);
+        let ghost = Layers {
+            memberships: 2,
+            filters,
+        };
+        world.set_layers(low, ghost).unwrap();
+        world.set_layers(high, ghost).unwrap();
+        let crate_id = world.add_rigid(crate_of(2.6, 0.2)).unwrap();
+        for _ in 0..90 {
+            world.step();
+        }
+        let [low, high] = [low, high].map(|id| world.bodies()[id].centre_of_mass()[1]);
+        assert_eq!(high - low > 0.5, meets, "{low} {high}");
+        assert!(low > 0.3 && high > 0.3);
+        // The crate meets them in either case.
+        assert!(world.rigids()[crate_id].position()[1] > 0.8 || meets);
+    }
+}
+
+#[test]
+fn layers_say_who_touches_whom() {
+    layers_part::<Dim2>();
+    layers_part::<Dim3>();
+    let (mut world, floor) = floored::<Dim3>();
+    let id = world.add_rigid(crate_of(0.5, 0.2)).unwrap();
+    world
+        .change_rigid(floor, |floor| floor.layers.memberships = 2)
+        .unwrap();
+    world.change_rigid(id, |it| it.layers.filters = 1).unwrap();
+    for _ in 0..60 {
+        world.step();
+    }
+    assert!(world.rigids()[id].position()[1] < -3.0);
+}
+
+#[test]
+fn numbers_of_users_stay_with_their_things() {
+    let (mut world, floor) = floored::<Dim2>();
+    let id = ball(&mut world, 0.0);
+    world.set_user_data(id, 7).unwrap();
+    world
+        .change_rigid(floor, |floor| floor.user_data = 9)
+        .unwrap();
+    world.step();
+    assert_eq!(world.bodies()[id].user_data(), 7);
+    assert_eq!(world.rigids()[floor].user_data, 9);
+    world.remove_body(id).unwrap();
+    assert!(
+        world.set_user_data(id, 1).is_err() && world.set_layers(id, Layers::default()).is_err()
+    );
+}
