@@ -109,8 +109,7 @@ impl Contacts {
                 }
                 let (gap, normal) = rigid.shape().distance(three(at));
                 let normal = as_row(normal);
-                let lever = minus(three(at), rigid.position());
-                let own = as_row(rigid.velocity_at(lever));
+                let own = as_row(rigid.velocity_near(three(at)));
                 let relative = minus(velocity, own);
                 let size = body.truth.grid.voxel_size();
                 let approach = inner::<D>(relative, normal);
@@ -134,7 +133,7 @@ impl Contacts {
                         hits.rigids.push(pair.rigid);
                     }
                 }
-                let inverse_mass = body.state.inverse_mass[node] + rigid.yields_at_most(lever);
+                let inverse_mass = body.state.inverse_mass[node] + rigid.yields_near(three(at));
                 if body.state.inverse_mass[node] == 0.0 {
                     continue;
                 }

@@ -7,7 +7,7 @@ use crate::dim::Dim;
 use crate::layers::Layers;
 use crate::rotation::Rotation;
 use crate::shape::{Vector, flat};
-use crate::vector::{cross, dot, length, plus, scaled};
+use crate::vector::{cross, dot, length, minus, plus, scaled};
 
 impl Rigid {
     /// Whether it is free to fall.
@@ -43,6 +43,15 @@ impl Rigid {
     pub(crate) fn velocity_at(&self, lever: Vector) -> Vector {
         match self.turns() {
             true => plus(self.velocity, cross(self.spin, lever)),
+            false => self.velocity,
+        }
+    }
+
+    /// The same of a place of the world [m].
+    #[inline(always)]
+    pub(crate) fn velocity_near(&self, at: Vector) -> Vector {
+        match self.turns() {
+            true => self.velocity_at(minus(at, self.position)),
             false => self.velocity,
         }
     }
@@ -162,13 +171,14 @@ impl Rigid {
         gain
     }
 
-    /// No less than that, whatever the direction.
+    /// No less than that at a place of the world [m], whatever the direction.
     #[inline(always)]
-    pub(crate) fn yields_at_most(&self, lever: Vector) -> f32 {
+    pub(crate) fn yields_near(&self, at: Vector) -> f32 {
         let gain = self.inverse_mass();
         if !self.is_free() || self.asleep {
             return gain;
         }
+        let lever = minus(at, self.position);
         let [x, y, z] = self.inverse_inertia;
         gain + (x[0] + y[1] + z[2]) * dot(lever, lever)
     }
