@@ -355,6 +355,15 @@ impl Contacts {
 }
 
 impl Hits {
+    /// Some more.
+    pub fn add(&mut self, pieces: Vec<Hit>, rigids: Vec<RigidSlot>) {
+        if !pieces.is_empty() || !rigids.is_empty() {
+            self.pieces.extend(pieces);
+            self.rigids.extend(rigids);
+            self.settle();
+        }
+    }
+
     fn settle(&mut self) {
         self.pieces.sort_unstable();
         self.pieces.dedup();

@@ -1,6 +1,6 @@
 //! What happened in a tick.
 
-use crate::handle::{BodyId, RigidId};
+use crate::handle::{BodyId, JointId, RigidId};
 use crate::ids::PieceId;
 use crate::shape::Vector;
 
@@ -81,6 +81,11 @@ pub enum Event {
         sensor: RigidId,
         /// Who.
         who: Party,
+    },
+    /// A joint broke, or lost an end, and is gone.
+    JointBroke {
+        /// Which one it was.
+        joint: JointId,
     },
     /// A piece came to rest.
     FellAsleep {

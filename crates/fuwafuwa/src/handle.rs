@@ -35,6 +35,7 @@ macro_rules! handle {
 
         impl $name {
             /// Where it stands or stood among the others.
+            #[allow(dead_code)] // no list names joints by their slots
             pub(crate) fn slot(self) -> $slot {
                 self.slot
             }
@@ -68,6 +69,12 @@ id! {
     pub RigidSlot
 }
 
+id! {
+    /// Where a joint stands in a world; given out again once it has left.
+    #[doc(hidden)]
+    pub JointSlot
+}
+
 impl BodySlot {
     /// That of a body in no world.
     pub(crate) const NONE: Self = Self(u32::MAX);
@@ -80,6 +87,11 @@ handle! {
 handle! {
     /// What something rigid in a world is known by, whoever comes or goes beside it.
     RigidId, "rigid thing", RigidSlot
+}
+
+handle! {
+    /// What a joint in a world is known by, whoever comes or goes beside it.
+    JointId, "joint", JointSlot
 }
 
 /// A handle was used of something that is not there: it was taken out, or never was in this world. A handle of another

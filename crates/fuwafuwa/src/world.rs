@@ -3,6 +3,7 @@
 mod acts;
 mod contents;
 mod hooks;
+mod ties;
 mod touches;
 
 use crate::body::{Bodies, Body};
@@ -13,6 +14,7 @@ use crate::event::{Event, Party, StepReport};
 use crate::fracture::{Failure, failures};
 use crate::handle::{BodySlot, Gone, RigidId, RigidSlot};
 use crate::ids::{PieceId, Table};
+use crate::joint::{self, Joints};
 use crate::rigid::{BadRigid, Rigids};
 use crate::shape::Vector;
 use crate::sleep::{fall_asleep, fall_asleep_rigid, wake};
@@ -147,6 +149,7 @@ pub struct World<D: Dim> {
     settings: Settings,
     bodies: Bodies<D>,
     rigids: Rigids,
+    joints: Joints,
     ticks: u64,
     nearby: Nearby,
     events: Vec<Event>,
@@ -169,6 +172,7 @@ impl<D: Dim> World<D> {
             settings,
             bodies: Bodies::default(),
             rigids: Rigids::default(),
+            joints: Joints::default(),
             ticks: 0,
             nearby: Nearby::default(),
             events: Vec::new(),
@@ -331,8 +335,11 @@ impl<D: Dim> World<D> {
         let (bodies, rigids) = (&mut self.bodies, &mut self.rigids);
         let nearby = &mut self.nearby;
         nearby.follow(bodies, rigids, duration);
-        let hits = self.contacts.find(bodies, rigids, nearby, duration);
+        let (broken, woken) = joint::solve(&mut self.joints, bodies, rigids, duration);
+        let mut hits = self.contacts.find(bodies, rigids, nearby, duration);
         self.contacts.solve(bodies, rigids, nearby, duration);
+        hits.add(woken.pieces, woken.rigids);
+        self.part_joints(broken);
         hits
     }
 
@@ -348,7 +355,9 @@ impl<D: Dim> World<D> {
             rigid.drift(duration);
         }
         let (bodies, rigids) = (&mut self.bodies, &mut self.rigids);
+        let broken = joint::relax(&mut self.joints, bodies, rigids, duration);
         self.contacts.relax(bodies, rigids, duration);
+        self.part_joints(broken);
     }
 
     /// Stops pieces that went out of hand where they were before the tick, for good.

@@ -171,6 +171,18 @@ impl Rigid {
         gain
     }
 
+    /// The velocity that an impulse of 1 N s along a direction gives a place so far from its position [1/kg].
+    pub(crate) fn gain(&self, lever: Vector, way: Vector) -> Vector {
+        let gain = scaled(way, self.inverse_mass());
+        match self.is_free() && !self.asleep {
+            true => {
+                let spin = times(&self.inverse_inertia, cross(lever, way));
+                plus(gain, cross(spin, lever))
+            }
+            false => gain,
+        }
+    }
+
     /// No less than that at a place of the world [m], whatever the direction.
     #[inline(always)]
     pub(crate) fn yields_near(&self, at: Vector) -> f32 {

@@ -9,6 +9,8 @@ use crate::dim::Dim;
 use crate::event::Event;
 use crate::handle::{BodyId, Gone, RigidId, RigidSlot};
 use crate::hash::Hash;
+#[cfg(feature = "serde")]
+use crate::joint::Joint;
 use crate::rigid::{Drive, Rigid, Rigids};
 use crate::rotation::Rotation;
 use crate::shape::Vector;
@@ -217,6 +219,10 @@ impl<D: Dim> World<D> {
             (
                 "something rigid in it cannot be",
                 self.rigids.iter().all(is_sound),
+            ),
+            (
+                "a joint in it cannot be",
+                self.joints.iter().all(Joint::is_sound::<D>),
             ),
             ("it is older than can be", self.ticks <= MOST_TICKS),
         ];

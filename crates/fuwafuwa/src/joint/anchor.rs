@@ -1,0 +1,213 @@
+//! What a joint holds: a place, a place of something rigid, or the middle of some nodes.
+
+use super::end::{End, Woken};
+use crate::body::{Bodies, Body};
+use crate::dim::{Dim, Point, voxel_around};
+use crate::handle::{BodyId, Gone, RigidId};
+use crate::ids::NodeId;
+use crate::rigid::Rigids;
+use crate::shape::{Vector, flat};
+use crate::vector::{as_row, dot, minus, plus, scaled, three};
+
+/// What one end of a joint holds.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Anchor {
+    /// A place [m].
+    Place(Vector),
+    /// A place of something rigid, as it would be at the origin and not turned [m].
+    Rigid(RigidId, Vector),
+    /// Corners of a body: a voxel, and the lattice point of its node. Whatever is torn around it, the voxel keeps it.
+    Soft(BodyId, Vec<(Point, Point)>),
+}
+
+/// How an anchor is and moves, and how it yields.
+#[derive(Copy, Clone, Debug)]
+pub struct Grip {
+    /// [m]
+    pub at: Vector,
+    /// [m/s]
+    pub velocity: Vector,
+    /// The velocity that an impulse of 1 N s gives it, by rows [1/kg].
+    pub yields: [Vector; 3],
+    pub is_asleep: bool,
+}
+
+impl Anchor {
+    /// Takes hold of an end.
+    pub fn of<D: Dim>(end: &End, bodies: &Bodies<D>, rigids: &Rigids) -> Result<Self, Gone> {
+        Ok(match *end {
+            End::Place(at) => Self::Place(flat::<D>(at)),
+            End::Rigid { rigid: id, at } => {
+                let rigid = rigids.get(id)?;
+                let apart = minus(flat::<D>(at), rigid.position());
+                Self::Rigid(id, rigid.rotation().inverse().apply(apart))
+            }
+            End::Soft {
+                body: id,
+                at,
+                radius,
+            } => {
+                let body = bodies.get(id)?;
+                Self::Soft(id, corners_near(body, flat::<D>(at), radius))
+            }
+        })
+    }
+
+    /// Whether it holds nodes of a body.
+    pub fn is_soft(&self) -> bool {
+        matches!(self, Self::Soft(..))
+    }
+
+    /// Puts what is not soft elsewhere [m].
+    pub fn stand_at(&mut self, at: Vector, rigids: &Rigids) {
+        match self {
+            Self::Place(place) => *place = at,
+            Self::Rigid(id, own) => {
+                if let Ok(rigid) = rigids.get(*id) {
+                    *own = rigid
+                        .rotation()
+                        .inverse()
+                        .apply(minus(at, rigid.position()));
+                }
+            }
+            Self::Soft(..) => {}
+        }
+    }
+
+    /// How it is now; nothing when what it holds is gone.
+    pub fn grip<D: Dim>(&self, bodies: &Bodies<D>, rigids: &Rigids) -> Option<Grip> {
+        match self {
+            Self::Place(at) => Some(Grip {
+                at: *at,
+                velocity: [0.0; 3],
+                yields: [[0.0; 3]; 3],
+                is_asleep: false,
+            }),
+            Self::Rigid(id, own) => {
+                let rigid = rigids.get(*id).ok()?;
+                let lever = rigid.rotation().apply(*own);
+                let ways = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+                Some(Grip {
+                    at: plus(rigid.position(), lever),
+                    velocity: rigid.velocity_at(lever),
+                    yields: ways.map(|way| rigid.gain(lever, way)),
+                    is_asleep: rigid.is_asleep(),
+                })
+            }
+            Self::Soft(id, corners) => {
+                let body = bodies.get(*id).ok()?;
+                let share = 1.0 / corners.len() as f32;
+                let (mut at, mut velocity, mut gain) = ([0.0; 3], [0.0; 3], 0.0);
+                let mut is_asleep = true;
+                for node in nodes(body, corners) {
+                    at = plus(at, scaled(three(body.state.position[node]), share));
+                    velocity = plus(velocity, scaled(three(body.state.velocity[node]), share));
+                    gain += body.state.inverse_mass[node] * share * share;
+                    is_asleep &= body.truth.pieces.sleeps(node);
+                }
+                let mut yields = [[0.0; 3]; 3];
+                (0..D::N).for_each(|axis| yields[axis][axis] = gain);
+                Some(Grip {
+                    at,
+                    velocity,
+                    yields,
+                    is_asleep,
+                })
+            }
+        }
+    }
+
+    /// Gives it an impulse [N s].
+    pub fn push<D: Dim>(&self, bodies: &mut Bodies<D>, rigids: &mut Rigids, impulse: Vector) {
+        match self {
+            Self::Place(_) => {}
+            Self::Rigid(id, own) => {
+                if let Ok(rigid) = rigids.get_mut(*id) {
+                    let lever = rigid.rotation().apply(*own);
+                    rigid.kick(impulse, lever);
+                }
+            }
+            Self::Soft(id, corners) => {
+                let Ok(body) = bodies.get_mut(*id) else {
+                    return;
+                };
+                let share = as_row(scaled(impulse, 1.0 / corners.len() as f32));
+                let nodes: Vec<NodeId> = nodes(body, corners).collect();
+                for node in nodes {
+                    let gain = scaled(share, body.state.inverse_mass[node]);
+                    body.state.velocity[node] = plus(body.state.velocity[node], gain);
+                }
+            }
+        }
+    }
+
+    /// Notes who of it sleeps.
+    pub fn wake<D: Dim>(&self, bodies: &Bodies<D>, woken: &mut Woken) {
+        match self {
+            Self::Place(_) => {}
+            Self::Rigid(id, _) => woken.rigids.push(id.slot()),
+            Self::Soft(id, corners) => {
+                let Ok(body) = bodies.get(*id) else {
+                    return;
+                };
+                let pieces = nodes(body, corners).map(|node| body.truth.pieces.of_node(node));
+                woken.pieces.extend(pieces.map(|piece| (id.slot(), piece)));
+            }
+        }
+    }
+
+    /// Whether what was read from a file may be one.
+    #[cfg(feature = "serde")]
+    pub fn is_sound<D: Dim>(&self) -> bool {
+        match self {
+            Self::Place(at) | Self::Rigid(_, at) => {
+                crate::vector::is_finite(*at) && at[D::N..].iter().all(|k| *k == 0.0)
+            }
+            Self::Soft(_, corners) => !corners.is_empty(),
+        }
+    }
+}
+
+/// The nodes at some corners. A voxel that is not there has none.
+fn nodes<'a, D: Dim>(
+    body: &'a Body<D>,
+    corners: &'a [(Point, Point)],
+) -> impl Iterator<Item = NodeId> + 'a {
+    corners.iter().filter_map(|&(voxel, point)| {
+        let mesh = &body.truth.mesh;
+        let element = mesh.element(mesh.owner(voxel)?)?;
+        let apart = |node: NodeId| {
+            let at = mesh.node(node).at;
+            (0..D::N)
+                .map(|axis| (at[axis] - point[axis]).abs())
+                .sum::<i32>()
+        };
+        element
+            .nodes
+            .iter()
+            .copied()
+            .min_by_key(|&node| (apart(node), node))
+    })
+}
+
+/// The corners of a body within `radius` [m] of a place, or the nearest one.
+fn corners_near<D: Dim>(body: &Body<D>, at: Vector, radius: f32) -> Vec<(Point, Point)> {
+    let distance = |node: NodeId| {
+        let apart = minus(three(body.state.position[node]), at);
+        dot(apart, apart)
+    };
+    let mesh = &body.truth.mesh;
+    let nodes = || mesh.nodes().map(|(node, _)| node);
+    let is_near = |&node: &NodeId| distance(node) <= radius * radius;
+    let mut near: Vec<NodeId> = nodes().filter(is_near).collect();
+    if near.is_empty() {
+        near.extend(nodes().min_by(|&a, &b| distance(a).total_cmp(&distance(b)).then(a.cmp(&b))));
+    }
+    let corner = |node: NodeId| {
+        let own = mesh.node(node);
+        let octant = own.group.trailing_zeros() as usize;
+        (voxel_around::<D>(own.at, octant), own.at)
+    };
+    near.into_iter().map(corner).collect()
+}

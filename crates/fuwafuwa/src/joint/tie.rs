@@ -1,0 +1,191 @@
+//! The impulses that pins, springs and ropes ask for.
+
+use super::Joint;
+use super::anchor::Grip;
+use super::end::{Tie, Woken};
+use crate::body::Bodies;
+use crate::dim::Dim;
+use crate::rigid::Rigids;
+use crate::shape::Vector;
+use crate::vector::{cross, dot, length, minus, plus, scaled};
+
+/// How much of the last substep's impulse a pin starts from.
+const WARM_START: f32 = 0.9;
+/// How much of what pins and ropes are apart is drawn together in a substep, and how fast at most [m/s].
+const DRAW: f32 = 0.2;
+const DRAW_SPEED: f32 = 2.0;
+/// A sleeper wakes when the other end moves at this speed [m/s], as where two touch.
+const WAKE_SPEED: f32 = 0.15;
+
+impl Joint {
+    /// Begins a substep with what passed in the last one; whether both ends are there.
+    pub(super) fn start<D: Dim>(
+        &mut self,
+        bodies: &mut Bodies<D>,
+        rigids: &mut Rigids,
+        woken: &mut Woken,
+    ) -> bool {
+        let [Some(first), Some(second)] = self.grips(bodies, rigids) else {
+            return false;
+        };
+        for (own, other, anchor) in [(first, second, 0), (second, first, 1)] {
+            if own.is_asleep && length(other.velocity) > WAKE_SPEED {
+                self.anchors[anchor].wake(bodies, woken);
+            }
+        }
+        self.impulse = match self.tie {
+            Tie::Pin => scaled(self.impulse, WARM_START),
+            _ => [0.0; 3],
+        };
+        self.push(bodies, rigids, self.impulse);
+        true
+    }
+
+    /// Gives the ends what they lack; `draws` them together, too, where they are apart.
+    pub(super) fn solve<D: Dim>(
+        &mut self,
+        bodies: &mut Bodies<D>,
+        rigids: &mut Rigids,
+        duration: f32,
+        draws: bool,
+    ) {
+        let [Some(first), Some(second)] = self.grips(bodies, rigids) else {
+            return;
+        };
+        let apart = minus(first.at, second.at);
+        let relative = minus(first.velocity, second.velocity);
+        let yields = [0, 1, 2].map(|row: usize| plus(first.yields[row], second.yields[row]));
+        let impulse = match self.tie {
+            Tie::Pin => {
+                let draw = if draws {
+                    drawn(apart, duration)
+                } else {
+                    [0.0; 3]
+                };
+                solved::<D>(&yields, scaled(plus(relative, draw), -1.0))
+            }
+            Tie::Spring {
+                stiffness,
+                damping,
+                length: rest,
+            } => match self.impulse == [0.0; 3] && draws {
+                true => spring(
+                    apart,
+                    relative,
+                    &yields,
+                    [stiffness, damping, rest],
+                    duration,
+                ),
+                false => [0.0; 3],
+            },
+            Tie::Rope { length } => self.rope(apart, relative, &yields, length, duration, draws),
+        };
+        if crate::vector::is_finite(impulse) {
+            self.impulse = plus(self.impulse, impulse);
+            self.push(bodies, rigids, impulse);
+        }
+    }
+
+    /// A rope pulls and never pushes.
+    fn rope(
+        &self,
+        apart: Vector,
+        relative: Vector,
+        yields: &[Vector; 3],
+        most: f32,
+        duration: f32,
+        draws: bool,
+    ) -> Vector {
+        let Some((distance, way)) = direction(apart) else {
+            return [0.0; 3];
+        };
+        let gain = along(yields, way);
+        if gain <= 0.0 || !draws && distance < most {
+            return [0.0; 3];
+        }
+        let beyond = distance - most;
+        let wanted = match (draws, beyond > 0.0) {
+            (false, _) => 0.0,
+            (true, true) => -(DRAW * beyond / duration).min(DRAW_SPEED),
+            (true, false) => -beyond / duration,
+        };
+        let pulled = dot(self.impulse, way);
+        let change = (wanted - dot(relative, way)) / gain;
+        scaled(way, (pulled + change).min(0.0) - pulled)
+    }
+
+    /// Whether an end can be moved.
+    pub(super) fn yields<D: Dim>(&self, bodies: &Bodies<D>, rigids: &Rigids) -> bool {
+        let grips = self.grips(bodies, rigids).into_iter().flatten();
+        let mut ways = grips.flat_map(|grip| grip.yields);
+        ways.any(|way| way != [0.0; 3])
+    }
+
+    fn grips<D: Dim>(&self, bodies: &Bodies<D>, rigids: &Rigids) -> [Option<Grip>; 2] {
+        self.anchors
+            .each_ref()
+            .map(|anchor| anchor.grip(bodies, rigids))
+    }
+
+    fn push<D: Dim>(&self, bodies: &mut Bodies<D>, rigids: &mut Rigids, impulse: Vector) {
+        self.anchors[0].push(bodies, rigids, impulse);
+        self.anchors[1].push(bodies, rigids, scaled(impulse, -1.0));
+    }
+}
+
+/// The velocity with which a pin is drawn together [m/s].
+fn drawn(apart: Vector, duration: f32) -> Vector {
+    let draw = scaled(apart, DRAW / duration);
+    let speed = length(draw);
+    match speed > DRAW_SPEED {
+        true => scaled(draw, DRAW_SPEED / speed),
+        false => draw,
+    }
+}
+
+/// The impulse of a spring over a substep, worked out for its end: m⁻¹ λ = −v − (k x + k h v' + c v') h, solved for the
+/// velocity v' that it leads to.
+fn spring(
+    apart: Vector,
+    relative: Vector,
+    yields: &[Vector; 3],
+    [stiffness, damping, rest]: [f32; 3],
+    duration: f32,
+) -> Vector {
+    let Some((distance, way)) = direction(apart) else {
+        return [0.0; 3];
+    };
+    let softness = 1.0 / (duration * (damping + duration * stiffness));
+    let push = (distance - rest) * duration * stiffness * softness;
+    let under = along(yields, way) + softness;
+    scaled(way, -(dot(relative, way) + push) / under)
+}
+
+/// Length and direction; nothing where there is none.
+fn direction(apart: Vector) -> Option<(f32, Vector)> {
+    let distance = length(apart);
+    (distance > 1e-6).then(|| (distance, scaled(apart, 1.0 / distance)))
+}
+
+/// The speed along a direction that an impulse of 1 N s along it gives [1/kg].
+fn along(yields: &[Vector; 3], way: Vector) -> f32 {
+    dot(way, [0, 1, 2].map(|row: usize| dot(yields[row], way)))
+}
+
+/// The impulse that gives a velocity; none where nothing yields.
+fn solved<D: Dim>(yields: &[Vector; 3], velocity: Vector) -> Vector {
+    let [x, y, mut z] = *yields;
+    if D::N == 2 {
+        z = [0.0, 0.0, 1.0];
+    }
+    let under = dot(x, cross(y, z));
+    if under <= 0.0 {
+        return [0.0; 3];
+    }
+    // By the columns of the inverse of a symmetric matrix.
+    let columns = [cross(y, z), cross(z, x), cross(x, y)];
+    let sum = (0..D::N).fold([0.0; 3], |sum, axis| {
+        plus(sum, scaled(columns[axis], velocity[axis]))
+    });
+    scaled(sum, 1.0 / under)
+}

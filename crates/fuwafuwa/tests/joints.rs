@@ -1,0 +1,367 @@
+//! Pins, springs and ropes between soft bodies, rigid things and places.
+
+use fuwafuwa::{
+    Body, BodyId, Dim, Dim2, Dim3, Drive, Elasticity, End, Event, Joint, Material, Rigid, RigidId,
+    Rotation, Settings, Shape, Tie, VoxelGrid, World,
+};
+use std::f32::consts::TAU;
+
+type Vector = [f32; 3];
+
+const UP: Vector = [0.0, 1.0, 0.0];
+
+fn world<D: Dim>(gravity: f32) -> World<D> {
+    World::new(Settings {
+        gravity: [0.0, gravity, 0.0],
+        ..Settings::default()
+    })
+    .unwrap()
+}
+
+fn rubber(damping: f32) -> Material {
+    Material {
+        elasticity: Elasticity {
+            young: 5e4,
+            poisson: 0.3,
+        },
+        damping,
+        strength: f32::INFINITY,
+        toughness: f32::INFINITY,
+        ..Material::default()
+    }
+}
+
+/// A ball of a width of 1 m with its middle at a place.
+fn soft<D: Dim>(world: &mut World<D>, middle: Vector) -> BodyId {
+    let grid = VoxelGrid::<D>::ball(10, 1.0).unwrap();
+    let body = Body::new(grid, &[rubber(0.08)]).unwrap();
+    let z = if D::N == 2 { 0.0 } else { 0.5 };
+    let by = [middle[0] - 0.5, middle[1] - 0.5, middle[2] - z];
+    world.add_body(body.moved(by))
+}
+
+fn ball<D: Dim>(world: &mut World<D>, at: Vector, mass: f32) -> RigidId {
+    let shape = Shape::Ball {
+        centre: at,
+        radius: 0.1,
+    };
+    world.add_rigid(Rigid::free(shape, mass)).unwrap()
+}
+
+fn on(rigid: RigidId, at: Vector) -> End {
+    End::Rigid { rigid, at }
+}
+
+fn apart(a: Vector, b: Vector) -> f32 {
+    let squared = (0..3).map(|k| (a[k] - b[k]) * (a[k] - b[k]));
+    squared.sum::<f32>().sqrt()
+}
+
+fn turns(joints: usize, broken: &[Event]) -> usize {
+    let is_break = |event: &&Event| matches!(event, Event::JointBroke { .. });
+    joints + broken.iter().filter(is_break).count()
+}
+
+/// A pendulum swings for a minute; its energy never exceeds what it began with, and it swings on.
+fn no_energy_comes_from<D: Dim>(tie: Tie) {
+    let mut world = world::<D>(-9.81);
+    let bob = ball(&mut world, [1.0, 0.0, 0.0], 2.0);
+    let at = match tie {
+        Tie::Rope { .. } => [1.0, 0.0, 0.0],
+        _ => [0.0; 3],
+    };
+    let joint = Joint::new([on(bob, at), End::Place([0.0; 3])], tie);
+    world.add_joint(joint).unwrap();
+    let (mut lowest, mut most) = (0.0f32, f32::MIN);
+    for tick in 0..3600 {
+        world.step();
+        let rigid = &world.rigids()[bob];
+        let [x, y, _] = rigid.position();
+        let speed = rigid.velocity().iter().map(|k| k * k).sum::<f32>();
+        let spin = rigid.angular_velocity().iter().map(|k| k * k).sum::<f32>();
+        // Of a ball 2/5 m r², of a disc 1/2.
+        let share = if D::N == 2 { 0.5 } else { 0.4 };
+        most = most.max(speed + share * 0.01 * spin + 2.0 * 9.81 * y);
+        lowest = lowest.min(y);
+        assert!((x * x + y * y).sqrt() < 1.02, "{tick}: {x} {y}");
+    }
+    assert!(lowest < -0.95, "{lowest}");
+    // Of 2 g l = 19.6 that it has when it hangs.
+    assert!(most < 0.2, "{most}");
+}
+
+#[test]
+fn pins_and_ropes_gain_no_energy() {
+    for tie in [Tie::Pin, Tie::Rope { length: 1.0 }] {
+        no_energy_comes_from::<Dim2>(tie);
+        no_energy_comes_from::<Dim3>(tie);
+    }
+}
+
+fn it_hangs_on_a_nail<D: Dim>() {
+    let mut world = world::<D>(-9.81);
+    let id = soft(&mut world, [0.0; 3]);
+    let top = [0.0, 0.5, 0.0];
+    let end = End::Soft {
+        body: id,
+        at: top,
+        radius: 0.25,
+    };
+    let nail = world.add_joint(Joint::pin(end, End::Place(top))).unwrap();
+    for _ in 0..600 {
+        world.step();
+    }
+    let [held, place] = world.joint_places(nail).unwrap().unwrap();
+    assert!(apart(held, place) < 0.01, "{held:?}");
+    let body = &world.bodies()[id];
+    let [x, y, z] = body.centre_of_mass();
+    assert!(
+        (-0.9..0.1).contains(&y) && x.abs() < 0.05 && z.abs() < 0.05,
+        "{x} {y} {z}"
+    );
+    let weight = body.total_mass() as f32 * 9.81;
+    let force = world.joints().get(nail).unwrap().force();
+    assert!((force / weight - 1.0).abs() < 0.1, "{force} {weight}");
+    // It wakes and falls when the nail is drawn.
+    world.remove_joint(nail).unwrap();
+    for _ in 0..60 {
+        world.step();
+    }
+    assert!(world.bodies()[id].centre_of_mass()[1] < y - 2.0);
+}
+
+#[test]
+fn a_soft_body_hangs_on_a_nail_and_falls_without() {
+    it_hangs_on_a_nail::<Dim2>();
+    it_hangs_on_a_nail::<Dim3>();
+}
+
+fn it_follows<D: Dim>() {
+    let mut world = world::<D>(0.0);
+    let arm = Shape::Box {
+        centre: [0.0; 3],
+        half: [1.0, 0.05, 0.05],
+    };
+    let arm = Rigid::driven(arm, [0.0; 3], Drive::Kinematic);
+    let arm = world.add_rigid(arm).unwrap();
+    let id = soft(&mut world, [1.6, 0.0, 0.0]);
+    let tip = [1.1, 0.0, 0.0];
+    let end = End::Soft {
+        body: id,
+        at: tip,
+        radius: 0.2,
+    };
+    let pin = world.add_joint(Joint::pin(end, on(arm, tip))).unwrap();
+    let [first, place] = world.joint_places(pin).unwrap().unwrap();
+    assert!(apart(first, place) < 1e-6 && apart(first, tip) < 0.2);
+    for tick in 1..=300 {
+        let share = tick as f32 / 300.0;
+        let angle = TAU * share * share * (3.0 - 2.0 * share);
+        let way = Rotation::about([0.0, 0.0, 1.0], angle);
+        world.set_goal_rotation(arm, way).unwrap();
+        world.step();
+        let [held, place] = world.joint_places(pin).unwrap().unwrap();
+        assert!(apart(held, place) < 0.02, "{tick}: {held:?} {place:?}");
+        // The pin is where the nodes were.
+        assert!(apart(place, way.apply(first)) < 1e-3, "{tick}: {place:?}");
+    }
+}
+
+#[test]
+fn a_body_pinned_to_something_that_turns_follows_it() {
+    it_follows::<Dim2>();
+    it_follows::<Dim3>();
+}
+
+#[test]
+fn two_soft_bodies_that_are_tied_stay_together() {
+    let mut world = world::<Dim3>(0.0);
+    let [a, b] = [-0.55, 0.55].map(|x| soft(&mut world, [x, 0.0, 0.0]));
+    let end = |body: BodyId, x: f32| End::Soft {
+        body,
+        at: [x, 0.0, 0.0],
+        radius: 0.2,
+    };
+    let pin = world
+        .add_joint(Joint::pin(end(a, -0.05), end(b, 0.05)))
+        .unwrap();
+    world.add_velocity(a, [-2.0, 0.0, 0.0], [0.0; 3]).unwrap();
+    for _ in 0..120 {
+        world.step();
+    }
+    let [held, place] = world.joint_places(pin).unwrap().unwrap();
+    assert!(apart(held, place) < 0.02);
+    // Momentum is shared.
+    let [a, b] = [a, b].map(|id| world.bodies()[id].momentum().linear[0]);
+    let mass = world.bodies().iter().next().unwrap().total_mass();
+    assert!(
+        ((a + b) / (-2.0 * f64::from(mass as f32)) - 1.0).abs() < 1e-3,
+        "{a} {b}"
+    );
+    assert!(b < -0.3 * f64::from(mass as f32), "{b}");
+}
+
+/// A mass on a spring without damping: ω² = k/m, and it dies slowly by the implicit step alone.
+#[test]
+fn a_spring_swings_as_fast_as_it_must() {
+    let mut world = world::<Dim3>(0.0);
+    let bob = ball(&mut world, [1.5, 0.0, 0.0], 2.0);
+    let tie = Tie::Spring {
+        stiffness: 80.0,
+        damping: 0.0,
+        length: 1.0,
+    };
+    let ends = [on(bob, [1.5, 0.0, 0.0]), End::Place([0.0; 3])];
+    world.add_joint(Joint::new(ends, tie)).unwrap();
+    let mut crossings = Vec::new();
+    let mut before = 0.5;
+    for tick in 0..600 {
+        world.step();
+        let now = world.rigids()[bob].position()[0] - 1.0;
+        if before > 0.0 && now <= 0.0 {
+            crossings.push(tick as f32 + before / (before - now));
+        }
+        before = now;
+    }
+    let count = (crossings.len() - 1) as f32;
+    let period = (crossings[crossings.len() - 1] - crossings[0]) / count / 60.0;
+    let expected = TAU * (2.0f32 / 80.0).sqrt();
+    assert!(
+        (period / expected - 1.0).abs() < 0.01,
+        "{period} {expected}"
+    );
+}
+
+#[test]
+fn very_stiff_springs_hold_still() {
+    let mut world = world::<Dim2>(-9.81);
+    let bob = ball(&mut world, [0.0, -1.0, 0.0], 2.0);
+    let tie = Tie::Spring {
+        stiffness: 1e9,
+        damping: 0.0,
+        length: 1.0,
+    };
+    let ends = [on(bob, [0.0, -1.0, 0.0]), End::Place([0.0; 3])];
+    world.add_joint(Joint::new(ends, tie)).unwrap();
+    for _ in 0..300 {
+        world.step();
+        assert!((world.rigids()[bob].position()[1] + 1.0).abs() < 0.01);
+    }
+}
+
+#[test]
+fn a_chain_of_ten_hangs() {
+    let mut world = world::<Dim3>(-9.81);
+    let mut above = End::Place([0.0; 3]);
+    let mut links = Vec::new();
+    for k in 0..10 {
+        let at = [0.25 * (k + 1) as f32, 0.0, 0.0];
+        let link = ball(&mut world, at, 0.5);
+        world
+            .add_joint(Joint::new(
+                [on(link, at), above],
+                Tie::Rope { length: 0.25 },
+            ))
+            .unwrap();
+        above = on(link, at);
+        links.push(link);
+    }
+    let (mut longest, mut lowest) = (0.0f32, 0.0f32);
+    for _ in 0..1200 {
+        world.step();
+        let end = world.rigids()[links[9]].position();
+        longest = longest.max(apart(end, [0.0; 3]));
+        lowest = lowest.min(end[1]);
+    }
+    assert!(longest < 2.7, "{longest}");
+    assert!(lowest < -2.3, "{lowest}");
+}
+
+#[test]
+fn joints_break_at_their_force_and_tell() {
+    for (bears, holds) in [(60.0, true), (30.0, false)] {
+        let mut world = world::<Dim3>(-9.81);
+        // 39.2 N when it hangs.
+        let bob = ball(&mut world, [0.0, -1.0, 0.0], 4.0);
+        let ends = [on(bob, [0.0, -1.0, 0.0]), End::Place([0.0, -1.0, 0.0])];
+        let joint = Joint::new(ends, Tie::Pin).breaking_at(bears);
+        let id = world.add_joint(joint).unwrap();
+        let mut told = 0;
+        for _ in 0..60 {
+            world.step();
+            told = turns(told, world.events());
+        }
+        assert_eq!(world.joints().get(id).is_ok(), holds);
+        assert_eq!(told, usize::from(!holds));
+        assert_eq!(world.rigids()[bob].position()[1] < -2.0, !holds);
+    }
+}
+
+#[test]
+fn a_joint_goes_with_what_it_held() {
+    let mut world = world::<Dim3>(-9.81);
+    let id = soft(&mut world, [0.0; 3]);
+    let end = End::Soft {
+        body: id,
+        at: UP,
+        radius: 0.1,
+    };
+    let joint = world.add_joint(Joint::pin(end, End::Place(UP))).unwrap();
+    world.step();
+    world.remove_body(id).unwrap();
+    assert_eq!(world.joint_places(joint).unwrap(), None);
+    world.step();
+    assert_eq!(turns(0, world.events()), 1);
+    assert!(world.remove_joint(joint).is_err());
+}
+
+/// What is torn around it, a pin keeps its voxels.
+#[test]
+fn a_pin_holds_on_while_the_body_crumbles() {
+    let mut world = world::<Dim3>(-9.81);
+    let grid = VoxelGrid::<Dim3>::ball(10, 1.0).unwrap();
+    let id = world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+    let at = [0.5, 0.95, 0.5];
+    let end = End::Soft {
+        body: id,
+        at,
+        radius: 0.0,
+    };
+    let pin = world.add_joint(Joint::pin(end, End::Place(at))).unwrap();
+    for _ in 0..30 {
+        world.step();
+    }
+    world.body_mut(id).unwrap().crumble().unwrap();
+    for _ in 0..60 {
+        world.step();
+        let [held, place] = world.joint_places(pin).unwrap().unwrap();
+        assert!(apart(held, place) < 0.15, "{held:?}");
+    }
+    assert!(world.bodies()[id].centre_of_mass()[1] < -2.0);
+}
+
+#[test]
+fn bad_joints_are_refused_by_field() {
+    let mut world = world::<Dim2>(-9.81);
+    let bob = ball(&mut world, [0.0; 3], 1.0);
+    let good = [on(bob, [0.0; 3]), End::Place([0.0; 3])];
+    let spring = |stiffness, damping, length| Tie::Spring {
+        stiffness,
+        damping,
+        length,
+    };
+    let bad = [
+        (Joint::new(good, spring(f32::NAN, 0.0, 1.0)), "stiffness"),
+        (Joint::new(good, spring(1.0, -1.0, 1.0)), "damping"),
+        (Joint::new(good, spring(1.0, 1.0, f32::INFINITY)), "length"),
+        (Joint::new(good, Tie::Rope { length: 0.0 }), "length"),
+        (Joint::new(good, Tie::Pin).breaking_at(f32::NAN), "force"),
+        (Joint::pin(good[0], End::Place([f32::NAN; 3])), "place"),
+    ];
+    for (joint, word) in bad {
+        let refused = world.add_joint(joint).unwrap_err().to_string();
+        assert!(refused.contains(word), "{refused}");
+    }
+    world.remove_rigid(bob).unwrap();
+    assert!(world.add_joint(Joint::new(good, Tie::Pin)).is_err());
+}
