@@ -119,7 +119,6 @@ fn walls_are_turned_as_their_transform_is() {
     let mut app = app::<Dim3>();
     let slope = at(0.0, 0.0).with_rotation(Quat::from_rotation_z(-0.5));
     let slope = spawn(&mut app, (RigidBody3d::fixed(slab()), slope));
-    // Upright again, so that what lay on it falls; its id stays.
     let ball = Shape::Ball {
         centre: [0.0; 3],
         radius: 0.2,
@@ -129,6 +128,7 @@ fn walls_are_turned_as_their_transform_is() {
     let down = transform(&app, ball).translation;
     assert!(down.x > 0.3 && down.y < 0.3, "it rolls down: {down}");
     let before = app.world().get::<RigidBodyId>(slope).copied();
+    // So steep that what lay on it falls; its id stays.
     let upright = at(0.0, 0.0).with_rotation(Quat::from_rotation_z(1.5));
     app.world_mut().entity_mut(slope).insert(upright);
     run(&mut app, 60);
