@@ -33,25 +33,26 @@ pub(crate) enum Source<D: Dimension> {
 #[derive(Component, Clone, Debug, PartialEq)]
 pub struct SoftMaterials(pub Vec<Material>);
 
-/// How fast a soft body moves as a whole. It has this velocity when it enters; after each tick this is what it has, and
-/// what you change is added to it in the next one.
+/// How fast a soft body moves as a whole, or something rigid. It has this velocity when it enters; after each tick this is
+/// what it has. What you change is added to a soft body in the next one, and what is free of the rigid things has it then;
+/// others it only tells.
 #[derive(Component, Copy, Clone, Debug, Default, PartialEq)]
-pub struct SoftVelocity {
+pub struct Velocity {
     /// Of its centre of mass [m/s].
     pub linear: Vec3,
     /// About its centre of mass [rad/s]; in the plane z alone counts.
     pub angular: Vec3,
 }
 
-/// An impulse for a soft body, given in the next tick; the component is removed then.
+/// An impulse for a soft body, or for something rigid that is free, given in the next tick; the component is removed then.
 #[derive(Component, Copy, Clone, Debug, PartialEq)]
 pub struct ExternalImpulse {
     /// [N s]
     pub impulse: Vec3,
     /// Where in the world [m].
     pub at: Vec3,
-    /// All nodes within this distance share it [m]; where there is none, the nearest one has it alone, which tears most
-    /// bodies.
+    /// All nodes of a soft body within this distance share it [m]; where there is none, the nearest one has it alone, which
+    /// tears most bodies.
     pub radius: f32,
 }
 
@@ -67,12 +68,17 @@ pub struct WithoutMesh;
 #[derive(Component, Copy, Clone, Debug, PartialEq, Eq)]
 pub struct SoftBodyId(pub BodyId);
 
-/// Something rigid: an obstacle that stands, or a hand that moves. The shape is as it would be at the origin, best with
-/// its middle there; its `Transform` moves it, turns all but boxes, and scales it when it enters.
+/// Something rigid: an obstacle that stands, a hand that moves, or what is free to fall. The shape is as it would be at the
+/// origin, best with its middle there; its `Transform` moves, turns and scales it when it enters. From then on its size
+/// stays, as do friction, restitution and drive: insert it again for another one.
 ///
-/// What moves it is [`Drive`]. An obstacle ([`Drive::Fixed`]) whose `Transform` is changed is put there anew. A hand that
-/// is [`Drive::Kinematic`] is where its `Transform` says at the end of the next tick. One that is [`Drive::Coupled`] is
-/// pulled to its [`Goal`], and its `Transform` says how far it got.
+/// What moves it is [`Drive`]:
+/// - Nothing moves what is [`Drive::Fixed`].
+/// - [`Drive::Kinematic`] is where its `Transform` says at the end of the next tick, and moves and turns there evenly.
+/// - [`Drive::Coupled`] is pulled to its [`Goal`] without turning; its `Transform` says how far it got.
+/// - [`Drive::Free`] falls, turns, and is pushed by what it touches; its `Transform` follows. See [`RigidBody::free`].
+///
+/// All but what is kinematic are put at once where you write that they are, with the velocity that they have.
 #[derive(Component, Clone, Debug, PartialEq)]
 #[component(on_insert = rigid_body_arrives::<D>, on_discard = rigid_body_leaves::<D>)]
 #[require(Transform)]
@@ -81,6 +87,9 @@ pub struct RigidBody<D: Dimension> {
     pub shape: Shape,
     /// Coulomb friction with what it touches; about 0.2.
     pub friction: f32,
+    /// Share of its speed with which it bounces off what is rigid, 0 to 1, where one of both is free; the larger one
+    /// counts.
+    pub restitution: f32,
     /// What moves it.
     pub drive: Drive,
     dim: PhantomData<D>,
@@ -146,6 +155,7 @@ impl<D: Dimension> RigidBody<D> {
         Self {
             shape,
             friction: 0.2,
+            restitution: 0.0,
             drive: Drive::Fixed,
             dim: PhantomData,
         }
@@ -163,6 +173,13 @@ impl<D: Dimension> RigidBody<D> {
         Self::fixed(Shape::Ball { centre, radius }).with_drive(Drive::Kinematic)
     }
 
+    /// What falls and turns, of a mass [kg] that is spread evenly over a ball, box or bar, and of friction 0.5. It turns
+    /// about the middle of its shape, wherever that is.
+    pub fn free(shape: Shape, mass: f32) -> Self {
+        let drive = Drive::Free { mass };
+        Self::fixed(shape).with_friction(0.5).with_drive(drive)
+    }
+
     /// The same with another drive.
     pub fn with_drive(self, drive: Drive) -> Self {
         Self { drive, ..self }
@@ -171,6 +188,14 @@ impl<D: Dimension> RigidBody<D> {
     /// The same with another friction.
     pub fn with_friction(self, friction: f32) -> Self {
         Self { friction, ..self }
+    }
+
+    /// The same with another restitution.
+    pub fn with_restitution(self, restitution: f32) -> Self {
+        Self {
+            restitution,
+            ..self
+        }
     }
 }
 

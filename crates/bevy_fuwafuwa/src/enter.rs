@@ -2,13 +2,13 @@
 
 use crate::asset::Voxels;
 use crate::component::{
-    GravityScale, RigidBody, RigidBodyId, SoftBody, SoftBodyId, SoftColours, SoftMaterials,
-    SoftVelocity, Source, WithoutMesh,
+    GravityScale, RigidBody, RigidBodyId, SoftBody, SoftBodyId, SoftColours, SoftMaterials, Source,
+    Velocity, WithoutMesh,
 };
 use crate::dimension::Dimension;
 use crate::drawn::{Drawn, empty_mesh};
 use crate::message::Rejection;
-use crate::pose::Pose;
+use crate::pose::{Pose, engine_rotation};
 use crate::problem::{Problem, Rejected};
 use crate::queue::{Queue, Request};
 use crate::world::SoftWorld;
@@ -17,9 +17,10 @@ use bevy_asset::{AssetServer, Assets, Handle, LoadState};
 use bevy_ecs::entity::Entity;
 use bevy_ecs::hierarchy::ChildOf;
 use bevy_ecs::world::World;
+use bevy_math::Vec3;
 use bevy_mesh::Mesh;
 use bevy_transform::components::Transform;
-use fuwafuwa::{Body, Drive, Material, Rigid, VoxelGrid};
+use fuwafuwa::{Body, Drive, Material, Rigid, Shape, VoxelGrid};
 
 /// What becomes of somebody who wants to enter.
 enum Entry {
@@ -87,13 +88,13 @@ fn add_body<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, Pr
     let body = Body::new(grid.scaled(pose.scale)?, &materials)?;
     let body = pose.place(body);
 
-    let velocity = world.get::<SoftVelocity>(entity).copied();
+    let velocity = world.get::<Velocity>(entity).copied();
     let gravity = world.get::<GravityScale>(entity).copied();
     let mut soft_world = world.resource_mut::<SoftWorld<D>>();
     let id = soft_world.add_body(entity, body);
     let engine = soft_world.engine_mut();
     let mut outcome = Ok(());
-    if let Some(SoftVelocity { linear, angular }) = velocity {
+    if let Some(Velocity { linear, angular }) = velocity {
         outcome = engine.add_velocity(id, linear.into(), angular.into());
     }
     if let Some(GravityScale(scale)) = gravity {
@@ -173,33 +174,45 @@ fn add_rigid<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, P
     };
     let transform = transform_of(world, entity)?;
     let pose = Pose::of(&transform)?;
-    let id = put_rigid(
-        &mut world.resource_mut::<SoftWorld<D>>(),
-        entity,
-        &rigid,
-        pose,
-    )?;
+    let velocity = world.get::<Velocity>(entity).copied();
+    let form = pose.form(rigid.shape);
+    let middle = middle_of(&form, rigid.drive);
+    let at = pose.translation + pose.rotation * middle;
+    let own = Rigid::driven(form.moved((-middle).into()), at.into(), rigid.drive);
+    let mut own = own.rotated(engine_rotation(transform.rotation));
+    (own.friction, own.restitution) = (rigid.friction, rigid.restitution);
+
+    let mut soft_world = world.resource_mut::<SoftWorld<D>>();
+    let id = soft_world.add_rigid(entity, own)?;
+    if let Some(Velocity { linear, angular }) = velocity
+        && velocity != Some(Velocity::default())
+        && let Err(refused) =
+            soft_world
+                .engine_mut()
+                .set_velocity(id, linear.into(), angular.into())
+    {
+        soft_world.remove_rigid(entity);
+        return Err(refused.into());
+    }
+    let followed = Followed {
+        middle,
+        ..Followed::new(pose, transform, velocity, None)
+    };
     let mut entity = world.entity_mut(entity);
     entity.remove::<Rejected>();
-    entity.insert((RigidBodyId(id), Followed::new(pose, transform, None, None)));
+    entity.insert((RigidBodyId(id), followed));
     Ok(Entry::Entered)
 }
 
-/// Puts the rigid thing of an entity into the world.
-pub fn put_rigid<D: Dimension>(
-    soft_world: &mut SoftWorld<D>,
-    entity: Entity,
-    rigid: &RigidBody<D>,
-    pose: Pose,
-) -> Result<fuwafuwa::RigidId, Problem> {
-    let form = pose.form(rigid.shape)?;
-    let at = pose.translation.into();
-    let mut own = match rigid.drive {
-        Drive::Fixed => Rigid::fixed(form.moved(at), 0.0),
-        drive => Rigid::driven(form, at, drive),
-    };
-    own.friction = rigid.friction;
-    Ok(soft_world.add_rigid(entity, own)?)
+/// What the engine has at the origin of something rigid: the middle of what is free, about which it turns.
+fn middle_of(form: &Shape, drive: Drive) -> Vec3 {
+    let [low, high] = form.bounds().map(Vec3::from);
+    let middle = 0.5 * (low + high);
+    match drive {
+        // What has no end has no middle, and is refused for that.
+        Drive::Free { .. } if middle.is_finite() => middle,
+        _ => Vec3::ZERO,
+    }
 }
 
 fn remove_body<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, Problem> {

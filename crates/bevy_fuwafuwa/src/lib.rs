@@ -20,7 +20,8 @@
 //! # The way through
 //! [`component`] is what entities have → [`FuwafuwaPlugin`] what makes them move → [`SoftWorld`] the engine itself, for all
 //! that has no component → [`message`] what happened → [`SoftQueries`] what is where → [`asset`] shapes from files.
-//! Behind them: `queue` who comes and goes → `enter` lets them → `push` does what was asked of them → `step` → `write` tells
+//! Behind them: `queue` who comes and goes → `enter` lets them → `push` and `steer` do what was asked
+//! of them → `step` → `write` tells
 //! them where they are; `surface` is a body as vertices, `drawn` the mesh that is written from them, `pose` what a
 //! `Transform` can say of something soft.
 //!
@@ -33,8 +34,8 @@
 //! Metres, y up. The origin of a soft body is the middle of its voxel grid. Its `Transform` says how it is put into the
 //! world: turned, moved, and scaled by the same factor on all axes. From then on it follows the largest piece, as if that
 //! were rigid; what you write into it moves and turns the body at once, and leaves its velocity. Bodies have no parents;
-//! they may have children, which go with them, and then want `Visibility` from the start. In the plane only turns about z
-//! count, and z is yours.
+//! they may have children, which go with them, and then want `Visibility` from the start. What is rigid is the same, but
+//! has no mesh of its own: give it one. In the plane only turns about z count, and z is yours.
 //!
 //! # Meshes
 //! A soft body gets one `Mesh`, as `Mesh3d` or `Mesh2d`; the material is yours, and colours of vertices tell what it is
@@ -69,6 +70,7 @@ mod problem;
 mod push;
 mod query;
 mod queue;
+mod steer;
 mod step;
 mod surface;
 mod world;
@@ -102,7 +104,7 @@ pub type RigidBody3d = RigidBody<Dim3>;
 pub mod prelude {
     pub use crate::component::{
         ExternalImpulse, Goal, GravityScale, RigidBody, SoftBody, SoftColours, SoftMaterials,
-        SoftVelocity,
+        Velocity,
     };
     pub use crate::message::{FellAsleep, Parted, Rejection, Torn, Touched, Woke};
     pub use crate::{

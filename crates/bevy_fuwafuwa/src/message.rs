@@ -29,7 +29,7 @@ pub struct Parted {
     pub piece: PieceId,
 }
 
-/// Things pressed on each other in the tick.
+/// Something soft pressed on something in the tick. Of rigid things that press on each other nothing is told.
 #[derive(Message, Copy, Clone, Debug, PartialEq)]
 pub struct Touched {
     /// The soft body.
@@ -46,22 +46,22 @@ pub struct Touched {
     pub impulse: f32,
 }
 
-/// A piece came to rest.
+/// A piece came to rest, or something rigid that is free.
 #[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
 pub struct FellAsleep {
-    /// The soft body.
+    /// The soft body, or what is rigid.
     pub body: Entity,
-    /// Number of the piece.
-    pub piece: PieceId,
+    /// Number of the piece; what is rigid has none.
+    pub piece: Option<PieceId>,
 }
 
-/// A resting piece was disturbed.
+/// A resting piece was disturbed, or something rigid that is free.
 #[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Woke {
-    /// The soft body.
+    /// The soft body, or what is rigid.
     pub body: Entity,
-    /// Number of the piece.
-    pub piece: PieceId,
+    /// Number of the piece; what is rigid has none.
+    pub piece: Option<PieceId>,
 }
 
 /// A piece went out of hand and was stopped for good.

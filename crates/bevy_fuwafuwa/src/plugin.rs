@@ -5,11 +5,12 @@ use crate::component::SoftBody;
 use crate::dimension::Dimension;
 use crate::enter::enter_and_leave;
 use crate::message::{FellAsleep, Parted, Quarantined, Rejection, Torn, Touched, Woke};
-use crate::push::{change_settings, push_bodies, push_rigids};
+use crate::push::{change_settings, push_bodies};
 use crate::queue::Queue;
+use crate::steer::steer_rigids;
 use crate::step::step;
 use crate::world::{SoftSettings, SoftWorld};
-use crate::write::{write_meshes, write_motion};
+use crate::write::{write_bodies, write_meshes, write_rigids};
 use bevy_app::{App, FixedPostUpdate, Plugin};
 use bevy_asset::{AssetApp, AssetServer, Assets};
 use bevy_ecs::intern::Interned;
@@ -101,14 +102,14 @@ impl<D: Dimension> Plugin for FuwafuwaPlugin<D> {
             change_settings::<D>,
             enter_and_leave::<D>,
             push_bodies::<D>,
-            push_rigids::<D>,
+            steer_rigids::<D>,
         );
         app.add_systems(
             self.schedule,
             (
                 prepare.chain().in_set(FuwafuwaSystems::Prepare),
                 step::<D>.in_set(FuwafuwaSystems::Step),
-                (write_motion::<D>, write_meshes::<D>)
+                (write_bodies::<D>, write_rigids::<D>, write_meshes::<D>)
                     .chain()
                     .in_set(FuwafuwaSystems::Writeback),
             ),

@@ -77,34 +77,37 @@ impl Pose {
             .moved(self.translation.into())
     }
 
-    /// A shape that is scaled and turned, but not moved.
-    pub fn form(&self, shape: Shape) -> Result<Shape, Problem> {
-        let turn = |vector: [f32; 3]| (self.rotation * Vec3::from(vector)).into();
-        let place = |at: [f32; 3]| turn((self.scale * Vec3::from(at)).into());
-        Ok(match shape {
+    /// A shape that is scaled, but neither turned nor moved.
+    pub fn form(&self, shape: Shape) -> Shape {
+        let scaled = |vector: [f32; 3]| vector.map(|k| k * self.scale);
+        match shape {
             Shape::HalfSpace { normal, offset } => Shape::HalfSpace {
-                normal: turn(normal),
+                normal,
                 offset: offset * self.scale,
             },
             Shape::Ball { centre, radius } => Shape::Ball {
-                centre: place(centre),
+                centre: scaled(centre),
                 radius: radius * self.scale,
             },
             Shape::Capsule { from, to, radius } => Shape::Capsule {
-                from: place(from),
-                to: place(to),
+                from: scaled(from),
+                to: scaled(to),
                 radius: radius * self.scale,
             },
-            Shape::Box { centre, half } if self.rotation == Quat::IDENTITY => Shape::Box {
-                centre: place(centre),
-                half: half.map(|k| k * self.scale),
+            Shape::Box { centre, half } => Shape::Box {
+                centre: scaled(centre),
+                half: scaled(half),
             },
-            _ => {
-                return Err(Problem::Pose(
-                    "not turn a box: nothing rigid but round things turns",
-                ));
-            }
-        })
+            Shape::OrientedBox {
+                centre,
+                half,
+                rotation,
+            } => Shape::OrientedBox {
+                centre: scaled(centre),
+                half: scaled(half),
+                rotation,
+            },
+        }
     }
 }
 

@@ -1,23 +1,18 @@
-//! What was asked of entities that are in the world: to be elsewhere, to go faster, to be pushed.
+//! What was asked of soft bodies that are in the world: to be elsewhere, to go faster, to be pushed.
 
-use crate::component::{
-    ExternalImpulse, Goal, GravityScale, RigidBody, RigidBodyId, SoftBodyId, SoftVelocity,
-};
+use crate::component::{ExternalImpulse, GravityScale, SoftBodyId, Velocity};
 use crate::dimension::Dimension;
-use crate::enter::put_rigid;
 use crate::message::Rejection;
 use crate::pose::{Pose, engine_rotation};
 use crate::problem::Problem;
 use crate::world::{SoftSettings, SoftWorld};
 use crate::write::Followed;
 use bevy_ecs::change_detection::{DetectChanges, Res, ResMut};
-use bevy_ecs::entity::Entity;
 use bevy_ecs::message::MessageWriter;
-use bevy_ecs::query::Without;
 use bevy_ecs::system::{Commands, Query};
 use bevy_math::{Quat, Vec3};
 use bevy_transform::components::Transform;
-use fuwafuwa::{BodyId, Drive};
+use fuwafuwa::BodyId;
 
 /// Takes settings over that were changed.
 pub fn change_settings<D: Dimension>(
@@ -39,7 +34,7 @@ type Asked<'a> = (
     &'a SoftBodyId,
     &'a mut Transform,
     &'a mut Followed,
-    Option<&'a mut SoftVelocity>,
+    Option<&'a mut Velocity>,
     Option<&'a ExternalImpulse>,
     Option<&'a GravityScale>,
 );
@@ -65,7 +60,7 @@ pub fn push_bodies<D: Dimension>(
             rejections.write(Rejection { entity, problem });
         };
         let mut before = followed.velocity;
-        if !is_same(&transform, &followed.transform) {
+        if !followed.is_at(&transform) {
             match displace(&mut world, id, &transform, &mut followed) {
                 // All of it was turned, and how it moves too; of that nobody spoke.
                 Ok(turn) => {
@@ -148,81 +143,4 @@ fn displace<D: Dimension>(
     followed.transform = *transform;
     followed.is_settled = false;
     Ok(turn)
-}
-
-/// Whether two transforms are the same to the last bit: what is no number is told once, and not in each tick.
-fn is_same(a: &Transform, b: &Transform) -> bool {
-    let bits = |transform: &Transform| {
-        let (translation, scale) = (transform.translation, transform.scale);
-        let vectors = [translation, scale].map(|own| own.to_array().map(f32::to_bits));
-        (vectors, transform.rotation.to_array().map(f32::to_bits))
-    };
-    bits(a) == bits(b)
-}
-
-/// What something rigid may have been asked for.
-type AskedOfRigid<'a, D> = (
-    &'a mut RigidBodyId,
-    &'a RigidBody<D>,
-    &'a Transform,
-    &'a mut Followed,
-    Option<&'a Goal>,
-);
-
-/// Sends hands to their goals, and puts obstacles that were moved where they are now.
-pub fn push_rigids<D: Dimension>(
-    mut world: ResMut<SoftWorld<D>>,
-    mut rigids: Query<AskedOfRigid<'_, D>, Without<SoftBodyId>>,
-    mut rejections: MessageWriter<Rejection>,
-) {
-    for (id, entity) in world.rigid_entities() {
-        let Ok((mut own, rigid, transform, mut followed, goal)) = rigids.get_mut(entity) else {
-            continue;
-        };
-        if own.0 != id {
-            continue;
-        }
-        let is_moved = !is_same(transform, &followed.transform);
-        let goal = goal.map(|goal| goal.0);
-        let bits = |goal: Vec3| goal.to_array().map(f32::to_bits);
-        let is_sent = goal.map(bits) != followed.goal.map(bits);
-        let outcome = match (rigid.drive, goal) {
-            (Drive::Coupled { .. }, Some(goal)) if is_sent => send(&mut world, id, goal),
-            (Drive::Kinematic, _) if is_moved => send(&mut world, id, transform.translation),
-            (Drive::Fixed, _) if is_moved => {
-                replace(&mut world, entity, rigid, transform).map(|id| own.0 = id)
-            }
-            _ => Ok(()),
-        };
-        // Once, and not again in each tick.
-        (followed.transform, followed.goal) = (*transform, goal);
-        if let Err(problem) = outcome {
-            let entity = Some(entity);
-            rejections.write(Rejection { entity, problem });
-        }
-    }
-}
-
-fn send<D: Dimension>(
-    world: &mut SoftWorld<D>,
-    hand: fuwafuwa::RigidId,
-    goal: Vec3,
-) -> Result<(), Problem> {
-    Ok(world.engine_mut().set_goal(hand, goal.into())?)
-}
-
-/// Puts an obstacle elsewhere; where that cannot be, it stays as it is.
-fn replace<D: Dimension>(
-    world: &mut SoftWorld<D>,
-    entity: Entity,
-    rigid: &RigidBody<D>,
-    transform: &Transform,
-) -> Result<fuwafuwa::RigidId, Problem> {
-    let pose = Pose::of(transform)?;
-    let before = world.rigid_of(entity);
-    let id = put_rigid(world, entity, rigid, pose)?;
-    if let Some(before) = before {
-        world.engine_mut().remove_rigid(before).ok();
-    }
-    Ok(id)
 }

@@ -26,6 +26,13 @@ pub fn step<D: Dimension>(mut world: ResMut<SoftWorld<D>>, mut writers: Writers<
         for event in world.engine().events() {
             writers.tell(&world, *event);
         }
+        for (body, is_asleep) in world.follow_sleep() {
+            if is_asleep {
+                writers.fell_asleep.write(FellAsleep { body, piece: None });
+            } else {
+                writers.woke.write(Woke { body, piece: None });
+            }
+        }
     }
 }
 
@@ -58,7 +65,7 @@ impl Writers<'_> {
                 ..
             } => {
                 let (with, with_piece) = match with {
-                    With::Obstacle(rigid) | With::Hand(rigid) => {
+                    With::Obstacle(rigid) | With::Hand(rigid) | With::Free(rigid) => {
                         (world.entity_of_rigid(rigid), None)
                     }
                     With::Piece { body, piece } => (world.entity_of_body(body), Some(piece)),
@@ -73,9 +80,11 @@ impl Writers<'_> {
                 });
             }
             Event::FellAsleep { piece, .. } => {
+                let piece = Some(piece);
                 self.fell_asleep.write(FellAsleep { body, piece });
             }
             Event::Woke { piece, .. } => {
+                let piece = Some(piece);
                 self.woke.write(Woke { body, piece });
             }
             Event::Quarantined { piece, .. } => {

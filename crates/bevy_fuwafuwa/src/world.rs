@@ -5,7 +5,7 @@ use bevy_ecs::entity::Entity;
 use bevy_ecs::resource::Resource;
 use fuwafuwa::handle::Gone;
 use fuwafuwa::{BodyId, Rigid, RigidId, Settings, StepReport, World};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What holds for all worlds of an app: gravity, drag, substeps. Change it whenever you like; what the engine refuses is
 /// told by [`crate::message::Rejection`] and changes nothing.
@@ -21,6 +21,8 @@ pub struct SoftWorld<D: Dimension> {
     engine: World<D>,
     bodies: Pairs<BodyId>,
     rigids: Pairs<RigidId>,
+    /// What is rigid and slept after the last tick.
+    sleepers: BTreeSet<RigidId>,
     is_paused: bool,
     single_ticks: u32,
     has_ticked: bool,
@@ -64,6 +66,7 @@ impl<D: Dimension> Default for SoftWorld<D> {
             engine: World::new(Settings::default()).expect("the default is in range"),
             bodies: Pairs::default(),
             rigids: Pairs::default(),
+            sleepers: BTreeSet::new(),
             is_paused: false,
             single_ticks: 0,
             has_ticked: false,
@@ -141,6 +144,18 @@ impl<D: Dimension> SoftWorld<D> {
     /// Whether a tick passed the last time.
     pub(crate) fn has_ticked(&self) -> bool {
         self.has_ticked
+    }
+
+    /// The rigid entities that fell asleep or woke since this was asked last, and whether they sleep.
+    pub(crate) fn follow_sleep(&mut self) -> Vec<(Entity, bool)> {
+        let asleep = self.engine.rigids().entries();
+        let asleep = asleep.filter(|(_, rigid)| rigid.is_asleep());
+        let asleep: BTreeSet<RigidId> = asleep.map(|(id, _)| id).collect();
+        let before = std::mem::replace(&mut self.sleepers, asleep);
+        let changed = before.symmetric_difference(&self.sleepers);
+        let told = changed
+            .filter_map(|&id| Some((self.entity_of_rigid(id)?, self.sleepers.contains(&id))));
+        told.collect()
     }
 
     /// The bodies of entities, in the order of their ids.

@@ -1,6 +1,6 @@
 //! What a tick did, written to entities.
 
-use crate::component::{GravityScale, RigidBody, RigidBodyId, SoftBodyId, SoftVelocity};
+use crate::component::{GravityScale, RigidBodyId, SoftBodyId, Velocity};
 use crate::dimension::Dimension;
 use crate::drawn::Drawn;
 use crate::pose::{Pose, motion_of};
@@ -8,8 +8,9 @@ use crate::world::SoftWorld;
 use bevy_asset::Assets;
 use bevy_ecs::change_detection::{Res, ResMut};
 use bevy_ecs::component::Component;
+use bevy_ecs::query::Without;
 use bevy_ecs::system::Query;
-use bevy_math::Vec3;
+use bevy_math::{Quat, Vec3};
 use bevy_mesh::Mesh;
 use bevy_transform::components::Transform;
 use fuwafuwa::Drive;
@@ -19,8 +20,10 @@ use fuwafuwa::Drive;
 pub struct Followed {
     pub pose: Pose,
     pub transform: Transform,
-    pub velocity: SoftVelocity,
+    pub velocity: Velocity,
     pub gravity: f32,
+    /// From its origin to what the engine has there, where it is not turned [m]; of what is rigid.
+    pub middle: Vec3,
     /// Where a hand was sent last.
     pub goal: Option<Vec3>,
     /// Whether all of it slept then.
@@ -31,7 +34,7 @@ impl Followed {
     pub fn new(
         pose: Pose,
         transform: Transform,
-        velocity: Option<SoftVelocity>,
+        velocity: Option<Velocity>,
         gravity: Option<GravityScale>,
     ) -> Self {
         Self {
@@ -39,25 +42,32 @@ impl Followed {
             transform,
             velocity: velocity.unwrap_or_default(),
             gravity: gravity.map_or(1.0, |own| own.0),
+            middle: Vec3::ZERO,
             goal: None,
             is_settled: false,
         }
     }
+
+    /// Whether a transform is what it was told, to the last bit: what is no number is told once, and not in each tick.
+    pub fn is_at(&self, transform: &Transform) -> bool {
+        let bits = |transform: &Transform| {
+            let (translation, scale) = (transform.translation, transform.scale);
+            let vectors = [translation, scale].map(|own| own.to_array().map(f32::to_bits));
+            (vectors, transform.rotation.to_array().map(f32::to_bits))
+        };
+        bits(&self.transform) == bits(transform)
+    }
 }
 
-/// Tells entities where they are and how fast.
-pub fn write_motion<D: Dimension>(
+/// Tells soft bodies where they are and how fast.
+pub fn write_bodies<D: Dimension>(
     world: Res<SoftWorld<D>>,
     mut bodies: Query<(
         &SoftBodyId,
         &mut Transform,
         &mut Followed,
-        Option<&mut SoftVelocity>,
+        Option<&mut Velocity>,
     )>,
-    mut hands: Query<
-        (&RigidBodyId, &RigidBody<D>, &mut Transform, &mut Followed),
-        bevy_ecs::query::Without<SoftBodyId>,
-    >,
 ) {
     if !world.has_ticked() {
         return;
@@ -79,7 +89,7 @@ pub fn write_motion<D: Dimension>(
         followed.pose = motion.pose;
         followed.transform = motion.pose.transform();
         *transform = followed.transform;
-        let now = SoftVelocity {
+        let now = Velocity {
             linear: motion.linear,
             angular: motion.angular,
         };
@@ -89,15 +99,54 @@ pub fn write_motion<D: Dimension>(
             *velocity = now;
         }
     }
+}
+
+/// Tells what is rigid and moves where it is and how fast; where what is kinematic is, its owner knows.
+pub fn write_rigids<D: Dimension>(
+    world: Res<SoftWorld<D>>,
+    mut rigids: Query<
+        (
+            &RigidBodyId,
+            &mut Transform,
+            &mut Followed,
+            Option<&mut Velocity>,
+        ),
+        Without<SoftBodyId>,
+    >,
+) {
+    if !world.has_ticked() {
+        return;
+    }
     for (id, entity) in world.rigid_entities() {
-        let (Ok(hand), Ok((own, rigid, mut transform, mut followed))) =
-            (world.engine().rigids().get(id), hands.get_mut(entity))
+        let (Ok(rigid), Ok((own, mut transform, mut followed, velocity))) =
+            (world.engine().rigids().get(id), rigids.get_mut(entity))
         else {
             continue;
         };
-        if own.0 == id && matches!(rigid.drive, Drive::Coupled { .. }) {
-            transform.translation = Vec3::from(hand.position());
+        let is_settled = followed.is_settled && rigid.is_asleep();
+        if own.0 != id || rigid.drive == Drive::Fixed || is_settled {
+            continue;
+        }
+        if rigid.drive != Drive::Kinematic {
+            if rigid.is_free() {
+                transform.rotation = Quat::from_array(rigid.rotation().quaternion());
+            }
+            let middle = transform.rotation * followed.middle;
+            let z = transform.translation.z;
+            transform.translation = Vec3::from(rigid.position()) - middle;
+            if D::N == 2 {
+                transform.translation.z = z;
+            }
             followed.transform = *transform;
+        }
+        let now = Velocity {
+            linear: rigid.velocity().into(),
+            angular: rigid.angular_velocity().into(),
+        };
+        followed.velocity = now;
+        followed.is_settled = rigid.is_asleep();
+        if let Some(mut velocity) = velocity {
+            *velocity = now;
         }
     }
 }

@@ -22,7 +22,7 @@ fn hash_of_app() -> u64 {
             .world_mut()
             .spawn((SoftBody2d::ball(across, 1.0), at(x, y)));
         if n == 1 {
-            ball.insert(SoftVelocity::default());
+            ball.insert(Velocity::default());
         }
     }
     let hand = (RigidBody2d::hand(0.15), at(0.2, 3.0));
@@ -61,11 +61,7 @@ fn an_app_has_the_bits_of_the_engine() -> Result<(), Box<dyn std::error::Error>>
 #[test]
 fn what_is_written_back_changes_no_bits() {
     let mut app = app::<Dim2>();
-    let ball = (
-        SoftBody2d::ball(16, 1.0),
-        at(0.0, 2.0),
-        SoftVelocity::default(),
-    );
+    let ball = (SoftBody2d::ball(16, 1.0), at(0.0, 2.0), Velocity::default());
     let ball = app.world_mut().spawn(ball).id();
     app.world_mut().spawn(RigidBody2d::floor());
     run(&mut app, 20);

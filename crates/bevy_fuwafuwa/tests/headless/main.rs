@@ -6,6 +6,7 @@ mod life;
 mod meshes;
 mod mistakes;
 mod motion;
+mod rigid;
 
 use bevy_app::{App, TaskPoolPlugin, Update};
 use bevy_asset::{AssetPlugin, Assets};

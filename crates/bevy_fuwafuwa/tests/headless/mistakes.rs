@@ -4,6 +4,7 @@ use super::{app, at, messages, run, transform, world};
 use bevy_app::{App, Update};
 use bevy_asset::Handle;
 use bevy_ecs::bundle::Bundle;
+use bevy_ecs::entity::Entity;
 use bevy_fuwafuwa::asset::Voxels;
 use bevy_fuwafuwa::component::WithoutMesh;
 use bevy_fuwafuwa::fuwafuwa::{BuildError, Settings};
@@ -72,19 +73,101 @@ fn who_cannot_be_does_not_enter_and_hears_why() {
         )),
         "have a rotation",
     );
-    let fast = SoftVelocity {
+    let fast = Velocity {
         linear: Vec3::splat(f32::INFINITY),
-        ..SoftVelocity::default()
+        ..Velocity::default()
     };
     check(rejected((ball(), fast)), "velocity");
     check(rejected((ball(), GravityScale(1e9))), "gravity scale");
     let nowhere = Handle::<Voxels<Dim2>>::default();
     check(rejected(SoftBody2d::asset(nowhere)), "nobody loads it");
     check(rejected(RigidBody2d::hand(-1.0)), "radius");
-    let turned = Transform::from_rotation(Quat::from_rotation_z(0.5));
     let (centre, half) = ([0.0; 3], [1.0; 3]);
-    let shape = Shape::Box { centre, half };
-    check(rejected((RigidBody2d::fixed(shape), turned)), "turn a box");
+    let free = |mass| RigidBody2d::free(Shape::Box { centre, half }, mass);
+    check(rejected(free(f32::NAN)), "mass");
+    check(rejected(free(0.0)), "mass");
+    check(
+        rejected(RigidBody2d::floor().with_drive(Drive::Free { mass: 1.0 })),
+        "shape",
+    );
+    check(rejected(free(1.0).with_restitution(2.0)), "restitution");
+    check(rejected(free(1.0).with_friction(-1.0)), "friction");
+    check(
+        rejected((free(1.0), Transform::from_scale(Vec3::NAN))),
+        "same factor",
+    );
+    check(rejected((free(1.0), at(f32::NAN, 0.0))), "finite");
+    check(rejected((free(1.0), at(1e9, 0.0))), "position");
+    check(rejected((free(1.0), fast)), "velocity");
+    let slow = Velocity {
+        linear: Vec3::X,
+        ..Velocity::default()
+    };
+    check(rejected((RigidBody2d::hand(1.0), slow)), "free");
+}
+
+#[test]
+fn what_is_free_stays_as_it_was_when_it_cannot_be_done() {
+    let mut app = app::<Dim2>();
+    app.insert_resource(SoftSettings(Settings {
+        gravity: [0.0; 3],
+        ..Settings::default()
+    }));
+    let (centre, radius) = ([0.0; 3], 0.2);
+    let free = RigidBody2d::free(Shape::Ball { centre, radius }, 1.0);
+    let free = (free, at(1.0, 2.0), Velocity::default());
+    let free = app.world_mut().spawn(free).id();
+    let wall = RigidBody2d::fixed(Shape::Ball { centre, radius });
+    let wall = app.world_mut().spawn((wall, at(9.0, 0.0))).id();
+    app.update();
+    let before = transform(&app, free);
+    let check = |app: &mut App, entity: Entity, bad, expect: &str| {
+        match bad {
+            Bad::Place(place) => app.world_mut().entity_mut(entity).insert(place),
+            Bad::Velocity(velocity) => app.world_mut().entity_mut(entity).insert(velocity),
+            Bad::Push(push) => app.world_mut().entity_mut(entity).insert(push),
+        };
+        app.update();
+        let told = messages::<Rejection>(app);
+        let texts: Vec<String> = told.iter().map(|own| own.problem.to_string()).collect();
+        assert!(texts.len() == 1 && texts[0].contains(expect), "{texts:?}");
+        assert_eq!(transform(app, free), before);
+        app.update();
+        assert_eq!(messages::<Rejection>(app), [], "it is told once");
+    };
+    check(&mut app, free, Bad::Place(at(f32::NAN, 0.0)), "finite");
+    check(&mut app, free, Bad::Place(at(1e9, 0.0)), "position");
+    let large = before.with_scale(Vec3::splat(2.0));
+    check(&mut app, free, Bad::Place(large), "keep its scale");
+    let still = Quat::from_xyzw(0.0, 0.0, 0.0, 0.0);
+    let still = before.with_rotation(still);
+    check(&mut app, free, Bad::Place(still), "have a rotation");
+    let velocity = Velocity {
+        linear: Vec3::ZERO,
+        angular: Vec3::NAN,
+    };
+    check(&mut app, free, Bad::Velocity(velocity), "spin");
+    let push = ExternalImpulse {
+        impulse: Vec3::X,
+        at: Vec3::INFINITY,
+        radius: 0.0,
+    };
+    check(&mut app, free, Bad::Push(push), "place");
+    let push = ExternalImpulse {
+        at: Vec3::ZERO,
+        ..push
+    };
+    check(&mut app, wall, Bad::Push(push), "free");
+    let there = transform(&app, wall);
+    check(&mut app, wall, Bad::Place(at(0.0, f32::NAN)), "finite");
+    assert_eq!(transform(&app, wall), there);
+}
+
+/// What is asked and cannot be done.
+enum Bad {
+    Place(Transform),
+    Velocity(Velocity),
+    Push(ExternalImpulse),
 }
 
 #[test]
@@ -94,11 +177,7 @@ fn what_cannot_be_done_to_who_is_there_is_told_and_leaves_it_as_it_was() {
         gravity: [0.0; 3],
         ..Settings::default()
     }));
-    let ball = (
-        SoftBody3d::ball(8, 1.0),
-        at(0.0, 2.0),
-        SoftVelocity::default(),
-    );
+    let ball = (SoftBody3d::ball(8, 1.0), at(0.0, 2.0), Velocity::default());
     let ball = app.world_mut().spawn(ball).id();
     app.update();
     let before = transform(&app, ball);
@@ -117,9 +196,9 @@ fn what_cannot_be_done_to_who_is_there_is_told_and_leaves_it_as_it_was() {
         .entity_mut(ball)
         .insert(before.with_scale(Vec3::splat(2.0)));
     check(&mut app, "keep its scale");
-    let fast = SoftVelocity {
+    let fast = Velocity {
         linear: Vec3::splat(f32::NAN),
-        ..SoftVelocity::default()
+        ..Velocity::default()
     };
     app.world_mut().entity_mut(ball).insert(fast);
     check(&mut app, "velocity");

@@ -10,17 +10,10 @@ use bevy_transform::components::Transform;
 fn a_ball_falls_rests_and_sleeps() {
     let mut app = app::<Dim2>();
     let floor = app.world_mut().spawn(RigidBody2d::floor()).id();
-    let ball = (
-        SoftBody2d::ball(16, 1.0),
-        at(3.0, 1.0),
-        SoftVelocity::default(),
-    );
+    let ball = (SoftBody2d::ball(16, 1.0), at(3.0, 1.0), Velocity::default());
     let ball = app.world_mut().spawn(ball).id();
     run(&mut app, 10);
-    let speed = app
-        .world()
-        .get::<SoftVelocity>(ball)
-        .map(|own| own.linear.y);
+    let speed = app.world().get::<Velocity>(ball).map(|own| own.linear.y);
     assert!(
         speed.is_some_and(|speed| (-1.7..-1.5).contains(&speed)),
         "{speed:?}"
@@ -58,7 +51,7 @@ fn a_transform_turns_moves_and_scales_what_enters_and_follows_it() {
         rotation: Quat::from_rotation_z(1.0),
         scale: Vec3::splat(0.5),
     };
-    let spin = SoftVelocity {
+    let spin = Velocity {
         linear: Vec3::X,
         angular: Vec3::new(0.0, 0.0, 0.6),
     };
@@ -81,7 +74,7 @@ fn a_transform_turns_moves_and_scales_what_enters_and_follows_it() {
     assert_eq!(now.scale, pose.scale);
     let velocity = app
         .world()
-        .get::<SoftVelocity>(stick)
+        .get::<Velocity>(stick)
         .copied()
         .unwrap_or_default();
     assert!(velocity.linear.distance(Vec3::X) < 0.01, "{velocity:?}");
@@ -98,7 +91,7 @@ fn a_transform_turns_moves_and_scales_what_enters_and_follows_it() {
     };
     app.world_mut()
         .entity_mut(stick)
-        .insert((there, SoftVelocity::default()));
+        .insert((there, Velocity::default()));
     run(&mut app, 30);
     let now = transform(&app, stick);
     assert!(
@@ -122,13 +115,13 @@ fn an_impulse_is_given_once_and_a_scale_of_gravity_lifts() {
         SoftBody2d::ball(16, 1.0),
         push,
         GravityScale(-0.5),
-        SoftVelocity::default(),
+        Velocity::default(),
     );
     let ball = app.world_mut().spawn(soft).id();
     run(&mut app, 10);
     assert!(app.world().get::<ExternalImpulse>(ball).is_none());
     let mass = body::<Dim2>(&app, ball).total_mass() as f32;
-    let velocity = app.world().get::<SoftVelocity>(ball).map(|own| own.linear);
+    let velocity = app.world().get::<Velocity>(ball).map(|own| own.linear);
     let expect = Vec3::new(20.0 / mass, 0.5 * 9.81 / 6.0, 0.0);
     assert!(
         velocity.is_some_and(|own| own.distance(expect) < 0.02),

@@ -1,12 +1,15 @@
-//! Soft bodies on a table, one of them with a face, and a hand that presses through it. Arrow keys move the hand, Q and Z
+//! Soft bodies on a table, one of them with a face, a tower of wooden boxes, and a hand that presses through the face. What
+//! comes off knocks on the tower. Arrow keys move the hand, Q and Z
 //! lift and lower it; it goes by itself until then.
 //!
 //! `cargo run -p bevy_fuwafuwa_examples --bin scene`, in `crates/bevy_fuwafuwa`. With `-- FOLDER` behind it writes pictures
 //! of some moments into a folder, as fast as the machine can, and ends.
 
+use bevy::asset::RenderAssetUsages;
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::light::{CascadeShadowConfigBuilder, GlobalAmbientLight};
 use bevy::prelude::*;
+use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat};
 use bevy::render::view::screenshot::{Screenshot, save_to_disk};
 use bevy::time::TimeUpdateStrategy;
 use bevy_fuwafuwa::prelude::*;
@@ -22,6 +25,11 @@ const START: u32 = 120;
 /// Where the hand is pressed through [m].
 const HAND: Vec3 = Vec3::new(0.02, 1.5, 0.0);
 const HAND_RADIUS: f32 = 0.16;
+/// Where the tower stands, and how wide a box of it is [m].
+const TOWER: Vec3 = Vec3::new(0.36, 0.0, 0.26);
+const BOX: f32 = 0.18;
+/// Width of the picture on each of their sides.
+const PIXELS: u32 = 128;
 
 #[derive(Component)]
 struct Hand;
@@ -49,7 +57,7 @@ fn main() {
         brightness: 560.0,
         ..default()
     })
-    .add_systems(Startup, (light, furnish, put_bodies))
+    .add_systems(Startup, (light, furnish, put_bodies, stack_boxes))
     .add_systems(FixedUpdate, move_hand)
     .add_systems(Update, report);
     if let Some(folder) = std::env::args_os().nth(1) {
@@ -194,6 +202,69 @@ fn put_bodies(
         skin,
         Transform::from_xyz(1.05, 0.75, 0.75).with_rotation(Quat::from_rotation_x(-1.3)),
     ));
+}
+
+/// A leaning tower of three boxes.
+fn stack_boxes(
+    mut commands: Commands,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+    mut images: ResMut<Assets<Image>>,
+) {
+    let wood = MeshMaterial3d(materials.add(StandardMaterial {
+        base_color_texture: Some(images.add(wood())),
+        perceptual_roughness: 0.8,
+        ..default()
+    }));
+    let cuboid = Mesh3d(meshes.add(Cuboid::from_length(BOX)));
+    let (centre, half) = ([0.0; 3], [0.5 * BOX; 3]);
+    for n in 0..3 {
+        let n = n as f32;
+        let place = TOWER + Vec3::new(0.05 * n, (n + 0.5) * BOX, 0.0);
+        let turned = Quat::from_rotation_y(0.3 + 0.25 * n);
+        commands.spawn((
+            RigidBody3d::free(Shape::Box { centre, half }, 0.6),
+            cuboid.clone(),
+            wood.clone(),
+            Transform::from_translation(place).with_rotation(turned),
+        ));
+    }
+}
+
+/// The side of a box: boards in a frame.
+fn wood() -> Image {
+    let pixel = |index: u32| {
+        let [x, y] = [index % PIXELS, index / PIXELS].map(|k| k as f32 / PIXELS as f32);
+        let edge = x.min(y).min(1.0 - x).min(1.0 - y);
+        let is_frame = edge < 0.13;
+        // Along a board, and across it.
+        let is_upright = is_frame && x.min(1.0 - x) < y.min(1.0 - y);
+        let (along, across) = if is_upright { (y, x) } else { (x, y) };
+        let board = (across * 4.0).floor();
+        let waves = 40.0 * across + 1.5 * (5.0 * along + 2.0 * board).sin() + 3.0 * board;
+        let grain = 0.5 + 0.5 * waves.sin();
+        let seam = if is_frame {
+            (0.13 - edge).min(edge + 0.015)
+        } else {
+            (edge - 0.13).min(0.25 * (0.5 - (across * 4.0 - board - 0.5).abs()))
+        };
+        let light = if is_frame { 1.0 } else { 0.88 };
+        let shade = light * (1.0 - 0.14 * grain) * (0.62 + 0.38 * (seam / 0.015).min(1.0));
+        let [red, green, blue] = [232.0, 178.0, 112.0].map(|own: f32| (own * shade) as u8);
+        [red, green, blue, 255]
+    };
+    let size = Extent3d {
+        width: PIXELS,
+        height: PIXELS,
+        depth_or_array_layers: 1,
+    };
+    Image::new(
+        size,
+        TextureDimension::D2,
+        (0..PIXELS * PIXELS).flat_map(pixel).collect(),
+        TextureFormat::Rgba8UnormSrgb,
+        RenderAssetUsages::RENDER_WORLD,
+    )
 }
 
 /// Presses the hand down through the ball and lifts it again, until somebody takes it.

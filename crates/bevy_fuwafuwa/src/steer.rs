@@ -1,0 +1,125 @@
+//! What was asked of rigid things that are in the world: to go somewhere, to be somewhere, to go faster, to be pushed.
+
+use crate::component::{ExternalImpulse, Goal, RigidBodyId, SoftBodyId, Velocity};
+use crate::dimension::Dimension;
+use crate::message::Rejection;
+use crate::pose::{Pose, engine_rotation};
+use crate::problem::Problem;
+use crate::world::SoftWorld;
+use crate::write::Followed;
+use bevy_ecs::change_detection::ResMut;
+use bevy_ecs::message::MessageWriter;
+use bevy_ecs::query::Without;
+use bevy_ecs::system::{Commands, Query};
+use bevy_math::Vec3;
+use bevy_transform::components::Transform;
+use fuwafuwa::{Drive, RigidId};
+
+/// What something rigid may have been asked for.
+type Asked<'a> = (
+    &'a RigidBodyId,
+    &'a mut Transform,
+    &'a mut Followed,
+    Option<&'a mut Velocity>,
+    Option<&'a ExternalImpulse>,
+    Option<&'a Goal>,
+);
+
+/// Sends hands to their goals, puts what was moved where it is now, and throws and pushes what is free.
+pub fn steer_rigids<D: Dimension>(
+    mut world: ResMut<SoftWorld<D>>,
+    mut rigids: Query<Asked<'_>, Without<SoftBodyId>>,
+    mut commands: Commands,
+    mut rejections: MessageWriter<Rejection>,
+) {
+    for (id, entity) in world.rigid_entities() {
+        let Ok((own, mut transform, mut followed, velocity, impulse, goal)) =
+            rigids.get_mut(entity)
+        else {
+            continue;
+        };
+        if own.0 != id || world.engine().rigids().get(id).is_err() {
+            continue;
+        }
+        let mut check = |outcome: Result<(), Problem>| match outcome {
+            Ok(()) => true,
+            Err(problem) => {
+                let entity = Some(entity);
+                rejections.write(Rejection { entity, problem });
+                false
+            }
+        };
+        if !followed.is_at(&transform) {
+            if check(put(&mut world, id, &transform, &followed)) {
+                // It is pulled from there.
+                (followed.transform, followed.goal) = (*transform, None);
+            } else {
+                *transform = followed.transform;
+            }
+        }
+        let engine = world.engine_mut();
+        let goal = goal.map(|goal| goal.0);
+        let bits = |goal: Vec3| goal.to_array().map(f32::to_bits);
+        if goal.map(bits) != followed.goal.map(bits) {
+            if let (Some(goal), Drive::Coupled { .. }) = (goal, engine.rigids()[id].drive) {
+                check(engine.set_goal(id, goal.into()).map_err(Problem::from));
+            }
+            // Once, and not again in each tick.
+            followed.goal = goal;
+        }
+        if let Some(mut velocity) = velocity
+            && *velocity != followed.velocity
+        {
+            let Velocity { linear, angular } = *velocity;
+            let outcome = engine.set_velocity(id, linear.into(), angular.into());
+            if check(outcome.map_err(Problem::from)) {
+                followed.velocity = *velocity;
+            } else {
+                *velocity = followed.velocity;
+            }
+        }
+        if let Some(push) = impulse {
+            let outcome = engine.push_rigid(id, push.at.into(), push.impulse.into());
+            check(outcome.map_err(Problem::from));
+            commands.entity(entity).try_remove::<ExternalImpulse>();
+        }
+    }
+}
+
+/// Puts something rigid where a transform says, or lets it go there if it is kinematic.
+fn put<D: Dimension>(
+    world: &mut SoftWorld<D>,
+    id: RigidId,
+    transform: &Transform,
+    followed: &Followed,
+) -> Result<(), Problem> {
+    let pose = Pose::of(transform)?;
+    if transform.scale != followed.transform.scale {
+        return Err(Problem::Pose(
+            "keep its scale: what is rigid is of one size once it has entered",
+        ));
+    }
+    let engine = world.engine_mut();
+    let mut at = pose.translation + pose.rotation * followed.middle;
+    if D::N == 2 {
+        at.z = 0.0;
+    }
+    let rotation = engine_rotation(transform.rotation);
+    let rigid = &engine.rigids()[id];
+    if rigid.drive == Drive::Kinematic {
+        engine.set_goal(id, at.into())?;
+        engine.set_goal_rotation(id, rotation)?;
+        return Ok(());
+    }
+    // What was not written is not turned, not even by what rounding leaves.
+    let is_turned = transform.rotation != followed.transform.rotation;
+    let rotation = if is_turned {
+        rotation
+    } else {
+        rigid.rotation()
+    };
+    if is_turned || at != Vec3::from(rigid.position()) {
+        engine.place_rigid(id, at.into(), rotation)?;
+    }
+    Ok(())
+}
