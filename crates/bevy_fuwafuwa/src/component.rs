@@ -10,7 +10,7 @@ use bevy_ecs::lifecycle::HookContext;
 use bevy_ecs::world::DeferredWorld;
 use bevy_math::Vec3;
 use bevy_transform::components::Transform;
-use fuwafuwa::{BodyId, BuildError, Drive, Material, RigidId, Shape, VoxelGrid};
+use fuwafuwa::{BodyId, BuildError, Drive, Layers, Material, RigidId, Shape, VoxelGrid};
 use std::marker::PhantomData;
 
 /// A soft body: the voxels that it is made from. It enters the world at the beginning of the next tick, where its
@@ -70,7 +70,7 @@ pub struct SoftBodyId(pub BodyId);
 
 /// Something rigid: an obstacle that stands, a hand that moves, or what is free to fall. The shape is as it would be at the
 /// origin, best with its middle there; its `Transform` moves, turns and scales it when it enters. From then on its size
-/// stays, as do friction, restitution and drive: insert it again for another one.
+/// stays, as does all that is said here: insert it again for another one.
 ///
 /// What moves it is [`Drive`]:
 /// - Nothing moves what is [`Drive::Fixed`].
@@ -90,6 +90,10 @@ pub struct RigidBody<D: Dimension> {
     /// Share of its speed with which it bounces off what is rigid, 0 to 1, where one of both is free; the larger one
     /// counts.
     pub restitution: f32,
+    /// Whether it touches nobody, and tells who comes and goes: [`Entered`](crate::message::Entered).
+    pub is_sensor: bool,
+    /// Who touches it.
+    pub layers: Layers,
     /// What moves it.
     pub drive: Drive,
     dim: PhantomData<D>,
@@ -156,6 +160,8 @@ impl<D: Dimension> RigidBody<D> {
             shape,
             friction: 0.2,
             restitution: 0.0,
+            is_sensor: false,
+            layers: Layers::default(),
             drive: Drive::Fixed,
             dim: PhantomData,
         }
@@ -188,6 +194,19 @@ impl<D: Dimension> RigidBody<D> {
     /// The same with another friction.
     pub fn with_friction(self, friction: f32) -> Self {
         Self { friction, ..self }
+    }
+
+    /// The same as a sensor.
+    pub fn as_sensor(self) -> Self {
+        Self {
+            is_sensor: true,
+            ..self
+        }
+    }
+
+    /// The same in other layers.
+    pub fn with_layers(self, layers: Layers) -> Self {
+        Self { layers, ..self }
     }
 
     /// The same with another restitution.

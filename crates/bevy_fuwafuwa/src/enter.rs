@@ -181,6 +181,7 @@ fn add_rigid<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, P
     let own = Rigid::driven(form.moved((-middle).into()), at.into(), rigid.drive);
     let mut own = own.rotated(engine_rotation(transform.rotation));
     (own.friction, own.restitution) = (rigid.friction, rigid.restitution);
+    (own.is_sensor, own.layers) = (rigid.is_sensor, rigid.layers);
 
     let mut soft_world = world.resource_mut::<SoftWorld<D>>();
     let id = soft_world.add_rigid(entity, own)?;

@@ -106,10 +106,15 @@ pub mod prelude {
         ExternalImpulse, Goal, GravityScale, RigidBody, SoftBody, SoftColours, SoftMaterials,
         Velocity,
     };
-    pub use crate::message::{FellAsleep, Parted, Rejection, Torn, Touched, Woke};
+    pub use crate::message::{
+        ContactBegan, ContactEnded, Entered, FellAsleep, JointBroke, Left, Parted, Rejection, Torn,
+        Touched, Woke,
+    };
     pub use crate::{
         FuwafuwaPlugin, FuwafuwaPlugin2d, FuwafuwaPlugin3d, FuwafuwaSystems, Rejected, RigidBody2d,
         RigidBody3d, SoftBody2d, SoftBody3d, SoftQueries, SoftSettings, SoftWorld,
     };
-    pub use fuwafuwa::{Dim2, Dim3, Drive, Elasticity, Material as SoftMaterial, Shape, VoxelGrid};
+    pub use fuwafuwa::{
+        Dim2, Dim3, Drive, Elasticity, Layers, Material as SoftMaterial, Shape, VoxelGrid,
+    };
 }

@@ -7,7 +7,7 @@ use crate::problem::Problem;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::message::Message;
 use bevy_math::Vec3;
-use fuwafuwa::PieceId;
+use fuwafuwa::{JointId, PieceId};
 
 /// Voxels stopped sharing a node: a crack went on.
 #[derive(Message, Copy, Clone, Debug, PartialEq)]
@@ -29,21 +29,76 @@ pub struct Parted {
     pub piece: PieceId,
 }
 
-/// Something soft pressed on something in the tick. Of rigid things that press on each other nothing is told.
+/// Something soft pressed on something in the tick, or something rigid that is free on something rigid.
 #[derive(Message, Copy, Clone, Debug, PartialEq)]
 pub struct Touched {
-    /// The soft body.
+    /// The soft body, or what is free.
     pub body: Entity,
-    /// Number of its piece.
-    pub piece: PieceId,
+    /// Number of its piece; what is rigid has none.
+    pub piece: Option<PieceId>,
     /// What it pressed on: something rigid, a soft body, or itself; none where that has no entity.
     pub with: Option<Entity>,
     /// Number of the piece that it pressed on, of a soft body.
     pub with_piece: Option<PieceId>,
     /// Where in the world, at the strongest contact [m].
     pub at: Vec3,
+    /// Which way it got away from that there, of length 1.
+    pub normal: Vec3,
     /// Along the normals, over the whole tick [N s].
     pub impulse: f32,
+}
+
+/// Two began to touch.
+#[derive(Message, Copy, Clone, Debug, PartialEq)]
+pub struct ContactBegan {
+    /// Who.
+    pub both: [Entity; 2],
+    /// Numbers of their pieces; what is rigid has none.
+    pub pieces: [Option<PieceId>; 2],
+    /// Where in the world, at the strongest contact [m].
+    pub at: Vec3,
+    /// Which way the first got away from the second there, of length 1.
+    pub normal: Vec3,
+    /// How fast they approached each other [m/s].
+    pub speed: f32,
+}
+
+/// Two touch no more. What rests side by side still touches; of what was despawned nothing is told.
+#[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
+pub struct ContactEnded {
+    /// Who.
+    pub both: [Entity; 2],
+    /// Numbers of their pieces; what is rigid has none.
+    pub pieces: [Option<PieceId>; 2],
+}
+
+/// Somebody came into a sensor.
+#[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Entered {
+    /// The sensor.
+    pub sensor: Entity,
+    /// Who.
+    pub who: Entity,
+    /// Number of the piece; what is rigid has none.
+    pub piece: Option<PieceId>,
+}
+
+/// Somebody left a sensor; of what was despawned nothing is told.
+#[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Left {
+    /// The sensor.
+    pub sensor: Entity,
+    /// Who.
+    pub who: Entity,
+    /// Number of the piece; what is rigid has none.
+    pub piece: Option<PieceId>,
+}
+
+/// A joint of the engine's world broke, or lost an end, and is gone.
+#[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
+pub struct JointBroke {
+    /// Which one it was.
+    pub joint: JointId,
 }
 
 /// A piece came to rest, or something rigid that is free.

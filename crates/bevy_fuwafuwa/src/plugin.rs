@@ -4,7 +4,10 @@ use crate::asset::Voxels;
 use crate::component::SoftBody;
 use crate::dimension::Dimension;
 use crate::enter::enter_and_leave;
-use crate::message::{FellAsleep, Parted, Quarantined, Rejection, Torn, Touched, Woke};
+use crate::message::{
+    ContactBegan, ContactEnded, Entered, FellAsleep, JointBroke, Left, Parted, Quarantined,
+    Rejection, Torn, Touched, Woke,
+};
 use crate::push::{change_settings, push_bodies};
 use crate::queue::Queue;
 use crate::steer::steer_rigids;
@@ -81,6 +84,11 @@ impl<D: Dimension> Plugin for FuwafuwaPlugin<D> {
             .add_message::<Torn>()
             .add_message::<Parted>()
             .add_message::<Touched>()
+            .add_message::<ContactBegan>()
+            .add_message::<ContactEnded>()
+            .add_message::<Entered>()
+            .add_message::<Left>()
+            .add_message::<JointBroke>()
             .add_message::<FellAsleep>()
             .add_message::<Woke>()
             .add_message::<Quarantined>()

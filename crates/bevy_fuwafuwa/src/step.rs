@@ -1,13 +1,15 @@
 //! A tick, and what happened in it.
 
 use crate::dimension::Dimension;
-use crate::message::{FellAsleep, Parted, Quarantined, Torn, Touched, Woke};
+use crate::message::{
+    ContactBegan, ContactEnded, Entered, FellAsleep, JointBroke, Left, Parted, Quarantined, Torn,
+    Touched, Woke,
+};
 use crate::world::SoftWorld;
 use bevy_ecs::change_detection::ResMut;
 use bevy_ecs::message::MessageWriter;
 use bevy_ecs::system::SystemParam;
-use bevy_math::Vec3;
-use fuwafuwa::{Event, With};
+use fuwafuwa::{Event, Party};
 
 /// Where all that happened is written down.
 #[derive(SystemParam)]
@@ -18,6 +20,11 @@ pub struct Writers<'w> {
     fell_asleep: MessageWriter<'w, FellAsleep>,
     woke: MessageWriter<'w, Woke>,
     quarantined: MessageWriter<'w, Quarantined>,
+    contact_began: MessageWriter<'w, ContactBegan>,
+    contact_ended: MessageWriter<'w, ContactEnded>,
+    entered: MessageWriter<'w, Entered>,
+    left: MessageWriter<'w, Left>,
+    joint_broke: MessageWriter<'w, JointBroke>,
 }
 
 /// Lets a tick pass, unless time stands still.
@@ -37,59 +44,104 @@ pub fn step<D: Dimension>(mut world: ResMut<SoftWorld<D>>, mut writers: Writers<
 }
 
 impl Writers<'_> {
-    fn tell<D: Dimension>(&mut self, world: &SoftWorld<D>, event: Event) {
-        let id = match event {
-            Event::Released { body, .. }
-            | Event::Parted { body, .. }
-            | Event::Touched { body, .. }
-            | Event::FellAsleep { body, .. }
-            | Event::Woke { body, .. }
-            | Event::Quarantined { body, .. } => body,
-        };
-        let Some(body) = world.entity_of_body(id) else {
-            return;
+    /// Tells of an event, where whoever it happened to has an entity.
+    fn tell<D: Dimension>(&mut self, world: &SoftWorld<D>, event: Event) -> Option<()> {
+        let of_body = |body| world.entity_of_body(body);
+        let of = |party: Party| match party {
+            Party::Piece { body, piece } => Some((of_body(body)?, Some(piece))),
+            Party::Rigid(rigid) => Some((world.entity_of_rigid(rigid)?, None)),
         };
         match event {
-            Event::Released { at, energy, .. } => {
-                let at = Vec3::from(at);
+            Event::Released { body, at, energy } => {
+                let (body, at) = (of_body(body)?, at.into());
                 self.torn.write(Torn { body, at, energy });
             }
-            Event::Parted { piece, .. } => {
+            Event::Parted { body, piece } => {
+                let body = of_body(body)?;
                 self.parted.write(Parted { body, piece });
             }
             Event::Touched {
+                body,
                 piece,
                 with,
                 at,
+                normal,
                 impulse,
-                ..
             } => {
-                let (with, with_piece) = match with {
-                    With::Obstacle(rigid) | With::Hand(rigid) | With::Free(rigid) => {
-                        (world.entity_of_rigid(rigid), None)
-                    }
-                    With::Piece { body, piece } => (world.entity_of_body(body), Some(piece)),
-                };
+                let with = of(with.into());
                 self.touched.write(Touched {
-                    body,
-                    piece,
-                    with,
-                    with_piece,
+                    body: of_body(body)?,
+                    piece: Some(piece),
+                    with: with.map(|(with, _)| with),
+                    with_piece: with.and_then(|(_, piece)| piece),
                     at: at.into(),
+                    normal: normal.into(),
                     impulse,
                 });
             }
-            Event::FellAsleep { piece, .. } => {
-                let piece = Some(piece);
+            Event::RigidTouched {
+                rigid,
+                with,
+                at,
+                normal,
+                impulse,
+            } => {
+                self.touched.write(Touched {
+                    body: world.entity_of_rigid(rigid)?,
+                    piece: None,
+                    with: world.entity_of_rigid(with),
+                    with_piece: None,
+                    at: at.into(),
+                    normal: normal.into(),
+                    impulse,
+                });
+            }
+            Event::ContactBegan {
+                both: [first, second],
+                at,
+                normal,
+                speed,
+            } => {
+                let ((first, own), (second, other)) = (of(first)?, of(second)?);
+                self.contact_began.write(ContactBegan {
+                    both: [first, second],
+                    pieces: [own, other],
+                    at: at.into(),
+                    normal: normal.into(),
+                    speed,
+                });
+            }
+            Event::ContactEnded {
+                both: [first, second],
+            } => {
+                let ((first, own), (second, other)) = (of(first)?, of(second)?);
+                let (both, pieces) = ([first, second], [own, other]);
+                self.contact_ended.write(ContactEnded { both, pieces });
+            }
+            Event::Entered { sensor, who } => {
+                let (sensor, (who, piece)) = (world.entity_of_rigid(sensor)?, of(who)?);
+                self.entered.write(Entered { sensor, who, piece });
+            }
+            Event::Left { sensor, who } => {
+                let (sensor, (who, piece)) = (world.entity_of_rigid(sensor)?, of(who)?);
+                self.left.write(Left { sensor, who, piece });
+            }
+            Event::JointBroke { joint } => {
+                self.joint_broke.write(JointBroke { joint });
+            }
+            Event::FellAsleep { body, piece } => {
+                let (body, piece) = (of_body(body)?, Some(piece));
                 self.fell_asleep.write(FellAsleep { body, piece });
             }
-            Event::Woke { piece, .. } => {
-                let piece = Some(piece);
+            Event::Woke { body, piece } => {
+                let (body, piece) = (of_body(body)?, Some(piece));
                 self.woke.write(Woke { body, piece });
             }
-            Event::Quarantined { piece, .. } => {
+            Event::Quarantined { body, piece } => {
+                let body = of_body(body)?;
                 self.quarantined.write(Quarantined { body, piece });
             }
         }
+        Some(())
     }
 }

@@ -2,6 +2,7 @@
 
 mod assets;
 mod bits;
+mod contacts;
 mod life;
 mod meshes;
 mod mistakes;

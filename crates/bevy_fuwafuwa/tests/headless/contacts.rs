@@ -1,0 +1,64 @@
+//! What is told of contacts and sensors, with the entities that they are of.
+
+use super::{app, at, messages};
+use bevy_ecs::entity::Entity;
+use bevy_fuwafuwa::prelude::*;
+
+fn block() -> Shape {
+    Shape::Box {
+        centre: [0.0; 3],
+        half: [0.2; 3],
+    }
+}
+
+#[test]
+fn a_box_that_falls_begins_to_touch_the_floor_once_and_passes_a_gate() {
+    let mut app = app::<Dim3>();
+    let floor = app.world_mut().spawn(RigidBody3d::floor()).id();
+    let gate = RigidBody3d::fixed(block()).as_sensor();
+    let gate = app.world_mut().spawn((gate, at(0.0, 1.2))).id();
+    let free = RigidBody3d::free(block(), 1.0);
+    let free = app.world_mut().spawn((free, at(0.0, 2.2))).id();
+    let (mut began, mut ended) = (Vec::new(), 0);
+    let (mut entered, mut left): (Vec<Entity>, Vec<Entity>) = (Vec::new(), Vec::new());
+    let mut touches = 0;
+    for _ in 0..120 {
+        app.update();
+        began.extend(messages::<ContactBegan>(&app));
+        ended += messages::<ContactEnded>(&app).len();
+        let through = messages::<Entered>(&app).into_iter();
+        entered.extend(
+            through
+                .filter(|told| told.sensor == gate)
+                .map(|told| told.who),
+        );
+        let out = messages::<Left>(&app).into_iter();
+        left.extend(out.filter(|told| told.sensor == gate).map(|told| told.who));
+        let pressed = messages::<Touched>(&app);
+        touches += pressed
+            .iter()
+            .filter(|told| told.with == Some(floor))
+            .count();
+    }
+    assert_eq!((entered, left), (vec![free], vec![free]));
+    assert_eq!((began.len(), ended), (1, 0), "{began:?}");
+    assert_eq!(began[0].both, [free, floor]);
+    assert!((5.5..6.6).contains(&began[0].speed), "from 2 m: {began:?}");
+    assert!(touches > 10, "{touches}");
+}
+
+#[test]
+fn layers_let_a_box_fall_through_the_floor() {
+    let mut app = app::<Dim3>();
+    app.world_mut().spawn(RigidBody3d::floor());
+    let ghost = Layers {
+        memberships: 2,
+        filters: 2,
+    };
+    let free = RigidBody3d::free(block(), 1.0).with_layers(ghost);
+    let free = app.world_mut().spawn((free, at(0.0, 0.5))).id();
+    for _ in 0..60 {
+        app.update();
+    }
+    assert!(super::transform(&app, free).translation.y < -2.0);
+}
