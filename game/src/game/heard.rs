@@ -76,6 +76,7 @@ fn cues_of<D: Dim>(round: &Round<D>, view: Option<View>) -> Vec<Cue> {
                 at: position,
                 body,
                 piece,
+                ..
             } => {
                 let x = across(view, position);
                 let mass = mass_of(body, piece);
