@@ -134,7 +134,8 @@ impl Contacts {
                     }
                 }
                 let inverse_mass = body.state.inverse_mass[node] + rigid.yields_near(three(at));
-                if body.state.inverse_mass[node] == 0.0 {
+                // To what is free, a sleeper is a wall.
+                if body.state.inverse_mass[node] == 0.0 && !rigid.is_free() {
                     continue;
                 }
                 let friction = rigid.friction;
@@ -254,7 +255,7 @@ impl Contacts {
     /// What is free and pressed on by a hand.
     pub fn handled(&self, rigids: &Rigids) -> BTreeSet<RigidSlot> {
         let pressed = self.free.iter().filter(|row| row.contact.pressed > 0.0);
-        let handled = pressed.filter(|row| rigids.at(row.both[1]).is_driven());
+        let handled = pressed.filter(|row| rigids.at(row.both[1]).pushes());
         handled.map(|row| row.both[0]).collect()
     }
 

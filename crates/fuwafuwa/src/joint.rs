@@ -176,8 +176,13 @@ impl Joint {
     /// Whether what was read from a file may be one.
     #[cfg(feature = "serde")]
     pub(crate) fn is_sound<D: Dim>(&self) -> bool {
-        let is_finite = crate::vector::is_finite(self.impulse) && self.force.is_finite();
-        self.check().is_ok() && is_finite && self.anchors.iter().all(Anchor::is_sound::<D>)
+        let is_finite = crate::vector::is_finite(self.impulse) && self.force >= 0.0;
+        let is_flat = self.impulse[D::N..].iter().all(|k| *k == 0.0);
+        let mut both = self.anchors.iter().zip(&self.ends);
+        self.check().is_ok()
+            && is_finite
+            && is_flat
+            && both.all(|(own, end)| own.is_sound::<D>(end))
     }
 }
 

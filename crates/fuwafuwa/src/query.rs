@@ -57,7 +57,7 @@ pub struct Found {
 }
 
 /// Answers about a world as it is now. To make them costs about as much as to look at all bare faces once; each answer
-/// costs little then. A condition says of each thing whether it counts.
+/// costs little then. Sensors are never found, and layers do not count. A condition says of each thing whether it counts.
 ///
 /// ```
 /// use fuwafuwa::{Body, Dim3, Material, Queries, Settings, Thing, VoxelGrid, World};
@@ -106,6 +106,12 @@ impl<'a, D: Dim> Queries<'a, D> {
         }
     }
 
+    /// What is rigid and not a sensor: that touches nobody.
+    fn rigids(&self) -> impl Iterator<Item = (RigidId, &Rigid)> + Clone {
+        let all = self.world.rigids().entries();
+        all.filter(|(_, rigid)| !rigid.is_sensor)
+    }
+
     /// The first surface that a ray meets, from inside or from outside, no further than `most` [m] from where it begins,
     /// which may be infinite. Nothing when the direction has no length, another number is not finite, or `most` is
     /// negative.
@@ -124,7 +130,7 @@ impl<'a, D: Dim> Queries<'a, D> {
             return None;
         }
         let mut best = Best::within(most)?;
-        for (id, rigid) in self.world.rigids().entries() {
+        for (id, rigid) in self.rigids() {
             let met = rigid.shape().ray(from, direction);
             let met =
                 met.map(|(distance, normal)| (distance, along(from, direction, distance), normal));
@@ -152,7 +158,7 @@ impl<'a, D: Dim> Queries<'a, D> {
             return None;
         }
         let mut best = Best::within(most)?;
-        for (id, rigid) in self.world.rigids().entries() {
+        for (id, rigid) in self.rigids() {
             let (gap, normal) = rigid.shape().distance(at);
             let met = (gap.abs(), along(at, normal, -gap), normal);
             best.consider(Some(met), counts, || Thing::Rigid(id));
@@ -178,7 +184,7 @@ impl<'a, D: Dim> Queries<'a, D> {
         if !is_finite(at) {
             return Vec::new();
         }
-        let rigids = self.world.rigids().entries();
+        let rigids = self.rigids();
         let rigids = rigids.filter(|(_, rigid)| rigid.shape().distance(at).0 <= 0.0);
         let mut things: Vec<Thing> = rigids.map(|(id, _)| Thing::Rigid(id)).collect();
         let filled = self.filled.get_or_init(|| Filled::new(self.world));
@@ -208,7 +214,7 @@ impl<'a, D: Dim> Queries<'a, D> {
     #[inline(never)]
     pub fn overlapping(&self, shape: &Shape) -> Vec<Thing> {
         let shape = shape.seen_in::<D>();
-        let rigids = self.world.rigids().entries();
+        let rigids = self.rigids();
         let overlaps = |(_, rigid): &(RigidId, &Rigid)| overlap(rigid.shape(), &shape);
         let rigids = rigids.filter(overlaps);
         let mut things: BTreeSet<Thing> = rigids.map(|(id, _)| Thing::Rigid(id)).collect();

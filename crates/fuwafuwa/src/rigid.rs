@@ -233,7 +233,9 @@ impl Rigid {
         if self.drive == Drive::Fixed {
             // It may have been a hand.
             (self.velocity, self.goal_velocity) = ([0.0; 3], [0.0; 3]);
-            (self.goal, self.goal_before) = (self.position, self.position);
+            self.stay();
+        }
+        if matches!(self.drive, Drive::Fixed | Drive::Coupled { .. }) {
             self.spin = [0.0; 3];
         }
         self.take_inertia::<D>();

@@ -92,6 +92,11 @@ impl Rotation {
         [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| self.apply(axis))
     }
 
+    /// Whether it is one: what is read from a file need not be.
+    pub(crate) fn is_one(self) -> bool {
+        (dot(self.quaternion, self.quaternion) - 1.0).abs() < 1e-9
+    }
+
     /// A place [m], turned about another one.
     pub(crate) fn apply_about(self, place: Vector, centre: Vector) -> Vector {
         let (place, centre) = (place.map(f64::from), centre.map(f64::from));
@@ -101,10 +106,11 @@ impl Rotation {
 
     /// The same as a world of `D` sees it: in the plane all turns are about the third axis.
     pub(crate) fn seen_in<D: Dim>(self) -> Self {
-        let [_, _, z, w] = self.quaternion;
-        match D::N {
-            2 => Self::unit([0.0, 0.0, z, w]),
-            _ => self,
+        let [x, y, z, w] = self.quaternion;
+        // To make the length 1 once more would change the last bits.
+        match D::N == 2 && (x, y) != (0.0, 0.0) {
+            true => Self::unit([0.0, 0.0, z, w]),
+            false => self,
         }
     }
 

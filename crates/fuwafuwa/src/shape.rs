@@ -107,9 +107,19 @@ impl Shape {
                 let field = "normal";
                 good.then_some(()).ok_or(BadShape { field, expected })
             }
-            Self::Box { centre, half } | Self::OrientedBox { centre, half, .. } => {
+            Self::Box { centre, half } => {
                 finite("centre", centre)?;
                 half.iter().try_for_each(|&k| positive("half", k))
+            }
+            Self::OrientedBox {
+                centre,
+                half,
+                rotation,
+            } => {
+                Self::Box { centre, half }.check()?;
+                let (field, expected) = ("rotation", "of length 1");
+                let is_good = rotation.is_one();
+                is_good.then_some(()).ok_or(BadShape { field, expected })
             }
             Self::Capsule { from, to, radius } => {
                 finite("from", from)?;

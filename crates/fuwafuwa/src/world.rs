@@ -322,10 +322,12 @@ impl<D: Dim> World<D> {
         let Settings { gravity, drag, .. } = self.settings;
         for rigid in self.rigids.iter_mut() {
             rigid.pull(duration);
-            let field = hooks.field.map(|field| field(rigid.position()));
-            let field = field.filter(|pull| is_finite(*pull));
-            let pull = field.map_or(gravity, |field| plus(gravity, field));
-            rigid.fall::<D>(pull, drag, duration);
+            if rigid.is_free() && rigid.moves() {
+                let field = hooks.field.map(|field| field(rigid.position()));
+                let field = field.filter(|pull| is_finite(*pull));
+                let pull = field.map_or(gravity, |field| plus(gravity, field));
+                rigid.fall::<D>(pull, drag, duration);
+            }
         }
     }
 

@@ -365,3 +365,31 @@ fn bad_joints_are_refused_by_field() {
     world.remove_rigid(bob).unwrap();
     assert!(world.add_joint(Joint::new(good, Tie::Pin)).is_err());
 }
+
+#[test]
+fn a_slow_crane_takes_a_sleeper_along() {
+    let mut world = world::<Dim3>(-9.81);
+    let crane = Shape::Ball {
+        centre: [0.0; 3],
+        radius: 0.1,
+    };
+    let crane = world
+        .add_rigid(Rigid::driven(crane, [0.0; 3], Drive::Kinematic))
+        .unwrap();
+    let load = ball(&mut world, [0.0, -1.0, 0.0], 1.0);
+    let low = [0.0, -1.0, 0.0];
+    let ends = [on(load, low), on(crane, low)];
+    world.add_joint(Joint::new(ends, Tie::Pin)).unwrap();
+    for _ in 0..120 {
+        world.step();
+    }
+    assert!(world.rigids()[load].is_asleep());
+    for tick in 1..=240 {
+        world
+            .set_goal(crane, [0.0, 0.05 * tick as f32 / 60.0, 0.0])
+            .unwrap();
+        world.step();
+    }
+    let height = world.rigids()[load].position()[1];
+    assert!((height + 0.8).abs() < 0.01, "{height}");
+}

@@ -229,7 +229,7 @@ fn what_bounces_comes_back_as_high_as_its_restitution_says() {
     }
 }
 
-/// Linear and angular momentum about the origin of two free boxes.
+/// Linear momentum of free boxes.
 fn momentum<D: Dim>(world: &World<D>, ids: &[RigidId], mass: f32) -> Vector {
     ids.iter().fold([0.0; 3], |sum, &id| {
         let velocity = world.rigids()[id].velocity();
@@ -370,6 +370,11 @@ fn a_turned_wall_is_a_wall() {
 #[test]
 fn bad_rigid_things_are_refused_by_field() {
     let mut world = floored::<Dim3>();
+    let tiny = Shape::Ball {
+        centre: [0.0; 3],
+        radius: 1e-20,
+    };
+    let tiny = Rigid::free(tiny, 1e-6);
     let endless = Rigid::free(Shape::half_space(UP, [0.0; 3]), 1.0);
     let heavy = Rigid::free(cube([0.0; 3], 1.0), f32::NAN);
     let off = Rigid::driven(cube(UP, 1.0), [0.0; 3], Drive::Free { mass: 1.0 });
@@ -378,6 +383,7 @@ fn bad_rigid_things_are_refused_by_field() {
     for (rigid, word) in [
         (endless, "shape"),
         (heavy, "mass"),
+        (tiny, "shape"),
         (off, "middle"),
         (bouncy, "restitution"),
     ] {
@@ -399,4 +405,71 @@ fn bad_rigid_things_are_refused_by_field() {
     assert!(world.set_velocity(floor, [0.0; 3], [0.0; 3]).is_err());
     world.remove_rigid(id).unwrap();
     assert!(world.set_velocity(id, [0.0; 3], [0.0; 3]).is_err());
+}
+
+/// To what falls a sleeper is a wall, however slowly it comes.
+fn sleepers_hold<D: Dim>() {
+    let mut world = world::<D>(0.0);
+    let grid = VoxelGrid::<D>::cube(8, 1.0).unwrap();
+    let soft = world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+    world.put_to_sleep(soft).unwrap();
+    let depth = if D::N == 2 { 0.0 } else { 0.5 };
+    let slow = world
+        .add_rigid(Rigid::free(cube([-0.4, 0.5, depth], 0.2), 1.0))
+        .unwrap();
+    world.set_velocity(slow, [0.1, 0.0, 0.0], [0.0; 3]).unwrap();
+    for _ in 0..300 {
+        world.step();
+        assert!(world.rigids()[slow].position()[0] < -0.17);
+    }
+}
+
+#[test]
+fn what_comes_slowly_does_not_go_through_a_sleeper() {
+    sleepers_hold::<Dim2>();
+    sleepers_hold::<Dim3>();
+}
+
+#[test]
+fn a_slow_lift_takes_a_sleeper_along() {
+    let mut world = world::<Dim3>(-9.81);
+    let lift = Rigid::driven(cube([0.0; 3], 0.5), [0.0; 3], Drive::Kinematic);
+    let lift = world.add_rigid(lift).unwrap();
+    let load = world
+        .add_rigid(Rigid::free(cube([0.0, 0.75, 0.0], 0.25), 1.0))
+        .unwrap();
+    for _ in 0..120 {
+        world.step();
+    }
+    assert!(world.rigids()[load].is_asleep());
+    for tick in 1..=240 {
+        world
+            .set_goal(lift, [0.0, 0.05 * tick as f32 / 60.0, 0.0])
+            .unwrap();
+        world.step();
+    }
+    let height = world.rigids()[load].position()[1];
+    assert!((height - 0.95).abs() < 0.01, "{height}");
+}
+
+#[test]
+fn what_is_picked_up_in_its_fall_stays_where_it_is() {
+    let mut world = world::<Dim3>(-9.81);
+    let id = world
+        .add_rigid(Rigid::free(cube([0.0; 3], 0.2), 1.0))
+        .unwrap();
+    world.set_velocity(id, [0.0; 3], [0.0, 3.0, 0.0]).unwrap();
+    for _ in 0..60 {
+        world.step();
+    }
+    for drive in [Drive::Kinematic, Drive::default()] {
+        let before = world.rigids()[id].position();
+        world.change_rigid(id, |it| it.drive = drive).unwrap();
+        for _ in 0..10 {
+            world.step();
+        }
+        let it = &world.rigids()[id];
+        assert!((it.position()[1] - before[1]).abs() < 0.5, "{drive:?}");
+        assert_eq!(it.angular_velocity(), [0.0; 3]);
+    }
 }

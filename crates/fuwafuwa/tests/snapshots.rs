@@ -3,7 +3,8 @@
 
 use fuwafuwa::hash::Hash;
 use fuwafuwa::{
-    Blade, Body, Dim, Dim2, Dim3, Material, Rigid, Settings, Shape, VoxelGrid, World, snapshot,
+    Blade, Body, Dim, Dim2, Dim3, End, Event, Joint, Material, Rigid, Rotation, Settings, Shape,
+    Tie, VoxelGrid, World, snapshot,
 };
 
 /// A ball that falls on a floor while a hand pushes it against a wall and through.
@@ -51,6 +52,83 @@ fn check_resumes<D: Dim>(n: usize) {
 fn a_saved_world_goes_on_to_the_same_bits() {
     check_resumes::<Dim2>(24);
     check_resumes::<Dim3>(12);
+}
+
+/// A heap of free boxes on a ball, a gate that tells who is in it, a pin, a spring and a rope.
+fn tied_world<D: Dim>() -> World<D> {
+    let mut world = torn_world::<D>(10);
+    let depth = if D::N == 3 { 0.5 } else { 0.0 };
+    let cube = |x: f32, y: f32| Shape::Box {
+        centre: [x, y, depth],
+        half: [0.12; 3],
+    };
+    let mut gate = Rigid::fixed(cube(0.5, 1.3), 0.5).rotated(Rotation::in_plane(0.3));
+    gate.is_sensor = true;
+    world.add_rigid(gate).unwrap();
+    let boxes: Vec<_> = (0..6)
+        .map(|k| {
+            let free = Rigid::free(cube(0.4 + 0.03 * k as f32, 1.4 + 0.3 * k as f32), 0.5);
+            let turned = free.rotated(Rotation::in_plane(0.4 * k as f32));
+            world.add_rigid(turned).unwrap()
+        })
+        .collect();
+    let on = |k: usize, y: f32| End::Rigid {
+        rigid: boxes[k],
+        at: [0.4, y, depth],
+    };
+    let ball = End::Soft {
+        body: world.nth_body(0).unwrap(),
+        at: [0.5, 1.0, depth],
+        radius: 0.2,
+    };
+    let spring = Tie::Spring {
+        stiffness: 50.0,
+        damping: 0.5,
+        length: 0.3,
+    };
+    let place = End::Place([0.4, 4.0, depth]);
+    let ties = [
+        (on(0, 1.4), ball, Tie::Pin),
+        (on(1, 1.7), on(2, 2.0), spring),
+        (on(5, 2.9), place, Tie::Rope { length: 1.5 }),
+    ];
+    for (first, second, tie) in ties {
+        world.add_joint(Joint::new([first, second], tie)).unwrap();
+    }
+    world
+}
+
+fn check_tied_resumes<D: Dim>() {
+    let mut world = tied_world::<D>();
+    let (mut told, mut saves) = (0, 0);
+    let mut resumed = load::<D>(&save(&world)).unwrap();
+    for tick in 0..150 {
+        push(&mut world, tick.min(60)..tick.min(60) + 1);
+        push(&mut resumed, tick.min(60)..tick.min(60) + 1);
+        assert_eq!(resumed.hash(), world.hash(), "{tick}");
+        assert_eq!(resumed.events(), world.events(), "{tick}");
+        let is_change = |event: &&Event| {
+            matches!(
+                event,
+                Event::ContactBegan { .. }
+                    | Event::ContactEnded { .. }
+                    | Event::Entered { .. }
+                    | Event::Left { .. }
+            )
+        };
+        told += world.events().iter().filter(is_change).count();
+        if tick % 20 == 7 {
+            resumed = load::<D>(&save(&world)).unwrap();
+            saves += 1;
+        }
+    }
+    assert!(told > 10 && saves == 8, "{told} {saves}");
+}
+
+#[test]
+fn things_that_fall_and_are_tied_go_on_to_the_same_bits() {
+    check_tied_resumes::<Dim2>();
+    check_tied_resumes::<Dim3>();
 }
 
 /// Crumbs of one body, some asleep and some awake, while a hand goes through them; and one that is cut.

@@ -18,7 +18,11 @@ const ROUND: usize = 24;
 
 /// Paints a world of the plane, each body as `draw` does.
 pub fn plane(painter: &mut Painter, frame: Frame, world: &World<Dim2>, draw: DrawPlane) {
-    for obstacle in world.rigids().iter().filter(|rigid| !rigid.is_driven()) {
+    for obstacle in world
+        .rigids()
+        .iter()
+        .filter(|rigid| !rigid.is_driven() && !rigid.is_sensor)
+    {
         rigid(painter, frame, *obstacle.shape(), Role::Obstacle);
     }
     for body in world.bodies() {
@@ -110,7 +114,11 @@ pub fn outline(frame: Frame, view: &ElementView) -> Vec<Spot> {
 
 /// Paints a world of space, each body as `draw` does.
 pub fn space(solid: &mut Solid, world: &World<Dim3>, draw: DrawSpace) {
-    for obstacle in world.rigids().iter().filter(|rigid| !rigid.is_driven()) {
+    for obstacle in world
+        .rigids()
+        .iter()
+        .filter(|rigid| !rigid.is_driven() && !rigid.is_sensor)
+    {
         match *obstacle.shape() {
             Shape::HalfSpace { normal, offset } if normal[1] > 0.99 => solid.floor(offset),
             // The other walls would hide what is inside.

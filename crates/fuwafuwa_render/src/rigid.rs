@@ -67,7 +67,11 @@ impl RigidShapes {
         self.walls.clear();
         self.shapes.clear();
         self.dots.clear();
-        for obstacle in world.rigids().iter().filter(|rigid| !rigid.is_driven()) {
+        for obstacle in world
+            .rigids()
+            .iter()
+            .filter(|rigid| !rigid.is_driven() && !rigid.is_sensor)
+        {
             if let Shape::HalfSpace { normal, offset } = *obstacle.shape() {
                 self.walls.push([normal[0], normal[1], offset, 0.0]);
             }

@@ -2,7 +2,10 @@
 
 use base64::Engine;
 use base64::prelude::BASE64_URL_SAFE_NO_PAD as BASE64;
-use fuwafuwa::{Dim, Dim2, Dim3, snapshot};
+use fuwafuwa::{
+    Body, Dim, Dim2, Dim3, End, Joint, Material, Rigid, Rotation, Settings, Shape, Tie, VoxelGrid,
+    World, snapshot,
+};
 use fuwafuwa_scenes::{Recording, Scene, scene};
 use png::{BitDepth, ColorType};
 use std::sync::Arc;
@@ -114,7 +117,52 @@ pub fn snapshots() -> Vec<Vec<u8>> {
         2 => saved::<Dim2>(&scene),
         _ => saved::<Dim3>(&scene),
     };
-    scenes.map(saved).collect()
+    let tied = [tied::<Dim2>(), tied::<Dim3>()];
+    scenes.map(saved).chain(tied).collect()
+}
+
+/// The same of a world with what scenes have none of: things that fall, sensors, joints.
+fn tied<D: Dim>() -> Vec<u8> {
+    let mut world = World::<D>::new(Settings::default()).expect("the usual settings are good");
+    let ball = VoxelGrid::ball(FEW, 1.0).expect("it is small");
+    let ball = Body::new(ball, &[Material::default()]).expect("it has its material");
+    let body = world.add_body(ball);
+    let cube = |height: f32| Shape::Box {
+        centre: [0.5, height, 0.5],
+        half: [0.2; 3],
+    };
+    let turned = Rotation::about([1.0, 2.0, 3.0], 0.4);
+    let mut gate = Rigid::fixed(cube(-0.5), 0.5).rotated(turned);
+    gate.is_sensor = true;
+    world.add_rigid(gate).expect("it can be");
+    let free = Rigid::free(cube(1.3), 1.0).rotated(turned);
+    let rigid = world.add_rigid(free).expect("it can be");
+    let ends = [
+        End::Soft {
+            body,
+            at: [0.5, 1.0, 0.5],
+            radius: 0.3,
+        },
+        End::Rigid {
+            rigid,
+            at: [0.5, 1.1, 0.5],
+        },
+        End::Place([0.5, 2.0, 0.5]),
+    ];
+    let spring = Tie::Spring {
+        stiffness: 100.0,
+        damping: 1.0,
+        length: 0.5,
+    };
+    let rope = Tie::Rope { length: 0.8 };
+    for (first, second, tie) in [(0, 1, Tie::Pin), (1, 2, spring), (0, 2, rope)] {
+        let joint = Joint::new([ends[first], ends[second]], tie);
+        world.add_joint(joint).expect("its ends are there");
+    }
+    for _ in 0..5 {
+        world.step();
+    }
+    state_of(&world)
 }
 
 /// The scenes that come along, with small bodies.
@@ -152,8 +200,12 @@ fn text_of(scene: &Scene) -> Vec<u8> {
 fn saved<D: Dim>(scene: &Scene) -> Vec<u8> {
     let mut world = scene.build::<D>().expect("it can be built");
     world.step();
-    let bytes = snapshot::save(&world);
-    // The dimension, and what follows the checksum.
+    state_of(&world)
+}
+
+/// Of a snapshot the dimension, and what follows the checksum.
+fn state_of<D: Dim>(world: &World<D>) -> Vec<u8> {
+    let bytes = snapshot::save(world);
     [&bytes[8..9], &bytes[17..]].concat()
 }
 

@@ -129,7 +129,7 @@ fn touch<D: Dim>(
             continue;
         }
         let speed = length(own).max(length(other));
-        if place.gap < CLOSE * size && speed > WAKE_SPEED {
+        if place.gap < CLOSE * size && (speed > WAKE_SPEED || both[1].pushes()) {
             let sleepers = [0, 1].into_iter().filter(|&k: &usize| both[k].is_asleep());
             hits.extend(sleepers.map(|k| slots[k]));
         }
@@ -141,7 +141,8 @@ fn touch<D: Dim>(
         if along <= 0.0 {
             continue;
         }
-        let across: f32 = tangents::<D>(manifold.normal).map(yields).iter().sum();
+        let tangents = tangents::<D>(manifold.normal);
+        let across: f32 = tangents[..D::N - 1].iter().copied().map(yields).sum();
         let impulse = known.known(slots, place.key);
         let mut contact = Contact::new(normal, place.gap, duration, 1.0 / along, friction);
         contact = contact.known_as::<D>(0, &impulse);
@@ -163,7 +164,7 @@ fn touch<D: Dim>(
     }
 }
 
-/// Directions across a normal: in the plane one, and one that does not count.
+/// Directions across a normal; in the plane the first alone counts.
 fn tangents<D: Dim>(normal: Vector) -> [Vector; 2] {
     if D::N == 2 {
         return [[normal[1], -normal[0], 0.0], [0.0; 3]];

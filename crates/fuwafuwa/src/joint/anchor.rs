@@ -5,6 +5,8 @@ use crate::body::{Bodies, Body};
 use crate::dim::{Dim, Point, voxel_around};
 use crate::handle::{BodyId, Gone, RigidId};
 use crate::ids::NodeId;
+#[cfg(feature = "serde")]
+use crate::rigid::FARTHEST;
 use crate::rigid::Rigids;
 use crate::shape::{Vector, flat};
 use crate::vector::{as_row, dot, minus, plus, scaled, three};
@@ -97,10 +99,14 @@ impl Anchor {
             }
             Self::Soft(id, corners) => {
                 let body = bodies.get(*id).ok()?;
-                let share = 1.0 / corners.len() as f32;
+                let nodes: Vec<NodeId> = nodes(body, corners).collect();
+                if nodes.is_empty() {
+                    return None;
+                }
+                let share = 1.0 / nodes.len() as f32;
                 let (mut at, mut velocity, mut gain) = ([0.0; 3], [0.0; 3], 0.0);
                 let mut is_asleep = true;
-                for node in nodes(body, corners) {
+                for node in nodes {
                     at = plus(at, scaled(three(body.state.position[node]), share));
                     velocity = plus(velocity, scaled(three(body.state.velocity[node]), share));
                     gain += body.state.inverse_mass[node] * share * share;
@@ -132,8 +138,8 @@ impl Anchor {
                 let Ok(body) = bodies.get_mut(*id) else {
                     return;
                 };
-                let share = as_row(scaled(impulse, 1.0 / corners.len() as f32));
                 let nodes: Vec<NodeId> = nodes(body, corners).collect();
+                let share = as_row(scaled(impulse, 1.0 / nodes.len() as f32));
                 for node in nodes {
                     let gain = scaled(share, body.state.inverse_mass[node]);
                     body.state.velocity[node] = plus(body.state.velocity[node], gain);
@@ -159,13 +165,21 @@ impl Anchor {
 
     /// Whether what was read from a file may be one.
     #[cfg(feature = "serde")]
-    pub fn is_sound<D: Dim>(&self) -> bool {
-        match self {
+    pub fn is_sound<D: Dim>(&self, end: &End) -> bool {
+        let is_of_it = match (self, end) {
+            (Self::Place(_), End::Place(_)) => true,
+            (Self::Rigid(own, _), End::Rigid { rigid, .. }) => own == rigid,
+            (Self::Soft(own, _), End::Soft { body, .. }) => own == body,
+            _ => false,
+        };
+        let is_somewhere = match self {
             Self::Place(at) | Self::Rigid(_, at) => {
-                crate::vector::is_finite(*at) && at[D::N..].iter().all(|k| *k == 0.0)
+                let is_near = at.iter().all(|k| k.abs() <= 4.0 * FARTHEST);
+                is_near && at[D::N..].iter().all(|k| *k == 0.0)
             }
             Self::Soft(_, corners) => !corners.is_empty(),
-        }
+        };
+        is_of_it && is_somewhere
     }
 }
 
@@ -179,9 +193,9 @@ fn nodes<'a, D: Dim>(
         let element = mesh.element(mesh.owner(voxel)?)?;
         let apart = |node: NodeId| {
             let at = mesh.node(node).at;
-            (0..D::N)
-                .map(|axis| (at[axis] - point[axis]).abs())
-                .sum::<i32>()
+            // A stranger's file may name any point.
+            let along = |axis: usize| i64::from(at[axis]) - i64::from(point[axis]);
+            (0..D::N).map(|axis| along(axis).abs()).sum::<i64>()
         };
         element
             .nodes

@@ -14,8 +14,11 @@ const WARM_START: f32 = 0.9;
 /// How much of what pins and ropes are apart is drawn together in a substep, and how fast at most [m/s].
 const DRAW: f32 = 0.2;
 const DRAW_SPEED: f32 = 2.0;
-/// A sleeper wakes when the other end moves at this speed [m/s], as where two touch.
+/// A sleeper wakes when the other end moves at this speed [m/s], as where two touch; when a pin or a rope has given way by
+/// so much [m], and when a spring pulls by such a share more or less than when it fell asleep.
 const WAKE_SPEED: f32 = 0.15;
+const WAKE_STRETCH: f32 = 0.002;
+const WAKE_SHARE: f32 = 0.02;
 
 impl Joint {
     /// Begins a substep with what passed in the last one; whether both ends are there.
@@ -28,8 +31,9 @@ impl Joint {
         let [Some(first), Some(second)] = self.grips(bodies, rigids) else {
             return false;
         };
+        let is_strained = self.is_strained(length(minus(first.at, second.at)));
         for (own, other, anchor) in [(first, second, 0), (second, first, 1)] {
-            if own.is_asleep && length(other.velocity) > WAKE_SPEED {
+            if own.is_asleep && (is_strained || length(other.velocity) > WAKE_SPEED) {
                 self.anchors[anchor].wake(bodies, woken);
             }
         }
@@ -39,6 +43,20 @@ impl Joint {
         };
         self.push(bodies, rigids, self.impulse);
         true
+    }
+
+    /// Whether ends so far apart [m] do not rest.
+    fn is_strained(&self, distance: f32) -> bool {
+        match self.tie {
+            Tie::Pin => distance > WAKE_STRETCH,
+            Tie::Rope { length } => distance > length + WAKE_STRETCH,
+            Tie::Spring {
+                stiffness, length, ..
+            } => {
+                let pull = stiffness * (distance - length).abs();
+                (pull - self.force).abs() > WAKE_SHARE * self.force + stiffness * WAKE_STRETCH
+            }
+        }
     }
 
     /// Gives the ends what they lack; `draws` them together, too, where they are apart.

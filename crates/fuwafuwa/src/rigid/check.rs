@@ -2,6 +2,7 @@
 
 use super::bad::{BadRigid, is_within_reach, require};
 use super::{Drive, Rigid};
+use crate::rotation::Rotation;
 use crate::vector::{is_finite, length, minus, plus};
 
 impl Rigid {
@@ -29,6 +30,9 @@ impl Rigid {
         }
         require(is_finite(self.velocity), "velocity", "finite")?;
         require(is_finite(self.spin), "angular velocity", "finite")?;
+        let rotations = [self.rotation, self.rotation_before, self.rotation_goal];
+        let are_rotations = rotations.into_iter().all(Rotation::is_one);
+        require(are_rotations, "rotation", "of length 1")?;
         require(self.still >= 0.0, "time at rest", "0 or more")?;
         self.form.check()?;
         let is_moved = self.shape == self.form.rotated(self.rotation).moved(self.position);
@@ -52,7 +56,13 @@ impl Rigid {
                 within("mass", mass, 1e-6, 1e6, "1e-6 to 1e6 kg")?;
                 let [low, high] = self.form.bounds();
                 let off = length(plus(low, high)) <= 1e-3 * length(minus(high, low));
-                require(off, "shape", "one with its middle at the origin")
+                require(off, "shape", "one with its middle at the origin")?;
+                let is_sound = self.inertia.is_none_or(|inertia| inertia.is_sound());
+                require(
+                    is_sound,
+                    "shape",
+                    "neither too small nor too large to be turned",
+                )
             }
             Drive::Coupled {
                 mass,

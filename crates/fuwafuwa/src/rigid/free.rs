@@ -20,6 +20,15 @@ impl Rigid {
         self.asleep
     }
 
+    /// Whether it keeps awake what it touches: a hand does, and so does what is moved, however slowly.
+    pub(crate) fn pushes(&self) -> bool {
+        match self.drive {
+            Drive::Coupled { .. } => true,
+            Drive::Kinematic => self.velocity != [0.0; 3] || self.spin != [0.0; 3],
+            Drive::Fixed | Drive::Free { .. } => false,
+        }
+    }
+
     /// Whether it touches something soft of these layers.
     #[inline(always)]
     pub(crate) fn meets(&self, layers: Layers) -> bool {
@@ -95,6 +104,12 @@ impl Rigid {
         Ok(())
     }
 
+    /// Its goal is where it is.
+    pub(crate) fn stay(&mut self) {
+        (self.goal, self.goal_before) = (self.position, self.position);
+        self.rotation_goal = self.rotation;
+    }
+
     /// It does not rest any more.
     pub(crate) fn wake(&mut self) {
         (self.asleep, self.still) = (false, 0.0);
@@ -110,9 +125,6 @@ impl Rigid {
 
     /// Lets what is free gain speed for `duration` [s]; everything loses a share `drag` [1/s] of it to the air.
     pub(crate) fn fall<D: Dim>(&mut self, acceleration: Vector, drag: f32, duration: f32) {
-        if !self.is_free() || self.asleep {
-            return;
-        }
         let gain = scaled(flat::<D>(acceleration), duration);
         let left = 1.0 / (1.0 + drag * duration);
         self.velocity = scaled(plus(self.velocity, gain), left);

@@ -51,6 +51,12 @@ impl Inertia {
         }
     }
 
+    /// Whether it can be turned, and is a number.
+    pub fn is_sound(&self) -> bool {
+        let numbers = self.moments.iter().chain(&self.inverse);
+        numbers.clone().all(|k| k.is_finite()) && self.inverse[2] > 0.0
+    }
+
     /// The inverse of its matrix about the axes of the world [1/(kg m²)], where it is turned so.
     pub fn inverse(&self, rotation: Rotation) -> Matrix {
         let mut matrix = [[0.0; 3]; 3];

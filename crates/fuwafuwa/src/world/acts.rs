@@ -176,7 +176,11 @@ impl<D: Dim> World<D> {
         change: impl FnOnce(&mut Rigid),
     ) -> Result<(), Refused> {
         let mut changed = self.rigids.get(rigid)?.clone();
+        let drive = changed.drive;
         change(&mut changed);
+        if changed.drive != drive {
+            changed.stay();
+        }
         let mut changed = changed.seen_in::<D>();
         changed.check()?;
         changed.wake();

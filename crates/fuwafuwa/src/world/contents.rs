@@ -246,6 +246,11 @@ impl<D: Dim> World<D> {
         let sleepers = self.rigids.by_slot().filter(|(_, rigid)| rigid.is_asleep());
         let sleepers: Vec<RigidSlot> = sleepers.map(|(slot, _)| slot).collect();
         self.wake_rigids(&sleepers);
+        // What is soft and lies on them may be left hanging.
+        for slot in sleepers {
+            let leaning = leaning_on_rigid(self.rigids.at(slot), &self.bodies);
+            self.wake(&leaning);
+        }
     }
 
     /// Wakes all pieces of a body.

@@ -34,6 +34,23 @@ impl Press {
     }
 }
 
+impl Press {
+    /// The same as seen from the other side.
+    fn turned(mut self) -> Self {
+        self.normal = scaled(self.normal, -1.0);
+        self
+    }
+
+    /// Both together.
+    fn join(&mut self, other: Self) {
+        self.impulse += other.impulse;
+        self.speed = self.speed.max(other.speed);
+        if other.strongest > self.strongest {
+            (self.strongest, self.at, self.normal) = (other.strongest, other.at, other.normal);
+        }
+    }
+}
+
 impl<D: Dim> World<D> {
     /// Tells what pressed on what over the tick, what began and ended, and who came into a sensor and left it.
     pub(super) fn note_touches(&mut self) {
@@ -52,10 +69,15 @@ impl<D: Dim> World<D> {
                 normal: press.normal,
                 impulse: press.impulse,
             });
-            let both = [Party::Piece { body, piece }, with.into()];
-            // What is folded touches itself all the time.
-            if both[0] != both[1] {
-                presses.insert(both, press);
+            let (first, second) = (Party::Piece { body, piece }, with.into());
+            // What is folded touches itself all the time. Two pieces press on each other from either side.
+            match (first, second) {
+                _ if first == second => {}
+                (_, Party::Piece { .. }) if second < first => {
+                    let seen = presses.entry([second, first]).or_default();
+                    seen.join(press.turned());
+                }
+                _ => presses.entry([first, second]).or_default().join(press),
             }
         }
         for ([rigid, with], press) in rigid {

@@ -54,7 +54,10 @@ impl Geometry {
         self.boxes.clear();
         self.stickers.clear();
         let palette = frame.palette;
-        let bars = world.rigids().iter().filter(|rigid| !rigid.is_driven());
+        let bars = world
+            .rigids()
+            .iter()
+            .filter(|rigid| !rigid.is_driven() && !rigid.is_sensor);
         let bars = bars.filter_map(|bar| RoundedInstance::of(*bar.shape(), palette.bar, 0.0));
         self.bars = append(&mut self.rounded, bars);
         let hands = || world.hands().enumerate();
