@@ -89,14 +89,18 @@ impl Organ {
         if !RESOLUTIONS.contains(&resolution) {
             return Err(OrganError::Resolution { found: resolution });
         }
-        let searched = resolution.max(SEARCHED);
+        let mut region = Region::of(scans);
+        // Between the voxels of a scan there is nothing to be found.
+        let shown = (region.longest() / finest(scans)).ceil() as usize;
+        let searched = resolution
+            .max(SEARCHED)
+            .min(shown.max(*RESOLUTIONS.start()));
         // The first look finds it, the second sees how large it is, and the third is at it alone.
         let looks = [
             (searched, MOST_SEARCHED),
             (searched, MOST_SEARCHED),
             (resolution, MOST_ASKED),
         ];
-        let mut region = Region::of(scans);
         let mut found = None;
         for (number, (across, most_asked)) in looks.into_iter().enumerate() {
             let lattice = Lattice::over(&region, across);
@@ -185,6 +189,20 @@ impl Region {
         }
         region
     }
+
+    fn extent(&self) -> [f64; 3] {
+        [0, 1, 2].map(|axis: usize| self.high[axis] - self.low[axis])
+    }
+
+    fn longest(&self) -> f64 {
+        self.extent().into_iter().fold(0.0, f64::max)
+    }
+}
+
+/// How far apart the voxels of some scans are at least [mm].
+fn finest(scans: &[&Scan]) -> f64 {
+    let spacings = scans.iter().flat_map(|scan| scan.placement().spacing());
+    spacings.fold(f64::INFINITY, f64::min)
 }
 
 /// The outer corners of the voxels at the corners of a scan, RAS+ [mm].
@@ -212,11 +230,10 @@ impl Lattice {
     /// Over a box, with so many cubes along its longest side.
     fn over(region: &Region, across: usize) -> Self {
         let Region { low, high } = region;
-        let extent = [0, 1, 2].map(|axis: usize| high[axis] - low[axis]);
-        let voxel = extent.into_iter().fold(0.0, f64::max) / across as f64;
+        let voxel = region.longest() / across as f64;
         // The longest side is a whole number of voxels, but for rounding.
         let count = |length: f64| ((length / voxel - 1e-6).ceil().max(1.0) as usize).min(across);
-        let [right, front, up] = extent;
+        let [right, front, up] = region.extent();
         let size = [right, up, front].map(count);
         let half = size.map(|extent| 0.5 * extent as f64 * voxel);
         let middle = [0, 1, 2].map(|axis: usize| 0.5 * (low[axis] + high[axis]));
@@ -261,9 +278,7 @@ impl Lattice {
         most_asked: usize,
         mut progress: impl FnMut(f32),
     ) -> Vec<u8> {
-        let finest = scans.iter().flat_map(|scan| scan.placement().spacing());
-        let finest = finest.fold(f64::INFINITY, f64::min);
-        let asked = ((self.voxel / finest).ceil() as usize).clamp(1, most_asked);
+        let asked = ((self.voxel / finest(scans)).ceil() as usize).clamp(1, most_asked);
         let [width, height, depth] = self.size;
         let mut materials = Vec::with_capacity(width * height * depth);
         for z in 0..depth {
