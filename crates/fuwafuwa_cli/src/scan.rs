@@ -240,35 +240,32 @@ fn scene(model: &str, summary: &Summary) -> String {
     let last = summary.materials.last().map_or(1, |share| share.material);
     let [right, up, back] = summary.grid.map(|k| k as f32 * summary.voxel / 1000.0);
     let longest = right.max(up).max(back);
+    let around = 0.6 * longest;
     let mut text = format!(
-        "# Made of {} by `fuwafuwa scan`. This is no medical device.\n\
+        "# Made by `fuwafuwa scan`. This is no medical device.\n\
          dim = 3\n\
          seconds = 2.0\n\
-         view = [[{:?}, -0.01, {:?}], [{:?}, {:?}, {:?}]]\n",
-        summary
-            .scans
-            .iter()
-            .map(|scan| format!("{:?}", scan.file))
-            .collect::<Vec<_>>()
-            .join(" and "),
-        0.5 * (right - longest),
-        0.5 * (back - longest),
-        0.5 * (right + longest),
-        longest - 0.01,
-        0.5 * (back + longest),
+         view = [[{:?}, {:?}, {:?}], [{:?}, {:?}, {:?}]]\n\
+         \n# All materials are soft and heavy as organs are, hard to tear, and alike until somebody says more.\n",
+        0.5 * right - around,
+        0.5 * up - around,
+        0.5 * back - around,
+        0.5 * right + around,
+        0.5 * up + around,
+        0.5 * back + around,
     );
     for material in 1..=last {
         text += &format!(
-            "\n[[material]] # number {material}: soft and heavy as organs are, and all alike until somebody says more\n\
-             young = 10000.0\n\
+            "[[material]] # number {material}\n\
+             young = 20000.0\n\
              poisson = 0.4\n\
              density = 1050.0\n\
-             strength = 5000.0\n\
-             toughness = 500.0\n"
+             strength = 50000.0\n\
+             toughness = 5000.0\n\n"
         );
     }
     text + &format!(
-        "\n[[body]]\n\
+        "[[body]]\n\
          file = {model:?}\n\
          width = {longest:?}\n\
          at = [0.0, 0.01, 0.0]\n\
