@@ -348,7 +348,8 @@ mod tests {
         run(&arguments).unwrap();
         let scene = scene_at(&out.display().to_string(), &[]).unwrap();
         let world = scene.build::<Dim3>().unwrap();
-        let grid = world.bodies()[0].grid();
+        let body = world.bodies().iter().next();
+        let grid = body.expect("the scene has one").grid();
         assert_eq!(grid.solid_count(), 729);
         assert_eq!(grid.material([5; 3]), 2);
         assert!((grid.voxel_size() - 0.002).abs() < 1e-6);

@@ -33,7 +33,7 @@
 //!                        z
 //! ```
 //!
-//! Who looks along the engine's z, as its pictures do, sees the patient from behind, left on the left.
+//! Who looks against the engine's z, as its pictures do, sees the patient from behind, left on the left.
 //!
 //! # Strangers' files
 //!

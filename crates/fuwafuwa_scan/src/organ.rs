@@ -69,6 +69,10 @@ pub struct Organ {
     /// Its voxels, in metres, with materials from 1 on.
     pub grid: VoxelGrid<Dim3>,
     lattice: Lattice,
+    /// Voxels of each material.
+    counts: [usize; 256],
+    /// The lowest and the highest solid voxel on each axis.
+    solid: [[usize; 3]; 2],
 }
 
 impl Organ {
@@ -111,25 +115,30 @@ impl Organ {
             keep_largest(lattice.size, &mut materials);
             let solid = solid_box(lattice.size, &materials).ok_or(OrganError::Empty)?;
             region = lattice.around(solid);
-            found = Some((lattice, materials));
+            found = Some((lattice, solid, materials));
         }
-        let (lattice, mut materials) = found.ok_or(OrganError::Empty)?;
+        let (lattice, solid, mut materials) = found.ok_or(OrganError::Empty)?;
         if options.fills_holes {
             fill_holes(lattice.size, &mut materials);
         }
         progress(1.0);
+        let mut counts = [0; 256];
+        for &material in &materials {
+            counts[usize::from(material)] += 1;
+        }
         let voxel_size = (lattice.voxel / 1000.0) as f32;
         let grid = VoxelGrid::from_materials(lattice.size, voxel_size, materials);
-        let grid = grid.map_err(OrganError::Grid)?;
-        Ok(Self { grid, lattice })
+        Ok(Self {
+            grid: grid.map_err(OrganError::Grid)?,
+            lattice,
+            counts,
+            solid,
+        })
     }
 
     /// Number of voxels of a material.
     pub fn voxels(&self, material: u8) -> usize {
-        let voxels = self.grid.voxels();
-        voxels
-            .filter(|&voxel| self.grid.material(voxel) == material)
-            .count()
+        self.counts[usize::from(material)]
     }
 
     /// Volume of a material [ml].
@@ -140,9 +149,7 @@ impl Organ {
 
     /// How long it is on each of the engine's axes [mm].
     pub fn sides(&self) -> [f64; 3] {
-        let materials: Vec<u8> = self.grid.voxels().map(|k| self.grid.material(k)).collect();
-        let solid = solid_box(self.lattice.size, &materials);
-        let [low, high] = solid.expect("a grid has a solid voxel");
+        let [low, high] = self.solid;
         [0, 1, 2].map(|axis: usize| (high[axis] - low[axis] + 1) as f64 * self.lattice.voxel)
     }
 

@@ -100,8 +100,7 @@ impl Quaternion {
     fn affine(&self, spacing: [f64; 3]) -> Result<Affine, Wrong> {
         let [mut b, mut c, mut d] = self.imaginary;
         let squared = b * b + c * c + d * d;
-        // Not `>`: what is no number is wrong too.
-        if !(squared <= 1.0 + ROUNDING) {
+        if squared.is_nan() || squared > 1.0 + ROUNDING {
             return Err(Wrong {
                 expected: "the imaginary part of a unit quaternion",
                 found: format!("{b}, {c}, {d}"),
