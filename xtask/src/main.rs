@@ -4,6 +4,7 @@ mod bevy;
 mod fuzz;
 mod kernel;
 mod packages;
+mod scans;
 mod shell;
 mod task;
 mod wasm;
@@ -58,6 +59,7 @@ fn main() -> ExitCode {
             run_all(STAND)
         }
         Task::Fuzz(words) => fuzz::run(&words),
+        Task::Scans => scans::run(),
         Task::Rapier => run_all(RAPIER),
         Task::Bevy(wish, if_missing) => bevy::run(wish, if_missing),
     };

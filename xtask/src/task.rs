@@ -28,6 +28,7 @@ tasks:
   fuzz [MINUTES [DOOR …]]
                    nine minutes of scenes, levels, pictures, replays, settings … that nobody
                    meant, each looking for a way that none before it took
+  scans            fetches scans of a brain, MNI152, into target/scans, with the licences beside them
   rapier           whether crates/against_rapier, a workspace of its own, still compiles
   bevy             crates/bevy_fuwafuwa, a workspace of its own: formatting, lints, tests without a
                    window, documentation, and whether its examples compile
@@ -38,8 +39,8 @@ tasks:
 On Debian and Ubuntu, `play`, `test` and `check` install the system packages that are missing, as
 root or through sudo, after asking if there is a terminal. With --no-install they only name them.
 
-exit status: 0 passed, 1 failed, 2 no such task, 3 this machine lacks what `wasm`, `web` or `kernel`
-needs;
+exit status: 0 passed, 1 failed, 2 no such task, 3 this machine lacks what `wasm`, `web`, `kernel`
+or `scans` needs;
 `play` hands on that of the game";
 
 #[derive(Debug, PartialEq)]
@@ -56,6 +57,7 @@ pub enum Task {
     Stand(IfMissing),
     /// With how long, and through which doors.
     Fuzz(Vec<String>),
+    Scans,
     Rapier,
     Bevy(Bevy, IfMissing),
     Help,
@@ -96,6 +98,7 @@ impl Task {
             ["stand"] => Task::Stand(IfMissing::Say),
             ["stand", "--install"] => Task::Stand(IfMissing::Install),
             ["fuzz", ..] => Task::Fuzz(own[1..].to_vec()),
+            ["scans"] => Task::Scans,
             ["rapier"] => Task::Rapier,
             ["bevy"] => Task::Bevy(Bevy::Check, IfMissing::Say),
             ["bevy", "--pictures"] => Task::Bevy(Bevy::Pictures, IfMissing::Say),
@@ -188,6 +191,8 @@ mod tests {
             "soak 2 hoop",
             Ok(Task::Soak(vec!["2".into(), "hoop".into()])),
         );
+        check("scans", Ok(Task::Scans));
+        check("scans twice", Err("there is no task `scans twice`"));
         check("bevy", Ok(Task::Bevy(Bevy::Check, IfMissing::Say)));
         check(
             "bevy --pictures --install",

@@ -151,6 +151,13 @@ impl Joint {
                 "0 to 1e6 m",
             )?;
         }
+        let is_of_two = match self.ends {
+            [End::Place(_), End::Place(_)] => false,
+            [End::Rigid { rigid, .. }, End::Rigid { rigid: other, .. }] => rigid != other,
+            _ => true,
+        };
+        let expected = "of two things, of which one can be moved";
+        require(is_of_two, "ends of a joint", expected)?;
         require(self.breaking_force > 0.0, "breaking force", "positive")?;
         let is_within = |k: f32, least: f32| (least..=f32::MAX).contains(&k);
         match self.tie {
@@ -216,12 +223,16 @@ pub(crate) fn relax<D: Dim>(
     duration: f32,
 ) -> Vec<JointId> {
     let mut broken = Vec::new();
+    for _ in 0..ROUNDS {
+        for joint in joints.iter_mut() {
+            joint.solve(bodies, rigids, duration, false);
+        }
+    }
     for (id, joint) in joints.entries_mut() {
         if !joint.yields(bodies, rigids) {
             // Both ends rest: it goes on pulling as it did.
             continue;
         }
-        joint.solve(bodies, rigids, duration, false);
         joint.force = length(flat::<D>(joint.impulse)) / duration;
         if joint.force > joint.breaking_force {
             broken.push(id);

@@ -47,7 +47,8 @@ pub enum Drive {
     /// It falls, and is moved and turned by what it touches. Its shape has an end, and its middle at the origin: see
     /// [`Rigid::free`].
     Free {
-        /// Its mass, 1e-6 to 1e6 [kg], spread evenly. Heavier than a soft body by a thousand, it squashes it flat.
+        /// Its mass, 1e-6 to 1e6 [kg], spread evenly. What is ten times as heavy as what bears it, soft or rigid,
+        /// sinks into it.
         mass: f32,
     },
 }

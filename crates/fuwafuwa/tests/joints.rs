@@ -277,6 +277,33 @@ fn a_chain_of_ten_hangs() {
     assert!(lowest < -2.3, "{lowest}");
 }
 
+/// A chain of pins from which something heavier hangs straight down: nothing moves.
+#[test]
+fn what_hangs_still_on_a_chain_of_pins_stays_still() {
+    for heavy in [1.0, 10.0, 20.0] {
+        let mut world = world::<Dim3>(-9.81);
+        let mut above = End::Place([0.0; 3]);
+        let mut links = Vec::new();
+        for k in 0..10 {
+            let at = [0.0, -0.25 * (k + 1) as f32, 0.0];
+            let link = ball(&mut world, at, if k == 9 { heavy } else { 1.0 });
+            let top = [0.0, -0.25 * k as f32, 0.0];
+            world.add_joint(Joint::pin(on(link, top), above)).unwrap();
+            above = on(link, at);
+            links.push(link);
+        }
+        let mut fastest = 0.0f32;
+        for _ in 0..300 {
+            world.step();
+            for &link in &links {
+                let speed = world.rigids()[link].velocity();
+                fastest = fastest.max(apart(speed, [0.0; 3]));
+            }
+        }
+        assert!(fastest < 0.2, "{heavy}: {fastest}");
+    }
+}
+
 #[test]
 fn joints_break_at_their_force_and_tell() {
     for (bears, holds) in [(60.0, true), (30.0, false)] {
@@ -357,6 +384,8 @@ fn bad_joints_are_refused_by_field() {
         (Joint::new(good, Tie::Rope { length: 0.0 }), "length"),
         (Joint::new(good, Tie::Pin).breaking_at(f32::NAN), "force"),
         (Joint::pin(good[0], End::Place([f32::NAN; 3])), "place"),
+        (Joint::pin(good[1], good[1]), "ends"),
+        (Joint::pin(good[0], good[0]), "ends"),
     ];
     for (joint, word) in bad {
         let refused = world.add_joint(joint).unwrap_err().to_string();

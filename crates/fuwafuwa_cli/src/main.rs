@@ -5,6 +5,7 @@
 //! fuwafuwa figure all --out figures
 //! fuwafuwa check all
 //! fuwafuwa run tear --film tear.gif
+//! fuwafuwa scan grey.nii.gz white.nii.gz --out brain.toml
 //! ```
 //!
 //! Each subcommand is a module with its own `Arguments` and `run`.
@@ -16,6 +17,7 @@ mod figure;
 mod replay;
 mod report;
 mod run;
+mod scan;
 
 use anyhow::Result;
 use clap::{Parser, Subcommand};
@@ -37,6 +39,7 @@ enum Command {
     Check(check::Arguments),
     Run(run::Arguments),
     Replay(replay::Arguments),
+    Scan(scan::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -54,6 +57,7 @@ fn run(arguments: Arguments) -> Result<ExitCode> {
         Command::Check(arguments) => check::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Replay(arguments) => replay::run(&arguments),
+        Command::Scan(arguments) => scan::run(&arguments),
     }
 }
 

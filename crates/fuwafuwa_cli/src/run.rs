@@ -226,7 +226,7 @@ fn film_is_gif(path: &Path) -> Result<bool> {
 }
 
 /// Better to hear of a missing folder before a long run than after it.
-fn check_folder(path: &Path) -> Result<()> {
+pub fn check_folder(path: &Path) -> Result<()> {
     let folder = path
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty());
@@ -235,7 +235,8 @@ fn check_folder(path: &Path) -> Result<()> {
     Ok(())
 }
 
-fn write(path: &Path, bytes: &[u8]) -> Result<()> {
+/// Writes a file and says so.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     std::fs::write(path, bytes).with_context(|| path.display().to_string())?;
     eprintln!("{}", path.display());
     Ok(())

@@ -7,6 +7,7 @@ use base64::prelude::BASE64_URL_SAFE_NO_PAD as BASE64;
 use fuwafuwa::grid::MAX_EXTENT;
 use fuwafuwa::hash::Hash;
 use fuwafuwa::{Body, Dim, Dim2, Dim3, Material, Settings, VoxelGrid, World, snapshot};
+use fuwafuwa_scan::{Options, Organ, Scan, Segmentation};
 use fuwafuwa_scenes::import::{Colours, Model, Picture};
 use fuwafuwa_scenes::scene::BodyText;
 use fuwafuwa_scenes::{Recording, Scene};
@@ -61,6 +62,27 @@ pub fn vox(bytes: &[u8]) -> bool {
     let is_taken = grid.is_ok();
     grid.into_iter().for_each(drop_in);
     is_taken
+}
+
+pub fn scan(bytes: &[u8]) -> bool {
+    let Ok(scan) = Scan::decode("a.nii", bytes, |_| {}) else {
+        return false;
+    };
+    let [low, high] = scan.range();
+    let tissue = [
+        Segmentation::thresholds(&[(0.5 * (low + high)..=high, 2), (low..=high, 1)]),
+        Segmentation::labels(&[(1, 1), (2, 2)]),
+        Segmentation::Maps,
+    ];
+    let options = Options {
+        resolution: 8,
+        fills_holes: true,
+    };
+    let organs = tissue
+        .iter()
+        .map(|tissue| Organ::of(&[&scan], tissue, &options, |_| {}));
+    organs.flatten().for_each(|organ| drop_in(organ.grid));
+    true
 }
 
 pub fn replay(bytes: &[u8]) -> bool {

@@ -48,6 +48,11 @@ pub const DOORS: &[Door] = &[
         enter: doors::vox,
     },
     Door {
+        name: "scan",
+        seeds: seeds::scans,
+        enter: doors::scan,
+    },
+    Door {
         name: "replay",
         seeds: seeds::replays,
         enter: doors::replay,

@@ -2,12 +2,15 @@
 
 use base64::Engine;
 use base64::prelude::BASE64_URL_SAFE_NO_PAD as BASE64;
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use fuwafuwa::{
     Body, Dim, Dim2, Dim3, End, Joint, Material, Rigid, Rotation, Settings, Shape, Tie, VoxelGrid,
     World, snapshot,
 };
 use fuwafuwa_scenes::{Recording, Scene, scene};
 use png::{BitDepth, ColorType};
+use std::io::Write;
 use std::sync::Arc;
 use tamaire_play::level::{NAMED, NAMED_3D};
 use tamaire_play::{AnyRound, InputFrame, Level, Replay};
@@ -58,6 +61,16 @@ pub fn pictures() -> Vec<Vec<u8>> {
 pub fn models() -> Vec<Vec<u8>> {
     let cube = (0..27_u8).map(|k| [k % 3, k / 3 % 3, k / 9, 1 + k % 2]);
     vec![model(3, &cube.collect::<Vec<_>>()), PUDDING.to_vec()]
+}
+
+pub fn scans() -> Vec<Vec<u8>> {
+    let plain = [scan(false), scan(true)];
+    let zipped = plain.each_ref().map(|bytes| {
+        let mut encoder = GzEncoder::new(Vec::new(), Compression::default());
+        encoder.write_all(bytes).expect("a vector takes all");
+        encoder.finish().expect("a vector takes all")
+    });
+    plain.into_iter().chain(zipped).collect()
 }
 
 pub fn replays() -> Vec<Vec<u8>> {
@@ -244,4 +257,52 @@ fn model(side: u32, voxels: &[[u8; 4]]) -> Vec<u8> {
     ];
     let main = chunk(b"MAIN", &[], &chunks.concat());
     [b"VOX ", &150_u32.to_le_bytes()[..], &main].concat()
+}
+
+/// A scan in NIfTI-1, the highest byte of each number first or last.
+fn scan(is_big_endian: bool) -> Vec<u8> {
+    const SIDE: i16 = 6;
+    let mut bytes = vec![0; 352];
+    let mut put = |at: usize, number: &[u8]| {
+        let end = at + number.len();
+        bytes[at..end].copy_from_slice(number);
+        if is_big_endian {
+            bytes[at..end].reverse();
+        }
+    };
+    put(0, &348_i32.to_le_bytes());
+    for (at, number) in [
+        (40, 3),
+        (42, SIDE),
+        (44, SIDE),
+        (46, SIDE),
+        (70, 4),
+        (72, 16),
+        (254, 1),
+    ] {
+        put(at, &i16::to_le_bytes(number));
+    }
+    // Where the voxels begin, two numbers that scale, and a matrix: a little askew.
+    let reals = [
+        (108, 352.0),
+        (112, 0.5),
+        (116, -1.0),
+        (280, 0.9),
+        (284, 0.4),
+        (300, 1.5),
+        (320, -2.0),
+    ];
+    for (at, number) in reals {
+        put(at, &f32::to_le_bytes(number));
+    }
+    for voxel in 0..SIDE.pow(3) {
+        let number = voxel % 5 + 2;
+        bytes.extend(if is_big_endian {
+            number.to_be_bytes()
+        } else {
+            number.to_le_bytes()
+        });
+    }
+    bytes[344..348].copy_from_slice(b"n+1\0");
+    bytes
 }

@@ -24,6 +24,8 @@ pub enum Place {
     Byte(usize),
     /// The chunk of this name, whose header begins so many bytes from the beginning.
     Chunk([u8; 4], usize),
+    /// The field of this name in a header, so many bytes from the beginning.
+    Field(&'static str, usize),
 }
 
 /// What is wrong with a file.
@@ -64,6 +66,7 @@ impl fmt::Display for Place {
             Self::File => Ok(()),
             Self::Byte(at) => write!(f, ", byte {at}"),
             Self::Chunk(name, at) => write!(f, ", chunk {} at byte {at}", name.escape_ascii()),
+            Self::Field(name, at) => write!(f, ", {name} at byte {at}"),
         }
     }
 }

@@ -66,6 +66,35 @@ impl Model {
         in_file(file, model)
     }
 
+    /// The model of a grid: the material of a voxel is its palette index, whose colours, of index 1 first, may be named.
+    /// Those that are not are black.
+    ///
+    /// # Errors
+    /// [`ImportError`], which names `file`, when the grid has more than [`MAX_VOXELS_ACROSS`].
+    pub fn of(
+        file: &str,
+        grid: &VoxelGrid<Dim3>,
+        colours: &[[u8; 3]],
+    ) -> Result<Self, ImportError> {
+        let size = grid.size().map(|extent| extent as usize);
+        let longest = size.into_iter().max().unwrap_or(0) as u64;
+        let too_large = Problem::TooLarge {
+            what: "voxels on an axis",
+            found: longest,
+            limit: MAX_VOXELS_ACROSS.into(),
+        };
+        let fits = longest <= MAX_VOXELS_ACROSS.into();
+        in_file(file, fits.then_some(()).ok_or((Place::File, too_large)))?;
+        let mut palette = colours.to_vec();
+        palette.resize(256, [0; 3]);
+        Ok(Self {
+            file: file.into(),
+            size,
+            voxels: grid.voxels().map(|voxel| grid.material(voxel)).collect(),
+            palette: (!colours.is_empty()).then_some(palette),
+        })
+    }
+
     /// Voxels on each of our axes, empty layers included.
     pub fn size(&self) -> [usize; 3] {
         self.size
@@ -89,7 +118,7 @@ impl Model {
     }
 
     /// A file with this model alone, from which the same voxels come.
-    pub(crate) fn bytes(&self) -> Vec<u8> {
+    pub fn bytes(&self) -> Vec<u8> {
         let [width, height, depth] = self.size;
         let chunk = |name: &[u8; 4], contents: &[u8], children: &[u8]| {
             let lengths = [contents.len() as u32, children.len() as u32].map(u32::to_le_bytes);

@@ -1,0 +1,306 @@
+//! The header of a file of NIfTI: where which number stands, and what it may be.
+//!
+//! NIfTI-1 has 348 bytes of it and NIfTI-2 has 540, with the same fields in other places [Cox 2004]. The first number is
+//! that length, and tells the byte order too.
+
+use crate::complaint::{Complaint, too_large, unexpected};
+use crate::placement::{Forms, Placement, Quaternion};
+use fuwafuwa_scenes::import::Place;
+
+/// Most voxels of a scan: 512 on each axis, half a gigabyte once they are read.
+pub const MAX_VOXELS: u64 = 1 << 27;
+
+/// Bytes of the longer of the two headers.
+pub const LONGEST: usize = 540;
+
+/// Most bytes before the first voxel: what programs add to the header lies there.
+const MAX_OFFSET: f64 = (1 << 26) as f64;
+
+/// How one number of a file is written.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Number {
+    U8,
+    I8,
+    I16,
+    U16,
+    I32,
+    U32,
+    I64,
+    F32,
+    F64,
+}
+
+/// Numbers of one name that stand behind each other: in NIfTI-1 and in NIfTI-2.
+struct Field {
+    name: &'static str,
+    at: [usize; 2],
+    number: [Number; 2],
+}
+
+const fn field(name: &'static str, first: (usize, Number), second: (usize, Number)) -> Field {
+    Field {
+        name,
+        at: [first.0, second.0],
+        number: [first.1, second.1],
+    }
+}
+
+use Number::{F32, F64, I16, I32, I64, U8};
+const DIM: Field = field("dim", (40, I16), (16, I64));
+const DATATYPE: Field = field("datatype", (70, I16), (12, I16));
+const BITPIX: Field = field("bitpix", (72, I16), (14, I16));
+const PIXDIM: Field = field("pixdim", (76, F32), (104, F64));
+const VOX_OFFSET: Field = field("vox_offset", (108, F32), (168, I64));
+const SCL_SLOPE: Field = field("scl_slope", (112, F32), (176, F64));
+const SCL_INTER: Field = field("scl_inter", (116, F32), (184, F64));
+const XYZT_UNITS: Field = field("xyzt_units", (123, U8), (500, I32));
+const QFORM_CODE: Field = field("qform_code", (252, I16), (344, I32));
+const SFORM_CODE: Field = field("sform_code", (254, I16), (348, I32));
+const QUATERN: Field = field("quatern", (256, F32), (352, F64));
+const QOFFSET: Field = field("qoffset", (268, F32), (376, F64));
+const SROW: Field = field("srow", (280, F32), (400, F64));
+
+/// What the header of a file says, checked.
+#[derive(Debug)]
+pub struct Header {
+    /// Voxels on each axis of the scan.
+    pub size: [usize; 3],
+    /// How each is written.
+    pub number: Number,
+    pub is_big_endian: bool,
+    /// Bytes before the first voxel.
+    pub offset: usize,
+    /// What a number is multiplied by, and what is then added.
+    pub scale: [f64; 2],
+    pub placement: Placement,
+}
+
+impl Header {
+    /// From the beginning of a file, [`LONGEST`] bytes of it where it has so many.
+    pub fn read(bytes: &[u8]) -> Result<Self, Complaint> {
+        let bytes = Bytes::of(bytes)?;
+        let size = size(&bytes)?;
+        let number = number(&bytes)?;
+        Ok(Self {
+            size,
+            number,
+            is_big_endian: bytes.is_big_endian,
+            offset: offset(&bytes)?,
+            scale: scale(&bytes)?,
+            placement: placement(&bytes)?,
+        })
+    }
+
+    /// Voxels in all; [`Header::read`] has seen that they are not too many.
+    pub fn voxels(&self) -> usize {
+        self.size.iter().product()
+    }
+
+    /// Bytes of the file up to the end of the last voxel.
+    pub fn bytes(&self) -> u64 {
+        self.offset as u64 + self.voxels() as u64 * self.number.bytes() as u64
+    }
+}
+
+impl Number {
+    pub fn bytes(self) -> usize {
+        match self {
+            Self::U8 | Self::I8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::I64 | Self::F64 => 8,
+        }
+    }
+
+    /// The number that stands in so many bytes. One of 64 bits loses what is beyond 53, far beyond every limit.
+    pub fn value(self, bytes: &[u8], is_big_endian: bool) -> f64 {
+        let mut word = [0; 8];
+        let used = &mut word[..self.bytes()];
+        used.copy_from_slice(bytes);
+        if is_big_endian {
+            used.reverse();
+        }
+        let [a, b, c, d, ..] = word;
+        match self {
+            Self::U8 => f64::from(a),
+            Self::I8 => f64::from(a as i8),
+            Self::I16 => f64::from(i16::from_le_bytes([a, b])),
+            Self::U16 => f64::from(u16::from_le_bytes([a, b])),
+            Self::I32 => f64::from(i32::from_le_bytes([a, b, c, d])),
+            Self::U32 => f64::from(u32::from_le_bytes([a, b, c, d])),
+            Self::F32 => f64::from(f32::from_le_bytes([a, b, c, d])),
+            Self::I64 => i64::from_le_bytes(word) as f64,
+            Self::F64 => f64::from_le_bytes(word),
+        }
+    }
+}
+
+/// The bytes of a header that is known to be whole.
+struct Bytes<'a> {
+    bytes: &'a [u8],
+    /// 0 for NIfTI-1, 1 for NIfTI-2.
+    version: usize,
+    is_big_endian: bool,
+}
+
+impl<'a> Bytes<'a> {
+    fn of(bytes: &'a [u8]) -> Result<Self, Complaint> {
+        let expected = "the length of a header, 348 or 540";
+        let Some(first) = bytes.first_chunk::<4>() else {
+            let found = format!("{} bytes", bytes.len());
+            return Err(unexpected(Place::Byte(0), expected, found));
+        };
+        let lengths = [i32::from_le_bytes(*first), i32::from_be_bytes(*first)];
+        let known = [(348, 0), (540, 1)];
+        let found = known.iter().find(|(length, _)| lengths.contains(length));
+        let &(length, version) =
+            found.ok_or_else(|| unexpected(Place::Field("sizeof_hdr", 0), expected, lengths[0]))?;
+        let Some(bytes) = bytes.get(..length as usize) else {
+            let expected = format!("a header of {length} bytes");
+            return Err(unexpected(Place::Byte(0), expected, bytes.len()));
+        };
+        let (at, magic) = [(344, &b"n+1\0"[..]), (4, b"n+2\0\r\n\x1a\n")][version];
+        let found = &bytes[at..at + magic.len()];
+        if found != magic {
+            let expected = format!(
+                "\"{}\", header and voxels in one file",
+                magic.escape_ascii()
+            );
+            let found = format!("\"{}\"", found.escape_ascii());
+            return Err(unexpected(Place::Field("magic", at), expected, found));
+        }
+        Ok(Self {
+            bytes,
+            version,
+            is_big_endian: lengths[0] != length,
+        })
+    }
+
+    fn place(&self, field: &Field, index: usize) -> Place {
+        let width = field.number[self.version].bytes();
+        Place::Field(field.name, field.at[self.version] + index * width)
+    }
+
+    /// The number of this index in a field.
+    fn number(&self, field: &Field, index: usize) -> f64 {
+        let number = field.number[self.version];
+        let at = field.at[self.version] + index * number.bytes();
+        let bytes = &self.bytes[at..at + number.bytes()];
+        number.value(bytes, self.is_big_endian)
+    }
+
+    fn vector(&self, field: &Field, first: usize) -> [f64; 3] {
+        [0, 1, 2].map(|axis| self.number(field, first + axis))
+    }
+
+    fn wrong(&self, field: &Field, index: usize, expected: &str) -> Complaint {
+        let found = self.number(field, index);
+        unexpected(self.place(field, index), expected, found)
+    }
+}
+
+fn size(bytes: &Bytes) -> Result<[usize; 3], Complaint> {
+    let axes = bytes.number(&DIM, 0);
+    if !(3.0..=7.0).contains(&axes) {
+        return Err(bytes.wrong(&DIM, 0, "3 axes, or more with one voxel on each"));
+    }
+    for axis in 4..=axes as usize {
+        if bytes.number(&DIM, axis) != 1.0 {
+            return Err(bytes.wrong(&DIM, axis, "one volume, 1"));
+        }
+    }
+    let mut voxels = 1.0;
+    for axis in 1..=3 {
+        let found = bytes.number(&DIM, axis);
+        if found < 1.0 {
+            return Err(bytes.wrong(&DIM, axis, "at least one voxel"));
+        }
+        voxels *= found;
+        if voxels > MAX_VOXELS as f64 {
+            let place = bytes.place(&DIM, axis);
+            return Err(too_large(place, "voxels", voxels as u64, MAX_VOXELS));
+        }
+    }
+    Ok(bytes.vector(&DIM, 1).map(|voxels| voxels as usize))
+}
+
+fn number(bytes: &Bytes) -> Result<Number, Complaint> {
+    let number = match bytes.number(&DATATYPE, 0) as i32 {
+        2 => Number::U8,
+        4 => Number::I16,
+        8 => Number::I32,
+        16 => Number::F32,
+        64 => Number::F64,
+        256 => Number::I8,
+        512 => Number::U16,
+        768 => Number::U32,
+        _ => {
+            let expected =
+                "2, 4, 8, 16, 64, 256, 512 or 768: whole numbers to 32 bits, or real ones";
+            return Err(bytes.wrong(&DATATYPE, 0, expected));
+        }
+    };
+    let bits = 8 * number.bytes();
+    if bytes.number(&BITPIX, 0) != bits as f64 {
+        let expected = format!("the {bits} bits of that datatype");
+        return Err(bytes.wrong(&BITPIX, 0, &expected));
+    }
+    Ok(number)
+}
+
+fn offset(bytes: &Bytes) -> Result<usize, Complaint> {
+    let found = bytes.number(&VOX_OFFSET, 0);
+    let least = bytes.bytes.len() as f64;
+    if !(least..=MAX_OFFSET).contains(&found) || found % 1.0 != 0.0 {
+        let expected = format!("a whole number from {least} to {MAX_OFFSET}");
+        return Err(bytes.wrong(&VOX_OFFSET, 0, &expected));
+    }
+    Ok(found as usize)
+}
+
+/// A slope of 0 means that nothing is scaled, and programs write no number there when they mean the same.
+fn scale(bytes: &Bytes) -> Result<[f64; 2], Complaint> {
+    let slope = bytes.number(&SCL_SLOPE, 0);
+    if slope == 0.0 || !slope.is_finite() {
+        return Ok([1.0, 0.0]);
+    }
+    let inter = bytes.number(&SCL_INTER, 0);
+    let complaint = || bytes.wrong(&SCL_INTER, 0, "a finite number");
+    inter
+        .is_finite()
+        .then_some([slope, inter])
+        .ok_or_else(complaint)
+}
+
+fn placement(bytes: &Bytes) -> Result<Placement, Complaint> {
+    // The lowest three bits tell the unit of lengths; most programs that leave it out mean millimetres.
+    let unit = match bytes.number(&XYZT_UNITS, 0) as i32 & 7 {
+        0 | 2 => 1.0,
+        1 => 1000.0,
+        3 => 0.001,
+        _ => {
+            let expected = "a length in metres (1), millimetres (2) or micrometres (3)";
+            return Err(bytes.wrong(&XYZT_UNITS, 0, expected));
+        }
+    };
+    let spacing = bytes.vector(&PIXDIM, 1);
+    let forms = Forms {
+        sform: (bytes.number(&SFORM_CODE, 0) > 0.0).then(|| {
+            let row = |row: usize| [0, 1, 2, 3].map(|column| bytes.number(&SROW, 4 * row + column));
+            [0, 1, 2].map(row)
+        }),
+        qform: (bytes.number(&QFORM_CODE, 0) > 0.0).then(|| Quaternion {
+            imaginary: bytes.vector(&QUATERN, 0),
+            offset: bytes.vector(&QOFFSET, 0),
+            is_left_handed: bytes.number(&PIXDIM, 0) < 0.0,
+        }),
+        spacing,
+    };
+    let field = match (&forms.sform, &forms.qform) {
+        (Some(_), _) => &SROW,
+        (None, Some(_)) => &QUATERN,
+        (None, None) => &PIXDIM,
+    };
+    let placement = Placement::of(&forms, unit);
+    placement.map_err(|wrong| unexpected(bytes.place(field, 0), wrong.expected, wrong.found))
+}

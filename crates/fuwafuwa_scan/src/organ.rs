@@ -1,0 +1,330 @@
+//! From scans to a grid of voxels with materials: the largest thing in them that hangs together.
+
+use crate::placement::Placement;
+use crate::region::{fill_holes, keep_largest, solid_box};
+use crate::scan::Scan;
+use crate::segmentation::Segmentation;
+use fuwafuwa::{BuildError, Dim3, Point, VoxelGrid};
+use std::ops::RangeInclusive;
+
+/// How many voxels an organ may have along its longest side: fewer show nothing, and a model has no more.
+pub const RESOLUTIONS: RangeInclusive<usize> = 8..=256;
+
+/// Where an organ lies is found in so many voxels at least, whatever its own resolution: in fewer a small one is lost.
+const SEARCHED: usize = 64;
+
+/// Along each axis of a voxel at most so many places are asked for their material. More change little.
+const MOST_ASKED: usize = 4;
+
+/// As many while it is only searched for.
+const MOST_SEARCHED: usize = 2;
+
+/// How an organ is made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// Voxels along its longest side, of [`RESOLUTIONS`]. One at each end is empty.
+    pub resolution: usize,
+    /// Whether what it encloses becomes solid, of the material that is nearest: a hole without a way in cannot be seen,
+    /// and costs many small elements.
+    pub fills_holes: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            resolution: 64,
+            fills_holes: false,
+        }
+    }
+}
+
+/// Why scans give no organ.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum OrganError {
+    /// So many scans do not go with the segmentation.
+    #[error("expected {expected}, found {found}")]
+    Scans {
+        /// How many go with it.
+        expected: &'static str,
+        /// How many there are.
+        found: usize,
+    },
+    /// The resolution is none of [`RESOLUTIONS`].
+    #[error("expected {RESOLUTIONS:?} voxels along the longest side, found {found}")]
+    Resolution {
+        /// How many were asked for.
+        found: usize,
+    },
+    /// Nothing has a material.
+    #[error("nothing in the scan is of a material: see which intensities or labels it has")]
+    Empty,
+    /// The engine takes no such grid.
+    #[error("{0}")]
+    Grid(BuildError),
+}
+
+/// An organ, on the engine's axes: x to the patient's right, y up to the head, z to the back.
+#[derive(Clone, Debug)]
+pub struct Organ {
+    /// Its voxels, in metres, with materials from 1 on.
+    pub grid: VoxelGrid<Dim3>,
+    lattice: Lattice,
+    /// Voxels of each material.
+    counts: [usize; 256],
+    /// The lowest and the highest solid voxel on each axis.
+    solid: [[usize; 3]; 2],
+}
+
+impl Organ {
+    /// The largest thing in some scans that hangs together. `progress` hears numbers from 0 to 1 now and then.
+    ///
+    /// A voxel is solid when at least half of it is, and of the material of which most is in it.
+    ///
+    /// # Errors
+    /// [`OrganError`] says what is wrong with the choice of scans, materials or resolution.
+    pub fn of(
+        scans: &[&Scan],
+        segmentation: &Segmentation,
+        options: &Options,
+        mut progress: impl FnMut(f32),
+    ) -> Result<Self, OrganError> {
+        check(scans.len(), segmentation)?;
+        let resolution = options.resolution;
+        if !RESOLUTIONS.contains(&resolution) {
+            return Err(OrganError::Resolution { found: resolution });
+        }
+        let mut region = Region::of(scans);
+        // Between the voxels of a scan there is nothing to be found.
+        let shown = (region.longest() / finest(scans)).ceil() as usize;
+        let searched = resolution
+            .max(SEARCHED)
+            .min(shown.max(*RESOLUTIONS.start()));
+        // The first look finds it, the second sees how large it is, and the third is at it alone.
+        let looks = [
+            (searched, MOST_SEARCHED),
+            (searched, MOST_SEARCHED),
+            (resolution, MOST_ASKED),
+        ];
+        let mut found = None;
+        for (number, (across, most_asked)) in looks.into_iter().enumerate() {
+            let lattice = Lattice::over(&region, across);
+            let share = |done: f32| (number as f32 + done) / looks.len() as f32;
+            let mut materials = lattice.materials(scans, segmentation, most_asked, |done| {
+                progress(share(done))
+            });
+            keep_largest(lattice.size, &mut materials);
+            let solid = solid_box(lattice.size, &materials).ok_or(OrganError::Empty)?;
+            region = lattice.around(solid);
+            found = Some((lattice, solid, materials));
+        }
+        let (lattice, solid, mut materials) = found.ok_or(OrganError::Empty)?;
+        if options.fills_holes {
+            fill_holes(lattice.size, &mut materials);
+        }
+        progress(1.0);
+        let mut counts = [0; 256];
+        for &material in &materials {
+            counts[usize::from(material)] += 1;
+        }
+        let voxel_size = (lattice.voxel / 1000.0) as f32;
+        let grid = VoxelGrid::from_materials(lattice.size, voxel_size, materials);
+        Ok(Self {
+            grid: grid.map_err(OrganError::Grid)?,
+            lattice,
+            counts,
+            solid,
+        })
+    }
+
+    /// Number of voxels of a material.
+    pub fn voxels(&self, material: u8) -> usize {
+        self.counts[usize::from(material)]
+    }
+
+    /// Volume of a material [ml].
+    pub fn millilitres(&self, material: u8) -> f64 {
+        let edge = 0.1 * self.lattice.voxel;
+        self.voxels(material) as f64 * edge * edge * edge
+    }
+
+    /// How long it is on each of the engine's axes [mm].
+    pub fn sides(&self) -> [f64; 3] {
+        let [low, high] = self.solid;
+        [0, 1, 2].map(|axis: usize| (high[axis] - low[axis] + 1) as f64 * self.lattice.voxel)
+    }
+
+    /// The place in the patient, RAS+ [mm], of a place in the grid, from its low corner [m].
+    pub fn patient_at(&self, place: [f64; 3]) -> [f64; 3] {
+        self.lattice.patient_at(place.map(|k| 1000.0 * k))
+    }
+
+    /// The voxel that a place in the patient, RAS+ [mm], is in. It may lie outside the grid.
+    pub fn voxel_at(&self, patient: [f64; 3]) -> Point {
+        self.lattice.voxel_at(patient)
+    }
+}
+
+fn check(found: usize, segmentation: &Segmentation) -> Result<(), OrganError> {
+    let (range, expected) = match segmentation {
+        Segmentation::Maps => (1..=255, "1 to 255 scans, a map for each material"),
+        _ => (1..=1, "one scan with intensities or labels"),
+    };
+    let wrong = OrganError::Scans { expected, found };
+    range.contains(&found).then_some(()).ok_or(wrong)
+}
+
+/// A box in the patient, RAS+ [mm].
+struct Region {
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+impl Region {
+    /// All that scans show.
+    fn of(scans: &[&Scan]) -> Self {
+        let mut region = Self {
+            low: [f64::INFINITY; 3],
+            high: [f64::NEG_INFINITY; 3],
+        };
+        for scan in scans {
+            for corner in corners(scan.size(), scan.placement()) {
+                for axis in 0..3 {
+                    region.low[axis] = region.low[axis].min(corner[axis]);
+                    region.high[axis] = region.high[axis].max(corner[axis]);
+                }
+            }
+        }
+        region
+    }
+
+    fn extent(&self) -> [f64; 3] {
+        [0, 1, 2].map(|axis: usize| self.high[axis] - self.low[axis])
+    }
+
+    fn longest(&self) -> f64 {
+        self.extent().into_iter().fold(0.0, f64::max)
+    }
+}
+
+/// How far apart the voxels of some scans are at least [mm].
+fn finest(scans: &[&Scan]) -> f64 {
+    let spacings = scans.iter().flat_map(|scan| scan.placement().spacing());
+    spacings.fold(f64::INFINITY, f64::min)
+}
+
+/// The outer corners of the voxels at the corners of a scan, RAS+ [mm].
+fn corners(size: [usize; 3], placement: &Placement) -> [[f64; 3]; 8] {
+    [0, 1, 2, 3, 4, 5, 6, 7].map(|corner: usize| {
+        let voxel = [0, 1, 2].map(|axis: usize| match corner >> axis & 1 {
+            0 => -0.5,
+            _ => size[axis] as f64 - 0.5,
+        });
+        placement.patient_at(voxel)
+    })
+}
+
+/// Cubes that fill a box in the patient, counted along the engine's axes.
+#[derive(Clone, Debug)]
+struct Lattice {
+    size: [usize; 3],
+    /// Edge of a cube [mm].
+    voxel: f64,
+    /// The corner from which the engine's axes run, RAS+ [mm].
+    corner: [f64; 3],
+}
+
+impl Lattice {
+    /// Over a box, with so many cubes along its longest side.
+    fn over(region: &Region, across: usize) -> Self {
+        let Region { low, high } = region;
+        let voxel = region.longest() / across as f64;
+        // The longest side is a whole number of voxels, but for rounding.
+        let count = |length: f64| ((length / voxel - 1e-6).ceil().max(1.0) as usize).min(across);
+        let [right, front, up] = region.extent();
+        let size = [right, up, front].map(count);
+        let half = size.map(|extent| 0.5 * extent as f64 * voxel);
+        let middle = [0, 1, 2].map(|axis: usize| 0.5 * (low[axis] + high[axis]));
+        let corner = [
+            middle[0] - half[0],
+            middle[1] + half[2],
+            middle[2] - half[1],
+        ];
+        Self {
+            size,
+            voxel,
+            corner,
+        }
+    }
+
+    /// What is in some of its cubes and in those next to them.
+    fn around(&self, [low, high]: [[usize; 3]; 2]) -> Region {
+        let low = self.patient_at(low.map(|k| (k as f64 - 1.0) * self.voxel));
+        let high = self.patient_at(high.map(|k| (k as f64 + 2.0) * self.voxel));
+        Region {
+            low: [low[0], high[1], low[2]],
+            high: [high[0], low[1], high[2]],
+        }
+    }
+
+    /// The patient is turned here: z is the opposite of the front.
+    fn patient_at(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+        let [right, front, up] = self.corner;
+        [right + x, front - z, up + y]
+    }
+
+    fn voxel_at(&self, patient: [f64; 3]) -> Point {
+        let [right, front, up] = [0, 1, 2].map(|axis: usize| patient[axis] - self.corner[axis]);
+        [right, up, -front].map(|k| (k / self.voxel).floor() as i32)
+    }
+
+    /// The material of each cube: that of most of the places in it that are asked, if half of them are solid.
+    fn materials(
+        &self,
+        scans: &[&Scan],
+        segmentation: &Segmentation,
+        most_asked: usize,
+        mut progress: impl FnMut(f32),
+    ) -> Vec<u8> {
+        let asked = ((self.voxel / finest(scans)).ceil() as usize).clamp(1, most_asked);
+        let [width, height, depth] = self.size;
+        let mut materials = Vec::with_capacity(width * height * depth);
+        for z in 0..depth {
+            progress(z as f32 / depth as f32);
+            for y in 0..height {
+                for x in 0..width {
+                    let voxel = [x, y, z].map(|k| k as f64);
+                    materials.push(self.material(scans, segmentation, asked, voxel));
+                }
+            }
+        }
+        materials
+    }
+
+    fn material(
+        &self,
+        scans: &[&Scan],
+        segmentation: &Segmentation,
+        asked: usize,
+        voxel: [f64; 3],
+    ) -> u8 {
+        let mut votes = [0_u16; 256];
+        let count = asked * asked * asked;
+        for number in 0..count {
+            let part = [
+                number % asked,
+                number / asked % asked,
+                number / asked / asked,
+            ];
+            let part = part.map(|k| (k as f64 + 0.5) / asked as f64);
+            let place = [0, 1, 2].map(|axis: usize| (voxel[axis] + part[axis]) * self.voxel);
+            let material = segmentation.material(scans, self.patient_at(place));
+            votes[usize::from(material)] += 1;
+        }
+        if 2 * usize::from(votes[0]) > count {
+            return 0;
+        }
+        let best =
+            (1..=255).max_by_key(|&material: &u8| (votes[usize::from(material)], 255 - material));
+        best.unwrap_or(0)
+    }
+}

@@ -1,0 +1,238 @@
+//! Where in the patient the voxels of a scan lie.
+
+use std::ops::RangeInclusive;
+
+/// How far the voxels of a scan may be apart [mm].
+pub const SPACINGS: RangeInclusive<f64> = 1e-3..=100.0;
+
+/// How far from the patient's origin the first voxel may lie [mm]: beyond it places lose their digits.
+const MAX_OFFSET: f64 = 1e6;
+
+/// The volume of a voxel in terms of that of a box with the same edges, at least: a flatter one is as good as no volume.
+const LEAST_VOLUME: f64 = 0.05;
+
+/// How far a quaternion may be too long: single precision leaves some.
+const ROUNDING: f64 = 1e-3;
+
+/// Three rows of a matrix and, last in each, what is added.
+pub type Affine = [[f64; 4]; 3];
+
+/// Where in the patient the voxels of a scan lie, RAS+ [mm].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Placement {
+    affine: Affine,
+    inverse: Affine,
+    source: Source,
+}
+
+/// What of a header tells where its voxels lie.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// A matrix (sform).
+    Matrix,
+    /// A rotation (qform), where there is no matrix.
+    Rotation,
+    /// Only how far they are apart. What is left and what is right is then not known, and is taken to be as in most files.
+    Spacing,
+}
+
+/// All that a header says about it.
+pub struct Forms {
+    pub sform: Option<Affine>,
+    pub qform: Option<Quaternion>,
+    pub spacing: [f64; 3],
+}
+
+/// A rotation, and where the first voxel lies.
+pub struct Quaternion {
+    pub imaginary: [f64; 3],
+    pub offset: [f64; 3],
+    /// Whether the third axis runs the other way.
+    pub is_left_handed: bool,
+}
+
+/// What is wrong with a placement.
+pub struct Wrong {
+    pub expected: &'static str,
+    pub found: String,
+}
+
+impl Placement {
+    /// From the best of the forms, their lengths in `unit` millimetres.
+    pub(crate) fn of(forms: &Forms, unit: f64) -> Result<Self, Wrong> {
+        let (affine, source) = match (&forms.sform, &forms.qform) {
+            (Some(affine), _) => (*affine, Source::Matrix),
+            (None, Some(rotation)) => (rotation.affine(forms.spacing)?, Source::Rotation),
+            (None, None) => (scaling(forms.spacing), Source::Spacing),
+        };
+        let affine = affine.map(|row| row.map(|k| k * unit));
+        check(&affine)?;
+        Ok(Self {
+            affine,
+            inverse: inverse(&affine),
+            source,
+        })
+    }
+
+    /// What of the header told it.
+    pub fn source(&self) -> Source {
+        self.source
+    }
+
+    /// How far neighbouring voxels are apart on each axis of the scan [mm].
+    pub fn spacing(&self) -> [f64; 3] {
+        spacing(&self.affine)
+    }
+
+    /// The place in the patient, RAS+ [mm], of a place in the scan [voxels]; whole numbers are middles of voxels.
+    pub fn patient_at(&self, voxel: [f64; 3]) -> [f64; 3] {
+        apply(&self.affine, voxel)
+    }
+
+    /// The place in the scan [voxels] of a place in the patient, RAS+ [mm].
+    pub fn voxel_at(&self, patient: [f64; 3]) -> [f64; 3] {
+        apply(&self.inverse, patient)
+    }
+}
+
+impl Quaternion {
+    /// Rotation, scaling and offset in one [Cox 2004, method 2].
+    fn affine(&self, spacing: [f64; 3]) -> Result<Affine, Wrong> {
+        let [mut b, mut c, mut d] = self.imaginary;
+        let squared = b * b + c * c + d * d;
+        if squared.is_nan() || squared > 1.0 + ROUNDING {
+            return Err(Wrong {
+                expected: "the imaginary part of a unit quaternion",
+                found: format!("{b}, {c}, {d}"),
+            });
+        }
+        let a = if squared < 1.0 {
+            (1.0 - squared).sqrt()
+        } else {
+            let length = squared.sqrt();
+            [b, c, d] = [b / length, c / length, d / length];
+            0.0
+        };
+        let rotation = [
+            [
+                a * a + b * b - c * c - d * d,
+                2.0 * (b * c - a * d),
+                2.0 * (b * d + a * c),
+            ],
+            [
+                2.0 * (b * c + a * d),
+                a * a + c * c - b * b - d * d,
+                2.0 * (c * d - a * b),
+            ],
+            [
+                2.0 * (b * d - a * c),
+                2.0 * (c * d + a * b),
+                a * a + d * d - b * b - c * c,
+            ],
+        ];
+        let [x, y, z] = spacing.map(f64::abs);
+        let scale = [x, y, if self.is_left_handed { -z } else { z }];
+        Ok([0, 1, 2].map(|row: usize| {
+            let turned = |column: usize| rotation[row][column] * scale[column];
+            [turned(0), turned(1), turned(2), self.offset[row]]
+        }))
+    }
+}
+
+fn scaling(spacing: [f64; 3]) -> Affine {
+    let mut affine = [[0.0; 4]; 3];
+    for axis in 0..3 {
+        affine[axis][axis] = spacing[axis].abs();
+    }
+    affine
+}
+
+fn check(affine: &Affine) -> Result<(), Wrong> {
+    let wrong = |expected, found| Err(Wrong { expected, found });
+    if !affine.as_flattened().iter().all(|k| k.is_finite()) {
+        return wrong("finite numbers", format!("{affine:?}"));
+    }
+    let spacing = spacing(affine);
+    if !spacing.iter().all(|k| SPACINGS.contains(k)) {
+        let expected = "voxels 0.001 to 100 mm apart on each axis";
+        return wrong(expected, format!("{spacing:?} mm"));
+    }
+    let volume = determinant(affine).abs() / spacing.iter().product::<f64>();
+    if volume < LEAST_VOLUME {
+        let found = format!("{volume:.3} of what their edges make a box");
+        return wrong("three axes that make voxels of some volume", found);
+    }
+    let offset = affine.map(|row| row[3]);
+    if !offset.iter().all(|k| k.abs() <= MAX_OFFSET) {
+        let expected = "the first voxel within a kilometre of the patient's origin";
+        return wrong(expected, format!("{offset:?} mm"));
+    }
+    Ok(())
+}
+
+fn spacing(affine: &Affine) -> [f64; 3] {
+    [0, 1, 2].map(|axis| {
+        let squares = affine.iter().map(|row: &[f64; 4]| row[axis] * row[axis]);
+        squares.sum::<f64>().sqrt()
+    })
+}
+
+fn apply(affine: &Affine, [x, y, z]: [f64; 3]) -> [f64; 3] {
+    affine.map(|[a, b, c, offset]| a * x + b * y + c * z + offset)
+}
+
+/// Of two rows and two columns, those after this one: the signs of a determinant come out by themselves.
+fn minor(affine: &Affine, row: usize, column: usize) -> f64 {
+    let ([r, s], [c, d]) = (after(row), after(column));
+    affine[r][c] * affine[s][d] - affine[r][d] * affine[s][c]
+}
+
+fn after(axis: usize) -> [usize; 2] {
+    [(axis + 1) % 3, (axis + 2) % 3]
+}
+
+fn determinant(affine: &Affine) -> f64 {
+    let products = (0..3).map(|column| affine[0][column] * minor(affine, 0, column));
+    products.sum()
+}
+
+fn inverse(affine: &Affine) -> Affine {
+    let determinant = determinant(affine);
+    let mut inverse = [[0.0; 4]; 3];
+    for row in 0..3 {
+        for column in 0..3 {
+            inverse[row][column] = minor(affine, column, row) / determinant;
+        }
+    }
+    let offset = affine.map(|row| row[3]);
+    let [x, y, z] = apply(&inverse, offset);
+    for (row, moved) in inverse.iter_mut().zip([x, y, z]) {
+        row[3] = -moved;
+    }
+    inverse
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn there_and_back_is_the_same_place() {
+        let sform = Some([
+            [0.0, -1.5, 0.2, 90.0],
+            [0.7, 0.1, 0.0, -126.0],
+            [0.1, 0.0, 2.0, -72.0],
+        ]);
+        let forms = Forms {
+            sform,
+            qform: None,
+            spacing: [1.0; 3],
+        };
+        let placement = Placement::of(&forms, 1.0).ok().unwrap();
+        let voxel = [3.0, -40.5, 17.0];
+        let back = placement.voxel_at(placement.patient_at(voxel));
+        for axis in 0..3 {
+            assert!((back[axis] - voxel[axis]).abs() < 1e-9, "{back:?}");
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! A scan: a number for each voxel of a box, and where in the patient that box lies.
+
+use crate::complaint::{Complaint, in_file};
+use crate::header::{Header, LONGEST};
+use crate::placement::Placement;
+use crate::stream::Stream;
+use fuwafuwa_scenes::import::ImportError;
+
+/// Voxels that are read at once, between two words about progress.
+const CHUNK: usize = 1 << 16;
+
+/// A scan: an intensity, a label or a probability for each voxel of a box.
+#[derive(Clone, Debug)]
+pub struct Scan {
+    size: [usize; 3],
+    /// The first axis runs fastest. All are finite.
+    values: Vec<f32>,
+    lowest: f32,
+    highest: f32,
+    placement: Placement,
+}
+
+impl Scan {
+    /// The scan in the bytes of a NIfTI file, version 1 or 2, header and voxels in one, compressed with gzip or not.
+    /// `file` names it in errors; `progress` hears numbers from 0 to 1 now and then.
+    ///
+    /// What stands there instead of a finite number is taken to be as low as the lowest.
+    ///
+    /// # Errors
+    /// [`ImportError`] names the field of the header or the byte, what was expected there and what was found.
+    pub fn decode(
+        file: &str,
+        bytes: &[u8],
+        progress: impl FnMut(f32),
+    ) -> Result<Self, ImportError> {
+        in_file(file, try_decode(bytes, progress))
+    }
+
+    /// Voxels on each axis of the scan.
+    pub fn size(&self) -> [usize; 3] {
+        self.size
+    }
+
+    /// Where in the patient its voxels lie.
+    pub fn placement(&self) -> &Placement {
+        &self.placement
+    }
+
+    /// The lowest and the highest value in it.
+    pub fn range(&self) -> [f32; 2] {
+        [self.lowest, self.highest]
+    }
+
+    /// The value of the voxel nearest to a place in the scan [voxels], outside of it the lowest.
+    pub fn nearest(&self, voxel: [f64; 3]) -> f32 {
+        let at = voxel.map(|k| (k + 0.5).floor() as i64);
+        self.value(at)
+    }
+
+    /// The value at a place in the scan [voxels], straight between those of the eight voxels around it; more than half a
+    /// voxel outside the lowest.
+    pub fn between(&self, voxel: [f64; 3]) -> f32 {
+        let high = self.size.map(|extent| extent as f64 - 1.0);
+        let is_inside = |axis: usize| (-0.5..=high[axis] + 0.5).contains(&voxel[axis]);
+        if !(0..3).all(is_inside) {
+            return self.lowest;
+        }
+        let mut low = [0; 3];
+        let mut next = [0; 3];
+        let mut share = [0.0_f32; 3];
+        for axis in 0..3 {
+            let at = voxel[axis].clamp(0.0, high[axis]);
+            low[axis] = at as usize;
+            next[axis] = (low[axis] + 1).min(self.size[axis] - 1);
+            share[axis] = (at - low[axis] as f64) as f32;
+        }
+        let along_x = |y: usize, z: usize| {
+            let row = (z * self.size[1] + y) * self.size[0];
+            let (a, b) = (self.values[row + low[0]], self.values[row + next[0]]);
+            a + share[0] * (b - a)
+        };
+        let along_y = |z: usize| {
+            let (a, b) = (along_x(low[1], z), along_x(next[1], z));
+            a + share[1] * (b - a)
+        };
+        let (a, b) = (along_y(low[2]), along_y(next[2]));
+        a + share[2] * (b - a)
+    }
+
+    fn value(&self, at: [i64; 3]) -> f32 {
+        let is_inside = |axis: usize| (0..self.size[axis] as i64).contains(&at[axis]);
+        if !(0..3).all(is_inside) {
+            return self.lowest;
+        }
+        let [x, y, z] = at.map(|k| k as usize);
+        self.values[(z * self.size[1] + y) * self.size[0] + x]
+    }
+}
+
+fn try_decode(bytes: &[u8], mut progress: impl FnMut(f32)) -> Result<Scan, Complaint> {
+    let mut stream = Stream::of(bytes)?;
+    let mut beginning = [0; LONGEST];
+    let length = stream.fill(&mut beginning)?;
+    let beginning = &beginning[..length];
+    let header = Header::read(beginning)?;
+    stream.check(header.bytes())?;
+    let mut values = read(&header, beginning, &mut stream, &mut progress)?;
+    stream.finish()?;
+
+    let finite = || values.iter().copied().filter(|k| k.is_finite());
+    let lowest = finite().min_by(f32::total_cmp).unwrap_or(0.0);
+    let highest = finite().max_by(f32::total_cmp).unwrap_or(0.0);
+    for value in values.iter_mut().filter(|k| !k.is_finite()) {
+        *value = lowest;
+    }
+    Ok(Scan {
+        size: header.size,
+        values,
+        lowest,
+        highest,
+        placement: header.placement,
+    })
+}
+
+/// The values of all voxels. Some of their bytes may have come with the beginning of the file.
+fn read(
+    header: &Header,
+    beginning: &[u8],
+    stream: &mut Stream,
+    progress: &mut impl FnMut(f32),
+) -> Result<Vec<f32>, Complaint> {
+    let (count, width) = (header.voxels(), header.number.bytes());
+    let [slope, inter] = header.scale;
+    let value = |bytes: &[u8]| {
+        let number = header.number.value(bytes, header.is_big_endian);
+        (number * slope + inter) as f32
+    };
+    let mut buffer = beginning.get(header.offset..).unwrap_or_default().to_vec();
+    let mut ahead = header.offset.saturating_sub(beginning.len());
+    let mut skipped = [0; 1 << 12];
+    while ahead > 0 {
+        let part = ahead.min(skipped.len());
+        stream.fill_all(&mut skipped[..part], header.bytes())?;
+        ahead -= part;
+    }
+    let mut values = Vec::with_capacity(count);
+    while values.len() < count {
+        progress(values.len() as f32 / count as f32);
+        let wanted = (count - values.len()).min(CHUNK) * width;
+        let had = buffer.len().min(wanted);
+        buffer.resize(wanted, 0);
+        stream.fill_all(&mut buffer[had..], header.bytes())?;
+        values.extend(buffer.chunks_exact(width).map(value));
+        buffer.clear();
+    }
+    progress(1.0);
+    Ok(values)
+}

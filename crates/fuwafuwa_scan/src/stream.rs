@@ -1,0 +1,107 @@
+//! The bytes of a file in their order, inflated where it is compressed, and never more of them than are asked for.
+
+use crate::complaint::{Complaint, too_large, unexpected};
+use flate2::bufread::MultiGzDecoder;
+use fuwafuwa_scenes::import::Place;
+use std::io::Read;
+
+/// Most bytes of a file, and most that are made of one: a full scan of numbers of 64 bits, and what stands before it.
+pub const MAX_FILE_BYTES: u64 = (1 << 30) + (1 << 26);
+
+/// The most that deflate makes of one byte.
+const MOST_INFLATED: u64 = 1032;
+
+/// What two bytes a compressed file begins with.
+const GZIP: [u8; 2] = [0x1f, 0x8b];
+
+/// Most bytes behind the last voxel. Some files are padded, but who sends gigabytes there means no good.
+const MAX_TRAILING: u64 = 1 << 20;
+
+/// The bytes of a file from its front.
+pub struct Stream<'a> {
+    source: Source<'a>,
+    /// How many were taken.
+    at: u64,
+    /// How many there can be.
+    most: u64,
+}
+
+enum Source<'a> {
+    Plain(&'a [u8]),
+    Zipped(Box<MultiGzDecoder<&'a [u8]>>),
+}
+
+impl<'a> Stream<'a> {
+    pub fn of(bytes: &'a [u8]) -> Result<Self, Complaint> {
+        let length = bytes.len() as u64;
+        if length > MAX_FILE_BYTES {
+            return Err(too_large(Place::File, "bytes", length, MAX_FILE_BYTES));
+        }
+        let is_zipped = bytes.starts_with(&GZIP);
+        let (source, most) = match is_zipped {
+            true => (
+                Source::Zipped(Box::new(MultiGzDecoder::new(bytes))),
+                length * MOST_INFLATED,
+            ),
+            false => (Source::Plain(bytes), length),
+        };
+        let at = 0;
+        Ok(Self { source, at, most })
+    }
+
+    /// That there can be so many bytes of what is said to be in the file.
+    pub fn check(&self, expected: u64) -> Result<(), Complaint> {
+        let missing = || {
+            let found = format!("at most {}", self.most);
+            unexpected(Place::File, bytes(expected), found)
+        };
+        (expected <= self.most).then_some(()).ok_or_else(missing)
+    }
+
+    /// Fills the buffer, as far as the file goes; how far that is.
+    pub fn fill(&mut self, buffer: &mut [u8]) -> Result<usize, Complaint> {
+        let mut filled = 0;
+        while filled < buffer.len() {
+            let rest = &mut buffer[filled..];
+            let read = match &mut self.source {
+                Source::Plain(bytes) => bytes.read(rest),
+                Source::Zipped(decoder) => decoder.read(rest),
+            };
+            let at = Place::Byte((self.at + filled as u64) as usize);
+            match read.map_err(|error| unexpected(at, "bytes that gzip inflates", error))? {
+                0 => break,
+                count => filled += count,
+            }
+        }
+        self.at += filled as u64;
+        Ok(filled)
+    }
+
+    /// Fills all of the buffer, of a file that should have so many bytes up to the last voxel.
+    pub fn fill_all(&mut self, buffer: &mut [u8], expected: u64) -> Result<(), Complaint> {
+        let filled = self.fill(buffer)?;
+        let missing = || unexpected(Place::Byte(self.at as usize), bytes(expected), self.at);
+        (filled == buffer.len()).then_some(()).ok_or_else(missing)
+    }
+
+    /// Passes the rest, which must be short; only at its end gzip sees whether all was as it was written.
+    pub fn finish(mut self) -> Result<(), Complaint> {
+        let mut buffer = [0; 1 << 12];
+        let mut trailing = 0;
+        loop {
+            let filled = self.fill(&mut buffer)?;
+            trailing += filled as u64;
+            if trailing > MAX_TRAILING {
+                let what = "bytes behind the last voxel";
+                return Err(too_large(Place::File, what, trailing, MAX_TRAILING));
+            }
+            if filled < buffer.len() {
+                return Ok(());
+            }
+        }
+    }
+}
+
+fn bytes(expected: u64) -> String {
+    format!("{expected} bytes up to the last voxel")
+}

@@ -1,0 +1,246 @@
+//! Files that are damaged, cut short or made to do harm get an error, and soon.
+
+mod phantom;
+
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use fuwafuwa_scan::{Options, Organ, Scan, Segmentation};
+use fuwafuwa_scenes::import::{ImportError, Place, Problem};
+use phantom::File;
+use std::io::Write;
+use std::time::Instant;
+
+fn zipped(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
+    encoder.write_all(bytes).unwrap();
+    encoder.finish().unwrap()
+}
+
+fn decode(bytes: &[u8]) -> Result<Scan, ImportError> {
+    Scan::decode("test.nii", bytes, |_| {})
+}
+
+fn error(bytes: &[u8]) -> ImportError {
+    decode(bytes).expect_err("this is no good file")
+}
+
+fn small(version: usize) -> File {
+    let values: Vec<f64> = (0..60).map(f64::from).collect();
+    let mut file = File::small([5, 4, 3], &values);
+    file.version = version;
+    file
+}
+
+#[test]
+fn a_file_that_is_cut_short_anywhere_is_refused() {
+    for version in [1, 2] {
+        let whole = small(version).bytes();
+        decode(&whole).unwrap();
+        for length in 0..whole.len() {
+            let found = error(&whole[..length]).to_string();
+            assert!(found.starts_with("test.nii"), "{found}");
+            error(&zipped(&whole[..length]));
+        }
+        let whole = zipped(&whole);
+        decode(&whole).unwrap();
+        for length in 0..whole.len() {
+            error(&whole[..length]);
+        }
+    }
+}
+
+/// A header with some bytes replaced.
+fn with(at: usize, bytes: &[u8]) -> Vec<u8> {
+    let mut file = small(1).bytes();
+    file[at..at + bytes.len()].copy_from_slice(bytes);
+    file
+}
+
+#[test]
+fn an_error_names_the_field_and_what_was_found_and_expected() {
+    let whole = |number: i16| number.to_le_bytes();
+    let real = |number: f32| number.to_le_bytes();
+    for (bytes, expect) in [
+        (
+            with(0, &999_i32.to_le_bytes()),
+            "sizeof_hdr at byte 0: expected the length of a header, 348 or 540, found 999",
+        ),
+        (
+            with(344, b"ni1\0"),
+            "magic at byte 344: expected \"n+1\\x00\", header and voxels in one file, found \"ni1\\x00\"",
+        ),
+        (
+            with(40, &whole(2)),
+            "dim at byte 40: expected 3 axes, or more with one voxel on each, found 2",
+        ),
+        (with(40, &whole(-1)), "dim at byte 40"),
+        (
+            with(42, &whole(-3)),
+            "dim at byte 42: expected at least one voxel, found -3",
+        ),
+        (with(46, &whole(0)), "dim at byte 46: expected at least one"),
+        (
+            with(42, &[0xff, 0x7f].repeat(3)),
+            "dim at byte 44: 1073676289 voxels are too many, the limit is 134217728",
+        ),
+        (
+            with(
+                40,
+                &[whole(4), whole(5), whole(4), whole(3), whole(2)].concat(),
+            ),
+            "dim at byte 48: expected one volume, 1, found 2",
+        ),
+        (with(70, &whole(128)), "datatype at byte 70"),
+        (
+            with(72, &whole(8)),
+            "bitpix at byte 72: expected the 16 bits of that datatype, found 8",
+        ),
+        (
+            with(108, &real(347.0)),
+            "vox_offset at byte 108: expected a whole number from 348 to 67108864, found 347",
+        ),
+        (with(108, &real(352.5)), "vox_offset"),
+        (with(108, &real(f32::NAN)), "vox_offset"),
+        (with(108, &real(-1e30)), "vox_offset"),
+        (
+            with(108, &real(4096.0)),
+            "expected 4216 bytes up to the last voxel, found at most 472",
+        ),
+        (
+            with(116, &real(f32::NAN)),
+            "scl_inter at byte 116: expected a finite number",
+        ),
+        (with(123, &[4]), "xyzt_units at byte 123"),
+        (
+            with(280, &real(f32::NAN)),
+            "srow at byte 280: expected finite numbers",
+        ),
+        (
+            with(292, &real(f32::INFINITY)),
+            "srow at byte 280: expected finite numbers",
+        ),
+        (with(292, &real(1e30)), "the first voxel within a kilometre"),
+        (with(280, &real(0.0)), "voxels 0.001 to 100 mm apart"),
+        (with(280, &real(1e9)), "voxels 0.001 to 100 mm apart"),
+        // The second axis runs along the first.
+        (
+            with(
+                280,
+                &[real(1.0), real(1.0), real(0.0), real(0.0), [0; 4], [0; 4]].concat(),
+            ),
+            "three axes that make voxels of some volume",
+        ),
+    ] {
+        let found = error(&bytes).to_string();
+        assert!(found.contains(expect), "{found:?} is not {expect:?}");
+    }
+    // A rotation that is none.
+    let mut bytes = with(252, &[whole(1), whole(0)].concat());
+    bytes[256..260].copy_from_slice(&real(1.1));
+    let found = error(&bytes).to_string();
+    assert!(
+        found.contains("quatern at byte 256: expected the imaginary part"),
+        "{found}"
+    );
+    bytes[256..260].copy_from_slice(&real(f32::NAN));
+    assert!(error(&bytes).to_string().contains("quatern"));
+}
+
+#[test]
+fn a_header_that_promises_more_than_the_file_can_hold_is_refused_at_once() {
+    let start = Instant::now();
+    for version in [1, 2] {
+        let mut file = small(version);
+        file.size = [512; 3];
+        file.datatype = 64;
+        for bytes in [file.bytes(), zipped(&file.bytes())] {
+            let found = error(&bytes);
+            assert_eq!(found.place, Place::File, "{found}");
+            assert!(
+                found.to_string().contains("up to the last voxel"),
+                "{found}"
+            );
+        }
+    }
+    let mut file = small(2);
+    file.size = [1 << 40, 1 << 40, 1];
+    assert!(matches!(
+        error(&file.bytes()).problem,
+        Problem::TooLarge { .. }
+    ));
+    assert!(start.elapsed().as_secs() < 5);
+}
+
+#[test]
+fn a_bomb_is_not_inflated_to_its_end() {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
+    encoder.write_all(&small(1).bytes()).unwrap();
+    let zeros = vec![0; 1 << 20];
+    for _ in 0..64 {
+        encoder.write_all(&zeros).unwrap();
+    }
+    let mut bomb = encoder.finish().unwrap();
+    assert!(bomb.len() < 100_000);
+    // Who came to the end would complain about this instead.
+    let end = bomb.len() - 8;
+    bomb[end..].fill(0xaa);
+    match error(&bomb).problem {
+        Problem::TooLarge { what, limit, .. } => {
+            assert_eq!((what, limit), ("bytes behind the last voxel", 1 << 20));
+        }
+        other => panic!("{other}"),
+    }
+}
+
+#[test]
+fn a_file_that_arrived_otherwise_than_it_was_sent_is_refused() {
+    let mut bytes = zipped(&small(1).bytes());
+    let checksum = bytes.len() - 8;
+    bytes[checksum] ^= 1;
+    assert!(error(&bytes).to_string().contains("gzip"));
+}
+
+#[test]
+fn no_byte_of_a_header_does_harm() {
+    let tissue = Segmentation::thresholds(&[(10.0..=50.0, 1)]);
+    let options = Options {
+        resolution: 8,
+        ..Options::default()
+    };
+    let mut taken = 0;
+    for version in [1, 2] {
+        let good = small(version).bytes();
+        for at in 0..good.len().min(544) {
+            for value in [0x00, 0x01, 0x7f, 0x80, 0xff] {
+                let mut bytes = good.clone();
+                bytes[at] = value;
+                match decode(&bytes) {
+                    Ok(scan) => {
+                        taken += 1;
+                        let [low, high] = scan.range();
+                        assert!(low.is_finite() && high.is_finite());
+                        if let Ok(organ) = Organ::of(&[&scan], &tissue, &options, |_| {}) {
+                            assert!(organ.grid.solid_count() > 0);
+                        }
+                    }
+                    Err(error) => assert!(error.to_string().starts_with("test.nii"), "{error}"),
+                }
+            }
+        }
+    }
+    assert!(taken > 100);
+}
+
+#[test]
+fn what_is_no_number_is_as_low_as_the_lowest() {
+    let mut file = File::small([2, 2, 1], &[f64::NAN, 5.0, f64::INFINITY, -3.0]);
+    file.datatype = 16;
+    let scan = file.scan();
+    assert_eq!(scan.range(), [-3.0, 5.0]);
+    assert_eq!(scan.nearest([0.0; 3]), -3.0);
+    assert_eq!(scan.between([0.0, 1.0, 0.0]), -3.0);
+    assert_eq!(scan.between([0.5, 0.0, 0.0]), 1.0);
+    assert_eq!(scan.between([f64::NAN; 3]), -3.0);
+    file.values = vec![f64::NAN; 4];
+    assert_eq!(file.scan().range(), [0.0; 2]);
+}

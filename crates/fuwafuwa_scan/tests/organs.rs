@@ -1,0 +1,166 @@
+//! What becomes an organ, and of which materials.
+
+mod phantom;
+
+use fuwafuwa::Dim3;
+use fuwafuwa_scan::{Options, Organ, OrganError, Scan, Segmentation};
+use fuwafuwa_scenes::import::{Model, vox};
+use phantom::{File, RAS, ball, organ};
+
+fn distance(patient: [f64; 3], middle: [f64; 3]) -> f64 {
+    let squares = (0..3).map(|axis| (patient[axis] - middle[axis]).powi(2));
+    squares.sum::<f64>().sqrt()
+}
+
+/// From 1 to 0 over so many millimetres at a distance, as scanners smear borders.
+fn smeared(inside: f64, across: f64) -> f64 {
+    (0.5 + inside / across).clamp(0.0, 1.0)
+}
+
+fn near(found: f64, expected: f64, tolerance: f64) {
+    let good = (found - expected).abs() <= tolerance * expected;
+    assert!(good, "expected {expected}, found {found}");
+}
+
+#[test]
+fn thresholds_keep_the_volume_at_each_resolution() {
+    let file = File::of(RAS, [1.5, 1.5, 3.0], |patient| {
+        1000.0 * smeared(30.0 - distance(patient, [0.0; 3]), 3.0)
+    });
+    let tissue = Segmentation::thresholds(&[(500.0..=f32::INFINITY, 7)]);
+    for resolution in [16, 32, 64, 100] {
+        let organ = organ(&file.scan(), &tissue, resolution);
+        near(organ.millilitres(7), ball(30.0), 0.03);
+        assert_eq!(organ.grid.solid_count(), organ.voxels(7));
+        let longest = organ.grid.size().into_iter().max();
+        assert_eq!(longest, Some(resolution as i32));
+    }
+}
+
+#[test]
+fn of_maps_the_more_probable_counts_and_there_is_no_gap_between() {
+    let depth = |patient| 30.0 - distance(patient, [0.0; 3]);
+    // As bytes to 255, and as shares.
+    let grey = File::of(RAS, [2.0; 3], |patient| {
+        let inside = smeared(depth(patient), 4.0);
+        255.0 * inside * (1.0 - smeared(depth(patient) - 12.0, 4.0))
+    });
+    let mut white = File::of(RAS, [1.5; 3], |patient| smeared(depth(patient) - 12.0, 4.0));
+    white.datatype = 16;
+    let (grey, white) = (grey.scan(), white.scan());
+    let organ = Organ::of(
+        &[&grey, &white],
+        &Segmentation::Maps,
+        &Options::default(),
+        |_| {},
+    );
+    let organ = organ.unwrap();
+    near(organ.millilitres(2), ball(18.0), 0.03);
+    near(organ.millilitres(1), ball(30.0) - ball(18.0), 0.03);
+    let options = Options {
+        fills_holes: true,
+        ..Options::default()
+    };
+    let filled = Organ::of(&[&grey, &white], &Segmentation::Maps, &options, |_| {}).unwrap();
+    assert_eq!(filled.grid, organ.grid, "there is no gap to be filled");
+}
+
+#[test]
+fn specks_elsewhere_change_nothing() {
+    let sound = |patient| 20.0 - distance(patient, [-20.0, 10.0, 0.0]);
+    let speck = |patient| 4.0 - distance(patient, [50.0, -45.0, 40.0]);
+    let alone = File::of(RAS, [2.0; 3], |patient| {
+        100.0 * smeared(sound(patient), 3.0)
+    });
+    let both = File::of(RAS, [2.0; 3], |patient| {
+        100.0 * smeared(sound(patient).max(speck(patient)), 3.0)
+    });
+    let tissue = Segmentation::thresholds(&[(50.0..=100.0, 1)]);
+    let [alone, both] = [alone, both].map(|file| organ(&file.scan(), &tissue, 32));
+    assert_eq!(alone.grid, both.grid);
+    near(alone.sides()[0], 40.0, 0.06);
+}
+
+#[test]
+fn what_is_enclosed_is_filled_where_that_is_asked_for() {
+    let file = File::of(RAS, [2.0; 3], |patient| {
+        let far = distance(patient, [0.0; 3]);
+        f64::from(u8::from(far < 30.0 && far > 12.0))
+    });
+    let labels = Segmentation::labels(&[(1, 3)]);
+    let options = |fills_holes| Options {
+        resolution: 40,
+        fills_holes,
+    };
+    let made = |options: Options| Organ::of(&[&file.scan()], &labels, &options, |_| {}).unwrap();
+    let (hollow, full) = (made(options(false)), made(options(true)));
+    near(hollow.millilitres(3), ball(30.0) - ball(12.0), 0.03);
+    near(full.millilitres(3), ball(30.0), 0.03);
+}
+
+#[test]
+fn an_organ_becomes_a_model_and_comes_back() {
+    let file = File::of(RAS, [2.0; 3], |patient| f64::from(phantom::label(patient)));
+    let organ = organ(&file.scan(), &phantom::labels(), 24);
+    let model = Model::of("a.vox", &organ.grid, &[[200, 90, 80]]).unwrap();
+    let back = vox("a.vox", &model.bytes(), organ.grid.voxel_size()).unwrap();
+    assert_eq!(back, organ.grid);
+    let long = fuwafuwa::VoxelGrid::<Dim3>::from_fn([300, 1, 1], 1.0, |_| 1).unwrap();
+    let error = Model::of("a.vox", &long, &[]).unwrap_err().to_string();
+    assert!(
+        error.contains("300 voxels on an axis are too many"),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_choice_that_does_not_fit_is_refused() {
+    let scan = File::small([2, 2, 2], &[1.0; 8]).scan();
+    let labels = Segmentation::labels(&[(1, 1)]);
+    let refused = |scans: &[&Scan], segmentation: &Segmentation, resolution| {
+        let options = Options {
+            resolution,
+            ..Options::default()
+        };
+        let outcome = Organ::of(scans, segmentation, &options, |_| {});
+        outcome.expect_err("this cannot be").to_string()
+    };
+    let error = refused(&[&scan], &labels, 7);
+    assert_eq!(
+        error,
+        "expected 8..=256 voxels along the longest side, found 7"
+    );
+    let error = refused(&[&scan, &scan], &labels, 8);
+    assert_eq!(
+        error,
+        "expected one scan with intensities or labels, found 2"
+    );
+    let error = refused(&[], &Segmentation::Maps, 8);
+    assert_eq!(
+        error,
+        "expected 1 to 255 scans, a map for each material, found 0"
+    );
+    let empty = Segmentation::labels(&[(2, 1)]);
+    let outcome = Organ::of(&[&scan], &empty, &Options::default(), |_| {});
+    assert_eq!(outcome.err(), Some(OrganError::Empty));
+}
+
+#[test]
+fn progress_goes_from_nothing_to_all() {
+    let file = File::of(RAS, [2.0; 3], |patient| f64::from(phantom::label(patient)));
+    let mut told = Vec::new();
+    let scan = Scan::decode("a.nii", &file.bytes(), |done| told.push(done)).unwrap();
+    let check = |told: &[f32]| {
+        assert_eq!((told.first(), told.last()), (Some(&0.0), Some(&1.0)));
+        assert!(told.is_sorted(), "{told:?}");
+        assert!(told.len() > 2);
+    };
+    check(&told);
+    told.clear();
+    let options = Options::default();
+    Organ::of(&[&scan], &phantom::labels(), &options, |done| {
+        told.push(done)
+    })
+    .unwrap();
+    check(&told);
+}
