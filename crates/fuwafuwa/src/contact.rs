@@ -20,12 +20,12 @@ use crate::layers::Layers;
 use crate::rigid::Rigids;
 use crate::solve::Row;
 use crate::threads;
-use crate::touch::{ContactSphere, MARGIN, Nearby, NodePairs};
+use crate::touch::{ContactSphere, MARGIN, Nearby, NodePairs, WAKE_SPEED};
 use crate::vector::{as_row, cross, minus, scaled, three};
 use exit::Exit;
 use motion::Motion;
 use rigid_rows::{find_free, find_hands};
-use row::{AHEAD, CLOSE, Contact, WAKE_SPEED, inner, is_close};
+use row::{AHEAD, CLOSE, Contact, inner, is_close};
 use sides::{FreeContact, HandContact, NodeContact, SphereContact};
 use std::collections::BTreeSet;
 

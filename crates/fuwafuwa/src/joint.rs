@@ -94,15 +94,8 @@ impl Joint {
         self.force
     }
 
-    /// Takes hold of its ends.
-    pub(crate) fn hold<D: Dim>(
-        &mut self,
-        bodies: &Bodies<D>,
-        rigids: &Rigids,
-    ) -> Result<Result<(), BadJoint>, Gone> {
-        if let Err(bad) = self.check() {
-            return Ok(Err(bad));
-        }
+    /// Takes hold of its ends, as they are said.
+    pub(crate) fn hold<D: Dim>(&mut self, bodies: &Bodies<D>, rigids: &Rigids) -> Result<(), Gone> {
         for (anchor, end) in self.anchors.iter_mut().zip(&self.ends) {
             *anchor = Anchor::of(end, bodies, rigids)?;
         }
@@ -110,7 +103,7 @@ impl Joint {
             self.meet_soft_ends(bodies, rigids);
         }
         (self.impulse, self.force) = ([0.0; 3], 0.0);
-        Ok(Ok(()))
+        Ok(())
     }
 
     /// A pin between something soft and something that is not is where the soft end is: nothing jumps.

@@ -35,6 +35,11 @@ pub use rigids::{Passed, RigidTouch, RigidTouches};
 pub use sphere::{ContactSphere, SphereId, mean};
 pub use spheres::Spheres;
 
+/// A sleeper wakes when what touches it moves at this speed [m/s]: what it did move, since deep in
+/// a heap the forces of a substep alone would give as much to what rests. Five times as fast as what falls
+/// asleep: less, and a heap would keep itself awake.
+pub const WAKE_SPEED: f32 = 0.15;
+
 /// What may touch what. Between ticks nothing of it counts but the impulses, who met in front, and the order of the
 /// spheres.
 #[derive(Clone, Debug, Default)]

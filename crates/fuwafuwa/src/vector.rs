@@ -84,3 +84,16 @@ pub fn is_finite<const K: usize>(a: [f32; K]) -> bool {
 pub fn length<const K: usize>(a: [f32; K]) -> f32 {
     dot(a, a).sqrt()
 }
+
+/// Two directions of length 1, square to one of length 1 and to each other.
+pub fn across(way: Vector) -> [Vector; 2] {
+    let least = (0..3).fold(0, |least, k| match way[k].abs() < way[least].abs() {
+        true => k,
+        false => least,
+    });
+    let mut other = [0.0; 3];
+    other[least] = 1.0;
+    let first = cross(way, other);
+    let first = scaled(first, 1.0 / length(first));
+    [first, cross(way, first)]
+}

@@ -1,14 +1,14 @@
 //! Contacts between rigid things: hands against walls and each other at one place, what is free at as many as it lies on.
 
-use super::row::{AHEAD, CLOSE, Contact, WAKE_SPEED, inner, is_close};
+use super::row::{AHEAD, CLOSE, Contact, inner, is_close};
 use super::sides::{FreeContact, HandContact};
 use crate::dim::Dim;
 use crate::handle::RigidSlot;
 use crate::rigid::{Drive, Rigid, Rigids};
 use crate::shape::Vector;
 use crate::solve::Row;
-use crate::touch::{Impulse, Passed, RigidTouch, RigidTouches};
-use crate::vector::{as_row, cross, dot, length, minus, plus, scaled, three};
+use crate::touch::{Impulse, Passed, RigidTouch, RigidTouches, WAKE_SPEED};
+use crate::vector::{across, as_row, length, minus, plus, scaled, three};
 
 /// What comes slower than this [m/s] does not bounce: else nothing would come to rest.
 const BOUNCE_SPEED: f32 = 0.5;
@@ -47,7 +47,7 @@ pub fn find_hands(rigids: &Rigids, duration: f32, found: &mut Vec<HandContact>) 
     }
 }
 
-/// The contacts of what is free with everything rigid. Returns the sleepers that were hit.
+/// The contacts of what is free with everything rigid. Returns the sleepers that were hit, some more than once.
 pub fn find_free<D: Dim>(
     rigids: &Rigids,
     known: &RigidTouches,
@@ -88,8 +88,6 @@ pub fn find_free<D: Dim>(
             );
         }
     }
-    hits.sort_unstable();
-    hits.dedup();
     hits
 }
 
@@ -169,15 +167,7 @@ fn tangents<D: Dim>(normal: Vector) -> [Vector; 2] {
     if D::N == 2 {
         return [[normal[1], -normal[0], 0.0], [0.0; 3]];
     }
-    let least = (0..3).fold(0, |least, k| match normal[k].abs() < normal[least].abs() {
-        true => k,
-        false => least,
-    });
-    let mut other = [0.0; 3];
-    other[least] = 1.0;
-    let first = cross(normal, other);
-    let first = scaled(first, 1.0 / dot(first, first).sqrt());
-    [first, cross(normal, first)]
+    across(normal)
 }
 
 impl FreeContact {

@@ -12,10 +12,6 @@ const WARM_START: f32 = 0.9;
 const PUSH_OUT: f32 = 0.2;
 pub const PUSH_OUT_SPEED: f32 = 0.5;
 
-/// A sleeper wakes when what touches it moves at this speed [m/s]: what it did move, since deep in
-/// a heap the forces of a substep alone would give as much to what rests. Five times as fast as what falls
-/// asleep: less, and a heap would keep itself awake.
-pub const WAKE_SPEED: f32 = 0.15;
 /// A contact matters when the gap closes to so many voxels within so many substeps: one, and half of another, for
 /// other contacts may make it close faster.
 pub const CLOSE: f32 = 0.05;

@@ -7,6 +7,7 @@ use crate::body::Bodies;
 use crate::dim::Dim;
 use crate::rigid::Rigids;
 use crate::shape::Vector;
+use crate::touch::WAKE_SPEED;
 use crate::vector::{cross, dot, length, minus, plus, scaled};
 
 /// How much of the last substep's impulse a pin starts from.
@@ -14,9 +15,8 @@ const WARM_START: f32 = 0.9;
 /// How much of what pins and ropes are apart is drawn together in a substep, and how fast at most [m/s].
 const DRAW: f32 = 0.2;
 const DRAW_SPEED: f32 = 2.0;
-/// A sleeper wakes when the other end moves at this speed [m/s], as where two touch; when a pin or a rope has given way by
-/// so much [m], and when a spring pulls by such a share more or less than when it fell asleep.
-const WAKE_SPEED: f32 = 0.15;
+/// A sleeper wakes, besides when the other end moves as what wakes it by a touch, when a pin or a rope has given way by so
+/// much [m], and when a spring pulls by such a share more or less than when it fell asleep.
 const WAKE_STRETCH: f32 = 0.002;
 const WAKE_SHARE: f32 = 0.02;
 

@@ -97,8 +97,8 @@ impl Rigid {
         let expected = "within 1e6 m of the origin";
         require(is_within_reach(position), "position", expected)?;
         (self.position, self.rotation) = (position, rotation);
-        (self.goal, self.goal_before, self.position_before) = (position, position, position);
-        (self.rotation_goal, self.rotation_before) = (rotation, rotation);
+        (self.position_before, self.rotation_before) = (position, rotation);
+        self.stay();
         *self = self.clone().seen_in::<D>();
         self.wake();
         Ok(())
@@ -165,7 +165,7 @@ impl Rigid {
 
     #[inline(always)]
     fn twirl(&mut self, impulse: Vector, lever: Vector) {
-        if self.is_free() && !self.asleep {
+        if self.can_be_turned() {
             let twist = times(&self.inverse_inertia, cross(lever, impulse));
             self.spin = plus(self.spin, twist);
         }
@@ -175,7 +175,7 @@ impl Rigid {
     /// of length 1.
     pub(crate) fn yields(&self, lever: Vector, way: Vector) -> f32 {
         let mut gain = self.inverse_mass();
-        if self.is_free() && !self.asleep {
+        if self.can_be_turned() {
             let arm = cross(lever, way);
             let turned = times(&self.inverse_inertia, arm);
             gain += dot(arm, turned);
@@ -186,7 +186,7 @@ impl Rigid {
     /// The velocity that an impulse of 1 N s along a direction gives a place so far from its position [1/kg].
     pub(crate) fn gain(&self, lever: Vector, way: Vector) -> Vector {
         let gain = scaled(way, self.inverse_mass());
-        match self.is_free() && !self.asleep {
+        match self.can_be_turned() {
             true => {
                 let spin = times(&self.inverse_inertia, cross(lever, way));
                 plus(gain, cross(spin, lever))
@@ -199,12 +199,18 @@ impl Rigid {
     #[inline(always)]
     pub(crate) fn yields_near(&self, at: Vector) -> f32 {
         let gain = self.inverse_mass();
-        if !self.is_free() || self.asleep {
+        if !self.can_be_turned() {
             return gain;
         }
         let lever = minus(at, self.position);
         let [x, y, z] = self.inverse_inertia;
         gain + (x[0] + y[1] + z[2]) * dot(lever, lever)
+    }
+
+    /// Whether what touches it can turn it.
+    #[inline(always)]
+    fn can_be_turned(&self) -> bool {
+        self.is_free() && !self.asleep
     }
 
     /// Whether it turns.

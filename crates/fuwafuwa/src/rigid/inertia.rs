@@ -3,7 +3,7 @@
 use crate::dim::Dim;
 use crate::rotation::Rotation;
 use crate::shape::{Shape, Vector};
-use crate::vector::{cross, dot, length, minus, plus, scaled};
+use crate::vector::{across, dot, length, minus, plus, scaled};
 use std::f32::consts::PI;
 
 /// A symmetric matrix, by its rows.
@@ -123,8 +123,8 @@ fn bar<D: Dim>(long: f32, radius: f32) -> Vector {
         2 => (long * long + 4.0 * squared) / 12.0,
         _ => long * long / 12.0 + 0.25 * squared,
     };
-    let across = between * side + round * ends;
-    [0.5 * between * squared + round * own, across, across]
+    let aside = between * side + round * ends;
+    [0.5 * between * squared + round * own, aside, aside]
 }
 
 /// Three axes, the first along a direction.
@@ -134,12 +134,8 @@ fn axes_along(way: Vector) -> [Vector; 3] {
         return Rotation::NONE.axes();
     }
     let first = scaled(way, 1.0 / long);
-    let least = (0..3).min_by(|&a, &b| first[a].abs().total_cmp(&first[b].abs()));
-    let mut other = [0.0; 3];
-    other[least.unwrap_or(0)] = 1.0;
-    let second = cross(first, other);
-    let second = scaled(second, 1.0 / length(second));
-    [first, second, cross(first, second)]
+    let [second, third] = across(first);
+    [first, second, third]
 }
 
 #[cfg(test)]

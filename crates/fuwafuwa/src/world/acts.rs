@@ -283,8 +283,7 @@ impl<D: Dim> World<D> {
         self.nearby.remove_body(own);
         change(self.bodies.get_mut(id)?);
         self.wake_up(id)?;
-        self.wake(&leaning);
-        self.wake_all_rigids();
+        self.wake_leaning(&leaning);
         Ok(())
     }
 
@@ -293,8 +292,7 @@ impl<D: Dim> World<D> {
         let leaning = leaning_on_rigid(self.rigids.get(id)?, &self.bodies);
         self.nearby.remove_rigid(id.slot());
         self.nearby.nodes.look_again();
-        self.wake(&leaning);
-        self.wake_all_rigids();
+        self.wake_leaning(&leaning);
         Ok(())
     }
 

@@ -107,8 +107,7 @@ impl<D: Dim> World<D> {
         let removed = self.bodies.remove(body)?;
         self.nearby.remove_body(body.slot());
         let leaning = leaning_on_body(&removed, &self.bodies);
-        self.wake(&leaning);
-        self.wake_all_rigids();
+        self.wake_leaning(&leaning);
         Ok(removed)
     }
 
@@ -121,8 +120,7 @@ impl<D: Dim> World<D> {
         let removed = self.rigids.remove(rigid)?;
         self.nearby.remove_rigid(rigid.slot());
         let leaning = leaning_on_rigid(&removed, &self.bodies);
-        self.wake(&leaning);
-        self.wake_all_rigids();
+        self.wake_leaning(&leaning);
         Ok(removed)
     }
 
@@ -239,6 +237,12 @@ impl<D: Dim> World<D> {
         self.touching.dedup();
         self.inside.sort_unstable();
         self.inside.dedup();
+    }
+
+    /// Wakes those that leant on something, and all that is free.
+    pub(super) fn wake_leaning(&mut self, leaning: &[Hit]) {
+        self.wake(leaning);
+        self.wake_all_rigids();
     }
 
     /// Wakes whatever is free: who of them leant on something that is gone shows within a moment.

@@ -14,8 +14,9 @@ impl<D: Dim> World<D> {
     /// [`Refused`] when an end is not there, or when a number is out of range.
     #[inline(never)]
     pub fn add_joint(&mut self, mut joint: Joint) -> Result<JointId, Refused> {
-        let held = joint.hold(&self.bodies, &self.rigids)?;
-        held.map_err(|(field, expected)| Refused::Argument { field, expected })?;
+        let refused = |(field, expected)| Refused::Argument { field, expected };
+        joint.check().map_err(refused)?;
+        joint.hold(&self.bodies, &self.rigids)?;
         self.wake_ends(&joint);
         Ok(self.joints.insert(joint))
     }
