@@ -129,6 +129,11 @@ impl Material {
         within("toughness", self.toughness, tiny, infinite, "positive")
     }
 
+    /// The energy that a square metre of crack takes: toughness² / Y [J/m²] [Irwin 1957].
+    pub fn fracture_energy(&self) -> f32 {
+        (f64::from(self.toughness) * f64::from(self.toughness) / self.elasticity.young) as f32
+    }
+
     /// Speed of a pressure wave [m/s].
     pub fn wave_speed(&self) -> f64 {
         let stiffness = self.elasticity.lame() + 2.0 * self.elasticity.shear_modulus();
