@@ -53,19 +53,22 @@ pub mod costs {}
 #[doc = include_str!("../guide/determinism.md")]
 pub mod determinism {}
 
-// Pictures are in the page itself, so that they are there wherever it is. They are as wide as the page at the most.
+// Pictures are in the page itself, so that they are there wherever it is.
 #[doc = include_str!("../guide/how_levels.md")]
-#[doc = "<div class=\"fuwafuwa\"><style>.fuwafuwa svg { max-width: 100%; height: auto; }</style>"]
+#[doc = "<div class=\"fuwafuwa\"><style>.fuwafuwa svg { max-width: min(100%, 44em); max-height: 34em; height: auto; }</style>"]
 #[doc = include_str!("../guide/figures/levels.svg")]
-#[doc = "</div>\n"]
+#[doc = "</div>"]
+#[doc = ""]
 #[doc = include_str!("../guide/how_tears.md")]
 #[doc = "<div class=\"fuwafuwa\">"]
 #[doc = include_str!("../guide/figures/remodel.svg")]
-#[doc = "</div>\n"]
+#[doc = "</div>"]
+#[doc = ""]
 #[doc = include_str!("../guide/how_time.md")]
 #[doc = "<div class=\"fuwafuwa\">"]
 #[doc = include_str!("../guide/figures/tear.svg")]
-#[doc = "</div>\n"]
+#[doc = "</div>"]
+#[doc = ""]
 #[doc = include_str!("../guide/how_more.md")]
 pub mod how {}
 
