@@ -2,6 +2,7 @@
 
 use crate::shell::{CANNOT, FAILED, Failure, cargo, execute, output_of, root, target};
 use std::path::Path;
+use std::process::Command;
 
 /// What is wanted.
 #[derive(Debug, PartialEq)]
@@ -49,34 +50,47 @@ pub fn run(package: Package) -> Result<(), Failure> {
     }
     match package {
         Package::List => {
-            pack(&["--no-verify"], None)?;
+            pack(&["--no-verify"], &[])?;
             CRATES.iter().try_for_each(|(name, _)| check_size(name))
         }
         Package::Build => {
             let oldest = oldest_rust()?;
-            let toolchain = format!("+{oldest}");
-            if output_of("rustc", &[&toolchain, "--version"]).is_none() {
-                return Err(Failure {
-                    message: format!(
-                        "rustup has no Rust {oldest}, the oldest that the crates say they need: \
-                         `rustup toolchain install {oldest} --profile minimal`"
-                    ),
-                    code: CANNOT,
-                });
-            }
-            pack(&[], Some(&oldest))
+            let toolchain = toolchain_of(&oldest).ok_or_else(|| Failure {
+                message: format!(
+                    "neither is this Rust {oldest}, the oldest that the crates say they need, nor has \
+                     rustup one: `rustup toolchain install {oldest} --profile minimal`"
+                ),
+                code: CANNOT,
+            })?;
+            pack(&[], &toolchain)
         }
     }
 }
 
+/// What to tell rustup's programs so that they are of a version of Rust: nothing, where they are. Others have no rustup, and
+/// take no such word.
+fn toolchain_of(version: &str) -> Option<Vec<String>> {
+    let candidates = [
+        Vec::new(),
+        vec![format!("+{version}")],
+        vec![format!("+{version}.0")],
+    ];
+    let is_it = |words: &Vec<String>| {
+        let words = words.iter().map(String::as_str).chain(["--version"]);
+        let answer = output_of("rustc", &words.collect::<Vec<_>>());
+        answer.is_some_and(|answer| answer.starts_with(&format!("rustc {version}.")))
+    };
+    candidates.into_iter().find(is_it)
+}
+
 /// Packs all of them at once: so those that need each other find each other, though none is published.
-fn pack(words: &[&str], rust: Option<&str>) -> Result<(), Failure> {
-    let mut command = cargo();
-    if let Some(rust) = rust {
-        // The cargo that runs this is of another toolchain: rustup picks.
-        command = std::process::Command::new("cargo");
-        command.arg(format!("+{rust}")).env_remove("CARGO");
-    }
+fn pack(words: &[&str], toolchain: &[String]) -> Result<(), Failure> {
+    let mut command = match toolchain {
+        [] => cargo(),
+        // The cargo that runs this is of another one: rustup picks.
+        _ => Command::new("cargo"),
+    };
+    command.args(toolchain);
     command
         .args(["package", "--quiet", "--allow-dirty"])
         .args(words);
