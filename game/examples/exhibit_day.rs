@@ -483,8 +483,8 @@ fn main() -> ExitCode {
         "{visitors} visitors, welcome within {welcome:.0} ms; {rounds} rounds and {wins} wins in the logbook"
     );
     println!("{ended} and {wins_seen} were seen; {astray} go another way");
-    // A round of a few ticks begins and ends between two frames.
-    let mut is_good = wins == wins_seen && rounds >= ended && astray == 0;
+    // A round of a few ticks begins and ends between two frames, and one is won and begun anew in a single frame.
+    let mut is_good = wins >= wins_seen && rounds >= ended && astray == 0;
     if let [first, .., last] = hours.as_slice() {
         let [used, held, frame] = [0, 1, 2].map(|at| 100.0 * (last[at] / first[at] - 1.0));
         println!("memory in use {used:+.1} %, held {held:+.1} %, frames {frame:+.1} %");

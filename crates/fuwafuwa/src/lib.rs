@@ -7,8 +7,8 @@
 //! → `touch` and `contact` what meets → [`world`] all of it, and time.
 //! Two and three dimensions are one program: [`dim`] holds all that differs.
 //!
-//! To use it, begin with [`World`], [`Body`] and [`VoxelGrid`]; `examples` has whole programs. Your debug builds are a
-//! hundred times slower than they need be unless your `Cargo.toml` says
+//! To use it, begin with the [`guide`], or with [`World`], [`Body`] and [`VoxelGrid`]; `examples` has whole programs. Your
+//! debug builds are a hundred times slower than they need be unless your `Cargo.toml` says
 //! ```toml
 //! [profile.dev.package.fuwafuwa]
 //! opt-level = 3
@@ -40,6 +40,8 @@ mod disjoint;
 pub mod event;
 mod fracture;
 pub mod grid;
+#[cfg(any(doc, doctest))]
+pub mod guide;
 pub mod handle;
 pub mod hash;
 pub mod ids;

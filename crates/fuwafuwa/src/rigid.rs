@@ -68,7 +68,9 @@ impl Default for Drive {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rigid {
-    /// Coulomb friction with what it touches; about 0.2.
+    /// Coulomb friction with what it touches; about 0.2. With soft bodies it counts alone, whatever their materials say.
+    /// Of two rigid things the mean counts, but with what is fixed that of the fixed one where the other is free, and that
+    /// of the hand where it is a hand.
     pub friction: f32,
     /// Share of its speed with which it bounces off something else that is rigid, 0 to 1, where one of both is free; the
     /// larger one counts. About 0; soft bodies bounce by themselves.
