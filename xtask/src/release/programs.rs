@@ -1,5 +1,6 @@
 //! The programs as they are handed out: small, without the folders of whoever built them, and with the licences of all inside.
 
+use super::files::put;
 use super::kit::Kit;
 use super::told;
 use crate::cross::Compiler;
@@ -52,11 +53,22 @@ pub fn build(kit: &Kit, compiler: Option<&Compiler>) -> Result<PathBuf, Failure>
     for language in ["CFLAGS", "CXXFLAGS"] {
         command.env(language, flags.join(" "));
     }
+    // It builds what it compares itself with, from sources that a player does not have.
+    command.env("FUWAFUWA_SOURCES", "/tamaire/crates/fuwafuwa_cli");
     command.env("SOURCE_DATE_EPOCH", &kit.epoch);
     command.env("CARGO_INCREMENTAL", "0");
     command.env("TAMAIRE_LICENCES", &licences);
     execute(&mut command, "the programs could not be built")?;
     Ok(folder)
+}
+
+/// Copies a program to where it belongs, without the names that only a debugger needs: not every linker leaves them out.
+pub fn put_stripped(from: &Path, to: &Path, strip: &str) -> Result<(), Failure> {
+    put(from, to)?;
+    execute(
+        Command::new(strip).arg("--strip-all").arg(to),
+        "Debian: binutils",
+    )
 }
 
 /// What folders of this machine are called in the programs. Where several fit, the last counts.
@@ -65,11 +77,11 @@ fn names(compiler: Option<&Compiler>) -> Vec<(String, &'static str)> {
     let home = home.or_else(|| Some(env::home_dir()?.join(".cargo")));
     let mut names = Vec::new();
     let mut name = |path: &Path, short| names.push((path.display().to_string(), short));
-    name(root(), "/tamaire");
-    name(&root().join(target()), "/target");
     if let Some(home) = home {
         name(&home, "/cargo");
     }
+    name(root(), "/tamaire");
+    name(&root().join(target()), "/target");
     if let Some(sources) = compiler.and_then(|compiler| compiler.sources.as_deref()) {
         name(sources, "/rust/library");
     }
