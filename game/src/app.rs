@@ -423,7 +423,7 @@ impl eframe::App for App {
         // What stands in these is of many widths.
         let is_list = matches!(
             self.game.screen(),
-            Screen::Settings | Screen::Forces | Screen::Replays
+            Screen::Settings | Screen::Forces | Screen::Licences | Screen::Replays
         );
         self.presses.waiting().in_order = is_list && self.game.controls.rebinding.is_none();
         ctx.request_repaint();

@@ -6,8 +6,10 @@ mod window;
 
 use crate::game::Game;
 use crate::headless;
+use crate::licences;
 use crate::platform::{Files, Given, Pads, Sound, level_at};
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
+use std::io::Write;
 use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -29,12 +31,15 @@ struct Arguments {
     /// List the levels
     #[arg(long)]
     list: bool,
+    /// Print what is inside this program, and under which licences
+    #[arg(long)]
+    licences: bool,
     /// Play without a window, as fast as it goes, and tell how it went
     #[arg(long)]
     headless: bool,
     /// Set up a stand in public that runs by itself, as this file says; it is written where there is none
     #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "exhibit.toml")]
-    #[arg(conflicts_with_all = ["file", "list", "headless"])]
+    #[arg(conflicts_with_all = ["file", "list", "licences", "headless"])]
     exhibit: Option<PathBuf>,
     /// The game of a stand, which its parent starts
     #[arg(long, hide = true)]
@@ -51,6 +56,7 @@ struct Arguments {
 enum Chore {
     /// Write what visitors did, from the logbooks of any number of stands and days, as a page for a browser
     Report(report::Options),
+    Manual(manual::Options),
 }
 
 const AFTER_HELP: &str = "\
@@ -69,8 +75,13 @@ Exit status: 0 played to the end, won or not; 1 the replay is refused, or the wi
 /// The program `tamaire`; its exit status.
 pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
-    if let Some(Chore::Report(options)) = &arguments.chore {
-        return report::write(options);
+    match &arguments.chore {
+        Some(Chore::Report(options)) => return report::write(options),
+        Some(Chore::Manual(options)) => return manual::run(Arguments::command(), options),
+        None => {}
+    }
+    if arguments.licences {
+        return print_licences();
     }
     if arguments.list {
         headless::list();
@@ -145,6 +156,12 @@ fn again(program: &Path) -> Command {
     let mut command = Command::new(program);
     command.args(std::env::args_os().skip(1));
     command
+}
+
+fn print_licences() -> ExitCode {
+    // Who reads it through a pager may have read enough.
+    let _read = std::io::stdout().write_all(licences::TEXT.as_bytes());
+    ExitCode::SUCCESS
 }
 
 /// Plays a round without a window, and says why.

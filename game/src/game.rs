@@ -456,8 +456,11 @@ impl Game {
 
     /// Whether the round is seen, if dimly: what is not goes on neither in time nor in sound.
     pub fn is_seen(&self) -> bool {
-        use Screen::{Forces, Levels, Replays, Settings};
-        !matches!(self.screen(), Levels | Replays | Settings | Forces)
+        use Screen::{Forces, Levels, Licences, Replays, Settings};
+        !matches!(
+            self.screen(),
+            Levels | Replays | Settings | Forces | Licences
+        )
     }
 
     /// Whether people are in the middle of a round.

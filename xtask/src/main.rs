@@ -1,13 +1,17 @@
 //! The chores of this repository, run as `cargo xtask <task>`. Plain std, so that it builds in a moment.
 
 mod bevy;
+mod cross;
+mod debian;
 mod fuzz;
 mod kernel;
 mod package;
 mod packages;
+mod release;
 mod scans;
 mod shell;
 mod task;
+mod version;
 mod wasm;
 mod web;
 
@@ -45,6 +49,10 @@ fn main() -> ExitCode {
         }
         Task::Wasm(if_missing) => wasm::run(if_missing),
         Task::Web(web, if_missing) => web::run(web, if_missing),
+        Task::Arm(if_missing) => cross::check(&cross::ARM, if_missing),
+        Task::Windows(if_missing) => cross::check(&cross::WINDOWS, if_missing),
+        Task::Release(wish, if_missing) => release::run(&wish, if_missing),
+        Task::Version(version) => version::raise(&version),
         Task::Kernel(if_missing) => kernel::run(if_missing),
         Task::Soak(words) => soak(&words),
         Task::Stand(if_missing) => {

@@ -3,6 +3,8 @@
 use crate::bevy::Bevy;
 use crate::package::Package;
 use crate::packages::IfMissing;
+use crate::release::{self, Wish};
+use crate::version::Version;
 use crate::web::Web;
 
 pub const USAGE: &str = "\
@@ -20,6 +22,16 @@ tasks:
   web --serve      the same, handed out on this machine
   web --test       the same, played in Chromium and Firefox
                    with --install after any of them what is missing comes from Debian's packages
+  arm              the golden scenes and 20 rounds of bots on 64-bit ARM, in QEMU: the same bits?
+  windows          the same on Windows, in Wine
+                   with --install after either what is missing comes from Debian's packages
+  release [PART …] packages for those who play, and what lets others check them, in target/packages:
+                   linux, deb, tar, windows, web, sbom, deny, sums; what was made from this commit
+                   is not made again, and what cannot be made is named at the end
+  release --install [PART …]
+                   the same; what is missing comes from Debian's packages, and cargo-deny from
+                   crates.io
+  version X.Y.Z    gives everything this version, and cuts the changelog
   kernel           sticks and their motors against the force feedback of a real kernel, in QEMU
   kernel --install the same; what is missing comes from Debian's or Ubuntu's packages
   soak [MINUTES [LEVEL …]]
@@ -43,8 +55,8 @@ tasks:
 On Debian and Ubuntu, `play`, `test` and `check` install the system packages that are missing, as
 root or through sudo, after asking if there is a terminal. With --no-install they only name them.
 
-exit status: 0 passed, 1 failed, 2 no such task, 3 this machine lacks what `wasm`, `web`, `kernel`,
-`scans` or `package --build` needs;
+exit status: 0 passed, 1 failed, 2 no such task, 3 this machine lacks what `wasm`, `web`, `arm`,
+`windows`, `release`, `kernel`, `scans` or `package --build` needs;
 `play` hands on that of the game";
 
 #[derive(Debug, PartialEq)]
@@ -55,6 +67,10 @@ pub enum Task {
     Check(IfMissing),
     Wasm(IfMissing),
     Web(Web, IfMissing),
+    Arm(IfMissing),
+    Windows(IfMissing),
+    Release(Wish, IfMissing),
+    Version(Version),
     Kernel(IfMissing),
     /// With how long to play, and which levels.
     Soak(Vec<String>),
@@ -97,6 +113,12 @@ impl Task {
             ["wasm"] => Task::Wasm(IfMissing::Say),
             ["wasm", "--install"] => Task::Wasm(IfMissing::Install),
             ["web", ..] => web(&words[1..])?,
+            ["arm"] => Task::Arm(IfMissing::Say),
+            ["arm", "--install"] => Task::Arm(IfMissing::Install),
+            ["windows"] => Task::Windows(IfMissing::Say),
+            ["windows", "--install"] => Task::Windows(IfMissing::Install),
+            ["release", ..] => parts(&words[1..])?,
+            ["version", version] => Task::Version(Version::parse(version)?),
             ["kernel"] => Task::Kernel(IfMissing::Say),
             ["kernel", "--install"] => Task::Kernel(IfMissing::Install),
             ["soak", ..] => Task::Soak(own[1..].to_vec()),
@@ -135,6 +157,24 @@ fn web(words: &[&str]) -> Result<Task, String> {
         [] => Ok(Task::Web(web, IfMissing::Say)),
         ["--install"] => Ok(Task::Web(web, IfMissing::Install)),
         _ => Err(format!("there is no task `web {}`", words.join(" "))),
+    }
+}
+
+/// `release`, from what stands behind it.
+fn parts(words: &[&str]) -> Result<Task, String> {
+    let (if_missing, parts) = match words {
+        ["--install", parts @ ..] => (IfMissing::Install, parts),
+        parts => (IfMissing::Say, parts),
+    };
+    match parts
+        .iter()
+        .find(|part| !release::names().any(|name| name == **part))
+    {
+        Some(part) => Err(format!("a release has no part `{part}`")),
+        None => {
+            let parts = parts.iter().map(ToString::to_string).collect();
+            Ok(Task::Release(Wish { parts }, if_missing))
+        }
     }
 }
 
@@ -188,6 +228,25 @@ mod tests {
         check(
             "web --test --install",
             Ok(Task::Web(Web::Test, IfMissing::Install)),
+        );
+        check("arm", Ok(Task::Arm(IfMissing::Say)));
+        check("windows --install", Ok(Task::Windows(IfMissing::Install)));
+        let parts = |parts: &[&str]| Wish {
+            parts: parts.iter().map(ToString::to_string).collect(),
+        };
+        check("release", Ok(Task::Release(parts(&[]), IfMissing::Say)));
+        check(
+            "release --install deb sums",
+            Ok(Task::Release(parts(&["deb", "sums"]), IfMissing::Install)),
+        );
+        check("release rpm", Err("a release has no part `rpm`"));
+        check(
+            "version 1.2.3",
+            Ok(Task::Version(Version::parse("1.2.3").unwrap())),
+        );
+        check(
+            "version 1.2",
+            Err("a version is three numbers, such as 0.2.0, not `1.2`"),
         );
         check("web --fast", Err("there is no task `web --fast`"));
         check("kernel", Ok(Task::Kernel(IfMissing::Say)));

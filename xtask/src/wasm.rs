@@ -5,17 +5,13 @@
 //! it has not been told to, or cannot reach its server, Debian's packages do: a compiler, the
 //! sources of its standard library, which cargo then builds too, and a linker.
 
+use crate::debian;
 use crate::packages::{IfMissing, Lack, apt_get, install_arguments, list_lacks};
-use crate::shell::{CANNOT, FAILED, Failure, answers, cargo, execute, output_of, root, target};
-use std::env;
+use crate::shell::{CANNOT, FAILED, Failure, answers, cargo, execute, root, target};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 pub const TARGET: &str = "wasm32-unknown-unknown";
-/// Where Debian puts its compiler. The one on the path is usually another.
-const DEBIAN_RUSTC: &str = "/usr/bin/rustc";
-/// The oldest Rust that this workspace promises to build with.
-const OLDEST: &str = env!("CARGO_PKG_RUST_VERSION");
 
 /// Builds the golden scenes, runs them, and fails where one ends in other bits than it must.
 pub fn run(if_missing: IfMissing) -> Result<(), Failure> {
@@ -68,13 +64,10 @@ fn find_compiler() -> Result<Compiler, Vec<Lack>> {
     if !answers("node") {
         lacks.push(Lack::new("there is no Node on the path", "nodejs"));
     }
-    let rustc = env::var("RUSTC").unwrap_or_else(|_| "rustc".to_string());
-    let library = output_of(&rustc, &["--print", "target-libdir", "--target", TARGET]);
-    let compiler = if library.is_some_and(|path| Path::new(path.trim()).is_dir()) {
+    let compiler = if debian::toolchain_has(TARGET) {
         Ok(Compiler::Ready)
     } else {
-        let description = output_of(DEBIAN_RUSTC, &["--version", "--verbose"]);
-        find_debian(description.as_deref(), Path::exists, answers)
+        find_debian(debian::description().as_deref(), Path::exists, answers)
     };
     match compiler {
         Ok(compiler) if lacks.is_empty() => Ok(compiler),
@@ -92,45 +85,18 @@ fn find_debian(
     exists: impl Fn(&Path) -> bool,
     answers: impl Fn(&str) -> bool,
 ) -> Result<Compiler, Vec<Lack>> {
-    let field = |name| {
-        let mut lines = description.unwrap_or_default().lines();
-        lines.find_map(|line| line.strip_prefix(name)?.strip_prefix(": "))
-    };
-    let (Some(release), Some(llvm)) = (field("release"), field("LLVM version")) else {
-        let what =
-            format!("the Rust toolchain cannot build for {TARGET}, and there is no {DEBIAN_RUSTC}");
-        return Err(vec![Lack::new(what, "rustc-web")]);
-    };
-    if !is_new_enough(release) {
-        let what = format!("{DEBIAN_RUSTC} is Rust {release}, this workspace needs {OLDEST}");
-        return Err(vec![Lack::new(what, "rustc-web")]);
-    }
-    let mut lacks = Vec::new();
-    let sources = format!("/usr/src/rustc-{release}/library/std");
-    if !exists(Path::new(&sources)) {
-        let what = format!("there are no sources in {sources}");
-        lacks.push(Lack::new(what, "rust-web-src"));
-    }
-    let llvm = llvm.split('.').next().unwrap_or(llvm);
-    let linker = format!("wasm-ld-{llvm}");
+    let found = debian::find(TARGET, description, exists).map_err(|lack| vec![lack])?;
+    let mut lacks = Vec::from_iter(found.sources.err());
+    let linker = format!("wasm-ld-{}", found.llvm);
     if !answers(&linker) {
         let what = format!("there is no linker {linker}");
-        lacks.push(Lack::new(what, format!("lld-{llvm}")));
+        lacks.push(Lack::new(what, format!("lld-{}", found.llvm)));
     }
     if lacks.is_empty() {
         Ok(Compiler::Debian { linker })
     } else {
         Err(lacks)
     }
-}
-
-/// Whether a release of Rust, such as `1.96.0`, is one that this workspace promises to build with.
-fn is_new_enough(release: &str) -> bool {
-    let numbers = |version: &str| -> Vec<u32> {
-        let parts = version.split('.');
-        parts.map_while(|part| part.parse().ok()).collect()
-    };
-    numbers(release) >= numbers(OLDEST)
 }
 
 /// Installs the packages; whether that went well.
@@ -199,9 +165,7 @@ pub fn cargo_for_wasm(compiler: &Compiler, words: &[&str]) -> Command {
             .arg("-Zbuild-std=std,panic_abort")
             // None: the crates behind backtraces are among the largest, and Node shows its own.
             .arg("-Zbuild-std-features=")
-            .env("RUSTC", DEBIAN_RUSTC)
-            // Stable compilers refuse `-Z` without it.
-            .env("RUSTC_BOOTSTRAP", "1")
+            .envs(debian::ENVIRONMENT)
             .env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker);
     }
     command
@@ -272,15 +236,11 @@ mod tests {
         let lacks = find_debian(Some(&old), |_| true, |_| true).unwrap_err();
         let failure = cannot("", &lacks, IfMissing::Say);
         let said = |word| failure.message.contains(word);
-        assert!(said("1.85.0") && said(OLDEST), "{}", failure.message);
+        assert!(
+            said("1.85.0") && said(debian::OLDEST),
+            "{}",
+            failure.message
+        );
         assert_eq!(failure.code, CANNOT);
-    }
-
-    #[test]
-    fn versions_compare_by_number() {
-        assert!(is_new_enough("1.100.0"));
-        assert!(is_new_enough("2.0.0"));
-        assert!(!is_new_enough("1.9.0"));
-        assert!(!is_new_enough("unknown"));
     }
 }

@@ -48,7 +48,7 @@ pub fn run(web: Web, if_missing: IfMissing) -> Result<(), Failure> {
 }
 
 /// Where the tools, the stages and the folder of files are.
-fn folder() -> PathBuf {
+pub fn folder() -> PathBuf {
     root().join(target()).join("web")
 }
 
@@ -71,7 +71,12 @@ fn build(compiler: &Compiler, address: Option<&str>) -> Result<(), Failure> {
     provide_node_modules()?;
     node(
         "licences.mjs",
-        &[&licences],
+        &[
+            &licences,
+            Path::new(TARGET),
+            Path::new("tamaire"),
+            Path::new("tamaire_worklet"),
+        ],
         "the licences could not be gathered",
     )?;
     let (page, site) = (root().join("game/web"), folder().join("site"));

@@ -20,7 +20,7 @@ mod run;
 mod scan;
 
 use anyhow::Result;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use std::process::ExitCode;
 
 /// Counts, figures and checks of graded soft bodies.
@@ -40,6 +40,7 @@ enum Command {
     Run(run::Arguments),
     Replay(replay::Arguments),
     Scan(scan::Arguments),
+    Manual(manual::Options),
 }
 
 fn main() -> ExitCode {
@@ -58,13 +59,13 @@ fn run(arguments: Arguments) -> Result<ExitCode> {
         Command::Run(arguments) => run::run(&arguments),
         Command::Replay(arguments) => replay::run(&arguments),
         Command::Scan(arguments) => scan::run(&arguments),
+        Command::Manual(options) => Ok(manual::run(Arguments::command(), &options)),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
 
     #[test]
     fn the_command_line_is_consistent() {

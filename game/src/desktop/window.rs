@@ -13,6 +13,9 @@ use std::time::{Duration, Instant};
 /// Whose GPU is lost so soon does not begin anew: it would be lost again and again.
 const LEAST_LIFE: Duration = Duration::from_secs(10);
 
+/// By this a desktop knows whose window it is: the name of its entry in the menu.
+const APP: &str = "tamaire";
+
 /// What became of a window.
 pub(super) enum Opened {
     /// It was closed.
@@ -62,6 +65,8 @@ fn run_window(
     let mut options = eframe::NativeOptions {
         viewport: viewport
             .with_title("玉入れ tamaire")
+            .with_app_id(APP)
+            .with_icon(icon())
             .with_inner_size([1280.0, 800.0])
             .with_min_inner_size([640.0, 400.0]),
         ..Default::default()
@@ -75,7 +80,13 @@ fn run_window(
         gpu.replace(Some(app.gpu.clone()));
         Ok(Box::new(app) as Box<dyn eframe::App>)
     };
-    eframe::run_native("tamaire", options, Box::new(create))
+    eframe::run_native(APP, options, Box::new(create))
+}
+
+/// What stands for the game in lists of windows.
+fn icon() -> egui::IconData {
+    let picture = include_bytes!("../../web/icon-192.png");
+    eframe::icon_data::from_png_bytes(picture).expect("a test looks at the picture")
 }
 
 /// Why no window opens.
@@ -109,4 +120,12 @@ pub(super) fn has_display() -> bool {
         || ["WAYLAND_DISPLAY", "WAYLAND_SOCKET", "DISPLAY"]
             .into_iter()
             .any(is_set)
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_window_has_a_picture() {
+        assert_eq!(super::icon().width, 192);
+    }
 }

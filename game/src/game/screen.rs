@@ -21,6 +21,8 @@ pub enum Screen {
     Settings,
     /// What sticks and pads can do and what they are made to do.
     Forces,
+    /// What is inside, and under which licences.
+    Licences,
 }
 
 impl Screen {
@@ -33,7 +35,7 @@ impl Screen {
             Play => matches!(other, Title | Levels | Replays | Offered),
             Paused | Result => other == Play,
             Settings => matches!(other, Title | Paused),
-            Forces => other == Settings,
+            Forces | Licences => other == Settings,
         }
     }
 }
@@ -93,6 +95,7 @@ mod tests {
             (&[Settings][..], Title),
             (&[Levels, Play, Paused, Settings], Paused),
             (&[Levels, Play, Paused, Settings, Forces], Settings),
+            (&[Settings, Licences], Settings),
             (&[Levels, Play], Levels),
             (&[Replays, Play], Replays),
             (&[Play], Title),

@@ -234,6 +234,7 @@ mod tests {
             Screen::Replays,
             Screen::Settings,
             Screen::Forces,
+            Screen::Licences,
             Screen::Paused,
         ] {
             game.go(Screen::Title);

@@ -8,6 +8,7 @@ mod forces;
 mod hud;
 mod icons;
 mod levels;
+mod licences;
 mod notices;
 mod offered;
 mod offers;
@@ -44,6 +45,7 @@ pub fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
         Screen::Offered => offered::show(game, stage, ui),
         Screen::Settings => settings::show(game, ui),
         Screen::Forces => forces::show(game, ui),
+        Screen::Licences => licences::show(game, ui),
         Screen::Replays => replays::show(game, stage, ui),
     }
     notices::show(game, ui);

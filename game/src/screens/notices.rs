@@ -12,7 +12,9 @@ pub(super) fn show(game: &Game, ui: &Ui) {
     let above = match game.screen() {
         Screen::Play => hud::height(game, ui),
         // Below the headline and the way back.
-        Screen::Levels | Screen::Settings | Screen::Forces | Screen::Replays => 92.0,
+        Screen::Levels | Screen::Settings | Screen::Forces | Screen::Licences | Screen::Replays => {
+            92.0
+        }
         _ => 18.0,
     };
     let mut y = screen.top() + above;

@@ -18,7 +18,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     let mut chosen = before.clone();
     let listens = game.controls.rebinding.is_some();
     let mut back = !listens && ui.input(|input| input.key_pressed(egui::Key::Escape));
-    let mut to_forces = false;
+    let (mut to_forces, mut to_licences) = (false, false);
     let area = place_of_page(ui);
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
         let response = header(ui, &theme, said.back, said.settings);
@@ -131,12 +131,8 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 );
             });
             controls(ui, game, &mut chosen);
-            if cfg!(target_family = "wasm")
-                && button(ui, &theme, said.licences, vec2(240.0, 48.0), Weight::Other).clicked()
-            {
-                let address = "licences.txt".to_string();
-                ui.ctx().open_url(egui::OpenUrl::new_tab(address));
-            }
+            to_licences =
+                button(ui, &theme, said.licences, vec2(240.0, 48.0), Weight::Other).clicked();
             ui.add_space(8.0);
             if button(ui, &theme, said.reset, vec2(240.0, 48.0), Weight::Other).clicked() {
                 let usual = Settings::default();
@@ -161,6 +157,9 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     if to_forces {
         game.blip(Menu::Confirm);
         game.go(Screen::Forces);
+    } else if to_licences {
+        game.blip(Menu::Confirm);
+        game.go(Screen::Licences);
     } else if back {
         game.blip(Menu::Back);
         game.go_back();

@@ -219,6 +219,25 @@ fn how_far_the_levels_are_scrolled_is_nothing_to_the_settings() {
 }
 
 #[test]
+fn what_is_inside_can_be_read_with_keys_too() {
+    let mut window = window(Files::nowhere());
+    click(&mut window, "Settings");
+    click(&mut window, "Licences");
+    assert_eq!(screen(&window), Screen::Licences);
+    let heading = "# What others made";
+    let before = window.get_by_label(heading).rect();
+    // Past the button back, the text itself.
+    for _ in 0..4 {
+        press(&mut window, Key::ArrowDown);
+    }
+    frames(&mut window, 30);
+    let after = window.query_by_label(heading).map(|line| line.rect());
+    assert!(after.is_none_or(|after| after.top() < before.top()));
+    press(&mut window, Key::Escape);
+    assert_eq!(screen(&window), Screen::Settings);
+}
+
+#[test]
 fn any_key_can_mean_anything() {
     let mut window = window(Files::nowhere());
     click(&mut window, "Settings");

@@ -2,22 +2,29 @@
 //! of its own, which cargo builds when it is first asked for. That program runs both engines and prints.
 
 use anyhow::{Context, Result, bail};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-/// The program's place beside this crate.
-const MANIFEST: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../against_rapier/Cargo.toml");
+/// The place of this crate. What is handed out must not depend on the folder that it was built in, and gets another name for it.
+const HERE: &str = match option_env!("FUWAFUWA_SOURCES") {
+    Some(path) => path,
+    None => env!("CARGO_MANIFEST_DIR"),
+};
 
 /// Builds and runs it with these arguments.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
-    if !Path::new(MANIFEST).exists() {
+    let manifest = manifest();
+    if !manifest.exists() {
         bail!(
-            "{MANIFEST} is missing: the comparison needs the sources that this program was built from"
+            "{} is missing: the comparison needs the sources that this program was built from",
+            manifest.display()
         );
     }
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let status = Command::new(cargo)
-        .args(["run", "--release", "--manifest-path", MANIFEST, "--"])
+        .args(["run", "--release", "--manifest-path"])
+        .arg(manifest)
+        .arg("--")
         .args(arguments)
         .status()
         .context("cargo, which builds Rapier, could not be started")?;
@@ -27,12 +34,17 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     })
 }
 
+/// The program's place beside this crate.
+fn manifest() -> PathBuf {
+    Path::new(HERE).join("../against_rapier/Cargo.toml")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn the_program_is_there() {
-        assert!(Path::new(MANIFEST).exists());
+        assert!(manifest().exists());
     }
 }

@@ -1,0 +1,95 @@
+//! What packages bring beside a program with a command line: manual pages, and completions for shells. Both follow from what the
+//! program says about itself.
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+
+use clap::{Args, Command};
+use clap_complete::{Shell, generate_to};
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Write the manual pages, and completions for shells, into a folder
+#[derive(Args)]
+pub struct Options {
+    /// The folder; it gets a folder man and a folder completions
+    #[arg(value_name = "FOLDER")]
+    pub folder: PathBuf,
+}
+
+/// Exit status when the folder cannot be written.
+const NOT_WRITTEN: u8 = 2;
+
+/// Writes all into the folder, and says so when that cannot be; the status to end with.
+pub fn run(command: Command, options: &Options) -> ExitCode {
+    let name = command.get_name().to_string();
+    match write(command, &options.folder) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{name}: {}: {error}", options.folder.display());
+            ExitCode::from(NOT_WRITTEN)
+        }
+    }
+}
+
+/// Writes all into the folder, which is made where there is none.
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn write(mut command: Command, folder: &Path) -> io::Result<()> {
+    let (pages, completions) = (folder.join("man"), folder.join("completions"));
+    fs::create_dir_all(&pages)?;
+    fs::create_dir_all(&completions)?;
+    let name = command.get_name().to_string();
+    for shell in [Shell::Bash, Shell::Fish, Shell::Zsh, Shell::PowerShell] {
+        generate_to(shell, &mut command, &name, &completions)?;
+    }
+    clap_mangen::generate_to(command, pages)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::{Arg, Subcommand};
+
+    fn program() -> Command {
+        let sweep = Command::new("sweep").about("Sweep the floor");
+        let broom = Arg::new("broom").long("broom").help("With this");
+        let secret = Command::new("secret").hide(true);
+        let program = Command::new("broomer").version("1.2.3").about("Brooms");
+        program.subcommands([sweep.arg(broom), secret])
+    }
+
+    #[test]
+    fn each_shell_and_each_subcommand_is_written_and_nothing_hidden() {
+        let folder = tempfile::tempdir().unwrap();
+        write(program(), folder.path()).unwrap();
+        let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+        for file in ["broomer.bash", "broomer.fish", "_broomer", "_broomer.ps1"] {
+            assert!(read(&format!("completions/{file}")).contains("sweep"));
+        }
+        assert!(read("man/broomer.1").contains("1.2.3"));
+        assert!(read("man/broomer-sweep.1").contains("With this"));
+        assert!(!folder.path().join("man/broomer-secret.1").exists());
+    }
+
+    #[test]
+    fn a_folder_that_cannot_be_made_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("file");
+        fs::write(&file, "").unwrap();
+        assert!(write(program(), &file).is_err());
+    }
+
+    #[test]
+    fn it_is_a_subcommand_of_a_program() {
+        #[derive(Subcommand)]
+        enum Chore {
+            Manual(Options),
+        }
+        let program = Chore::augment_subcommands(Command::new("broomer"));
+        let found = program.try_get_matches_from(["broomer", "manual", "here"]);
+        assert_eq!(found.unwrap().subcommand_name(), Some("manual"));
+    }
+}

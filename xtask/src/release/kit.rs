@@ -1,0 +1,174 @@
+//! What a release is made of: its version, its time, its folder, and which parts were made from this very commit.
+
+use crate::packages::IfMissing;
+use crate::shell::{CANNOT, FAILED, Failure, output_of, root, target};
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// What a release is made of.
+pub struct Kit {
+    /// The version of all that is inside.
+    pub version: String,
+    /// When the commit was made, in seconds since 1970: the time of each file in a package.
+    pub epoch: String,
+    pub if_missing: IfMissing,
+    commit: String,
+    is_dirty: bool,
+    folder: PathBuf,
+    /// The part that is being made, and its files.
+    part: &'static str,
+    made: Vec<PathBuf>,
+}
+
+impl Kit {
+    /// The kit for the commit that is checked out.
+    pub fn open(if_missing: IfMissing) -> Result<Self, Failure> {
+        let at = root().display().to_string();
+        let git = |words: &[&str]| output_of("git", &[&["-C", &at], words].concat());
+        let cannot = || Failure {
+            message: "a release is made from a commit, and git names none here".to_string(),
+            code: CANNOT,
+        };
+        let changes = git(&["status", "--porcelain"]).ok_or_else(cannot)?;
+        let line = |words| {
+            git(words)
+                .map(|text| text.trim().to_string())
+                .ok_or_else(cannot)
+        };
+        let folder = root().join(target()).join("packages");
+        fs::create_dir_all(folder.join("parts")).map_err(|error| super::told(&folder, &error))?;
+        Ok(Self {
+            version: env!("CARGO_PKG_VERSION").to_string(),
+            epoch: line(&["log", "-1", "--format=%ct"])?,
+            if_missing,
+            commit: line(&["rev-parse", "HEAD"])?,
+            is_dirty: !changes.trim().is_empty(),
+            folder,
+            part: "",
+            made: Vec::new(),
+        })
+    }
+
+    /// Where the packages are.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// The commit, and whether something was changed since.
+    pub fn commit(&self) -> String {
+        let dirty = if self.is_dirty { " with changes" } else { "" };
+        format!("{}{dirty}", self.commit)
+    }
+
+    pub fn is_dirty(&self) -> bool {
+        self.is_dirty
+    }
+
+    /// Whether this part was made from this commit, and is still there.
+    pub fn has(&self, part: &str) -> bool {
+        // What is counted together is quicker made anew than looked through.
+        if self.is_dirty || part == "sums" {
+            return false;
+        }
+        fs::read_to_string(self.note(part)).is_ok_and(|note| {
+            let mut lines = note.lines();
+            lines.next() == Some(&self.commit) && lines.all(|file| Path::new(file).exists())
+        })
+    }
+
+    /// Begins a part.
+    pub fn begin(&mut self, part: &'static str) {
+        (self.part, self.made) = (part, Vec::new());
+        // Of another commit, or none.
+        let _removed = fs::remove_file(self.note(part));
+    }
+
+    /// Notes a file that belongs to the part.
+    pub fn add(&mut self, file: PathBuf) {
+        self.made.push(file);
+    }
+
+    /// The files of the part so far.
+    pub fn made(&self) -> &[PathBuf] {
+        &self.made
+    }
+
+    /// Ends a part that went well.
+    pub fn finish(&self) -> Result<(), Failure> {
+        let mut note = format!("{}\n", self.commit);
+        for file in &self.made {
+            note += &format!("{}\n", file.display());
+        }
+        let path = self.note(self.part);
+        // What was built from changes belongs to no commit.
+        match self.is_dirty {
+            true => Ok(()),
+            false => fs::write(&path, note).map_err(|error| super::told(&path, &error)),
+        }
+    }
+
+    fn note(&self, part: &str) -> PathBuf {
+        self.folder.join("parts").join(part)
+    }
+
+    /// A folder to put a package together in, empty.
+    pub fn stage(&self, name: &str) -> Result<PathBuf, Failure> {
+        let stage = self.folder.join("stage").join(name);
+        // There may be none.
+        let _removed = fs::remove_dir_all(&stage);
+        fs::create_dir_all(&stage).map_err(|error| super::told(&stage, &error))?;
+        Ok(stage)
+    }
+
+    /// Where another part put its files together.
+    pub fn staged(&self, name: &str, part: &str) -> Result<PathBuf, Failure> {
+        let stage = self.folder.join("stage").join(name);
+        match stage.is_dir() {
+            true => Ok(stage),
+            false => Err(Failure {
+                message: format!("it needs `{part}`, which is not there"),
+                code: CANNOT,
+            }),
+        }
+    }
+
+    /// The packages of this version, by name.
+    pub fn packages(&self) -> Result<Vec<PathBuf>, Failure> {
+        let entries =
+            fs::read_dir(&self.folder).map_err(|error| super::told(&self.folder, &error))?;
+        let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+        let version = &self.version;
+        files.retain(|path| {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            let is_of_it = ["-", "_"]
+                .iter()
+                .any(|gap| name.starts_with(&format!("tamaire{gap}{version}")));
+            path.is_file() && is_of_it
+        });
+        files.sort();
+        Ok(files)
+    }
+
+    /// A line for each package, with its size.
+    pub fn contents(&self) -> Result<String, Failure> {
+        let mut lines = String::new();
+        for file in self.packages()? {
+            let name = file.file_name().unwrap_or_default().to_string_lossy();
+            let _written = write!(lines, "\n  {:>11} bytes  {name}", size(&file)?);
+        }
+        Ok(lines)
+    }
+}
+
+/// The bytes of a file.
+pub fn size(file: &Path) -> Result<u64, Failure> {
+    let data = fs::metadata(file).map_err(|error| super::told(file, &error))?;
+    match data.len() {
+        0 => Err(Failure {
+            message: format!("{} is empty", file.display()),
+            code: FAILED,
+        }),
+        bytes => Ok(bytes),
+    }
+}
