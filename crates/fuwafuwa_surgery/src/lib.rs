@@ -1,0 +1,18 @@
+//! A trainee cuts a soft organ, made from a scan or made up, and feels the knife.
+//!
+//! The way through, each module using only those above it:
+//! [`case`] what is operated on → [`phantom`] a made-up organ → `loading` scans become a case, beside the window
+//! → [`tools`] what is held → [`measures`] what is noted → [`procedure`] one tick after the other → [`record`] all of it on
+//! file, and again to the same bits.
+//!
+//! **This is no medical device.** It is made to show and to teach. Nothing that comes out of it may be used to judge, to
+//! plan or to treat anybody, and nobody learns to operate by it.
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+#![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
+
+pub mod case;
+pub mod measures;
+pub mod phantom;
+pub mod procedure;
+pub mod tools;
