@@ -242,7 +242,8 @@ impl Day {
         if self.frames.is_multiple_of(MINUTE) {
             let of_gpu = self.gpu.device.generate_allocator_report();
             let of_gpu = of_gpu.map_or(0, |report| report.total_allocated_bytes);
-            self.used.push((HEAP.current_usage() as u64 + of_gpu) as f64 / 1e6);
+            self.used
+                .push((HEAP.current_usage() as u64 + of_gpu) as f64 / 1e6);
             self.held.push(memory().unwrap_or(0) as f64 / 1e6);
         }
         self.count();

@@ -117,7 +117,9 @@ impl Case {
             return Err(field("corner", expected, format!("{:?}", self.corner)));
         }
         let grid = &self.grid;
-        let size = grid.size().map(|extent| usize::try_from(extent).unwrap_or(0));
+        let size = grid
+            .size()
+            .map(|extent| usize::try_from(extent).unwrap_or(0));
         let longest = size.into_iter().max().unwrap_or(0);
         if longest > *fuwafuwa_scan::RESOLUTIONS.end() {
             let expected = "at most 256 voxels along each side";
@@ -196,7 +198,8 @@ impl Case {
         }
         let used = (1..=u8::MAX).filter(|&number| is_used[usize::from(number)]);
         let used: Vec<u8> = used.collect();
-        let row = VoxelGrid::<Dim3>::from_materials([used.len(), 1, 1], self.grid.voxel_size(), used);
+        let row =
+            VoxelGrid::<Dim3>::from_materials([used.len(), 1, 1], self.grid.voxel_size(), used);
         let row = row.map_err(CaseError::Grid)?;
         let row = Body::new(row, &self.tissues).map_err(CaseError::Body)?;
         Ok(row.longest_substep())

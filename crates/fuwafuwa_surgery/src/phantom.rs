@@ -39,7 +39,9 @@ pub fn material(patient: [f64; 3]) -> u8 {
     }
     let squared = |a: f64, b: f64| (a - b) * (a - b);
     let (middle, radius) = GROWTH;
-    let away: f64 = (0..3).map(|axis| squared(patient[axis], middle[axis])).sum();
+    let away: f64 = (0..3)
+        .map(|axis| squared(patient[axis], middle[axis]))
+        .sum();
     let ([x, z], wide) = VESSEL;
     let is_in_vessel = squared(right, x) + squared(up, z) < wide * wide;
     match (away < radius * radius, is_in_vessel) {

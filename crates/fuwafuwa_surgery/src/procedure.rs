@@ -5,7 +5,7 @@ use crate::measures::{self, Sample};
 use crate::tools::{Held, Tool};
 use fuwafuwa::vector::{length, minus, plus, scaled};
 use fuwafuwa::world::TICK;
-use fuwafuwa::{Refused, Rigid, Rotation, StepReport, Vector, World, Dim3, Body};
+use fuwafuwa::{Body, Dim3, Refused, Rigid, Rotation, StepReport, Vector, World};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -214,14 +214,19 @@ impl Procedure {
         let tool = self.tool();
         let reactions = tool.reactions();
         let mean = |of: fn(&fuwafuwa::Reaction) -> Vector| {
-            let sum = reactions.iter().fold([0.0; 3], |sum, felt| plus(sum, of(felt)));
+            let sum = reactions
+                .iter()
+                .fold([0.0; 3], |sum, felt| plus(sum, of(felt)));
             scaled(sum, 1.0 / reactions.len().max(1) as f32)
         };
         Sample {
             tool: self.held.tool(),
             at: tool.position(),
             force: mean(|felt| felt.contact),
-            peak: reactions.iter().map(|felt| length(felt.contact)).fold(0.0, f32::max),
+            peak: reactions
+                .iter()
+                .map(|felt| length(felt.contact))
+                .fold(0.0, f32::max),
             torque: mean(|felt| felt.torque),
             released: before.released + report.released,
             pieces: measures::pieces(self.organ()),

@@ -146,7 +146,10 @@ impl Held {
         organ: BodyId,
         closes: bool,
     ) -> Result<(), Refused> {
-        if self.grip.is_some_and(|grip| world.joints().get(grip).is_err()) {
+        if self
+            .grip
+            .is_some_and(|grip| world.joints().get(grip).is_err())
+        {
             // It slipped: forceps that are closed take nothing up.
             self.grip = None;
         }
@@ -201,8 +204,16 @@ impl Held {
                 let apart = if self.is_closed { 0.0005 } else { 0.004 };
                 let arm = |side: f32| {
                     [
-                        bar([side * apart, 0.0, 0.0], [side * 0.007, 0.5 * HANDLE, 0.0], 0.0013),
-                        bar([side * 0.007, 0.5 * HANDLE, 0.0], [0.0, HANDLE, 0.0], 0.0018),
+                        bar(
+                            [side * apart, 0.0, 0.0],
+                            [side * 0.007, 0.5 * HANDLE, 0.0],
+                            0.0013,
+                        ),
+                        bar(
+                            [side * 0.007, 0.5 * HANDLE, 0.0],
+                            [0.0, HANDLE, 0.0],
+                            0.0018,
+                        ),
                     ]
                 };
                 [arm(-1.0), arm(1.0)].concat()

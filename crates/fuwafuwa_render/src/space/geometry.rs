@@ -39,6 +39,7 @@ pub struct Geometry {
     pub(crate) rounded: Vec<RoundedInstance>,
     pub(crate) bars: Range<u32>,
     pub(crate) hands: Range<u32>,
+    pub(crate) props: Range<u32>,
     pub(crate) ghost_hands: Range<u32>,
     pub(crate) crumbs: Range<u32>,
     pub(crate) dust: Range<u32>,
@@ -62,6 +63,9 @@ impl Geometry {
         self.bars = append(&mut self.rounded, bars);
         let hands = || world.hands().enumerate();
         self.hands = append(&mut self.rounded, balls(world, palette));
+        let props = frame.props.iter();
+        let props = props.filter_map(|prop| RoundedInstance::of(prop.shape, prop.colour, 0.0));
+        self.props = append(&mut self.rounded, props);
         self.renewed_ghosts.clear();
         let ghosts = frame.ghost.map_or(0, |ghost| ghost.bodies().len());
         self.ghosts.resize_with(ghosts, Skin::default);
