@@ -74,7 +74,9 @@ pub enum RecordError {
     #[error("{0}")]
     Refused(Refused),
     /// It does not lead to what it says.
-    #[error("this recording does not come out as it was made: it goes another way within second {second}")]
+    #[error(
+        "this recording does not come out as it was made: it goes another way within second {second}"
+    )]
     Differs {
         /// Where.
         second: usize,
@@ -169,7 +171,9 @@ impl Recording {
         let (written, rest) = postcard::take_from_bytes::<Written>(&inside)
             .map_err(|_| RecordError::Damaged("what is in it is none"))?;
         if !rest.is_empty() {
-            return Err(RecordError::Damaged("there is more in it than there should be"));
+            return Err(RecordError::Damaged(
+                "there is more in it than there should be",
+            ));
         }
         written.checked()
     }
@@ -184,7 +188,9 @@ impl Written {
     fn checked(self) -> Result<Recording, RecordError> {
         limit("ticks", self.inputs.len(), MOST_TICKS)?;
         if self.hashes.len() != marks(self.inputs.len()) {
-            return Err(RecordError::Damaged("it has another number of hashes than seconds"));
+            return Err(RecordError::Damaged(
+                "it has another number of hashes than seconds",
+            ));
         }
         let size = self.size.map(usize::from);
         let grid = VoxelGrid::from_materials(size, self.voxel, self.materials);
@@ -268,8 +274,6 @@ impl Playback {
         let mark = marks(ticks) - 1;
         let is_same = self.recording.hashes.get(mark) == Some(&self.procedure.world().hash());
         let second = mark;
-        is_same
-            .then_some(())
-            .ok_or(RecordError::Differs { second })
+        is_same.then_some(()).ok_or(RecordError::Differs { second })
     }
 }

@@ -105,7 +105,10 @@ impl Slice {
         let axis = cut.axis();
         let positions = organ.positions();
         let crossed = organ.mesh().elements().filter(|(_, element)| {
-            let mut sides = element.nodes.iter().map(|&node| positions[node][axis] >= at);
+            let mut sides = element
+                .nodes
+                .iter()
+                .map(|&node| positions[node][axis] >= at);
             let first = sides.next();
             sides.any(|side| Some(side) != first)
         });
@@ -133,7 +136,8 @@ impl Slice {
             return;
         };
         let children = if view.level == 0 { 1 } else { 8 };
-        let filled = (0..children).filter(|&child| view.level == 0 || view.children >> child & 1 == 1);
+        let filled =
+            (0..children).filter(|&child| view.level == 0 || view.children >> child & 1 == 1);
         for child in filled {
             let corners = view.child_corners::<Dim3>(child);
             for tetrahedron in TETRAHEDRA {
@@ -141,7 +145,10 @@ impl Slice {
                 let section = section(corners, cut.axis(), at);
                 if section.len() >= 3 {
                     self.patches.push(Patch {
-                        corners: section.into_iter().map(|place| cut.on_page(place)).collect(),
+                        corners: section
+                            .into_iter()
+                            .map(|place| cut.on_page(place))
+                            .collect(),
                         material: view.material,
                         strain: view.strain,
                     });
@@ -213,9 +220,8 @@ fn section(corners: [Vector; 4], axis: usize, at: f32) -> Vec<Vector> {
 /// Where a plane cuts a triangle.
 fn segment(corners: [Vector; 3], axis: usize, at: f32) -> Option<[Vector; 2]> {
     let is_above = corners.map(|corner| corner[axis] >= at);
-    let alone = (0..3).find(|&k| {
-        is_above[k] != is_above[(k + 1) % 3] && is_above[k] != is_above[(k + 2) % 3]
-    })?;
+    let alone = (0..3)
+        .find(|&k| is_above[k] != is_above[(k + 1) % 3] && is_above[k] != is_above[(k + 2) % 3])?;
     let others = [corners[(alone + 1) % 3], corners[(alone + 2) % 3]];
     Some(others.map(|other| crossing(corners[alone], other, axis, at)))
 }
@@ -231,7 +237,10 @@ mod tests {
         assert_eq!(section(corners, 2, 2.0).len(), 0);
         let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 1.0], [0.0, 0.0, 1.0]];
         let quad = Patch {
-            corners: section(corners, 2, 0.5).into_iter().map(|[x, y, _]| [x, y]).collect(),
+            corners: section(corners, 2, 0.5)
+                .into_iter()
+                .map(|[x, y, _]| [x, y])
+                .collect(),
             material: 1,
             strain: 0.0,
         };
