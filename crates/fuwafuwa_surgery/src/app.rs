@@ -34,7 +34,7 @@ use tamaire::platform::{Clock, GpuWatch};
 const DRAG: f32 = 0.006;
 const LOOK: f32 = 1.2;
 /// How far the wheel moves the hand [m/point].
-const WHEEL: f32 = 0.000_12;
+const WHEEL: f32 = 0.000_03;
 /// A sentence stays for so long [s].
 const STAYS: f64 = 7.0;
 

@@ -14,8 +14,10 @@
 #![warn(missing_docs)]
 #![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
 
+#[cfg(feature = "window")]
 pub mod app;
 pub mod case;
+#[cfg(feature = "window")]
 pub mod headless;
 pub mod loading;
 pub mod measures;

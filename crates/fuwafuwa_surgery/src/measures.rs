@@ -20,7 +20,7 @@ pub struct Sample {
     pub area: f64,
     /// What the knife did on the tissue for that so far [J].
     pub work: f64,
-    /// How far the knife went while it cut, so far [m].
+    /// How far the knife went within tissue, so far [m].
     pub path: f64,
     /// Nodes that came apart so far, by the knife or by pulling.
     pub released: u32,

@@ -5,7 +5,7 @@ use crate::measures::{self, Sample};
 use crate::tools::{Held, Tool};
 use fuwafuwa::vector::{length, minus, plus, scaled};
 use fuwafuwa::world::TICK;
-use fuwafuwa::{Body, Dim3, Refused, Rigid, Rotation, StepReport, Vector, World};
+use fuwafuwa::{Body, Dim3, Event, Refused, Rigid, Rotation, StepReport, Vector, World};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ const STEP: f32 = 1e-5;
 /// A part of a quaternion is written as so many steps for 1.
 const PARTS: f32 = 32767.0;
 /// A tool goes no faster than this [m/s], however fast a mouse jumps.
-const FASTEST: f32 = 0.6;
+const FASTEST: f32 = 0.25;
 /// It turns no faster than this [rad/s].
 const SPIN: f32 = 5.0;
 /// The most ticks of a procedure: an hour.
@@ -117,6 +117,7 @@ impl Procedure {
         self.follow(&input);
         let world = &mut self.table.world;
         self.held.send(world, self.goal, self.rotation)?;
+        self.held.grind(world, input.dull.min(BLUNTEST))?;
         self.held.close(world, self.table.organ, input.grips)?;
         let report = world.step();
         self.inputs.push(input);
@@ -219,10 +220,30 @@ impl Procedure {
                 .fold([0.0; 3], |sum, felt| plus(sum, of(felt)));
             scaled(sum, 1.0 / reactions.len().max(1) as f32)
         };
+        let (mut area, mut work) = (0.0, 0.0);
+        for event in self.table.world.events() {
+            if let Event::Cut {
+                area: more,
+                work: done,
+                ..
+            } = *event
+            {
+                (area, work) = (area + f64::from(more), work + f64::from(done));
+            }
+        }
+        let force = mean(|felt| felt.contact);
+        let is_within = self.held.tool() == Tool::Knife && force != [0.0; 3];
+        let far = match is_within && before.tool == Tool::Knife {
+            true => f64::from(length(minus(tool.position(), before.at))),
+            false => 0.0,
+        };
         Sample {
+            area: before.area + area,
+            work: before.work + work,
+            path: before.path + far,
             tool: self.held.tool(),
             at: tool.position(),
-            force: mean(|felt| felt.contact),
+            force,
             peak: reactions
                 .iter()
                 .map(|felt| length(felt.contact))

@@ -76,7 +76,7 @@ pub fn svg(samples: &[Sample]) -> Result<String, Box<dyn Error>> {
         let cut = [
             ("area [mm²]", RED, of(|sample| 1e6 * sample.area)),
             (
-                "way of the knife while it cut [mm]",
+                "way of the knife in tissue [mm]",
                 BLUE,
                 of(|sample| 1e3 * sample.path),
             ),

@@ -142,16 +142,15 @@ impl Slice {
             let corners = view.child_corners::<Dim3>(child);
             for tetrahedron in TETRAHEDRA {
                 let corners = tetrahedron.map(|k| corners[k]);
-                let section = section(corners, cut.axis(), at);
-                if section.len() >= 3 {
-                    self.patches.push(Patch {
-                        corners: section
-                            .into_iter()
-                            .map(|place| cut.on_page(place))
-                            .collect(),
-                        material: view.material,
-                        strain: view.strain,
-                    });
+                let section = section(corners, cut.axis(), at).into_iter();
+                let patch = Patch {
+                    corners: section.map(|place| cut.on_page(place)).collect(),
+                    material: view.material,
+                    strain: view.strain,
+                };
+                // A plane through corners cuts some of them in a line or a point.
+                if patch.area() > 0.0 {
+                    self.patches.push(patch);
                 }
             }
         }

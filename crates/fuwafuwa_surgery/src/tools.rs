@@ -2,17 +2,18 @@
 //! coupling, so that what it meets is felt.
 //!
 //! ```text
-//!   knife  ═══╗          forceps  ║ ║         hook   ║
-//!        ─────╨──             two arms ╲╱            ╰════  a bar that pushes
-//!        edge, cuts downwards     hold               and pulls
+//!   knife    ╱╱         forceps  ║ ║          hook  ║
+//!      ╔════╱                    ╲ ╱                 ║
+//!      ╚═════  an edge           ╲╱  a tip           ╰════  a bar
+//!         that cuts downwards       that grips          that pushes and pulls
 //! ```
 //!
 //! The place of a tool is where it works: the middle of the edge, the tip, the middle of the bar.
 
 use fuwafuwa::vector::{length, minus, plus};
 use fuwafuwa::{
-    BodyId, Dim3, Drive, End, Joint, JointId, Refused, Rigid, RigidId, Rotation, Shape, Vector,
-    World,
+    BodyId, Dim3, Drive, End, Joint, JointId, Knife, KnifeId, Refused, Rigid, RigidId, Rotation,
+    Shape, Vector, World,
 };
 use serde::{Deserialize, Serialize};
 
@@ -26,6 +27,8 @@ const DRIVE: Drive = Drive::Coupled {
 
 /// Steel on what is wet.
 const FRICTION: f32 = 0.15;
+/// Half of the length of the knife's edge, how high its blade is and half of how thick that is [m].
+const BLADE: [f32; 3] = [0.015, 0.01, 0.0006];
 /// Radius of the tip of the forceps [m].
 const TIP: f32 = 0.002;
 /// What is so near to the tip can be gripped [m].
@@ -42,8 +45,10 @@ const HANDLE: f32 = 0.11;
 /// A tool.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Tool {
-    /// Grips what is at its tip.
+    /// Cuts where its edge passes.
     #[default]
+    Knife,
+    /// Grips what is at its tip.
     Forceps,
     /// A bar that pushes tissue aside.
     Hook,
@@ -51,11 +56,12 @@ pub enum Tool {
 
 impl Tool {
     /// All of them.
-    pub const ALL: [Self; 2] = [Self::Forceps, Self::Hook];
+    pub const ALL: [Self; 3] = [Self::Knife, Self::Forceps, Self::Hook];
 
     /// What it is called.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Knife => "Knife",
             Self::Forceps => "Forceps",
             Self::Hook => "Hook",
         }
@@ -67,6 +73,8 @@ impl Tool {
 pub struct Held {
     tool: Tool,
     holder: RigidId,
+    /// Its edge, and how dull that is [µm].
+    edge: Option<(KnifeId, u16)>,
     grip: Option<JointId>,
     /// Whether the forceps closed on something or on nothing, and did not open since.
     is_closed: bool,
@@ -85,10 +93,13 @@ impl Held {
     ) -> Result<Self, Refused> {
         let mut rigid = Rigid::driven(form(tool), at, DRIVE).rotated(rotation);
         rigid.friction = FRICTION;
+        // Of a knife the edge alone touches, and its flat.
+        rigid.is_sensor = tool == Tool::Knife;
         let holder = world.add_rigid(rigid)?;
         Ok(Self {
             tool,
             holder,
+            edge: None,
             grip: None,
             is_closed: false,
         })
@@ -100,7 +111,30 @@ impl Held {
     /// [`Refused`] when it is not in this world.
     pub fn put_away(mut self, world: &mut World<Dim3>) -> Result<(), Refused> {
         self.open(world);
+        if let Some((edge, _)) = self.edge.take() {
+            world.remove_knife(edge)?;
+        }
         world.remove_rigid(self.holder)?;
+        Ok(())
+    }
+
+    /// Grinds the knife: its edge is as dull as is said [µm]. One that is within tissue begins anew there.
+    ///
+    /// # Errors
+    /// [`Refused`] when that is out of range.
+    pub fn grind(&mut self, world: &mut World<Dim3>, dull: u16) -> Result<(), Refused> {
+        let is_so = self.edge.is_some_and(|(_, is)| is == dull);
+        if self.tool != Tool::Knife || is_so {
+            return Ok(());
+        }
+        if let Some((edge, _)) = self.edge.take() {
+            world.remove_knife(edge)?;
+        }
+        let [half, height, _] = BLADE;
+        let edge = [[-half, 0.0, 0.0], [half, 0.0, 0.0]];
+        let mut knife = Knife::new(self.holder, edge, [0.0, -1.0, 0.0]);
+        (knife.radius, knife.height) = (1e-6 * f32::from(dull), height);
+        self.edge = Some((world.add_knife(knife)?, dull));
         Ok(())
     }
 
@@ -200,6 +234,11 @@ impl Held {
             radius,
         };
         match self.tool {
+            Tool::Knife => {
+                let [half, height, _] = BLADE;
+                let end = [half + 0.8 * HANDLE, height + 0.5 * HANDLE, 0.0];
+                vec![bar([half - 0.002, height, 0.0], end, 0.0032)]
+            }
             Tool::Forceps => {
                 let apart = if self.is_closed { 0.0005 } else { 0.004 };
                 let arm = |side: f32| {
@@ -232,6 +271,13 @@ impl Held {
 /// What of a tool touches, with its place at the origin.
 fn form(tool: Tool) -> Shape {
     match tool {
+        Tool::Knife => {
+            let [half, height, thin] = BLADE;
+            Shape::Box {
+                centre: [0.0, 0.5 * height, 0.0],
+                half: [half, 0.5 * height, thin],
+            }
+        }
         Tool::Forceps => Shape::Ball {
             centre: [0.0; 3],
             radius: TIP,

@@ -46,6 +46,7 @@ impl Trainee {
             random: fastrand::Rng::with_seed(seed),
         };
         let dull = plan.random.u16(20..=600);
+        plan.cut(middle, size, above);
         plan.push_aside(middle, size, above);
         plan.pull_up(procedure, middle, size, above);
         Self {
@@ -99,6 +100,22 @@ impl Plan {
             ticks: (far / speed / TICK).ceil().max(1.0) as usize,
         });
         self.at = to;
+    }
+
+    /// Lets the knife down into the organ and draws it along.
+    fn cut(&mut self, middle: Vector, size: Vector, above: f32) {
+        let heading = self.between(-1.5, 1.5);
+        let turned = Rotation::about([0.0, 1.0, 0.0], heading);
+        let way = turned.apply([self.between(0.25, 0.45) * size[0], 0.0, 0.0]);
+        let x = middle[0] + self.between(-0.15, 0.15) * size[0];
+        let z = middle[2] + self.between(-0.15, 0.15) * size[2];
+        let deep = above - self.between(0.35, 0.6) * size[1];
+        let from = minus([x, above, z], scaled(way, 0.5));
+        let to = plus(from, way);
+        self.go(Tool::Knife, from, turned, false, 0.2);
+        self.go(Tool::Knife, [from[0], deep, from[2]], turned, false, 0.05);
+        self.go(Tool::Knife, [to[0], deep, to[2]], turned, false, 0.04);
+        self.go(Tool::Knife, to, turned, false, 0.1);
     }
 
     /// Presses the hook into the organ and draws it along.

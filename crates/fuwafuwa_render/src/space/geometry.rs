@@ -18,8 +18,9 @@ use std::ops::Range;
 const REACH: f32 = 3.0;
 /// Radius of a crumb, in widths of its voxel: a little more than a ball of its volume has.
 const CRUMB: f32 = 0.62;
-/// Thickness of the line that hangs from a hand [m].
+/// Thickness of the line that hangs from a hand [m], at most such a share of how far away the camera is.
 const LINE: f32 = 0.004;
+const LINE_SHARE: f32 = 0.002;
 
 /// A world in space as vertices, with the buffers to make them again and again.
 #[derive(Clone, Debug, Default)]
@@ -117,7 +118,8 @@ impl Geometry {
         self.dust = append(&mut self.rounded, dust);
         let lines = hands().filter_map(|(player, (_, hand))| {
             let below = self.ground_below(hand.position())?;
-            let (from, to, radius) = (hand.position(), below, LINE);
+            let radius = LINE.min(LINE_SHARE * frame.camera.distance);
+            let (from, to) = (hand.position(), below);
             let line = Shape::Capsule { from, to, radius };
             RoundedInstance::of(line, palette.hand(player), player as f32)
         });

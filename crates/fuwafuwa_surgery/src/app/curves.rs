@@ -90,7 +90,7 @@ fn numbers(ui: &Ui, rect: Rect, session: &Session, theme: &Theme) {
     let painter = ui.painter().with_clip_rect(rect);
     let sample = session.last();
     let mut rows = vec![format!(
-        "{:.1} s   way of the knife {:.0} mm",
+        "{:.1} s   knife in tissue {:.0} mm",
         session.procedure().ticks() as f32 * TICK,
         1e3 * sample.path
     )];

@@ -123,12 +123,8 @@ impl Slices {
         let (rect, name) = (page.rect.shrink(7.0), page.cut.name());
         let place = minus(self.through, procedure.table().corner);
         let place = place_in_words(page.cut, procedure.case().patient_at(place));
-        text(
-            rect.left_top(),
-            Align2::LEFT_TOP,
-            format!("{name}  {place}"),
-            17.0,
-        );
+        let title = format!("{name}  {place}");
+        text(rect.left_bottom(), Align2::LEFT_BOTTOM, title, 16.0);
         let [left, right, upper, lower] = page.cut.letters();
         text(rect.left_center(), Align2::LEFT_CENTER, left.into(), 17.0);
         text(
