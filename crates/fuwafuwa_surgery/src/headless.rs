@@ -10,6 +10,7 @@ use crate::trainee::Trainee;
 use cpu_time::ThreadTime;
 use fuwafuwa::world::TICK;
 use indicatif::{ProgressBar, ProgressStyle};
+use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -61,10 +62,12 @@ pub fn operate(wanted: &Wanted, options: &Options) -> Result<(), String> {
     };
     bar.finish_and_clear();
     let pieces = parts(procedure.organ(), procedure.case().millilitres());
-    println!("{}", report::summary(&procedure, &pieces));
+    let mut text = report::summary(&procedure, &pieces);
     if options.bench {
-        println!("{}", told(&procedure, laid, costs));
+        text += &format!("\n{}", told(&procedure, laid, costs));
     }
+    // Who reads it may have gone.
+    let _ = writeln!(std::io::stdout(), "{text}");
     if let Some(path) = &options.save {
         write(path, &Recording::of(&procedure).bytes())?;
     }
