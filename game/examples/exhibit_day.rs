@@ -343,16 +343,8 @@ fn knock(events: &mut Vec<Event>, frame: usize, number: &str) {
 }
 
 fn mash(events: &mut Vec<Event>, random: &mut fastrand::Rng) {
-    let keys = [
-        Key::Escape,
-        Key::E,
-        Key::F,
-        Key::J,
-        Key::R,
-        Key::F11,
-        Key::Enter,
-        Key::Tab,
-    ];
+    let names = ["Escape", "E", "F", "J", "R", "F11", "Enter", "Tab"];
+    let keys = names.map(|name| Key::from_name(name).expect("it is a key"));
     if random.u32(..4) == 0 {
         tap(events, keys[random.usize(..keys.len())]);
     }
@@ -488,11 +480,11 @@ fn main() -> ExitCode {
         }
     };
     println!(
-        "{visitors} visitors, welcome within {welcome:.0} ms; {rounds} rounds and {wins} wins in the logbook, \
-         {ended} and {wins_seen} seen; {astray} go another way"
+        "{visitors} visitors, welcome within {welcome:.0} ms; {rounds} rounds and {wins} wins in the logbook"
     );
-    // A round of a few ticks begins and ends between two frames.
-    let mut is_good = wins == wins_seen && rounds >= ended && astray == 0;
+    println!("{ended} and {wins_seen} were seen; {astray} go another way");
+    // A round of a few ticks begins and ends between two frames, and one is won and begun anew in a single frame.
+    let mut is_good = wins >= wins_seen && rounds >= ended && astray == 0;
     if let [first, .., last] = hours.as_slice() {
         let [used, held, frame] = [0, 1, 2].map(|at| 100.0 * (last[at] / first[at] - 1.0));
         println!("memory in use {used:+.1} %, held {held:+.1} %, frames {frame:+.1} %");

@@ -3,6 +3,7 @@
 mod bevy;
 mod fuzz;
 mod kernel;
+mod package;
 mod packages;
 mod scans;
 mod shell;
@@ -60,6 +61,7 @@ fn main() -> ExitCode {
         }
         Task::Fuzz(words) => fuzz::run(&words),
         Task::Scans => scans::run(),
+        Task::Package(wish) => package::run(wish),
         Task::Rapier => run_all(RAPIER),
         Task::Bevy(wish, if_missing) => bevy::run(wish, if_missing),
     };

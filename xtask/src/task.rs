@@ -1,6 +1,7 @@
 //! What can be asked for on the command line.
 
 use crate::bevy::Bevy;
+use crate::package::Package;
 use crate::packages::IfMissing;
 use crate::web::Web;
 
@@ -29,6 +30,9 @@ tasks:
                    nine minutes of scenes, levels, pictures, replays, settings … that nobody
                    meant, each looking for a way that none before it took
   scans            fetches scans of a brain, MNI152, into target/scans, with the licences beside them
+  package          whether the crates that are good for others can be packed, with what they need and
+                   no more; and how large that is
+  package --build  the same, and builds each from what is packed, with the oldest Rust that it needs
   rapier           whether crates/against_rapier, a workspace of its own, still compiles
   bevy             crates/bevy_fuwafuwa, a workspace of its own: formatting, lints, tests without a
                    window, documentation, and whether its examples compile
@@ -39,8 +43,8 @@ tasks:
 On Debian and Ubuntu, `play`, `test` and `check` install the system packages that are missing, as
 root or through sudo, after asking if there is a terminal. With --no-install they only name them.
 
-exit status: 0 passed, 1 failed, 2 no such task, 3 this machine lacks what `wasm`, `web`, `kernel`
-or `scans` needs;
+exit status: 0 passed, 1 failed, 2 no such task, 3 this machine lacks what `wasm`, `web`, `kernel`,
+`scans` or `package --build` needs;
 `play` hands on that of the game";
 
 #[derive(Debug, PartialEq)]
@@ -58,6 +62,7 @@ pub enum Task {
     /// With how long, and through which doors.
     Fuzz(Vec<String>),
     Scans,
+    Package(Package),
     Rapier,
     Bevy(Bevy, IfMissing),
     Help,
@@ -99,6 +104,8 @@ impl Task {
             ["stand", "--install"] => Task::Stand(IfMissing::Install),
             ["fuzz", ..] => Task::Fuzz(own[1..].to_vec()),
             ["scans"] => Task::Scans,
+            ["package"] => Task::Package(Package::List),
+            ["package", "--build"] => Task::Package(Package::Build),
             ["rapier"] => Task::Rapier,
             ["bevy"] => Task::Bevy(Bevy::Check, IfMissing::Say),
             ["bevy", "--pictures"] => Task::Bevy(Bevy::Pictures, IfMissing::Say),
@@ -192,6 +199,8 @@ mod tests {
             Ok(Task::Soak(vec!["2".into(), "hoop".into()])),
         );
         check("scans", Ok(Task::Scans));
+        check("package", Ok(Task::Package(Package::List)));
+        check("package --build", Ok(Task::Package(Package::Build)));
         check("scans twice", Err("there is no task `scans twice`"));
         check("bevy", Ok(Task::Bevy(Bevy::Check, IfMissing::Say)));
         check(

@@ -126,6 +126,8 @@ impl Writers<'_> {
                 let (sensor, (who, piece)) = (world.entity_of_rigid(sensor)?, of(who)?);
                 self.left.write(Left { sensor, who, piece });
             }
+            // The plugin has no knives.
+            Event::Cut { .. } => {}
             Event::JointBroke { joint } => {
                 self.joint_broke.write(JointBroke { joint });
             }

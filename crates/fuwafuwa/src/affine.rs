@@ -2,6 +2,7 @@
 
 use crate::body::Body;
 use crate::dim::Dim;
+use crate::ids::NodeId;
 use crate::mesh::Element;
 use crate::shape::Vector;
 use crate::stencil::slot_at;
@@ -58,23 +59,66 @@ impl<D: Dim> Body<D> {
         }
     }
 
-    /// The child of an element's cell that a position [m] lies in.
-    pub(crate) fn child_at(&self, element: &Element, at: Vector) -> Option<usize> {
+    /// Where a place [m] would be in the undeformed body if all moved as an element does, in voxels: what undoes
+    /// [`Body::carry`]. Nothing where the element is flat.
+    pub(crate) fn at_rest(&self, element: &Element, at: Vector) -> Option<Vector> {
+        let stencil = self.truth.mesh.stencil(element);
+        let size = self.truth.grid.voxel_size();
+        let half = 0.5 * size * element.cell.width() as f32;
+        let from_centroid = self.offset_at_rest(element, at)?;
+        let corner = slot_at(stencil.slots[0] as usize);
+        let mut place = element.cell.first_voxel().map(|k| k as f32);
+        for axis in 0..D::N {
+            let from_corner = from_centroid[axis] / half - stencil.offsets[0][axis] as f32;
+            place[axis] += (from_corner + corner[axis] as f32) * half / size;
+        }
+        Some(place)
+    }
+
+    /// By how much each node of an element counts for a place of the undeformed body, given in voxels: what is linear is
+    /// carried exactly, and so a push that is shared out so keeps its torque.
+    pub(crate) fn weights(&self, element: &Element, at: Vector) -> Vec<(NodeId, f32)> {
+        let stencil = self.truth.mesh.stencil(element);
+        let half = 0.5 * element.cell.width() as f32;
+        let corner = slot_at(stencil.slots[0] as usize);
+        let low = element.cell.first_voxel();
+        let mut rest = [0.0; 3];
+        for axis in 0..D::N {
+            let from_corner = (at[axis] - low[axis] as f32) / half - corner[axis] as f32;
+            rest[axis] = from_corner + stencil.offsets[0][axis] as f32;
+        }
+        let scale = 1.0 / stencil.volume as f32;
+        let weight = |place: usize| {
+            let share = (stencil.volumes[place] / stencil.volume) as f32;
+            share + scale * dot(stencil.gradients[place].map(|k| k as f32), rest)
+        };
+        let nodes = element.nodes.iter().enumerate();
+        nodes.map(|(place, &node)| (node, weight(place))).collect()
+    }
+
+    /// Where a place [m] was at rest, as seen from the centroid of an element [m], in all three coordinates.
+    fn offset_at_rest(&self, element: &Element, at: Vector) -> Option<Vector> {
         let (centre, [x, y, z]) = self.deformation(element);
         let volume = dot(x, cross(y, z));
         if volume.abs() < FLAT {
             return None;
         }
-        // Cramer's rule: where the position was at rest, as seen from the centroid.
+        // Cramer's rule.
         let by = scaled(minus(at, centre), 1.0 / volume);
         let columns = [cross(y, z), cross(z, x), cross(x, y)];
+        let along = |axis: usize| (0..3).map(|k| columns[k][axis] * by[k]).sum();
+        Some([0, 1, 2].map(along))
+    }
+
+    /// The child of an element's cell that a position [m] lies in.
+    pub(crate) fn child_at(&self, element: &Element, at: Vector) -> Option<usize> {
+        let from_centroid = self.offset_at_rest(element, at)?;
         let child_width = 0.5 * self.truth.grid.voxel_size() * element.cell.width() as f32;
         let stencil = self.truth.mesh.stencil(element);
         let corner = slot_at(stencil.slots[0] as usize);
         let mut child = 0;
         for axis in 0..D::N {
-            let from_centroid: f32 = (0..3).map(|k| columns[k][axis] * by[k]).sum();
-            let from_corner = from_centroid / child_width - stencil.offsets[0][axis] as f32;
+            let from_corner = from_centroid[axis] / child_width - stencil.offsets[0][axis] as f32;
             let along = from_corner + corner[axis] as f32;
             if !(0.0..=2.0).contains(&along) {
                 return None;

@@ -4,6 +4,7 @@
 //! crosses it. Shared nodes are then released as they are when a body tears.
 
 use crate::body::Body;
+use crate::changes::Changes;
 use crate::dim::{Dim, Point, voxel_around};
 use crate::ids::PieceId;
 use crate::mesh::Defect;
@@ -72,21 +73,31 @@ impl<D: Dim> Body<D> {
         if self.truth.pyramid.grading() == Grading::Coarse {
             return Ok(CutReport::default());
         }
-        let opened = self.faces_across(blade);
+        let (released, changes) = self.open(&self.faces_across(blade))?;
+        Ok(CutReport {
+            released,
+            parted: changes.parted,
+        })
+    }
+
+    /// Opens faces, each the one after a voxel across an axis. Returns where nodes were released [m], and what that changed.
+    pub(crate) fn open(
+        &mut self,
+        opened: &BTreeSet<(Point, usize)>,
+    ) -> Result<(Vec<Vector>, Changes), Defect> {
         let mut points: BTreeSet<Point> = BTreeSet::new();
-        for &(voxel, axis) in &opened {
+        for &(voxel, axis) in opened {
             for corner in 0..D::CORNERS / 2 {
                 points.insert(corner_of_face::<D>(voxel, axis, corner));
             }
         }
         let mut releases = Vec::new();
         for &at in &points {
-            releases.extend(self.sides(at, &opened).into_iter().map(|side| (at, side)));
+            releases.extend(self.sides(at, opened).into_iter().map(|side| (at, side)));
         }
         let positions = releases.iter().filter_map(|&(at, _)| self.position_of(at));
         let released = positions.collect();
-        let parted = self.release(&releases)?;
-        Ok(CutReport { released, parted })
+        Ok((released, self.tear(&releases)?))
     }
 
     /// Cuts all voxels apart: nothing is left but dust. Returns the pieces that came off.

@@ -67,6 +67,8 @@ macro_rules! entries {
             $crate::World::<$dim>::add_joint,
             $crate::World::<$dim>::remove_joint,
             $crate::World::<$dim>::joint_places,
+            $crate::World::<$dim>::add_knife,
+            $crate::World::<$dim>::remove_knife,
             $crate::World::<$dim>::set_layers,
             $crate::World::<$dim>::set_user_data,
             $crate::World::<$dim>::set_gravity_scale,

@@ -1,6 +1,6 @@
 //! What happened in a tick.
 
-use crate::handle::{BodyId, JointId, RigidId};
+use crate::handle::{BodyId, JointId, KnifeId, RigidId};
 use crate::ids::PieceId;
 use crate::shape::Vector;
 
@@ -81,6 +81,19 @@ pub enum Event {
         sensor: RigidId,
         /// Who.
         who: Party,
+    },
+    /// A knife opened faces between voxels.
+    Cut {
+        /// The knife.
+        knife: KnifeId,
+        /// The body.
+        body: BodyId,
+        /// In the middle of its edge in there [m].
+        at: Vector,
+        /// How much it cut since it last told so, of bodies at rest [m²].
+        area: f32,
+        /// The work that it did since then [J].
+        work: f32,
     },
     /// A joint broke, or lost an end, and is gone.
     JointBroke {

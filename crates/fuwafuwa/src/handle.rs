@@ -35,7 +35,7 @@ macro_rules! handle {
 
         impl $name {
             /// Where it stands or stood among the others.
-            #[allow(dead_code)] // no list names joints by their slots
+            #[allow(dead_code)] // no list names joints or knives by their slots
             pub(crate) fn slot(self) -> $slot {
                 self.slot
             }
@@ -75,6 +75,12 @@ id! {
     pub JointSlot
 }
 
+id! {
+    /// Where a knife stands in a world; given out again once it has left.
+    #[doc(hidden)]
+    pub KnifeSlot
+}
+
 impl BodySlot {
     /// That of a body in no world.
     pub(crate) const NONE: Self = Self(u32::MAX);
@@ -92,6 +98,11 @@ handle! {
 handle! {
     /// What a joint in a world is known by, whoever comes or goes beside it.
     JointId, "joint", JointSlot
+}
+
+handle! {
+    /// What a knife in a world is known by, whoever comes or goes beside it.
+    KnifeId, "knife", KnifeSlot
 }
 
 /// A handle was used of something that is not there: it was taken out, or never was in this world. A handle of another

@@ -7,8 +7,8 @@
 //! → `touch` and `contact` what meets → [`world`] all of it, and time.
 //! Two and three dimensions are one program: [`dim`] holds all that differs.
 //!
-//! To use it, begin with [`World`], [`Body`] and [`VoxelGrid`]; `examples` has whole programs. Your debug builds are a
-//! hundred times slower than they need be unless your `Cargo.toml` says
+//! To use it, begin with the [`guide`], or with [`World`], [`Body`] and [`VoxelGrid`]; `examples` has whole programs. Your
+//! debug builds are a hundred times slower than they need be unless your `Cargo.toml` says
 //! ```toml
 //! [profile.dev.package.fuwafuwa]
 //! opt-level = 3
@@ -40,10 +40,13 @@ mod disjoint;
 pub mod event;
 mod fracture;
 pub mod grid;
+#[cfg(any(doc, doctest))]
+pub mod guide;
 pub mod handle;
 pub mod hash;
 pub mod ids;
 pub mod joint;
+pub mod knife;
 mod lanes;
 pub mod law;
 pub mod layers;
@@ -76,9 +79,10 @@ pub use changes::{Bookmark, Changes};
 pub use dim::{Dim, Dim2, Dim3, Point};
 pub use event::{Event, Party, StepReport, With};
 pub use grid::{BuildError, VoxelGrid};
-pub use handle::{BodyId, Gone, JointId, RigidId};
+pub use handle::{BodyId, Gone, JointId, KnifeId, RigidId};
 pub use ids::{ElementId, NodeId, PieceId};
 pub use joint::{End, Joint, Tie};
+pub use knife::Knife;
 pub use law::{Elasticity, Law};
 pub use layers::Layers;
 pub use material::{BodyError, Material};

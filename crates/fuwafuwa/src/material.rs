@@ -14,7 +14,8 @@ pub struct Material {
     pub density: f32,
     /// Damping ratio of a body's slowest own swing: 0 rings on for ever, 1 creeps back; about 0.08.
     pub damping: f32,
-    /// Coulomb friction between pieces, 0 to 2; about 0.4.
+    /// Coulomb friction between pieces and between bodies, 0 to 2; about 0.4. Of two it is the mean. With what is rigid
+    /// it does not count: that brings its [own](crate::Rigid::friction).
     pub friction: f32,
     /// Tension that the weakest place of a smooth surface bears [Pa]; infinite = it never tears. A
     /// fifth of Young's modulus gives a body that can be torn by hand.
@@ -127,6 +128,11 @@ impl Material {
         let infinite = f32::INFINITY;
         within("strength", self.strength, tiny, infinite, "positive")?;
         within("toughness", self.toughness, tiny, infinite, "positive")
+    }
+
+    /// The energy that a square metre of crack takes: toughness² / Y [J/m²] [Irwin 1957].
+    pub fn fracture_energy(&self) -> f32 {
+        (f64::from(self.toughness) * f64::from(self.toughness) / self.elasticity.young) as f32
     }
 
     /// Speed of a pressure wave [m/s].

@@ -2,8 +2,8 @@
 //!
 //! Between the goal of a hand, which the input moves, and the hand stands a spring with a damper, the
 //! *virtual coupling* [Colgate 1995]. Its force is smooth, because the hand has inertia, and it is
-//! what a force-feedback device should play; the raw contact force jumps. Hands do not turn; what is *free* falls, turns and
-//! is pushed around, and what is kinematic goes and turns as it is told.
+//! what a force-feedback device should play; the raw contact force jumps. What is *free* falls, turns and is pushed
+//! around; hands and what is kinematic turn as they are told.
 
 mod bad;
 mod check;
@@ -32,7 +32,7 @@ pub enum Drive {
     Fixed,
     /// It is at its goal at the end of each tick, whatever is in the way.
     Kinematic,
-    /// It is pulled by a spring and a damper and stopped by what it touches.
+    /// It is pulled by a spring and a damper and stopped by what it touches; it turns as it is told, whatever that does.
     Coupled {
         /// Mass of the hand, 1e-6 to 1e6 [kg]; about 2. Lighter is livelier, and rougher to feel.
         mass: f32,
@@ -68,7 +68,9 @@ impl Default for Drive {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rigid {
-    /// Coulomb friction with what it touches; about 0.2.
+    /// Coulomb friction with what it touches; about 0.2. With soft bodies it counts alone, whatever their materials say.
+    /// Of two rigid things the mean counts, but with what is fixed that of the fixed one where the other is free, and that
+    /// of the hand where it is a hand.
     pub friction: f32,
     /// Share of its speed with which it bounces off something else that is rigid, 0 to 1, where one of both is free; the
     /// larger one counts. About 0; soft bodies bounce by themselves.
@@ -311,7 +313,8 @@ impl Rigid {
     pub(crate) fn start_tick(&mut self, duration: f32) {
         (self.position_before, self.rotation_before) = (self.position, self.rotation);
         self.goal_velocity = scaled(minus(self.goal, self.goal_before), 1.0 / duration);
-        if self.drive == Drive::Kinematic {
+        if self.is_driven() && self.rotation != self.rotation_goal || self.drive == Drive::Kinematic
+        {
             let way = self.rotation.inverse().then(self.rotation_goal);
             self.spin = scaled(way.scaled_axis(), 1.0 / duration);
         }
@@ -322,8 +325,11 @@ impl Rigid {
     /// where it was, at rest.
     pub(crate) fn end_tick(&mut self) {
         self.goal_before = self.goal;
-        if self.drive == Drive::Kinematic && self.rotation != self.rotation_goal {
+        if self.is_driven() && self.rotation != self.rotation_goal {
             self.stand_at(self.position, self.rotation_goal);
+        }
+        if matches!(self.drive, Drive::Coupled { .. }) {
+            self.spin = [0.0; 3];
         }
         let is_finite = is_finite(self.velocity) && is_finite(self.spin);
         if !is_finite || !is_within_reach(self.position) {

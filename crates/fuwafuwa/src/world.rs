@@ -2,6 +2,7 @@
 
 mod acts;
 mod contents;
+mod cuts;
 mod hooks;
 mod ties;
 mod touches;
@@ -15,6 +16,7 @@ use crate::fracture::{Failure, failures};
 use crate::handle::{BodySlot, Gone, RigidId, RigidSlot};
 use crate::ids::{PieceId, Table};
 use crate::joint::{self, Joints};
+use crate::knife::{Knife, Knives};
 use crate::rigid::{BadRigid, Rigids};
 use crate::shape::Vector;
 use crate::sleep::{fall_asleep, fall_asleep_rigid, wake};
@@ -150,6 +152,7 @@ pub struct World<D: Dim> {
     bodies: Bodies<D>,
     rigids: Rigids,
     joints: Joints,
+    knives: Knives,
     ticks: u64,
     nearby: Nearby,
     events: Vec<Event>,
@@ -173,6 +176,7 @@ impl<D: Dim> World<D> {
             bodies: Bodies::default(),
             rigids: Rigids::default(),
             joints: Joints::default(),
+            knives: Knives::default(),
             ticks: 0,
             nearby: Nearby::default(),
             events: Vec::new(),
@@ -220,6 +224,7 @@ impl<D: Dim> World<D> {
         self.start_tick();
         for substep in 0..substeps {
             if is_due(substep, substeps, FRACTURE_ROUNDS) {
+                self.cut_along_edges(&mut report);
                 self.fracture(&mut report);
             }
             if is_due(substep, substeps, DAMPING_ROUNDS) {
@@ -338,9 +343,13 @@ impl<D: Dim> World<D> {
         let nearby = &mut self.nearby;
         nearby.follow(bodies, rigids, duration);
         let (broken, woken) = joint::solve(&mut self.joints, bodies, rigids, duration);
+        let held = self.hold_edges(duration);
+        let (bodies, rigids) = (&mut self.bodies, &mut self.rigids);
+        let nearby = &mut self.nearby;
         let mut hits = self.contacts.find(bodies, rigids, nearby, duration);
         self.contacts.solve(bodies, rigids, nearby, duration);
         hits.add(woken.pieces, woken.rigids);
+        hits.add(held, Vec::new());
         self.part_joints(broken);
         hits
     }
@@ -393,7 +402,13 @@ impl<D: Dim> World<D> {
         let captives = self.nearby.captives.list.iter();
         let captives = captives.map(|captive| &self.nearby.spheres.list[captive.sphere]);
         let captives = captives.map(|sphere| (sphere.body, sphere.piece));
-        let handled: Vec<Hit> = handled.chain(captives).collect();
+        let is_pushed = |knife: &&Knife| {
+            let holder = self.rigids.get(knife.holder);
+            holder.is_ok_and(|holder| holder.pushes())
+        };
+        let pushed = self.knives.iter().filter(is_pushed);
+        let cut = pushed.flat_map(|knife| knife.held(&self.bodies));
+        let handled: Vec<Hit> = handled.chain(captives).chain(cut).collect();
         let fallen = fall_asleep(&mut self.bodies, &motions, &handled, TICK);
         let events = fallen.iter().map(|&(body, piece)| Event::FellAsleep {
             body: self.bodies.id(body),

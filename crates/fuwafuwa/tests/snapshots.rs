@@ -3,8 +3,8 @@
 
 use fuwafuwa::hash::Hash;
 use fuwafuwa::{
-    Blade, Body, Dim, Dim2, Dim3, End, Event, Joint, Material, Rigid, Rotation, Settings, Shape,
-    Tie, VoxelGrid, World, snapshot,
+    Blade, Body, Dim, Dim2, Dim3, Drive, End, Event, Joint, Knife, Material, Rigid, Rotation,
+    Settings, Shape, Tie, VoxelGrid, World, snapshot,
 };
 
 /// A ball that falls on a floor while a hand pushes it against a wall and through.
@@ -129,6 +129,46 @@ fn check_tied_resumes<D: Dim>() {
 fn things_that_fall_and_are_tied_go_on_to_the_same_bits() {
     check_tied_resumes::<Dim2>();
     check_tied_resumes::<Dim3>();
+}
+
+/// A knife goes through a ball that falls.
+fn check_cut_resumes<D: Dim>() {
+    let mut world = torn_world::<D>(14);
+    let depth = if D::N == 3 { 0.5 } else { 0.0 };
+    let hand = world.nth_hand(0).unwrap();
+    world.remove_rigid(hand).unwrap();
+    let mut holder = Rigid::hand([-0.2, 0.45, depth], 0.05).with_drive(Drive::Kinematic);
+    holder.is_sensor = true;
+    let holder = world.add_rigid(holder).unwrap();
+    let edge = [[0.0, 0.0, -0.4], [0.0, 0.0, 0.4]];
+    world
+        .add_knife(Knife::new(holder, edge, [1.0, 0.0, 0.0]))
+        .unwrap();
+    let (mut resumed, mut cuts) = (load::<D>(&save(&world)).unwrap(), 0);
+    for tick in 0..90 {
+        for world in [&mut world, &mut resumed] {
+            let at = [-0.2 + 0.015 * tick as f32, 0.45, depth];
+            world.set_goal(holder, at).unwrap();
+            world
+                .set_goal_rotation(holder, Rotation::in_plane(0.002 * tick as f32))
+                .unwrap();
+            world.step();
+        }
+        assert_eq!(resumed.hash(), world.hash(), "{tick}");
+        assert_eq!(resumed.events(), world.events(), "{tick}");
+        let is_cut = |event: &&Event| matches!(event, Event::Cut { .. });
+        cuts += world.events().iter().filter(is_cut).count();
+        if tick % 7 == 3 {
+            resumed = load::<D>(&save(&world)).unwrap();
+        }
+    }
+    assert!(cuts > 10, "{cuts}");
+}
+
+#[test]
+fn a_cut_that_was_begun_goes_on_to_the_same_bits() {
+    check_cut_resumes::<Dim2>();
+    check_cut_resumes::<Dim3>();
 }
 
 /// Crumbs of one body, some asleep and some awake, while a hand goes through them; and one that is cut.

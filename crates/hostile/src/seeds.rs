@@ -5,8 +5,8 @@ use base64::prelude::BASE64_URL_SAFE_NO_PAD as BASE64;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use fuwafuwa::{
-    Body, Dim, Dim2, Dim3, End, Joint, Material, Rigid, Rotation, Settings, Shape, Tie, VoxelGrid,
-    World, snapshot,
+    Body, Dim, Dim2, Dim3, End, Joint, Knife, Material, Rigid, Rotation, Settings, Shape, Tie,
+    VoxelGrid, World, snapshot,
 };
 use fuwafuwa_scenes::{Recording, Scene, scene};
 use fuwafuwa_surgery::phantom;
@@ -192,6 +192,14 @@ fn tied<D: Dim>() -> Vec<u8> {
         let joint = Joint::new([ends[first], ends[second]], tie);
         world.add_joint(joint).expect("its ends are there");
     }
+    let mut holder = Rigid::hand([0.5, 0.9, 0.5], 0.1);
+    holder.is_sensor = true;
+    let holder = world.add_rigid(holder).expect("it can be");
+    let edge = [[0.0, 0.0, -0.3], [0.0, 0.0, 0.3]];
+    let knife = Knife::new(holder, edge, [0.0, -1.0, 0.0]);
+    world.add_knife(knife).expect("it can be held");
+    let below = [0.5, 0.5, 0.5];
+    world.set_goal(holder, below).expect("it is near");
     for _ in 0..5 {
         world.step();
     }

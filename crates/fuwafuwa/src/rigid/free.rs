@@ -82,8 +82,7 @@ impl Rigid {
 
     /// Lets it turn to a rotation.
     pub(crate) fn turn_to<D: Dim>(&mut self, rotation: Rotation) -> Result<(), BadRigid> {
-        let is_kinematic = self.drive == Drive::Kinematic;
-        require(is_kinematic, "drive", "kinematic, for it to turn to a goal")?;
+        require(self.is_driven(), "drive", "one that follows a goal")?;
         self.rotation_goal = rotation.seen_in::<D>();
         Ok(())
     }
@@ -216,6 +215,10 @@ impl Rigid {
     /// Whether it turns.
     #[inline(always)]
     fn turns(&self) -> bool {
-        matches!(self.drive, Drive::Kinematic | Drive::Free { .. })
+        match self.drive {
+            Drive::Fixed => false,
+            Drive::Kinematic | Drive::Free { .. } => true,
+            Drive::Coupled { .. } => self.spin != [0.0; 3],
+        }
     }
 }

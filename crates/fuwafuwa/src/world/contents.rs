@@ -11,6 +11,8 @@ use crate::handle::{BodyId, Gone, RigidId, RigidSlot};
 use crate::hash::Hash;
 #[cfg(feature = "serde")]
 use crate::joint::Joint;
+#[cfg(feature = "serde")]
+use crate::knife::Knife;
 use crate::rigid::{Drive, Rigid, Rigids};
 use crate::rotation::Rotation;
 use crate::shape::Vector;
@@ -53,8 +55,8 @@ impl<D: Dim> World<D> {
         Ok(self.rigids.get_mut(hand)?.send::<D>(goal)?)
     }
 
-    /// Lets what is kinematic turn, too, until it is at the end of the next tick as `rotation` says; in the plane about the
-    /// third axis alone.
+    /// Lets what follows a goal turn, too, until it is at the end of the next tick as `rotation` says; in the plane about
+    /// the third axis alone.
     ///
     /// # Errors
     /// [`Refused`], and the goal stays as it was, when there is no such thing or its drive is another one.
@@ -221,6 +223,10 @@ impl<D: Dim> World<D> {
             (
                 "a joint in it cannot be",
                 self.joints.iter().all(Joint::is_sound::<D>),
+            ),
+            (
+                "a knife in it cannot be",
+                self.knives.iter().all(Knife::is_sound::<D>),
             ),
             ("it is older than can be", self.ticks <= MOST_TICKS),
         ];

@@ -1,0 +1,301 @@
+//! Follows an edge through bodies: where each of its samples is, and what their sheet went through.
+
+use super::inside::Spot;
+use super::sample::{MOST_SAMPLES, Near, Sample};
+use super::sheet::{self, Faces, Place};
+use super::{Knife, Stance};
+use crate::body::{Bodies, Body};
+use crate::dim::{Dim, Point};
+use crate::handle::BodyId;
+use crate::rigid::Rigid;
+use crate::shape::Vector;
+use crate::vector::{dot, length, minus, plus, scaled, three};
+
+/// Samples on the width of the smallest voxel: none slips between two samples.
+const SAMPLES_PER_VOXEL: f32 = 2.0;
+/// An element may be stretched by so much, and is still found.
+const STRETCH: f32 = 1.5;
+/// Between two looks at its sheet no sample goes further in the body at rest than so many times as far as in the world,
+/// and so many voxels: what seems to did not go there, but came into other tissue.
+const MOST_STRETCH: f64 = 3.0;
+const MOST_JUMP: f64 = 2.0;
+
+/// What an edge went through in a body.
+pub struct Cut {
+    pub body: BodyId,
+    pub faces: Faces,
+    /// Of the sheet where it was whole, at rest [m²].
+    pub area: f64,
+    /// In the middle of what is in the body [m].
+    pub at: Vector,
+}
+
+impl Knife {
+    /// Brings up to date where its samples are. `ahead` is for how long it is not looked around again [s].
+    pub(crate) fn follow<D: Dim>(&mut self, bodies: &Bodies<D>, holder: &Rigid, ahead: f32) {
+        let stance = self.stance::<D>(holder);
+        self.take_samples(&stance, bodies, holder);
+        if self.near.is_none() {
+            self.near = Some(self.look_around(&stance, bodies, holder, ahead));
+        }
+        for place in 0..self.samples.len() {
+            let at = self.place(&stance, holder, place);
+            self.samples[place].inside = self.find(bodies, place, at);
+        }
+    }
+
+    /// What its sheet went through since the last time, in each body that it is or was in.
+    pub(crate) fn pass<D: Dim>(&mut self, bodies: &Bodies<D>, holder: &Rigid) -> Vec<Cut> {
+        let stance = self.stance::<D>(holder);
+        let spots = self.samples.iter().flat_map(|k| [k.inside, k.passed]);
+        let mut ids: Vec<BodyId> = spots.flatten().map(|(body, _)| body).collect();
+        ids.sort_unstable();
+        ids.dedup();
+        let known = ids
+            .iter()
+            .filter_map(|&id| Some((id, bodies.get(id).ok()?)));
+        let cuts = known.map(|(id, body)| self.sheet_in(&stance, holder, id, body));
+        let mut cuts: Vec<Cut> = cuts.collect();
+        self.area += cuts.iter().map(|cut| cut.area).sum::<f64>();
+        cuts.retain(|cut| !cut.faces.is_empty());
+        for place in 0..self.samples.len() {
+            let at = self.place(&stance, holder, place);
+            let sample = &mut self.samples[place];
+            if !sample.is_stuck() {
+                (sample.passed, sample.before) = (sample.inside, at);
+            }
+            (sample.slid, sample.cut) = (false, false);
+        }
+        self.near = None;
+        cuts
+    }
+
+    /// How much of the edge a sample stands for [m].
+    pub(super) fn share<D: Dim>(&self, stance: &Stance, place: usize) -> f32 {
+        let last = self.samples.len() - 1;
+        if D::N == 2 {
+            return 1.0;
+        }
+        let spacing = length(minus(stance.levers[1], stance.levers[0])) / last as f32;
+        match place == 0 || place == last {
+            true => 0.5 * spacing,
+            false => spacing,
+        }
+    }
+
+    /// Where a sample is, seen from the position of the holder [m].
+    pub(super) fn lever(&self, stance: &Stance, place: usize) -> Vector {
+        let [from, to] = stance.levers;
+        let share = match self.samples.len() {
+            1 => 0.5,
+            many => place as f32 / (many - 1) as f32,
+        };
+        plus(from, scaled(minus(to, from), share))
+    }
+
+    /// Where a sample is [m].
+    fn place(&self, stance: &Stance, holder: &Rigid, place: usize) -> Vector {
+        plus(holder.position(), self.lever(stance, place))
+    }
+
+    /// Sees to it that there are enough samples for the bodies that there are.
+    fn take_samples<D: Dim>(&mut self, stance: &Stance, bodies: &Bodies<D>, holder: &Rigid) {
+        let sizes = bodies.iter().map(|body| body.truth.grid.voxel_size());
+        let least = sizes.fold(f32::INFINITY, f32::min);
+        // Not as it is turned: its length would tremble.
+        let long = length(minus(self.edge[1], self.edge[0]));
+        let asked = (SAMPLES_PER_VOXEL * long / least).ceil() as usize;
+        let count = match D::N {
+            2 => 1,
+            _ => asked.clamp(1, MOST_SAMPLES) + 1,
+        };
+        if count != self.samples.len() {
+            self.samples = vec![Sample::default(); count];
+            self.near = None;
+            for place in 0..count {
+                self.samples[place].before = self.place(stance, holder, place);
+            }
+        }
+    }
+
+    /// The elements that each sample may come into soon.
+    fn look_around<D: Dim>(
+        &self,
+        stance: &Stance,
+        bodies: &Bodies<D>,
+        holder: &Rigid,
+        ahead: f32,
+    ) -> Vec<Vec<Near>> {
+        let mut near = vec![Vec::new(); self.samples.len()];
+        let from = plus(holder.position(), stance.levers[0]);
+        let long = length(minus(stance.levers[1], stance.levers[0]));
+        let spacing = match D::N {
+            2 => f32::INFINITY,
+            _ => long / (self.samples.len() - 1) as f32,
+        };
+        for (id, body) in bodies.entries() {
+            if !holder.layers.meet(body.layers()) {
+                continue;
+            }
+            let size = body.truth.grid.voxel_size();
+            let margin = size + STRETCH * ahead * holder.top_speed();
+            for (_, element) in body.truth.mesh.elements() {
+                let node = element.nodes[0];
+                let diagonal = size * element.cell.width() as f32 * (D::N as f32).sqrt();
+                let reach = STRETCH * diagonal + margin;
+                let apart = minus(three(body.state.position[node]), from);
+                let (along, span) = match D::N {
+                    2 => (0.0, 0.0),
+                    _ => (dot(apart, stance.along), long),
+                };
+                let nearest = scaled(stance.along, along.clamp(0.0, span));
+                if length(minus(apart, nearest)) > reach {
+                    continue;
+                }
+                let voxel = body.truth.mesh.first_voxel(element);
+                let first = ((along - reach) / spacing).ceil().max(0.0) as usize;
+                let last = ((along + reach) / spacing).floor().max(0.0) as usize;
+                let count = last.saturating_add(1).saturating_sub(first);
+                let places = near.iter_mut().skip(first).take(count);
+                places.for_each(|near| {
+                    near.push(Near {
+                        body: id,
+                        voxel,
+                        node,
+                        reach,
+                    });
+                });
+            }
+        }
+        near
+    }
+
+    /// In whom a sample is: where it was, where its neighbours are, or in what is around.
+    fn find<D: Dim>(&self, bodies: &Bodies<D>, place: usize, at: Vector) -> Option<(BodyId, Spot)> {
+        if let Some((id, spot)) = self.samples[place].inside
+            && let Ok(body) = bodies.get(id)
+        {
+            // What is pressed flat is not found, and is still there.
+            let found = Spot::find(body, at, spot.voxel);
+            if let Some(spot) = found.or(Some(spot).filter(|spot| spot.is_near(body, at))) {
+                return Some((id, spot));
+            }
+        }
+        let beside = [place.checked_sub(1), Some(place + 1)];
+        let others = beside.into_iter().flatten();
+        let known = others.filter_map(|place| self.samples.get(place)?.inside);
+        let known = known.map(|(body, spot)| (body, spot.voxel));
+        let near = self.near.as_ref().map(|near| near[place].iter());
+        let is_in_reach = |near: &&Near| {
+            let body = bodies.get(near.body).ok();
+            let node = body.map(|body| three(body.state.position[near.node]));
+            node.is_some_and(|node| length(minus(node, at)) <= near.reach)
+        };
+        let near = near.into_iter().flatten().filter(is_in_reach);
+        let mut tried = known.chain(near.map(|near| (near.body, near.voxel)));
+        tried.find_map(|(id, voxel)| Some((id, Spot::find(bodies.get(id).ok()?, at, voxel)?)))
+    }
+
+    /// The sheet that it swept through a body since the last look.
+    fn sheet_in<D: Dim>(&self, stance: &Stance, holder: &Rigid, id: BodyId, body: &Body<D>) -> Cut {
+        let size = body.truth.grid.voxel_size();
+        let rows: Vec<Option<[Place; 2]>> = (0..self.samples.len())
+            .map(|place| self.way_in(stance, holder, id, body, place))
+            .collect();
+        let is_inside = |place: usize| self.samples[place].inside_of(id).is_some();
+        let cuts = |place: usize| f64::from(u8::from(self.samples[place].cut && is_inside(place)));
+        let (mut faces, mut area) = (Faces::new(), 0.0);
+        let mut add = |patch: [Place; 4], share: f64| {
+            sheet::go_through::<D>(patch, &mut faces);
+            area += share * sheet::area(patch);
+        };
+        if D::N == 2 {
+            if let Some([from, to]) = rows[0] {
+                let deep = |[x, y, _]: Place, z: f64| [x, y, z];
+                let patch = [
+                    deep(from, 0.0),
+                    deep(from, 1.0),
+                    deep(to, 1.0),
+                    deep(to, 0.0),
+                ];
+                add(patch, cuts(0) / f64::from(size));
+            }
+        } else {
+            let long = length(minus(stance.levers[1], stance.levers[0]));
+            let apart = f64::from(long / size) / (self.samples.len() - 1) as f64;
+            for (place, pair) in rows.windows(2).enumerate() {
+                let [Some([a, b]), Some([d, c])] = pair else {
+                    continue;
+                };
+                let most = MOST_STRETCH * apart + MOST_JUMP;
+                if far(*a, *d) > most || far(*b, *c) > most {
+                    continue;
+                }
+                add([*a, *b, *c, *d], 0.5 * (cuts(place) + cuts(place + 1)));
+            }
+        }
+        let grid = &body.truth.grid;
+        faces.retain(|&(voxel, axis)| {
+            let mut next = voxel;
+            next[axis] += 1;
+            let is_cut = |voxel: Point| {
+                let number = grid.material(voxel);
+                number != 0 && body.materials()[number as usize - 1].toughness.is_finite()
+            };
+            is_cut(voxel) && is_cut(next)
+        });
+        let inside: Vec<usize> = (0..rows.len()).filter(|&place| is_inside(place)).collect();
+        let middle = inside.get(inside.len() / 2).copied().unwrap_or(0);
+        Cut {
+            body: id,
+            faces,
+            area: area * f64::from(size * size),
+            at: self.place(stance, holder, middle),
+        }
+    }
+
+    /// From where to where in a body at rest [voxels] a sample went since the last look, if it cut there.
+    fn way_in<D: Dim>(
+        &self,
+        stance: &Stance,
+        holder: &Rigid,
+        id: BodyId,
+        body: &Body<D>,
+        place: usize,
+    ) -> Option<[Place; 2]> {
+        let sample = &self.samples[place];
+        let beside = [place.checked_sub(1), Some(place + 1)];
+        let mut others = beside.into_iter().flatten();
+        let (inside, passed) = (sample.inside_of(id), sample.passed_in(id));
+        let of_neighbour = || others.find_map(|other| self.samples.get(other)?.inside_of(id));
+        // One that is outside is where it would be if the tissue went on.
+        let base = inside.or(passed).or_else(of_neighbour)?;
+        let size = body.truth.grid.voxel_size();
+        let at = self.place(stance, holder, place);
+        let now = inside.map_or_else(|| base.extend(body, at), |spot| Some(spot.at))?;
+        let before = || base.extend(body, sample.before);
+        let before = passed.map_or_else(before, |spot| Some(spot.at))?;
+        if sample.is_stuck() {
+            let place = before.map(f64::from);
+            return Some([place, place]);
+        }
+        let ahead = base.extend(body, plus(at, scaled(stance.toward, size)))?;
+        let toward = minus(ahead, base.extend(body, at)?);
+        let [now, before, toward] = [now, before, toward].map(|place| place.map(f64::from));
+        let way = minus(now, before);
+        let reach = f64::from(length(minus(at, sample.before)) / size);
+        let is_jump = dot(way, way).sqrt() > MOST_STRETCH * reach + MOST_JUMP;
+        // It is drawn back through what it cut.
+        let forth = dot(way, toward) / dot(toward, toward).sqrt().max(1e-9);
+        let is_drawn_back = forth < 0.0 && 2.0 * forth * forth > dot(way, way);
+        match is_jump || is_drawn_back {
+            true => Some([now, now]),
+            false => Some([before, now]),
+        }
+    }
+}
+
+fn far(a: Place, b: Place) -> f64 {
+    let apart = minus(a, b);
+    dot(apart, apart).sqrt()
+}

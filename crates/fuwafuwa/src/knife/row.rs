@@ -1,0 +1,183 @@
+//! The rows of the solver by which an edge holds the tissue that it is in, and is held by it.
+
+use super::{Knife, Stance};
+use crate::body::{Bodies, Body};
+use crate::dim::Dim;
+use crate::handle::{BodyId, BodySlot};
+use crate::ids::{NodeId, PieceId};
+use crate::material::Material;
+use crate::rigid::{Rigid, Rigids};
+use crate::shape::Vector;
+use crate::vector::{as_row, cross, dot, minus, plus, scaled, three};
+
+/// How often all rows are solved in a substep: samples that stand side by side push the same nodes.
+const ROUNDS: usize = 8;
+
+/// From this share of the most that can hold it on a sample goes on: below, what it moves is rounding.
+const AT_LIMIT: f32 = 0.98;
+
+/// What one sample holds.
+struct Row {
+    body: BodyId,
+    /// Nodes, and by how much each counts.
+    weights: Vec<(NodeId, f32)>,
+    /// From the position of the holder [m].
+    lever: Vector,
+    /// The most that passes forth and sideways in the substep [N s], and what did.
+    limits: [f32; 2],
+    impulse: [f32; 2],
+}
+
+impl Knife {
+    /// Gives it and what it is in the impulses of a substep of `duration` [s]. Returns the sleepers that wake.
+    pub(crate) fn solve<D: Dim>(
+        &mut self,
+        bodies: &mut Bodies<D>,
+        rigids: &mut Rigids,
+        duration: f32,
+    ) -> Vec<(BodySlot, PieceId)> {
+        (self.force, self.torque) = ([0.0; 3], [0.0; 3]);
+        let Ok(holder) = rigids.get_mut(self.holder) else {
+            return Vec::new();
+        };
+        let stance = self.stance::<D>(holder);
+        let mut woken = Vec::new();
+        let mut rows = Vec::new();
+        for place in 0..self.samples.len() {
+            let Some((id, _)) = self.samples[place].inside else {
+                continue;
+            };
+            let row = self.row(&stance, place, &bodies[id], duration);
+            let piece = bodies[id].truth.pieces.of_node(row.weights[0].0);
+            if bodies[id].truth.pieces.list[piece].asleep && holder.pushes() {
+                woken.push((id.slot(), piece));
+            }
+            rows.push((place, row));
+        }
+        let ways = [stance.toward, stance.across];
+        for _ in 0..ROUNDS {
+            for (_, row) in &mut rows {
+                let body = bodies.get_mut(row.body).expect("it was there just now");
+                solve_row(row, body, holder, ways, duration);
+            }
+        }
+        for (place, row) in &rows {
+            let is_at = |way: usize| row.impulse[way].abs() >= AT_LIMIT * row.limits[way];
+            let sample = &mut self.samples[*place];
+            sample.slid |= is_at(0) || is_at(1);
+            sample.cut |= is_at(0) && row.limits[0] > 0.0;
+            let given = plus(
+                scaled(ways[0], row.impulse[0]),
+                scaled(ways[1], row.impulse[1]),
+            );
+            let force = scaled(given, -1.0 / duration);
+            self.force = plus(self.force, force);
+            self.torque = plus(self.torque, cross(row.lever, force));
+            let slip = slip(row, &bodies[row.body], holder);
+            let work = |way: usize| row.impulse[way] * dot(slip, ways[way]);
+            self.work += f64::from((work(0) + work(1)).max(0.0));
+        }
+        holder.twist(self.torque);
+        woken
+    }
+
+    /// The pieces that it is in: they stay awake while something moves it.
+    pub(crate) fn held<D: Dim>(&self, bodies: &Bodies<D>) -> Vec<(BodySlot, PieceId)> {
+        let inside = self.samples.iter().filter_map(|sample| sample.inside);
+        let pieces = inside.filter_map(|(id, spot)| {
+            let body = bodies.get(id).ok()?;
+            let owner = body.truth.mesh.owner(spot.voxel)?;
+            Some((id.slot(), body.truth.pieces.of_element(owner)))
+        });
+        let mut pieces: Vec<(BodySlot, PieceId)> = pieces.collect();
+        pieces.sort_unstable();
+        pieces.dedup();
+        pieces
+    }
+
+    /// The row of a sample that is in a body.
+    fn row<D: Dim>(&self, stance: &Stance, place: usize, body: &Body<D>, duration: f32) -> Row {
+        let (id, spot) = self.samples[place].inside.expect("it is in a body");
+        let mesh = &body.truth.mesh;
+        let owner = mesh.owner(spot.voxel).expect("a place is in a solid voxel");
+        let element = mesh.element(owner).expect("owners are alive");
+        let material = body.material(element);
+        let size = body.truth.grid.voxel_size();
+        // The same directions in the body at rest.
+        let (along, toward) = {
+            let at = body.carry(element)(spot.at);
+            let rest = |way: Vector| {
+                let end = spot.extend(body, plus(at, scaled(way, size)));
+                end.map_or(way, |end| minus(end, spot.at))
+            };
+            let along = match D::N {
+                2 => stance.along,
+                _ => rest(stance.along),
+            };
+            (along, rest(stance.toward))
+        };
+        let forth = match spot.is_whole_ahead(body, along, toward) {
+            true => self.force_of_a_cut(material),
+            false => 0.0,
+        };
+        let share = self.share::<D>(stance, place) * duration;
+        Row {
+            body: id,
+            weights: body.weights(element, spot.at),
+            lever: self.lever(stance, place),
+            limits: [share * forth, share * material.strength * self.height],
+            impulse: [0.0; 2],
+        }
+    }
+
+    /// The force on a metre of edge that it takes to cut a material [N/m].
+    fn force_of_a_cut(&self, material: &Material) -> f32 {
+        let dull = match self.radius > 0.0 {
+            true => 2.0 * self.radius * material.strength,
+            false => 0.0,
+        };
+        material.fracture_energy() + dull
+    }
+}
+
+/// How much faster than the tissue the edge is [m/s].
+fn slip<D: Dim>(row: &Row, body: &Body<D>, holder: &Rigid) -> Vector {
+    let velocity = |&(node, weight): &(NodeId, f32)| scaled(body.state.velocity[node], weight);
+    let tissue = row.weights.iter().map(velocity).fold([0.0; 4], plus);
+    minus(holder.velocity_at(row.lever), three(tissue))
+}
+
+/// Takes away what slip the row can.
+fn solve_row<D: Dim>(
+    row: &mut Row,
+    body: &mut Body<D>,
+    holder: &mut Rigid,
+    ways: [Vector; 2],
+    duration: f32,
+) {
+    let squares = row
+        .weights
+        .iter()
+        .map(|&(node, weight)| weight * weight * body.state.inverse_mass[node]);
+    let gain: f32 = squares.sum();
+    for (way, direction) in ways.into_iter().enumerate() {
+        let yields = gain + holder.yields(row.lever, direction);
+        if yields <= 0.0 {
+            continue;
+        }
+        let speed = dot(slip(row, body, holder), direction);
+        let least = if way == 0 { 0.0 } else { -row.limits[way] };
+        let wanted = (row.impulse[way] + speed / yields).clamp(least, row.limits[way]);
+        let change = wanted - row.impulse[way];
+        if !change.is_finite() {
+            continue;
+        }
+        row.impulse[way] = wanted;
+        let push = scaled(direction, change);
+        for &(node, weight) in &row.weights {
+            let gain = scaled(as_row(push), weight * body.state.inverse_mass[node]);
+            body.state.velocity[node] = plus(body.state.velocity[node], gain);
+        }
+        holder.push_at(scaled(push, -1.0), row.lever, duration);
+    }
+}

@@ -1,0 +1,342 @@
+//! Knives: what they cut, and what that takes.
+
+use fuwafuwa::{
+    Body, BodyId, Dim, Dim2, Dim3, Drive, Event, Knife, KnifeId, Material, Rigid, RigidId,
+    Rotation, Settings, Vector, VoxelGrid, World,
+};
+
+const NO_GRAVITY: Settings = Settings {
+    gravity: [0.0; 3],
+    drag: 0.0,
+    most_substeps: 64,
+};
+const DOWN: Vector = [0.0, -1.0, 0.0];
+
+/// A block with its middle over the origin, held at its bottom. The edge lies along the third axis.
+fn block<D: Dim>(world: &mut World<D>, size: [usize; 3], voxel: f32, material: Material) -> BodyId {
+    let grid = VoxelGrid::from_fn(size, voxel, |_| 1).unwrap();
+    let [x, _, z] = size.map(|k| k as f32 * voxel);
+    let depth = if D::N == 3 { -0.5 * z } else { 0.0 };
+    let body = Body::new(grid, &[material]).unwrap();
+    let mut body = body.moved([-0.5 * x, 0.0, depth]);
+    let bottom: Vec<_> = body
+        .mesh()
+        .nodes()
+        .filter(|(_, node)| node.at[1] == 0)
+        .collect();
+    bottom.iter().for_each(|&(id, _)| body.hold(id));
+    world.add_body(body)
+}
+
+/// A hand that does as it is told, and a knife in it.
+fn knife<D: Dim>(world: &mut World<D>, at: Vector, half: f32, radius: f32) -> (RigidId, KnifeId) {
+    let mut holder = Rigid::hand(at, 0.01).with_drive(Drive::Kinematic);
+    holder.is_sensor = true;
+    let holder = world.add_rigid(holder).unwrap();
+    let edge = [[0.0, 0.0, -half], [0.0, 0.0, half]];
+    let mut knife = Knife::new(holder, edge, DOWN);
+    knife.radius = radius;
+    (holder, world.add_knife(knife).unwrap())
+}
+
+/// Lets it go to a place at a speed [m/s]; what is done with each tick.
+fn go<D: Dim>(
+    world: &mut World<D>,
+    holder: RigidId,
+    to: Vector,
+    speed: f32,
+    mut each: impl FnMut(&World<D>),
+) {
+    let from = world.rigids()[holder].position();
+    let way: Vec<f32> = (0..3).map(|k| to[k] - from[k]).collect();
+    let long = way.iter().map(|k| k * k).sum::<f32>().sqrt();
+    let ticks = (60.0 * long / speed).ceil() as usize;
+    for tick in 1..=ticks {
+        let share = tick as f32 / ticks as f32;
+        let goal = [0, 1, 2].map(|k: usize| from[k] + share * way[k]);
+        world.set_goal(holder, goal).unwrap();
+        world.step();
+        each(world);
+    }
+}
+
+/// Area [m²] and work [J] of the cuts of the last tick.
+fn cut<D: Dim>(world: &World<D>) -> [f32; 2] {
+    let cuts = world.events().iter().map(|event| match event {
+        Event::Cut { area, work, .. } => [*area, *work],
+        _ => [0.0; 2],
+    });
+    cuts.fold([0.0; 2], |sum, cut| [sum[0] + cut[0], sum[1] + cut[1]])
+}
+
+fn validated<D: Dim>(world: &World<D>, body: BodyId) {
+    let body = &world.bodies()[body];
+    body.mesh().validate(body.grid(), body.sharing()).unwrap();
+}
+
+/// The middle force upwards [N] while a knife goes from above into a slab, and what it cut.
+fn force_in_slab<D: Dim>(
+    size: [usize; 3],
+    voxel: f32,
+    radius: f32,
+    turned: f32,
+) -> (f32, [f32; 2]) {
+    let mut world = World::<D>::new(NO_GRAVITY).unwrap();
+    let body = block(&mut world, size, voxel, Material::default());
+    let top = size[1] as f32 * voxel;
+    // Not in a plane of the lattice.
+    let (holder, id) = knife(&mut world, [0.13 * voxel, top + 0.01, 0.0], 0.2, radius);
+    let turned = Rotation::about([0.0, 1.0, 0.0], turned);
+    world.set_goal_rotation(holder, turned).unwrap();
+    world.step();
+    let (mut forces, mut sums) = (Vec::new(), [0.0; 2]);
+    go(
+        &mut world,
+        holder,
+        [0.13 * voxel, 0.3 * top, 0.0],
+        0.1,
+        |world| {
+            let at = world.rigids()[holder].position()[1];
+            if at < 0.8 * top {
+                forces.push(world.knives().get(id).unwrap().force()[1]);
+                let torque = world.knives().get(id).unwrap().torque();
+                assert!(torque.iter().all(|k| k.is_finite()));
+            }
+            let [area, work] = cut(world);
+            sums = [sums[0] + area, sums[1] + work];
+        },
+    );
+    validated(&world, body);
+    forces.sort_by(f32::total_cmp);
+    (forces.iter().sum::<f32>() / forces.len() as f32, sums)
+}
+
+#[test]
+fn a_knife_in_a_slab_feels_toughness_times_thickness() {
+    let material = Material::default();
+    let energy = (material.toughness * material.toughness) as f64 / material.elasticity.young;
+    for (radius, turned) in [(0.0, 0.0), (0.002, 0.0), (0.0, 0.4)] {
+        let asked = energy as f32 + 2.0 * radius * material.strength;
+        let (voxel, thick) = (0.02, 8);
+        let (force, [area, work]) = force_in_slab::<Dim3>([24, 16, thick], voxel, radius, turned);
+        let length = thick as f32 * voxel / libm::cosf(turned);
+        let expected = asked * length;
+        assert!(
+            (force / expected - 1.0).abs() < 0.15,
+            "{force} N of {expected}"
+        );
+        assert!(
+            (work / (asked * area) - 1.0).abs() < 0.15,
+            "{work} J for {area} m²"
+        );
+        let deep = 0.7 * 16.0 * voxel;
+        assert!((area / (deep * length) - 1.0).abs() < 0.1, "{area} m²");
+    }
+    let (force, _) = force_in_slab::<Dim2>([24, 16, 1], 0.02, 0.0, 0.0);
+    assert!(
+        (force / energy as f32 - 1.0).abs() < 0.15,
+        "{force} N of {energy}"
+    );
+}
+
+/// How deep a knife presses before anything is cut [m].
+fn pressed_before<D: Dim>(size: [usize; 3], radius: f32) -> f32 {
+    let voxel = 0.02;
+    let mut world = World::<D>::new(NO_GRAVITY).unwrap();
+    block(&mut world, size, voxel, Material::default());
+    let top = size[1] as f32 * voxel;
+    let (holder, _) = knife(&mut world, [0.13 * voxel, top + 0.005, 0.0], 0.15, radius);
+    let mut first = None;
+    go(
+        &mut world,
+        holder,
+        [0.13 * voxel, 0.5 * top, 0.0],
+        0.1,
+        |world| {
+            if first.is_none() && cut(world) != [0.0; 2] {
+                first = Some(top - world.rigids()[holder].position()[1]);
+            }
+        },
+    );
+    first.expect("it cuts at last")
+}
+
+#[test]
+fn a_dull_edge_presses_before_it_cuts() {
+    let (sharp, dull) = (
+        pressed_before::<Dim3>([16, 10, 6], 0.0),
+        pressed_before::<Dim3>([16, 10, 6], 0.02),
+    );
+    assert!(sharp < 0.03 && dull > 2.0 * sharp, "{sharp} m and {dull} m");
+    let (sharp, dull) = (
+        pressed_before::<Dim2>([16, 10, 1], 0.0),
+        pressed_before::<Dim2>([16, 10, 1], 0.02),
+    );
+    assert!(sharp < 0.03 && dull > 2.0 * sharp, "{sharp} m and {dull} m");
+}
+
+fn goes_through<D: Dim>(size: [usize; 3], slant: f32) {
+    let voxel = 0.02;
+    let mut world = World::<D>::new(NO_GRAVITY).unwrap();
+    let body = block(&mut world, size, voxel, Material::default());
+    let top = size[1] as f32 * voxel;
+    let start = [0.13 * voxel - 0.5 * slant, top + 0.02, 0.0];
+    let (holder, id) = knife(&mut world, start, 0.15, 0.0);
+    let (mut area, mut most) = (0.0, 0.0f32);
+    let end = [start[0] + slant, -0.02, 0.0];
+    // It cuts the way it goes.
+    let turned = Rotation::in_plane(libm::atanf(slant / (top + 0.04)));
+    world.set_goal_rotation(holder, turned).unwrap();
+    go(&mut world, holder, end, 0.5, |world| area += cut(world)[0]);
+    validated(&world, body);
+    let large = |world: &World<D>| {
+        let pieces = world.bodies()[body].piece_views();
+        let total: f32 = pieces.iter().map(|piece| piece.mass).sum();
+        pieces
+            .iter()
+            .filter(|piece| piece.mass > 0.2 * total)
+            .count()
+    };
+    assert_eq!(large(&world), 2);
+    let depth = if D::N == 3 {
+        size[2] as f32 * voxel
+    } else {
+        1.0
+    };
+    let long = (slant * slant + (top + 0.04) * (top + 0.04)).sqrt() * top / (top + 0.04);
+    assert!(
+        (area / (long * depth) - 1.0).abs() < 0.1,
+        "{area} m² of {}",
+        long * depth
+    );
+    // Back the same way, and once more: there is nothing to cut.
+    let mut again = 0.0;
+    go(&mut world, holder, start, 0.5, |world| {
+        again += cut(world)[0]
+    });
+    go(&mut world, holder, end, 0.5, |world| {
+        again += cut(world)[0];
+        most = most.max(world.knives().get(id).unwrap().force()[1]);
+    });
+    assert!(again < 0.1 * area, "{again} m² again");
+    assert!(most < 4.0 * depth, "{most} N again");
+}
+
+#[test]
+fn what_was_cut_is_in_two_and_is_cut_once() {
+    goes_through::<Dim3>([20, 12, 8], 0.0);
+    goes_through::<Dim3>([20, 12, 8], 0.1);
+    goes_through::<Dim2>([20, 12, 1], 0.0);
+    goes_through::<Dim2>([20, 12, 1], 0.1);
+}
+
+#[test]
+fn a_knife_on_a_spring_cuts_once_its_pull_is_enough() {
+    // 8 N/m over 0.16 m: 1.28 N.
+    for (pull, cuts) in [(0.8, false), (2.0, true)] {
+        let mut world = World::<Dim3>::new(NO_GRAVITY).unwrap();
+        let body = block(&mut world, [16, 12, 8], 0.02, Material::default());
+        let drive = Drive::Coupled {
+            mass: 0.2,
+            stiffness: 300.0,
+            damping: 1.0,
+            limit: pull,
+        };
+        let mut holder = Rigid::hand([0.003, 0.25, 0.0], 0.01).with_drive(drive);
+        holder.is_sensor = true;
+        let holder = world.add_rigid(holder).unwrap();
+        let edge = [[0.0, 0.0, -0.1], [0.0, 0.0, 0.1]];
+        world.add_knife(Knife::new(holder, edge, DOWN)).unwrap();
+        let mut area = 0.0;
+        for tick in 0..240 {
+            let deep = 0.1f32.max(0.25 - 0.001 * tick as f32);
+            world.set_goal(holder, [0.003, deep, 0.0]).unwrap();
+            world.step();
+            area += cut(&world)[0];
+        }
+        validated(&world, body);
+        let at = world.rigids()[holder].position()[1];
+        assert_eq!(area > 0.01, cuts, "{area} m² with {pull} N, at {at} m");
+        assert_eq!(at < 0.12, cuts, "at {at} m with {pull} N");
+    }
+}
+
+#[test]
+fn the_flat_of_a_blade_pushes_sideways() {
+    let mut world = World::<Dim3>::new(NO_GRAVITY).unwrap();
+    let body = block(&mut world, [16, 12, 8], 0.02, Material::default());
+    let (holder, id) = knife(&mut world, [0.003, 0.26, 0.0], 0.1, 0.0);
+    go(&mut world, holder, [0.003, 0.12, 0.0], 0.2, |_| {});
+    let before = world.bodies()[body].centre_of_mass()[0];
+    go(&mut world, holder, [0.013, 0.12, 0.0], 0.05, |_| {});
+    let force = world.knives().get(id).unwrap().force()[0];
+    let moved = world.bodies()[body].centre_of_mass()[0] - before;
+    assert!(force < -0.5, "{force} N");
+    assert!(moved > 0.001, "{moved} m");
+}
+
+#[test]
+fn what_cannot_be_torn_cannot_be_cut_and_a_sleeper_wakes() {
+    let mut world = World::<Dim3>::new(NO_GRAVITY).unwrap();
+    let rubber = Material {
+        strength: f32::INFINITY,
+        toughness: f32::INFINITY,
+        ..Material::default()
+    };
+    let body = block(&mut world, [12, 10, 6], 0.02, rubber);
+    world.put_to_sleep(body).unwrap();
+    let (holder, _) = knife(&mut world, [0.003, 0.22, 0.0], 0.1, 0.0);
+    go(&mut world, holder, [0.003, 0.17, 0.0], 0.2, |world| {
+        assert_eq!(cut(world), [0.0; 2])
+    });
+    assert_eq!(world.bodies()[body].piece_views().len(), 1);
+    let top = |world: &World<Dim3>| {
+        let body = &world.bodies()[body];
+        let nodes = body.mesh().nodes().map(|(id, _)| body.node_state(id).0[1]);
+        nodes.fold(0.0, f32::max)
+    };
+    assert!(!world.bodies()[body].piece_views()[0].asleep);
+    assert!(top(&world) < 0.205, "it went in as a whole");
+}
+
+#[test]
+fn bad_knives_are_refused_by_field() {
+    let mut world = World::<Dim3>::new(NO_GRAVITY).unwrap();
+    let (holder, id) = knife(&mut world, [0.0; 3], 0.1, 0.0);
+    let good = world.knives().get(id).unwrap().clone();
+    let wall = Rigid::hand([0.0; 3], 0.1).with_drive(Drive::Fixed);
+    let wall = world.add_rigid(wall).unwrap();
+    let change = |change: &dyn Fn(&mut Knife)| {
+        let mut knife = good.clone();
+        change(&mut knife);
+        knife
+    };
+    let bad = [
+        (change(&|knife| knife.edge = [[0.0; 3]; 2]), "edge"),
+        (change(&|knife| knife.edge[0][1] = f32::NAN), "edge"),
+        (change(&|knife| knife.toward = [0.0; 3]), "toward"),
+        (
+            change(&|knife| knife.toward = [0.0, f32::NAN, 0.0]),
+            "toward",
+        ),
+        (change(&|knife| knife.toward = [0.0, 0.0, 1.0]), "toward"),
+        (change(&|knife| knife.radius = -1.0), "radius"),
+        (change(&|knife| knife.height = f32::INFINITY), "height"),
+        (change(&|knife| knife.holder = wall), "holder"),
+    ];
+    for (knife, word) in bad {
+        let refused = world.add_knife(knife).unwrap_err().to_string();
+        assert!(refused.contains(word), "{refused}");
+    }
+    world.remove_rigid(holder).unwrap();
+    world.step();
+    assert!(
+        world
+            .add_knife(good)
+            .unwrap_err()
+            .to_string()
+            .contains("rigid")
+    );
+    world.remove_knife(id).unwrap();
+    assert!(world.remove_knife(id).is_err());
+}
