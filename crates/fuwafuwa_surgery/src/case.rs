@@ -12,7 +12,7 @@ const AFLOAT: f32 = 0.04;
 /// Share of its speed that everything loses to the saline in a second [1/s].
 const DRAG: f32 = 2.0;
 /// Of its height so much lies in a mould that holds it.
-const HELD: f32 = 0.1;
+const HELD: f32 = 0.25;
 /// Up to so many voxels along its longest side an organ has the first number of substeps, beyond the second: what is fine
 /// would take too long otherwise.
 const FINE: usize = 40;

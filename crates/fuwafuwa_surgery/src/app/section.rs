@@ -14,6 +14,9 @@ const PALE: Color32 = Color32::from_rgb(226, 222, 214);
 const SKIN: Color32 = Color32::from_rgb(250, 240, 226);
 const CRACK: Color32 = Color32::from_rgb(255, 70, 60);
 
+/// Around what is seen, for what is written [points].
+const ROOM: egui::Vec2 = vec2(26.0, 28.0);
+
 /// What colours tell.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub enum Shown {
@@ -172,7 +175,7 @@ impl Page {
     fn new(rect: Rect, cut: Cut, [low, high]: [Vector; 2]) -> Self {
         let [a, b] = [cut.on_page(low), cut.on_page(high)];
         let size = [0, 1].map(|k: usize| (b[k] - a[k]).abs());
-        let room = rect.shrink(14.0);
+        let room = rect.shrink2(ROOM);
         Self {
             rect,
             cut,
