@@ -2,7 +2,7 @@
 
 mod exhibit;
 mod report;
-mod window;
+pub mod window;
 
 use crate::game::Game;
 use crate::headless;
@@ -13,7 +13,7 @@ use std::io::Write;
 use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
-use window::{Opened, has_display, open};
+use window::{Opened, has_display, open_game};
 
 /// Push a soft body into a basket that is too small for it.
 #[derive(Parser)]
@@ -114,7 +114,7 @@ pub fn main() -> ExitCode {
     if !has_display() {
         return play_instead("there is no display here", &options);
     }
-    let opened = open(egui::ViewportBuilder::default(), move || {
+    let opened = open_game(egui::ViewportBuilder::default(), move || {
         let sound = if mute { Sound::none() } else { Sound::open() };
         let mut game = Game::new(Files::usual(), sound, Pads::open());
         if let Some(file) = &shown {

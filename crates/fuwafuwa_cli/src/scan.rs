@@ -3,7 +3,7 @@
 use crate::report::{self, Progress};
 use crate::run::{check_folder, write};
 use anyhow::{Context, Result};
-use fuwafuwa_scan::{MAX_FILE_BYTES, Options, Organ, Scan, Segmentation, Source};
+use fuwafuwa_scan::{Label, MAX_FILE_BYTES, Options, Organ, Scan, Segmentation, Source, Threshold};
 use fuwafuwa_scenes::disk::bytes_of;
 use fuwafuwa_scenes::import::Model;
 use serde::Serialize;
@@ -34,11 +34,11 @@ pub struct Arguments {
     #[arg(long, default_value_t = 64)]
     resolution: usize,
     /// Intensities of a material, as in 40:120=1 or, without an end, 120:=2; may be repeated, the first counts.
-    #[arg(long = "threshold", value_parser = threshold, conflicts_with = "labels")]
+    #[arg(long = "threshold", conflicts_with = "labels")]
     thresholds: Vec<Threshold>,
     /// A label and its material, as in 17=1; may be repeated.
-    #[arg(long = "label", value_parser = label)]
-    labels: Vec<(i32, u8)>,
+    #[arg(long = "label")]
+    labels: Vec<Label>,
     /// Fill what is enclosed.
     #[arg(long)]
     fill: bool,
@@ -48,14 +48,6 @@ pub struct Arguments {
     /// Print JSON instead of a table.
     #[arg(long)]
     json: bool,
-}
-
-/// Intensities and the material that they mean.
-#[derive(Clone, Debug, PartialEq)]
-struct Threshold {
-    low: f32,
-    high: f32,
-    material: u8,
 }
 
 /// What came of scans.
@@ -109,7 +101,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         fills_holes: arguments.fill,
     };
     let all: Vec<&Scan> = scans.iter().collect();
-    let organ = Organ::of(&all, &segmentation(arguments), &options, follow(&progress))?;
+    let segmentation = Segmentation::chosen(&arguments.thresholds, &arguments.labels);
+    let organ = Organ::of(&all, &segmentation, &options, follow(&progress))?;
     drop(progress);
     let summary = summary(arguments, &scans, &organ);
     if arguments.json {
@@ -136,17 +129,6 @@ fn follow(progress: &Progress) -> impl FnMut(f32) {
             shown += 1;
         }
         progress.look();
-    }
-}
-
-fn segmentation(arguments: &Arguments) -> Segmentation {
-    match (&arguments.thresholds[..], &arguments.labels[..]) {
-        ([], []) => Segmentation::Maps,
-        ([], labels) => Segmentation::labels(labels),
-        (thresholds, _) => {
-            let ranges = thresholds.iter().map(|k| (k.low..=k.high, k.material));
-            Segmentation::Thresholds(ranges.collect())
-        }
     }
 }
 
@@ -275,32 +257,6 @@ fn scene(model: &str, summary: &Summary) -> String {
     )
 }
 
-fn threshold(word: &str) -> Result<Threshold, String> {
-    let read = || {
-        let (range, material) = word.split_once('=')?;
-        let (low, high) = range.split_once(':')?;
-        let end = |text: &str, open| match text.trim() {
-            "" => Some(open),
-            text => text.parse().ok().filter(|k: &f32| !k.is_nan()),
-        };
-        let threshold = Threshold {
-            low: end(low, f32::NEG_INFINITY)?,
-            high: end(high, f32::INFINITY)?,
-            material: material.trim().parse().ok()?,
-        };
-        (threshold.low <= threshold.high).then_some(threshold)
-    };
-    read().ok_or_else(|| "expected intensities and a material, as in 40:120=1 or 120:=2".into())
-}
-
-fn label(word: &str) -> Result<(i32, u8), String> {
-    let read = || {
-        let (label, material) = word.split_once('=')?;
-        Some((label.trim().parse().ok()?, material.trim().parse().ok()?))
-    };
-    read().ok_or_else(|| "expected a label and a material, as in 17=1".into())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -340,7 +296,7 @@ mod tests {
             files: vec![file],
             resolution: 11,
             thresholds: Vec::new(),
-            labels: vec![(1, 2)],
+            labels: vec!["1=2".parse().unwrap()],
             fill: false,
             out: Some(out.clone()),
             json: false,
@@ -353,21 +309,5 @@ mod tests {
         assert_eq!(grid.solid_count(), 729);
         assert_eq!(grid.material([5; 3]), 2);
         assert!((grid.voxel_size() - 0.002).abs() < 1e-6);
-    }
-
-    #[test]
-    fn intensities_may_have_no_end_and_labels_may_be_negative() {
-        let good = threshold("-40:120.5=1").unwrap();
-        assert_eq!((good.low, good.high, good.material), (-40.0, 120.5, 1));
-        let open = threshold("120:=2").unwrap();
-        assert_eq!(
-            (open.low, open.high, open.material),
-            (120.0, f32::INFINITY, 2)
-        );
-        for word in ["", "1=1", "5:4=1", "nan:=1", "1:2", "1:2=256", "1:2=-1"] {
-            assert!(threshold(word).is_err(), "{word}");
-        }
-        assert_eq!(label("-3=7"), Ok((-3, 7)));
-        assert!(label("3").is_err());
     }
 }

@@ -1,6 +1,6 @@
 //! How to look at a world, as plain data.
 
-use crate::palette::Palette;
+use crate::palette::{Colour, Palette};
 use crate::plane::flat;
 use fuwafuwa::{Dim3, PieceId, Shape, Vector, World};
 use glam::Vec2;
@@ -22,6 +22,8 @@ pub struct Frame<'a, C = Camera> {
     pub stickers: &'a [Sticker],
     /// A world whose bodies and hands are seen through, in space.
     pub ghost: Option<&'a World<Dim3>>,
+    /// What is seen beside a world in space and is not in it, such as the handle of what a hand holds; as hands are.
+    pub props: &'a [Prop],
     /// A clock for slow motion that means nothing, like the march of dashes [s].
     pub seconds: f64,
 }
@@ -45,9 +47,19 @@ impl<'a, C> Frame<'a, C> {
             particles: &[],
             stickers: &[],
             ghost: None,
+            props: &[],
             seconds: 0.0,
         }
     }
+}
+
+/// A shape that ends somewhere, in its own colour.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Prop {
+    /// Where it is.
+    pub shape: Shape,
+    /// Its colour.
+    pub colour: Colour,
 }
 
 /// Where the camera is. What it looks at fills the target, whatever that measures.

@@ -39,7 +39,7 @@ mod stairs;
 
 pub use ages::Ages;
 pub use anchor::{Anchor, anchor, anchor_at};
-pub use frame::{Basket, Camera, Frame, Look, Mark, Particle, Sticker};
+pub use frame::{Basket, Camera, Frame, Look, Mark, Particle, Prop, Sticker};
 pub use geometry::Geometry;
 #[cfg(feature = "gpu")]
 pub use gpu::Renderer;

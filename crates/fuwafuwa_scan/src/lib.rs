@@ -49,6 +49,7 @@
 #![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [mm]
 #![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
 
+mod choice;
 mod complaint;
 mod header;
 mod organ;
@@ -58,6 +59,7 @@ mod scan;
 mod segmentation;
 mod stream;
 
+pub use choice::{Label, Threshold};
 pub use header::MAX_VOXELS;
 pub use organ::{Options, Organ, OrganError, RESOLUTIONS};
 pub use placement::{Placement, SPACINGS, Source};

@@ -11,6 +11,7 @@ use fuwafuwa_scan::{Options, Organ, Scan, Segmentation};
 use fuwafuwa_scenes::import::{Colours, Model, Picture};
 use fuwafuwa_scenes::scene::BodyText;
 use fuwafuwa_scenes::{Recording, Scene};
+use fuwafuwa_surgery::record::Recording as Procedure;
 use std::io;
 use std::sync::Arc;
 use tamaire_play::{AnyRound, InputFrame, Level, Link, LinkError, Playback, Replay};
@@ -135,6 +136,27 @@ pub fn recording(bytes: &[u8]) -> bool {
         2 => play::<Dim2>(&recording.scene) && recording.replay::<Dim2>(|_| {}).is_ok(),
         _ => play::<Dim3>(&recording.scene) && recording.replay::<Dim3>(|_| {}).is_ok(),
     }
+}
+
+/// The bytes are what is deflated in a recording of a procedure: no noise would ever find its checksum.
+pub fn procedure(bytes: &[u8]) -> bool {
+    let Ok(recording) = Procedure::read_inside(bytes) else {
+        return false;
+    };
+    let again = Procedure::read(&recording.bytes()).expect("what was read can be written and read");
+    // A number that is none is not like itself.
+    assert_eq!(again.inside(), recording.inside());
+    if recording.case.grid.voxels().count() > FEW_VOXELS {
+        return false;
+    }
+    let Ok(mut playback) = fuwafuwa_surgery::record::Playback::new(Arc::new(recording)) else {
+        return false;
+    };
+    let is_as_it_was = playback.step().is_ok();
+    let organ = playback.procedure().organ();
+    let checked = organ.mesh().validate(organ.grid(), organ.sharing());
+    checked.expect("a tick keeps every mesh consistent");
+    is_as_it_was
 }
 
 /// The bytes are the dimension and what follows the header: a checksum keeps out accidents, not strangers.

@@ -68,6 +68,11 @@ pub const DOORS: &[Door] = &[
         enter: doors::recording,
     },
     Door {
+        name: "procedure",
+        seeds: seeds::procedures,
+        enter: doors::procedure,
+    },
+    Door {
         name: "snapshot",
         seeds: seeds::snapshots,
         enter: doors::snapshot,

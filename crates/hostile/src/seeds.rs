@@ -9,6 +9,9 @@ use fuwafuwa::{
     VoxelGrid, World, snapshot,
 };
 use fuwafuwa_scenes::{Recording, Scene, scene};
+use fuwafuwa_surgery::phantom;
+use fuwafuwa_surgery::procedure::{Input, Procedure};
+use fuwafuwa_surgery::tools::Tool;
 use png::{BitDepth, ColorType};
 use std::io::Write;
 use std::sync::Arc;
@@ -122,6 +125,23 @@ pub fn recordings() -> Vec<Vec<u8>> {
     texts
         .map(|text| text.expect("it is short").into_bytes())
         .collect()
+}
+
+pub fn procedures() -> Vec<Vec<u8>> {
+    let case = Arc::new(phantom::case(8).expect("the engine takes it"));
+    let inside = |tool: Tool| {
+        let mut procedure = Procedure::new(case.clone()).expect("it can be laid on a table");
+        for tick in 0..3 {
+            let at = [0.0, 0.06 - 0.01 * tick as f32, 0.0];
+            let input = Input {
+                grips: tick > 1,
+                ..Input::default().at(tool, at, Rotation::about([0.0, 1.0, 0.0], 0.1))
+            };
+            procedure.step(input).expect("it is within the room");
+        }
+        fuwafuwa_surgery::record::Recording::of(&procedure).inside()
+    };
+    Tool::ALL.map(inside).to_vec()
 }
 
 pub fn snapshots() -> Vec<Vec<u8>> {

@@ -1,6 +1,6 @@
 //! The way in for a stand in public: a parent that keeps it running, and the game itself.
 
-use super::window::{Opened, has_display, open};
+use super::window::{Opened, has_display, open_game};
 use crate::exhibit::Stand;
 use crate::exhibit::config::{Config, USUAL};
 use crate::game::{Game, Public, Screen};
@@ -101,7 +101,7 @@ fn show(make: impl FnOnce() -> (Game, Box<dyn Attendant>) + 'static) -> ExitCode
         eprintln!("tamaire: {error}");
     }
     let viewport = ViewportBuilder::default().with_fullscreen(true);
-    let opened = open(viewport, move || {
+    let opened = open_game(viewport, move || {
         let (game, attendant) = make();
         let pulse = Pulse::begin();
         let watched = Watched { attendant, pulse };

@@ -1,6 +1,6 @@
 //! The window of a program, and what becomes of it.
 
-use crate::app::App;
+use crate::app::{App, NoGpu};
 use crate::game::Game;
 use crate::platform::{GpuWatch, in_small_blocks};
 use crate::screens::Attendant;
@@ -17,7 +17,7 @@ const LEAST_LIFE: Duration = Duration::from_secs(10);
 const APP: &str = "tamaire";
 
 /// What became of a window.
-pub(super) enum Opened {
+pub enum Opened {
     /// It was closed.
     Closed,
     /// What it was drawn with was lost. No window system lets go of a window that broke down: the program has to begin anew.
@@ -30,16 +30,41 @@ pub(super) enum Opened {
     Never(String),
 }
 
+/// What a window shows, and an eye on what it is drawn with; or why there is nothing.
+pub type Made = Result<(Box<dyn eframe::App>, GpuWatch), NoGpu>;
+
 /// Opens a window for a game and what leads it, if anything; returns when it is closed.
-pub(super) fn open(
+pub(super) fn open_game(
     viewport: egui::ViewportBuilder,
     make: impl FnOnce() -> (Game, Option<Box<dyn Attendant>>) + 'static,
+) -> Opened {
+    open(
+        APP,
+        viewport
+            .with_title("玉入れ tamaire")
+            .with_app_id(APP)
+            .with_icon(icon()),
+        |context| {
+            let (game, attendant) = make();
+            let mut app = App::new(context, game)?;
+            app.attendant = attendant;
+            let watch = app.gpu.clone();
+            Ok((Box::new(app), watch))
+        },
+    )
+}
+
+/// Opens a window of a program; returns when it is closed.
+pub fn open(
+    name: &str,
+    viewport: egui::ViewportBuilder,
+    make: impl FnOnce(&eframe::CreationContext<'_>) -> Made + 'static,
 ) -> Opened {
     let gpu = Rc::new(RefCell::new(None::<GpuWatch>));
     let seen = gpu.clone();
     let began = Instant::now();
     // A library of the window system that is not installed makes it panic, and so does what is left of a lost GPU.
-    let closed = catch_unwind(AssertUnwindSafe(|| run_window(viewport, seen, make)));
+    let closed = catch_unwind(AssertUnwindSafe(|| run_window(name, viewport, seen, make)));
     let gpu = gpu.take();
     let is_open = gpu.is_some();
     let is_lost = gpu.is_some_and(|gpu| match closed {
@@ -58,15 +83,13 @@ pub(super) fn open(
 }
 
 fn run_window(
+    name: &str,
     viewport: egui::ViewportBuilder,
     gpu: Rc<RefCell<Option<GpuWatch>>>,
-    make: impl FnOnce() -> (Game, Option<Box<dyn Attendant>>) + 'static,
+    make: impl FnOnce(&eframe::CreationContext<'_>) -> Made + 'static,
 ) -> eframe::Result {
     let mut options = eframe::NativeOptions {
         viewport: viewport
-            .with_title("玉入れ tamaire")
-            .with_app_id(APP)
-            .with_icon(icon())
             .with_inner_size([1280.0, 800.0])
             .with_min_inner_size([640.0, 400.0]),
         ..Default::default()
@@ -74,13 +97,11 @@ fn run_window(
     let setup = options.wgpu_options.wgpu_setup;
     options.wgpu_options.wgpu_setup = in_small_blocks(setup);
     let create = move |context: &eframe::CreationContext<'_>| {
-        let (game, attendant) = make();
-        let mut app = App::new(context, game)?;
-        app.attendant = attendant;
-        gpu.replace(Some(app.gpu.clone()));
-        Ok(Box::new(app) as Box<dyn eframe::App>)
+        let (app, watch) = make(context)?;
+        gpu.replace(Some(watch));
+        Ok(app)
     };
-    eframe::run_native(APP, options, Box::new(create))
+    eframe::run_native(name, options, Box::new(create))
 }
 
 /// What stands for the game in lists of windows.
@@ -106,7 +127,7 @@ fn trouble(error: &eframe::Error) -> String {
 }
 
 /// Whether there is a screen to open a window on: only some systems tell beforehand.
-pub(super) fn has_display() -> bool {
+pub fn has_display() -> bool {
     let says_so = cfg!(all(
         unix,
         not(any(

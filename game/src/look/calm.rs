@@ -18,6 +18,7 @@ pub(super) fn frame<'a, D: Dim, C>(camera: C, round: &Round<D>, theme: &'a Theme
         particles: &[],
         stickers: &[],
         ghost: None,
+        props: &[],
         seconds: 0.0,
     }
 }

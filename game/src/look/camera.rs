@@ -21,8 +21,10 @@ const LOWEST: f32 = 0.35;
 const HIGHEST: f32 = 1.5;
 /// Of the distance from which a whole arena in space is seen from all sides it keeps this: its corners are of no interest.
 const CLOSE: f32 = 0.66;
-/// It looks so far below the middle of the arena [m]: what there is lies on the floor.
+/// It looks so far below the middle of the arena [m], in a small one by such a share of its height: what there is lies on
+/// the floor.
 const LOWER: f32 = 0.12;
+const LOWER_SHARE: f32 = 0.15;
 /// How fast it goes back to where it began [1/s].
 const HOME: f32 = 7.0;
 /// Farther away than any level is large [m].
@@ -125,9 +127,10 @@ impl CameraRig {
 
     fn space_camera(&self, arena: [Vector; 2], size: [u32; 2]) -> space::Camera {
         let fitted = space::Camera::fit(arena[0], arena[1], size);
+        let lower = LOWER.min(LOWER_SHARE * (arena[1][1] - arena[0][1]));
         let swing = self.shake * vec2(self.phase.sin(), (1.3 * self.phase).cos());
         space::Camera {
-            target: plus(fitted.target, [self.lean.x, self.lean.y - LOWER, 0.0]),
+            target: plus(fitted.target, [self.lean.x, self.lean.y - lower, 0.0]),
             distance: CLOSE * fitted.distance,
             turn: self.turn,
             rise: RISE + self.rise,
@@ -136,7 +139,8 @@ impl CameraRig {
         }
     }
 
-    fn view_of_space(&self, rect: Rect, arena: [Vector; 2]) -> View {
+    /// What it sees of an arena in space, from one corner of it to the other [m].
+    pub fn view_of_space(&self, rect: Rect, arena: [Vector; 2]) -> View {
         let camera = self.space_camera(arena, pixels(rect));
         let [x, y, _] = camera.target;
         View {

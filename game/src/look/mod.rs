@@ -11,8 +11,10 @@ mod glow;
 mod hint;
 mod maps;
 mod opening;
+mod pass;
 mod perch;
 mod showing;
+mod space_stage;
 mod stage;
 mod theme;
 
@@ -25,5 +27,6 @@ pub use feelings::Feeling;
 pub use maps::Maps;
 pub use opening::Opening;
 pub use showing::{Hint, Look};
+pub use space_stage::SpaceStage;
 pub use stage::Stage;
 pub use theme::Theme;

@@ -2,13 +2,14 @@
 
 use super::calm::{camera, face_of, frame};
 use super::feelings::Feeling;
-use super::{Face, Look, Maps, Mood, Theme, View, glow, hint};
-use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait, RenderState};
-use egui::{Color32, PaintCallbackInfo, Painter, Pos2, Rect, Stroke, Ui, vec2};
+use super::pass::{Paint, lock, pixels};
+use super::{Face, Look, Maps, Mood, SpaceStage, Theme, View, glow, hint};
+use eframe::egui_wgpu::{Callback, RenderState};
+use egui::{Color32, Painter, Pos2, Stroke, Ui};
 use fuwafuwa::vector::{length, minus};
 use fuwafuwa::{Dim, Dim2, Dim3, Vector};
 use fuwafuwa_render::{Ages, Cost, Frame, Particle, Renderer, Sticker, space};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use tamaire_play::{AnyRound, Level, Round};
 
 /// Lines of a round that was played before.
@@ -21,27 +22,12 @@ const DOWN: f32 = 0.8;
 pub struct Stage {
     state: RenderState,
     renderer: Arc<Mutex<Renderer>>,
-    /// None until the first round in space.
-    space: Option<Arc<Mutex<space::Renderer>>>,
+    space: SpaceStage,
     ages: Ages,
     /// The level of the round that `ages` follows, and how far it had come [ticks].
     followed: Option<(Arc<Level>, u64)>,
     maps: Maps,
     time: f64,
-}
-
-/// Puts the picture that a renderer made ready into egui's pass.
-struct Paint<R>(Arc<Mutex<R>>, fn(&R, &mut wgpu::RenderPass<'static>));
-
-impl<R: Send + 'static> CallbackTrait for Paint<R> {
-    fn paint(
-        &self,
-        _: PaintCallbackInfo,
-        pass: &mut wgpu::RenderPass<'static>,
-        _: &CallbackResources,
-    ) {
-        (self.1)(&lock(&self.0), pass);
-    }
 }
 
 impl Stage {
@@ -51,7 +37,7 @@ impl Stage {
         Self {
             state: state.clone(),
             renderer: Arc::new(Mutex::new(renderer)),
-            space: None,
+            space: SpaceStage::new(state),
             ages: Ages::default(),
             followed: None,
             maps: Maps::default(),
@@ -68,10 +54,8 @@ impl Stage {
     /// What was drawn of worlds since this was asked last cost the GPU.
     pub fn take_cost(&self) -> Cost {
         let plane = lock(&self.renderer).take_cost();
-        let space = self.space.as_ref().map(|space| lock(space).take_cost());
-        [plane, self.maps.take_cost()]
+        [plane, self.maps.take_cost(), self.space.take_cost()]
             .into_iter()
-            .chain(space)
             .sum()
     }
 
@@ -79,9 +63,7 @@ impl Stage {
     pub fn forget_images(&self) {
         let device = &self.state.device;
         lock(&self.renderer).forget_images(device);
-        if let Some(space) = &self.space {
-            lock(space).forget_images(device);
-        }
+        self.space.forget_images();
     }
 
     /// Draws a round.
@@ -100,7 +82,6 @@ impl Stage {
             cut: look.elements.map(|_| cut(&camera, look.left)),
             ..camera
         };
-        let size = pixels(ui, look.view.rect);
         self.follow_ages(round, look);
         let specks = particles(look);
         let stickers: Vec<Sticker> = faces(round, look).iter().map(Face::sticker).collect();
@@ -115,22 +96,8 @@ impl Stage {
             seconds: if look.still { 0.0 } else { look.time },
             ..frame(camera, round, look.theme)
         };
-        let RenderState {
-            device,
-            queue,
-            target_format,
-            ..
-        } = &self.state;
-        let new = || Arc::new(Mutex::new(space::Renderer::new(device, *target_format)));
-        let shared = self.space.get_or_insert_with(new);
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let mut renderer = lock(shared);
-        renderer.prepare(device, queue, &mut encoder, round.world(), &frame, size);
-        queue.submit([encoder.finish()]);
-        drop(renderer);
-        let paint = Paint(shared.clone(), space::Renderer::paint);
+        self.space.draw(ui, look.view.rect, round.world(), &frame);
         let painter = ui.painter();
-        painter.add(Callback::new_paint_callback(look.view.rect, paint));
         hint::draw_ring_of_space(painter, round, look);
         look.effects.confetti.draw(painter, &look.view.flat());
     }
@@ -186,11 +153,6 @@ impl Stage {
     }
 }
 
-/// A panic elsewhere left at worst an unfinished picture.
-fn lock<R>(renderer: &Mutex<R>) -> MutexGuard<'_, R> {
-    renderer.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
 /// How bodies in space are opened for whom a camera shows them: from the front, or from above where it looks down.
 fn cut(camera: &space::Camera, share: f32) -> space::Cut {
     let [x, y, z] = camera.axes()[2];
@@ -200,12 +162,6 @@ fn cut(camera: &space::Camera, share: f32) -> space::Cut {
         false => [x / long, 0.0, z / long],
     };
     space::Cut { towards, share }
-}
-
-/// How much of the screen a part of a window is [px].
-fn pixels(ui: &Ui, rect: Rect) -> [u32; 2] {
-    let size = (rect.size() * ui.ctx().pixels_per_point()).max(vec2(1.0, 1.0));
-    [size.x.round() as u32, size.y.round() as u32]
 }
 
 /// What of the bodies is shown.

@@ -25,7 +25,7 @@ mod widgets;
 pub use attendant::Attendant;
 #[cfg(not(target_family = "wasm"))]
 pub use stand::Calm;
-pub use widgets::{note_use_of_keys, take_hovered};
+pub use widgets::{Weight, button, card, choice, fitted, note_use_of_keys, take_hovered};
 
 use crate::game::{Game, Screen};
 use crate::look::Stage;

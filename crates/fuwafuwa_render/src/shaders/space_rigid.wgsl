@@ -18,9 +18,11 @@ fn room(in: RoomCorner) -> @location(0) vec4f {
     let rim = smoothstep(0.05, 0.75, away);
     var light = to_linear(mix(globals.floor_middle.rgb, globals.floor_rim.rgb, rim));
     if is_floor {
-        // Dots on a grid show how things move.
-        let grid = abs(fract(in.at.xz / 0.125) - 0.5) * 0.125;
-        let pixel = clamp(fwidth(in.at.x) + fwidth(in.at.z), 1e-5, 0.05);
+        // Dots on a grid show how things move; in worlds that one looks at closely they stand closer.
+        let unit = select(0.1, 1.0, globals.look.w > 1.0);
+        let across = in.at.xz / unit;
+        let grid = abs(fract(across / 0.125) - 0.5) * 0.125;
+        let pixel = clamp(fwidth(across.x) + fwidth(across.y), 1e-5, 0.05);
         let dots = 1.0 - smoothstep(0.006 - pixel, 0.006 + pixel, length(grid));
         light *= 1.0 - 0.22 * dots * clamp(0.008 / pixel, 0.0, 1.0);
     } else {

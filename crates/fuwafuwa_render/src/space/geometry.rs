@@ -18,8 +18,9 @@ use std::ops::Range;
 const REACH: f32 = 3.0;
 /// Radius of a crumb, in widths of its voxel: a little more than a ball of its volume has.
 const CRUMB: f32 = 0.62;
-/// Thickness of the line that hangs from a hand [m].
+/// Thickness of the line that hangs from a hand [m], at most such a share of how far away the camera is.
 const LINE: f32 = 0.004;
+const LINE_SHARE: f32 = 0.002;
 
 /// A world in space as vertices, with the buffers to make them again and again.
 #[derive(Clone, Debug, Default)]
@@ -39,6 +40,7 @@ pub struct Geometry {
     pub(crate) rounded: Vec<RoundedInstance>,
     pub(crate) bars: Range<u32>,
     pub(crate) hands: Range<u32>,
+    pub(crate) props: Range<u32>,
     pub(crate) ghost_hands: Range<u32>,
     pub(crate) crumbs: Range<u32>,
     pub(crate) dust: Range<u32>,
@@ -62,6 +64,9 @@ impl Geometry {
         self.bars = append(&mut self.rounded, bars);
         let hands = || world.hands().enumerate();
         self.hands = append(&mut self.rounded, balls(world, palette));
+        let props = frame.props.iter();
+        let props = props.filter_map(|prop| RoundedInstance::of(prop.shape, prop.colour, 0.0));
+        self.props = append(&mut self.rounded, props);
         self.renewed_ghosts.clear();
         let ghosts = frame.ghost.map_or(0, |ghost| ghost.bodies().len());
         self.ghosts.resize_with(ghosts, Skin::default);
@@ -113,7 +118,8 @@ impl Geometry {
         self.dust = append(&mut self.rounded, dust);
         let lines = hands().filter_map(|(player, (_, hand))| {
             let below = self.ground_below(hand.position())?;
-            let (from, to, radius) = (hand.position(), below, LINE);
+            let radius = LINE.min(LINE_SHARE * frame.camera.distance);
+            let (from, to) = (hand.position(), below);
             let line = Shape::Capsule { from, to, radius };
             RoundedInstance::of(line, palette.hand(player), player as f32)
         });

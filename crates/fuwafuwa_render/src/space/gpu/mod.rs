@@ -271,6 +271,12 @@ impl Renderer {
                 &self.fine,
                 self.there(&geometry.bars),
             );
+            draw_mesh(
+                &self.meter,
+                &mut pass,
+                &self.fine,
+                self.there(&geometry.props),
+            );
             pass.set_pipeline(&pipelines.crumb_shadow);
             draw_mesh(
                 &self.meter,
@@ -307,6 +313,8 @@ impl Renderer {
                 (&pipelines.crumb, &self.coarse, &geometry.crumbs),
                 (&pipelines.hidden_hand, &self.fine, &geometry.hands),
                 (&pipelines.hand, &self.fine, &geometry.hands),
+                (&pipelines.hidden_hand, &self.fine, &geometry.props),
+                (&pipelines.hand, &self.fine, &geometry.props),
             ],
         );
         pass.set_pipeline(&pipelines.sticker);

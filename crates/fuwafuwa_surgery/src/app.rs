@@ -1,0 +1,487 @@
+//! The window: the organ, slices beside it, and what is measured below.
+
+mod bar;
+mod curves;
+pub mod devices;
+pub mod hand;
+mod pictures;
+mod section;
+pub mod session;
+
+use crate::loading::{ENDING, Loaded, Loading, Wanted};
+use crate::record::Playback;
+use crate::report::NO_DEVICE;
+use crate::save;
+use crate::tools::Tool;
+use bar::Ask;
+use devices::{Devices, Press};
+use egui::{
+    Align2, CentralPanel, Color32, FontId, Frame, Key, Panel, PointerButton, Rect, Ui, Vec2, pos2,
+    vec2,
+};
+use force_feedback::Stop;
+use fuwafuwa_render::Palette;
+use fuwafuwa_scan::{Options, Segmentation};
+use hand::Wishes;
+use section::Slices;
+use session::Session;
+use std::path::PathBuf;
+use tamaire::app::NoGpu;
+use tamaire::look::{SpaceStage, Theme, View, dress};
+use tamaire::platform::{Clock, GpuWatch};
+
+/// How far the mouse turns the camera [rad/point], and keys and sticks [rad/s].
+const DRAG: f32 = 0.006;
+const LOOK: f32 = 1.2;
+/// How far the wheel moves the hand [m/point].
+const WHEEL: f32 = 0.000_03;
+/// A sentence stays for so long [s].
+const STAYS: f64 = 7.0;
+
+/// What a window is opened with.
+pub struct Setup {
+    /// What lies on the table.
+    pub wanted: Wanted,
+    /// Which material is where in scans that are dropped onto it.
+    pub segmentation: Segmentation,
+    /// How organs are made of them.
+    pub options: Options,
+    /// Where to save.
+    pub folder: PathBuf,
+}
+
+/// The window.
+pub struct App {
+    setup: Setup,
+    loading: Option<Loading>,
+    session: Option<Session>,
+    slices: Option<Slices>,
+    devices: Devices,
+    stage: SpaceStage,
+    view: Option<View>,
+    theme: Theme,
+    colours: Palette,
+    clock: Clock,
+    before: f64,
+    /// What is said, and until when.
+    said: Option<(String, f64)>,
+    gpu: GpuWatch,
+}
+
+impl App {
+    /// In a window of eframe's.
+    ///
+    /// # Errors
+    /// When the window has no GPU, not even one in software.
+    pub fn new(
+        context: &eframe::CreationContext<'_>,
+        setup: Setup,
+        devices: Devices,
+    ) -> Result<Self, NoGpu> {
+        dress(&context.egui_ctx);
+        let state = context.wgpu_render_state.as_ref().ok_or(NoGpu)?;
+        let mut app = Self {
+            loading: None,
+            session: None,
+            slices: None,
+            devices,
+            stage: SpaceStage::new(state),
+            view: None,
+            theme: Theme::of(false),
+            colours: pictures::palette(),
+            clock: Clock::of_machine(),
+            before: 0.0,
+            said: None,
+            gpu: GpuWatch::of(state),
+            setup,
+        };
+        app.open(app.setup.wanted.clone());
+        Ok(app)
+    }
+
+    /// An eye on what it is drawn with.
+    pub fn gpu(&self) -> GpuWatch {
+        self.gpu.clone()
+    }
+
+    fn say(&mut self, text: String) {
+        self.said = Some((text, self.clock.now() + STAYS));
+    }
+
+    /// Begins to open something; what lies on the table stays until it is there.
+    fn open(&mut self, wanted: Wanted) {
+        match Loading::begin(wanted) {
+            Ok(loading) => self.loading = Some(loading),
+            Err(error) => self.say(error.to_string()),
+        }
+    }
+
+    fn hear_loading(&mut self) {
+        let Some(result) = self.loading.as_ref().and_then(Loading::take) else {
+            return;
+        };
+        self.loading = None;
+        match result {
+            Ok((loaded, warning)) => {
+                self.begin(match loaded {
+                    Loaded::Procedure(procedure) => Session::new(*procedure),
+                    Loaded::Playback(playback) => Session::again(*playback),
+                });
+                if let Some(warning) = warning {
+                    self.say(warning.into());
+                }
+            }
+            Err(error) => {
+                self.say(error.to_string());
+                if self.session.is_none() {
+                    // Something has to lie there.
+                    self.open(Wanted::Phantom(self.setup.options.resolution));
+                }
+            }
+        }
+    }
+
+    fn begin(&mut self, session: Session) {
+        let [low, high] = session.seen;
+        let middle = [0, 1, 2].map(|axis: usize| 0.5 * (low[axis] + high[axis]));
+        self.slices = Some(Slices::new(middle));
+        self.session = Some(session);
+    }
+
+    /// What was dropped onto the window.
+    fn hear_files(&mut self, ctx: &egui::Context) {
+        let files = ctx.input(|input| input.raw.dropped_files.clone());
+        let files: Vec<PathBuf> = files.iter().map(|file| file.path().into()).collect();
+        if files.is_empty() {
+            return;
+        }
+        self.open(wanted(files, &self.setup));
+    }
+
+    fn take(&mut self, tool: Tool) {
+        if let Some(session) = &mut self.session {
+            let top = session.procedure().table().room[1][1];
+            session.hand.take(tool, top);
+        }
+    }
+
+    fn act(&mut self, ask: Ask) {
+        match ask {
+            Ask::Take(tool) => self.take(tool),
+            Ask::Rest => {
+                if let Some(session) = &mut self.session {
+                    session.rests = !session.rests;
+                }
+            }
+            Ask::Again => self.again(),
+            Ask::Watch => {
+                let recording = self.session.as_ref().map(Session::recording);
+                match recording.map(Playback::new) {
+                    Some(Ok(playback)) => self.begin(Session::again(playback)),
+                    Some(Err(error)) => self.say(error.to_string()),
+                    None => {}
+                }
+            }
+            Ask::TakeOver => {
+                if let Some(session) = self.session.take() {
+                    self.begin(session.take_over());
+                }
+            }
+            Ask::Save => {
+                if let Some(session) = &self.session {
+                    let saved = save::save(&self.setup.folder, session.procedure());
+                    self.say(match saved {
+                        Ok(path) => {
+                            format!("Saved {}, with .csv and .svg beside it.", path.display())
+                        }
+                        Err(error) => error,
+                    });
+                }
+            }
+        }
+    }
+
+    /// The same organ, untouched.
+    fn again(&mut self) {
+        let Some(session) = &self.session else {
+            return;
+        };
+        match crate::procedure::Procedure::new(session.procedure().case().clone()) {
+            Ok(procedure) => {
+                let mut next = Session::new(procedure);
+                next.camera = session.camera.clone();
+                self.begin(next);
+            }
+            Err(error) => self.say(error.to_string()),
+        }
+    }
+
+    /// Lets time pass for the hand and for the organ.
+    fn pass(&mut self, ctx: &egui::Context, seconds: f32) {
+        let focused = ctx.input(|input| input.focused);
+        let is_typing = ctx.egui_wants_keyboard_input();
+        let Some(session) = &mut self.session else {
+            return;
+        };
+        let (room, turn) = (session.procedure().table().room, session.camera.turn());
+        let mut wishes = Wishes::default();
+        let (presses, look) = self.devices.hear(&mut wishes, room, turn, seconds);
+        if let Some(view) = &self.view {
+            hear_mouse(ctx, view, session, &mut wishes);
+        }
+        let mut keys_look = Vec2::ZERO;
+        if !is_typing {
+            keys_look = hear_keys(ctx, &mut wishes);
+        }
+        let look = LOOK * seconds * (look + keys_look);
+        session.camera.orbit(look.x, look.y);
+        if session.is_by_hand() && !session.rests {
+            session.hand.pass(&wishes, room, turn, seconds);
+        }
+        let now = self.clock.now();
+        session.pass(&self.clock, (now - self.before).min(0.25));
+        self.before = now;
+        let tool = session.procedure().tool().position();
+        session.camera.follow(tool, session.seen, seconds, true);
+        let silence = match () {
+            () if !focused => Some(Stop::FocusLost),
+            () if session.rests => Some(Stop::Paused),
+            () if !session.is_by_hand() => Some(Stop::Idle),
+            () => None,
+        };
+        let (force, torn) = (session.last().force, session.take_torn());
+        if silence.is_none() {
+            self.devices.tear(torn);
+        }
+        self.devices.feel(force, turn, silence);
+        if let Some(verdict) = session.verdict.take_if(|_| true) {
+            session.rests = true;
+            self.say(verdict);
+        }
+        for press in presses {
+            match press {
+                Press::NextTool => self.take(self.next_tool()),
+                Press::Pause => self.act(Ask::Rest),
+                Press::CutForces => self.cut_forces(),
+            }
+        }
+    }
+
+    fn next_tool(&self) -> Tool {
+        let tool = self.session.as_ref().map(|session| session.hand.tool);
+        let place = Tool::ALL
+            .iter()
+            .position(|one| Some(*one) == tool)
+            .unwrap_or(0);
+        Tool::ALL[(place + 1) % Tool::ALL.len()]
+    }
+
+    fn cut_forces(&mut self) {
+        let is_cut = self.devices.cut_or_restore();
+        self.say(match is_cut {
+            true => "All forces are off. F12 switches them on again.".into(),
+            false => "Forces are on again.".into(),
+        });
+    }
+
+    /// Keys that mean something once.
+    fn hear_presses(&mut self, ctx: &egui::Context) {
+        let pressed = |key| ctx.input(|input| input.key_pressed(key));
+        let keys = [Key::Num1, Key::Num2, Key::Num3];
+        for (key, tool) in keys.into_iter().zip(Tool::ALL) {
+            if pressed(key) {
+                self.take(tool);
+            }
+        }
+        if pressed(Key::P) {
+            self.act(Ask::Rest);
+        }
+        if pressed(Key::R) {
+            self.again();
+        }
+        if pressed(Key::X)
+            && let Some(session) = &mut self.session
+        {
+            session.hand.turned = [0.0; 3];
+        }
+        if pressed(Key::F12) {
+            self.cut_forces();
+        }
+    }
+
+    fn show(&mut self, ui: &mut Ui) {
+        let plain = Frame::new().fill(self.theme.paper);
+        let ask = Panel::top("tools")
+            .exact_size(72.0)
+            .frame(plain.inner_margin(10.0))
+            .show(ui, |ui| {
+                bar::show(ui, &self.theme, self.session.as_mut(), self.slices.as_mut())
+            })
+            .inner;
+        Panel::bottom("no device")
+            .exact_size(28.0)
+            .frame(plain)
+            .show(ui, |ui| {
+                let at = ui.max_rect().center();
+                let font = FontId::proportional(15.0);
+                let text = format!("{NO_DEVICE}   {}", self.devices.told());
+                ui.painter()
+                    .text(at, Align2::CENTER_CENTER, text, font, self.theme.ink);
+            });
+        Panel::bottom("curves")
+            .exact_size(132.0)
+            .frame(plain.inner_margin(8.0))
+            .show(ui, |ui| {
+                if let Some(session) = &self.session {
+                    curves::show(ui, session, &self.theme);
+                }
+            });
+        let wide = (0.27 * ui.available_width()).clamp(220.0, 420.0);
+        Panel::right("slices")
+            .exact_size(wide)
+            .resizable(false)
+            .frame(plain.inner_margin(8.0))
+            .show(ui, |ui| {
+                if let (Some(slices), Some(session)) = (&mut self.slices, &self.session) {
+                    let procedure = session.procedure();
+                    slices.refresh(procedure);
+                    slices.show(ui, procedure, session.seen, &self.colours);
+                }
+            });
+        CentralPanel::default().frame(plain).show(ui, |ui| {
+            let rect = ui.max_rect();
+            self.view = self
+                .session
+                .as_ref()
+                .map(|session| pictures::show(ui, rect, &mut self.stage, session, &self.colours));
+            self.show_words(ui, rect);
+        });
+        if let Some(ask) = ask {
+            self.act(ask);
+        }
+    }
+
+    /// How far something is that is being opened, and what is said.
+    fn show_words(&mut self, ui: &Ui, rect: Rect) {
+        let painter = ui.painter().with_clip_rect(rect);
+        if let Some(loading) = &self.loading {
+            let size = vec2((0.6 * rect.width()).min(460.0), 26.0);
+            let whole = Rect::from_center_size(rect.center(), size);
+            let card = whole.expand2(vec2(24.0, 40.0));
+            painter.rect_filled(card, 20.0, self.theme.card);
+            painter.rect_filled(whole, 13.0, self.theme.button);
+            let share = loading.progress().clamp(0.06, 1.0);
+            let done = Rect::from_min_size(whole.min, vec2(share * size.x, size.y));
+            painter.rect_filled(done, 13.0, self.theme.accent);
+            let at = whole.center_top() - vec2(0.0, 8.0);
+            let (font, ink) = (FontId::proportional(20.0), self.theme.ink);
+            let text = "The organ is laid on the table";
+            painter.text(at, Align2::CENTER_BOTTOM, text, font, ink);
+        }
+        if self
+            .said
+            .as_ref()
+            .is_some_and(|(_, until)| *until < self.clock.now())
+        {
+            self.said = None;
+        }
+        let played = self.session.as_ref().and_then(Session::played);
+        let replay = played.map(|share| format!("Recording: {:.0} %", 100.0 * share));
+        let said = self.said.as_ref().map(|(text, _)| text.clone());
+        if let Some(text) = said.or(replay) {
+            let galley = tamaire::screens::fitted(
+                &painter,
+                &text,
+                20.0,
+                rect.width() - 60.0,
+                self.theme.ink,
+            );
+            let at = pos2(
+                rect.center().x - 0.5 * galley.size().x,
+                rect.bottom() - 24.0 - galley.size().y,
+            );
+            let paper = Rect::from_min_size(at, galley.size()).expand2(vec2(16.0, 8.0));
+            painter.rect_filled(paper, 18.0, Color32::from_white_alpha(232));
+            painter.galley(at, galley, self.theme.ink);
+        }
+    }
+}
+
+impl eframe::App for App {
+    fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
+        let ctx = ui.ctx().clone();
+        if self.gpu.is_lost() {
+            return ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+        let seconds = ctx.input(|input| input.stable_dt).min(0.1);
+        self.hear_files(&ctx);
+        self.hear_loading();
+        self.hear_presses(&ctx);
+        self.pass(&ctx, seconds);
+        self.show(ui);
+        ctx.request_repaint();
+    }
+}
+
+/// What some files are: a recording, or scans.
+pub fn wanted(files: Vec<PathBuf>, setup: &Setup) -> Wanted {
+    let is_recording = |file: &PathBuf| file.extension().is_some_and(|end| end == ENDING);
+    match files.iter().find(|file| is_recording(file)) {
+        Some(file) => Wanted::Recording(file.clone()),
+        None => Wanted::Scans {
+            files,
+            segmentation: setup.segmentation.clone(),
+            options: setup.options.clone(),
+        },
+    }
+}
+
+/// The mouse points at the height of the hand; the wheel raises and lowers it, the left button grips, the right one looks
+/// around.
+fn hear_mouse(ctx: &egui::Context, view: &View, session: &mut Session, wishes: &mut Wishes) {
+    let (at, delta, grips, turns, wheel, twice) = ctx.input(|input| {
+        let pointer = &input.pointer;
+        (
+            pointer.latest_pos(),
+            pointer.delta(),
+            pointer.button_down(PointerButton::Primary),
+            pointer.button_down(PointerButton::Secondary),
+            input.smooth_scroll_delta().y,
+            pointer.button_double_clicked(PointerButton::Secondary),
+        )
+    });
+    let Some(at) = at.filter(|at| view.rect.contains(*at)) else {
+        return;
+    };
+    if turns {
+        session.camera.orbit(-DRAG * delta.x, DRAG * delta.y);
+    } else if delta != Vec2::ZERO {
+        wishes.place = Some(view.in_world(at, session.hand.goal[1]));
+    }
+    if twice {
+        session.camera.go_home();
+    }
+    wishes.wheel += WHEEL * wheel;
+    wishes.grips |= grips;
+}
+
+/// Keys that are held; returns how fast the camera is to turn.
+fn hear_keys(ctx: &egui::Context, wishes: &mut Wishes) -> Vec2 {
+    ctx.input(|input| {
+        let held = |keys: &[Key]| f32::from(u8::from(keys.iter().any(|key| input.key_down(*key))));
+        let along = |more: &[Key], less: &[Key]| held(more) - held(less);
+        wishes.lean += vec2(
+            along(&[Key::ArrowRight, Key::D], &[Key::ArrowLeft, Key::A]),
+            along(&[Key::ArrowUp, Key::W], &[Key::ArrowDown, Key::S]),
+        );
+        wishes.lift += along(&[Key::Q, Key::PageUp], &[Key::Z, Key::PageDown]);
+        let turn = [
+            along(&[Key::J], &[Key::L]),
+            along(&[Key::I], &[Key::K]),
+            along(&[Key::U], &[Key::O]),
+        ];
+        wishes.turn = [0, 1, 2].map(|axis: usize| wishes.turn[axis] + turn[axis]);
+        wishes.grips |= input.key_down(Key::Space);
+        vec2(along(&[Key::CloseBracket], &[Key::OpenBracket]), 0.0)
+    })
+}

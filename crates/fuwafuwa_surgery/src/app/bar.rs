@@ -1,0 +1,94 @@
+//! The tools, and what else can be asked for.
+
+use super::section::{Shown, Slices};
+use super::session::Session;
+use crate::procedure::BLUNTEST;
+use crate::tools::Tool;
+use egui::{RichText, Slider, Ui, vec2};
+use tamaire::look::Theme;
+use tamaire::screens::{Weight, button};
+
+/// Something that is asked for.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Ask {
+    /// A tool.
+    Take(Tool),
+    /// A rest, or on.
+    Rest,
+    /// The organ as it was.
+    Again,
+    /// All of it once more.
+    Watch,
+    /// To go on by hand where a recording is.
+    TakeOver,
+    /// Files.
+    Save,
+}
+
+/// How high buttons are.
+const HIGH: f32 = 48.0;
+
+/// Shows them in a row; returns what was asked for.
+pub fn show(
+    ui: &mut Ui,
+    theme: &Theme,
+    session: Option<&mut Session>,
+    slices: Option<&mut Slices>,
+) -> Option<Ask> {
+    let session = session?;
+    let mut ask = None;
+    ui.horizontal_centered(|ui| {
+        ui.spacing_mut().item_spacing.x = 8.0;
+        let mut press = |ui: &mut Ui, text: &str, wide: f32, is_main: bool, what: Ask| {
+            let weight = if is_main { Weight::Main } else { Weight::Other };
+            if button(ui, theme, text, vec2(wide, HIGH), weight).clicked() {
+                ask = Some(what);
+            }
+        };
+        if session.is_by_hand() {
+            for (number, tool) in Tool::ALL.into_iter().enumerate() {
+                let text = format!("{} {}", number + 1, tool.name());
+                press(ui, &text, 122.0, session.hand.tool == tool, Ask::Take(tool));
+            }
+            ui.vertical(|ui| {
+                ui.add_space(2.0);
+                ui.label(RichText::new("Edge").size(15.0).color(theme.ink));
+                let slider = Slider::new(&mut session.hand.dull, 0..=BLUNTEST).suffix(" µm");
+                ui.add(slider);
+            });
+        } else {
+            press(ui, "Take over", 130.0, false, Ask::TakeOver);
+        }
+        let rest = if session.rests { "Go on" } else { "Rest" };
+        press(ui, rest, 90.0, session.rests, Ask::Rest);
+        press(ui, "Again", 90.0, false, Ask::Again);
+        press(ui, "Watch", 90.0, false, Ask::Watch);
+        press(ui, "Save", 90.0, false, Ask::Save);
+    });
+    if let Some(slices) = slices {
+        let place = ui.max_rect();
+        let right = place.with_min_x(place.right() - 250.0);
+        let layout = egui::Layout::right_to_left(egui::Align::Center);
+        let builder = egui::UiBuilder::new().max_rect(right).layout(layout);
+        ui.scope_builder(builder, |ui| {
+            let is_strain = slices.shown == Shown::Strain;
+            let text = if is_strain { "Strain" } else { "Materials" };
+            if button(ui, theme, text, vec2(124.0, HIGH), Weight::Other).clicked() {
+                slices.shown = if is_strain {
+                    Shown::Materials
+                } else {
+                    Shown::Strain
+                };
+            }
+            let weight = if slices.follows {
+                Weight::Main
+            } else {
+                Weight::Other
+            };
+            if button(ui, theme, "At tool", vec2(104.0, HIGH), weight).clicked() {
+                slices.follows = !slices.follows;
+            }
+        });
+    }
+    ask
+}

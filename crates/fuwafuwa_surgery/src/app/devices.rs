@@ -1,0 +1,227 @@
+//! Sticks and pads: what they ask for, and what they are made to feel.
+
+use super::hand::Wishes;
+use egui::Vec2;
+use force_feedback::{Ability, Settings, State, Stop};
+use fuwafuwa::Vector;
+use sticks::{Change, Control, Device, DeviceId, Direction, PadButton, Snapshot, radial_dead_zone};
+use tamaire::haptics::on_stick;
+use tamaire::platform::{Forces, Pads};
+
+/// A stick that leans less than this does nothing, and one that leans more than the second leans fully.
+const DEAD: f32 = 0.15;
+const RIM: f32 = 0.95;
+/// This much is full force on a device [N]: a knife in soft tissue meets one to a few.
+const FULL: f32 = 5.0;
+/// A device that was not used for so long is not felt [s], unless it pushes back.
+const RESTED: f32 = 1.5;
+/// How much a device feels of each node that comes apart, and at most.
+const TEAR: f32 = 0.04;
+const TORN: f32 = 0.6;
+
+/// What is pressed once.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Press {
+    /// The next tool.
+    NextTool,
+    /// A rest, or on.
+    Pause,
+    /// All forces off, or on again.
+    CutForces,
+}
+
+/// Sticks and pads.
+pub struct Devices {
+    pads: Pads,
+    forces: Forces,
+    said: Snapshot,
+    /// What moved the hand last, and how long ago [s].
+    used: Option<DeviceId>,
+    rested: f32,
+}
+
+impl Devices {
+    /// Those that are plugged in.
+    pub fn open() -> Self {
+        Self::of(Pads::open())
+    }
+
+    /// These.
+    pub fn of(pads: Pads) -> Self {
+        Self {
+            pads,
+            forces: Forces::default(),
+            said: Snapshot::default(),
+            used: None,
+            rested: f32::INFINITY,
+        }
+    }
+
+    /// Hears what they say: adds to what is asked for, and returns what was pressed, and how fast the camera is to turn, to
+    /// the right and up. A stick that pushes back points at a place of a room, from corner to corner [m].
+    pub fn hear(
+        &mut self,
+        wishes: &mut Wishes,
+        [low, high]: [Vector; 2],
+        turn: f32,
+        seconds: f32,
+    ) -> (Vec<Press>, Vec2) {
+        let now = self.pads.snapshot();
+        let mut presses = Vec::new();
+        for change in now.since(&self.said) {
+            if let Change::Pressed { device, control } = change {
+                self.used = Some(device);
+                self.rested = 0.0;
+                presses.extend(press(control));
+            }
+        }
+        self.rested += seconds;
+        let mut look = Vec2::ZERO;
+        for device in &now.devices {
+            let asked = Asked::of(device);
+            look += asked.look;
+            if !asked.is_anything() {
+                continue;
+            }
+            self.used = Some(device.id);
+            self.rested = 0.0;
+            let report = self.forces.report(device.id);
+            let pushes = report.is_some_and(|report| report.ability == Ability::Force);
+            if pushes {
+                let lean = tamaire::input::Manner::along(Some(turn), Vec2::from(device.aim()));
+                wishes.place = Some([0, 1, 2].map(|axis: usize| {
+                    let [low, high] = [low[axis], high[axis]];
+                    0.5 * (low + high) + 0.5 * lean[axis] * (high - low)
+                }));
+            } else {
+                wishes.lean += asked.lean;
+            }
+            wishes.lift += asked.lift;
+            wishes.grips |= asked.grips;
+            for axis in 0..3 {
+                wishes.turn[axis] += asked.turn[axis];
+            }
+        }
+        self.said = now;
+        (presses, look.clamp(Vec2::splat(-1.0), Vec2::splat(1.0)))
+    }
+
+    /// Lets the device that moved the hand last feel what touches it [N], as a camera sees it that went around by `turn`
+    /// [rad]; or says why there is nothing.
+    pub fn feel(&mut self, contact: Vector, turn: f32, silence: Option<Stop>) {
+        self.forces.attend(&self.said, &self.pads, |_| {
+            Some(Settings {
+                full: FULL,
+                ..Settings::default()
+            })
+        });
+        let (used, rested) = (self.used, self.rested);
+        let forces = &self.forces;
+        forces.tell(|id| {
+            if let Some(why) = silence {
+                return Err(why);
+            }
+            let report = forces.report(id);
+            let pushes = report.is_some_and(|report| report.ability == Ability::Force);
+            if used != Some(id) || (!pushes && rested > RESTED) {
+                return Err(Stop::Idle);
+            }
+            let manner = match pushes {
+                true => force_feedback::Manner::Places,
+                false => force_feedback::Manner::Steers,
+            };
+            let contact = on_stick(contact, Some(turn));
+            Ok(State { contact, manner })
+        });
+        self.forces.update();
+    }
+
+    /// So many nodes came apart.
+    pub fn tear(&self, nodes: u32) {
+        if let (Some(device), true) = (self.used, nodes > 0) {
+            self.forces.tear(device, (TEAR * nodes as f32).min(TORN));
+        }
+    }
+
+    /// Cuts all forces, or takes that back; whether they are cut then.
+    pub fn cut_or_restore(&mut self) -> bool {
+        match self.forces.is_cut() {
+            true => self.forces.restore(),
+            false => self.forces.cut(),
+        }
+        self.forces.is_cut()
+    }
+
+    /// What is felt, in words.
+    pub fn told(&self) -> String {
+        let device = self.used.and_then(|id| self.said.device(id));
+        let Some(device) = device else {
+            return "no stick or pad in use: forces are shown only".into();
+        };
+        let report = self.forces.report(device.id);
+        let able = match report.map(|report| report.ability) {
+            Some(Ability::Force) => "pushes back along the table",
+            Some(Ability::Rumble) => "rumbles with the force",
+            _ => "cannot be felt",
+        };
+        format!("{}: {able}", device.about.name)
+    }
+}
+
+/// What a device asks for.
+#[derive(Default)]
+struct Asked {
+    lean: Vec2,
+    lift: f32,
+    turn: Vector,
+    look: Vec2,
+    grips: bool,
+}
+
+impl Asked {
+    fn of(device: &Device) -> Self {
+        let lean = Vec2::from(radial_dead_zone(device.aim(), DEAD, RIM));
+        let held = |control| f32::from(u8::from(device.control(control).down));
+        let hat = |direction| f32::from(u8::from(device.hat(direction).down));
+        let tilt = hat(Direction::Up) - hat(Direction::Down);
+        let over = hat(Direction::Left) - hat(Direction::Right);
+        match device.pad {
+            Some(pad) => {
+                let button = |which| held(Control::Pad(which));
+                let pull = |k: f32| radial_dead_zone([k, 0.0], DEAD, RIM)[0];
+                let [down, up] = pad.triggers.map(pull);
+                let around = button(PadButton::LeftShoulder) - button(PadButton::RightShoulder);
+                Self {
+                    lean,
+                    lift: up - down,
+                    turn: [around, tilt, over],
+                    look: Vec2::from(radial_dead_zone(pad.right, DEAD, RIM)),
+                    grips: button(PadButton::South) > 0.0,
+                }
+            }
+            None => {
+                let button = |which| held(Control::Button(which));
+                Self {
+                    lean,
+                    lift: button(9) - button(10),
+                    turn: [button(4) - button(5), tilt, over],
+                    look: Vec2::new(button(7) - button(6), 0.0),
+                    grips: button(0) > 0.0,
+                }
+            }
+        }
+    }
+
+    fn is_anything(&self) -> bool {
+        self.lean != Vec2::ZERO || self.lift != 0.0 || self.turn != [0.0; 3] || self.grips
+    }
+}
+
+fn press(control: Control) -> Option<Press> {
+    match control {
+        Control::Pad(PadButton::North) | Control::Button(1) => Some(Press::NextTool),
+        Control::Pad(PadButton::Start) | Control::Button(3) => Some(Press::Pause),
+        Control::Pad(PadButton::Back) | Control::Button(8) => Some(Press::CutForces),
+        _ => None,
+    }
+}

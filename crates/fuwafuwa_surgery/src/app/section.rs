@@ -1,0 +1,230 @@
+//! Slices beside the organ.
+
+use super::pictures::RED;
+use crate::procedure::Procedure;
+use crate::slices::{Cut, Slice};
+use egui::{Align2, Color32, FontId, Mesh, Pos2, Rect, Sense, Stroke, Ui, pos2, vec2};
+use fuwafuwa::Vector;
+use fuwafuwa::vector::minus;
+use fuwafuwa_render::{Colour, Palette};
+
+/// Behind a slice.
+const DARK: Color32 = Color32::from_rgb(28, 26, 32);
+const PALE: Color32 = Color32::from_rgb(226, 222, 214);
+const SKIN: Color32 = Color32::from_rgb(250, 240, 226);
+const CRACK: Color32 = Color32::from_rgb(255, 70, 60);
+
+/// Around what is seen, for what is written [points].
+const ROOM: egui::Vec2 = vec2(26.0, 28.0);
+
+/// What colours tell.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub enum Shown {
+    /// What it is made of.
+    #[default]
+    Materials,
+    /// How far it is strained.
+    Strain,
+}
+
+/// The three slices.
+pub struct Slices {
+    /// A place that all three go through [m].
+    through: Vector,
+    /// Whether they go through where the tool works.
+    pub follows: bool,
+    /// What colours tell.
+    pub shown: Shown,
+    slices: [Slice; 3],
+    /// Which one is made anew next: one a frame.
+    next: usize,
+}
+
+impl Slices {
+    /// Through a place [m].
+    pub fn new(through: Vector) -> Self {
+        Self {
+            through,
+            follows: true,
+            shown: Shown::Materials,
+            slices: [const {
+                Slice {
+                    patches: Vec::new(),
+                    rim: Vec::new(),
+                    cracks: Vec::new(),
+                }
+            }; 3],
+            next: 0,
+        }
+    }
+
+    /// Makes one of them anew.
+    pub fn refresh(&mut self, procedure: &Procedure) {
+        if self.follows {
+            self.through = procedure.tool().position();
+        }
+        let cut = Cut::ALL[self.next];
+        self.slices[self.next] = Slice::of(procedure.organ(), cut, self.through[cut.axis()]);
+        self.next = (self.next + 1) % Cut::ALL.len();
+    }
+
+    /// Draws them below each other; a press into one puts the others there.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        procedure: &Procedure,
+        seen: [Vector; 2],
+        colours: &Palette,
+    ) {
+        let all = ui.available_size();
+        let height = (all.y - 2.0 * ui.spacing().item_spacing.y) / 3.0;
+        for (number, cut) in Cut::ALL.into_iter().enumerate() {
+            let size = vec2(all.x, height);
+            let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+            let page = Page::new(rect, cut, seen);
+            if let Some(at) = response.interact_pointer_pos() {
+                self.follows = false;
+                page.point(at, &mut self.through);
+            }
+            self.draw(ui, &page, number, procedure, colours);
+        }
+    }
+
+    fn draw(&self, ui: &Ui, page: &Page, number: usize, procedure: &Procedure, colours: &Palette) {
+        let painter = ui.painter().with_clip_rect(page.rect);
+        painter.rect_filled(page.rect, 12.0, DARK);
+        let slice = &self.slices[number];
+        let mut mesh = Mesh::default();
+        for patch in &slice.patches {
+            let colour = match self.shown {
+                Shown::Materials => colours.material(patch.material),
+                Shown::Strain => colours.strain(patch.strain),
+            };
+            let first = mesh.vertices.len() as u32;
+            for &corner in &patch.corners {
+                mesh.colored_vertex(page.at(corner), screen(colour));
+            }
+            for k in 2..patch.corners.len() as u32 {
+                mesh.add_triangle(first, first + k - 1, first + k);
+            }
+        }
+        painter.add(mesh);
+        for (lines, wide, colour) in [(&slice.rim, 1.0, SKIN), (&slice.cracks, 2.0, CRACK)] {
+            for line in lines {
+                painter.line_segment(line.map(|end| page.at(end)), Stroke::new(wide, colour));
+            }
+        }
+        let cross = page.at(page.cut.on_page(self.through));
+        let thin = Stroke::new(1.0, PALE.gamma_multiply(0.35));
+        painter.hline(page.rect.x_range(), cross.y, thin);
+        painter.vline(cross.x, page.rect.y_range(), thin);
+        let tool = page.at(page.cut.on_page(procedure.tool().position()));
+        painter.circle_stroke(tool, 6.0, Stroke::new(2.0, RED));
+        let text = |at: Pos2, align: Align2, words: String, size: f32| {
+            painter.text(at, align, words, FontId::proportional(size), PALE);
+        };
+        let (rect, name) = (page.rect.shrink(7.0), page.cut.name());
+        let place = minus(self.through, procedure.table().corner);
+        let place = place_in_words(page.cut, procedure.case().patient_at(place));
+        let title = format!("{name}  {place}");
+        text(rect.left_bottom(), Align2::LEFT_BOTTOM, title, 16.0);
+        let [left, right, upper, lower] = page.cut.letters();
+        text(rect.left_center(), Align2::LEFT_CENTER, left.into(), 17.0);
+        text(
+            rect.right_center(),
+            Align2::RIGHT_CENTER,
+            right.into(),
+            17.0,
+        );
+        text(rect.center_top(), Align2::CENTER_TOP, upper.into(), 17.0);
+        text(
+            rect.center_bottom(),
+            Align2::CENTER_BOTTOM,
+            lower.into(),
+            17.0,
+        );
+    }
+}
+
+/// Where a slice lies in the patient, whose place is RAS+ [mm]: as in `R 12 mm`.
+fn place_in_words(cut: Cut, [right, front, up]: [f64; 3]) -> String {
+    let (along, [less, more]) = match cut {
+        Cut::Axial => (up, ["I", "S"]),
+        Cut::Coronal => (front, ["P", "A"]),
+        Cut::Sagittal => (right, ["L", "R"]),
+    };
+    let side = if along < 0.0 { less } else { more };
+    format!("{side} {:.0} mm", along.abs())
+}
+
+fn screen(colour: Colour) -> Color32 {
+    let [red, green, blue] = colour.map(|k| (255.0 * k + 0.5) as u8);
+    Color32::from_rgb(red, green, blue)
+}
+
+/// A slice on the screen.
+struct Page {
+    rect: Rect,
+    cut: Cut,
+    /// What is in its middle [m], and points for each metre.
+    middle: [f32; 2],
+    scale: f32,
+}
+
+impl Page {
+    fn new(rect: Rect, cut: Cut, [low, high]: [Vector; 2]) -> Self {
+        let [a, b] = [cut.on_page(low), cut.on_page(high)];
+        let size = [0, 1].map(|k: usize| (b[k] - a[k]).abs());
+        let room = rect.shrink2(ROOM);
+        Self {
+            rect,
+            cut,
+            middle: [0, 1].map(|k: usize| 0.5 * (a[k] + b[k])),
+            scale: (room.width() / size[0]).min(room.height() / size[1]),
+        }
+    }
+
+    fn at(&self, [x, y]: [f32; 2]) -> Pos2 {
+        let [u, v] = [x - self.middle[0], y - self.middle[1]];
+        let centre = self.rect.center();
+        pos2(centre.x + self.scale * u, centre.y - self.scale * v)
+    }
+
+    /// Puts a place where the screen is pressed, but for its place across the slice.
+    fn point(&self, at: Pos2, place: &mut Vector) {
+        let way = (at - self.rect.center()) / self.scale;
+        let [u, v] = [self.middle[0] + way.x, self.middle[1] - way.y];
+        match self.cut {
+            Cut::Axial => (place[0], place[2]) = (u, -v),
+            Cut::Coronal => (place[0], place[1]) = (u, v),
+            Cut::Sagittal => (place[2], place[1]) = (u, v),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_press_finds_the_place_that_is_seen_there() {
+        let seen = [[-0.05, 0.0, -0.07], [0.05, 0.12, 0.07]];
+        let rect = Rect::from_min_size(pos2(20.0, 30.0), vec2(300.0, 200.0));
+        for cut in Cut::ALL {
+            let page = Page::new(rect, cut, seen);
+            let mut place = [0.01, 0.02, 0.03];
+            let at = [0.011, 0.05, -0.02];
+            page.point(page.at(cut.on_page(at)), &mut place);
+            for axis in 0..3 {
+                let expected = if axis == cut.axis() {
+                    [0.01, 0.02, 0.03][axis]
+                } else {
+                    at[axis]
+                };
+                assert!((place[axis] - expected).abs() < 1e-5, "{cut:?} {place:?}");
+            }
+        }
+        assert_eq!(place_in_words(Cut::Sagittal, [-12.4, 1.0, 2.0]), "L 12 mm");
+        assert_eq!(place_in_words(Cut::Coronal, [0.0, 3.0, 0.0]), "A 3 mm");
+    }
+}

@@ -1,0 +1,200 @@
+//! A procedure in time: done by hand, or played again.
+
+use super::hand::Hand;
+use crate::measures::{Part, Sample, parts};
+use crate::procedure::Procedure;
+use crate::record::{Playback, Recording};
+use fuwafuwa::Vector;
+use fuwafuwa::vector::{minus, plus, scaled};
+use std::sync::Arc;
+use tamaire::look::CameraRig;
+use tamaire::pace::Pace;
+use tamaire::platform::Clock;
+
+/// Ticks between two looks at how large the pieces are.
+const LOOKS: usize = 20;
+/// Around the organ so much of its size is seen to the sides and above.
+const SIDES: f32 = 0.12;
+const ABOVE: f32 = 0.5;
+
+/// Who moves the tool.
+enum Course {
+    Hand(Box<Procedure>),
+    Again(Box<Playback>),
+}
+
+/// A procedure in time.
+pub struct Session {
+    course: Course,
+    pace: Pace,
+    /// The hand that moves the tool, where one does.
+    pub hand: Hand,
+    /// From where it is seen.
+    pub camera: CameraRig,
+    /// What is seen: from corner to corner [m].
+    pub seen: [Vector; 2],
+    /// Whether it rests.
+    pub rests: bool,
+    /// The pieces, as of a moment ago.
+    pub parts: Vec<Part>,
+    looked: usize,
+    /// What is to be said of a recording that was played.
+    pub verdict: Option<String>,
+    torn: u32,
+}
+
+impl Session {
+    /// One by hand.
+    pub fn new(procedure: Procedure) -> Self {
+        Self::of(Course::Hand(Box::new(procedure)))
+    }
+
+    /// One that was recorded.
+    pub fn again(playback: Playback) -> Self {
+        Self::of(Course::Again(Box::new(playback)))
+    }
+
+    fn of(course: Course) -> Self {
+        let procedure = match &course {
+            Course::Hand(procedure) => procedure,
+            Course::Again(playback) => playback.procedure(),
+        };
+        let [low, high] = procedure.table().room;
+        let start = procedure.tool().position();
+        let hand = Hand::at(start, procedure.held().tool());
+        let seen = seen(procedure, low, high);
+        Self {
+            parts: parts(procedure.organ(), procedure.case().millilitres()),
+            course,
+            pace: Pace::default(),
+            hand,
+            camera: CameraRig::default(),
+            seen,
+            rests: false,
+            looked: 0,
+            verdict: None,
+            torn: 0,
+        }
+    }
+
+    /// The procedure as it is now.
+    pub fn procedure(&self) -> &Procedure {
+        match &self.course {
+            Course::Hand(procedure) => procedure,
+            Course::Again(playback) => playback.procedure(),
+        }
+    }
+
+    /// Whether it is done by hand.
+    pub fn is_by_hand(&self) -> bool {
+        matches!(self.course, Course::Hand(_))
+    }
+
+    /// How much of a recording was played, 0 to 1.
+    pub fn played(&self) -> Option<f32> {
+        match &self.course {
+            Course::Hand(_) => None,
+            Course::Again(playback) => {
+                let all = playback.recording().ticks().max(1);
+                Some(playback.procedure().ticks() as f32 / all as f32)
+            }
+        }
+    }
+
+    /// What was measured last.
+    pub fn last(&self) -> Sample {
+        let samples = self.procedure().samples();
+        samples.last().copied().unwrap_or_default()
+    }
+
+    /// What a tick takes [s].
+    pub fn cost(&self) -> f64 {
+        self.pace.cost()
+    }
+
+    /// Goes on by hand from where a recording is.
+    pub fn take_over(self) -> Self {
+        match self.course {
+            Course::Hand(_) => self,
+            Course::Again(playback) => {
+                let procedure = playback.into_procedure();
+                let camera = self.camera;
+                let next = Self::new(procedure);
+                Self { camera, ..next }
+            }
+        }
+    }
+
+    /// What is needed to begin again.
+    pub fn recording(&self) -> Arc<Recording> {
+        Arc::new(Recording::of(self.procedure()))
+    }
+
+    /// Lets `seconds` pass.
+    pub fn pass(&mut self, clock: &Clock, seconds: f64) {
+        if self.rests || self.is_over() {
+            self.pace.forget();
+            return;
+        }
+        self.pace.begin(seconds);
+        while self.pace.is_due() && !self.is_over() {
+            let began = clock.now();
+            self.tick();
+            self.pace.note(clock.now() - began);
+        }
+        let ticks = self.procedure().ticks();
+        if ticks >= self.looked + LOOKS {
+            self.looked = ticks;
+            let procedure = self.procedure();
+            self.parts = parts(procedure.organ(), procedure.case().millilitres());
+        }
+    }
+
+    /// How many nodes came apart since this was asked last.
+    pub fn take_torn(&mut self) -> u32 {
+        std::mem::take(&mut self.torn)
+    }
+
+    /// Whether there is nothing more to come.
+    pub fn is_over(&self) -> bool {
+        match &self.course {
+            Course::Hand(procedure) => procedure.is_full(),
+            Course::Again(playback) => playback.is_over() || self.verdict.is_some(),
+        }
+    }
+
+    fn tick(&mut self) {
+        let before = self.last().released;
+        match &mut self.course {
+            Course::Hand(procedure) => {
+                if let Err(refused) = procedure.step(self.hand.input()) {
+                    self.verdict = Some(refused.to_string());
+                }
+            }
+            Course::Again(playback) => match playback.step() {
+                Ok(()) if playback.is_over() => {
+                    self.verdict = Some("It came out as it was made, to the last bit.".into());
+                }
+                Ok(()) => {}
+                Err(error) => self.verdict = Some(error.to_string()),
+            },
+        }
+        self.torn += self.last().released.saturating_sub(before);
+    }
+}
+
+/// What of the room is worth seeing: the organ and some of what is around it.
+fn seen(procedure: &Procedure, low: Vector, high: Vector) -> [Vector; 2] {
+    let views = procedure.organ().piece_views();
+    let (mut least, mut most) = (high, low);
+    for view in &views {
+        for axis in 0..3 {
+            least[axis] = least[axis].min(view.low[axis]);
+            most[axis] = most[axis].max(view.high[axis]);
+        }
+    }
+    let size = minus(most, least);
+    let around = scaled([size[0], 0.0, size[2]], SIDES);
+    let above = [0.0, ABOVE * size[1], 0.0];
+    [minus(least, around), plus(plus(most, around), above)]
+}

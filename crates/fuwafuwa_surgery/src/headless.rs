@@ -1,0 +1,139 @@
+//! A procedure without a window: by itself, or a recording again.
+
+use crate::loading::{Loaded, Wanted, load};
+use crate::measures::parts;
+use crate::procedure::Procedure;
+use crate::record::{Playback, Recording};
+use crate::report;
+use crate::save::write;
+use crate::trainee::Trainee;
+use cpu_time::ThreadTime;
+use fuwafuwa::world::TICK;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::io::Write;
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// What is done without a window.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Options {
+    /// What the trainee does that operates by itself
+    #[arg(long, default_value_t = 0, value_name = "NUMBER")]
+    seed: u64,
+    /// For so long at most
+    #[arg(long, default_value_t = 60.0, value_name = "SECONDS")]
+    seconds: f32,
+    /// Write the recording
+    #[arg(long, value_name = "FILE")]
+    save: Option<PathBuf>,
+    /// Write a table of all ticks (CSV)
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Write plots (SVG)
+    #[arg(long, value_name = "FILE")]
+    plots: Option<PathBuf>,
+    /// Tell what ticks took of the processor, on this thread: with RAYON_NUM_THREADS=1 that is all of it
+    #[arg(long)]
+    bench: bool,
+}
+
+/// Operates as was asked for, and tells what came of it.
+///
+/// # Errors
+/// What could not be read or written, or why a recording does not come out as it was made.
+pub fn operate(wanted: &Wanted, options: &Options) -> Result<(), String> {
+    let bar = ProgressBar::new(1000);
+    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {msg} {elapsed}") {
+        bar.set_style(style);
+    }
+    bar.set_message("organ");
+    let began = Instant::now();
+    let mut progress = |done: f32| bar.set_position((1000.0 * done) as u64);
+    let (loaded, warning) = load(wanted, &mut progress).map_err(|error| error.to_string())?;
+    let laid = began.elapsed().as_secs_f32();
+    bar.set_message("procedure");
+    if let Some(warning) = warning {
+        bar.println(format!("warning: {warning}"));
+    }
+    let mut costs = Vec::new();
+    let procedure = match loaded {
+        Loaded::Procedure(procedure) => by_itself(*procedure, options, &bar, &mut costs)?,
+        Loaded::Playback(playback) => again(*playback, &bar, &mut costs)?,
+    };
+    bar.finish_and_clear();
+    let pieces = parts(procedure.organ(), procedure.case().millilitres());
+    let mut text = report::summary(&procedure, &pieces);
+    if options.bench {
+        text += &format!("\n{}", told(&procedure, laid, costs));
+    }
+    // Who reads it may have gone.
+    let _ = writeln!(std::io::stdout(), "{text}");
+    if let Some(path) = &options.save {
+        write(path, &Recording::of(&procedure).bytes())?;
+    }
+    if let Some(path) = &options.csv {
+        write(path, report::csv(procedure.samples()).as_bytes())?;
+    }
+    if let Some(path) = &options.plots {
+        let plots = report::svg(procedure.samples()).map_err(|error| error.to_string())?;
+        write(path, plots.as_bytes())?;
+    }
+    Ok(())
+}
+
+fn by_itself(
+    mut procedure: Procedure,
+    options: &Options,
+    bar: &ProgressBar,
+    costs: &mut Vec<f64>,
+) -> Result<Procedure, String> {
+    let trainee = Trainee::new(&procedure, options.seed);
+    let most = (options.seconds.clamp(0.0, 3600.0) / TICK) as usize;
+    let ticks = trainee.ticks().min(most);
+    for tick in 0..ticks {
+        bar.set_position((1000 * tick / ticks) as u64);
+        let began = ThreadTime::now();
+        procedure
+            .step(trainee.input(tick))
+            .map_err(|error| error.to_string())?;
+        costs.push(began.elapsed().as_secs_f64());
+    }
+    Ok(procedure)
+}
+
+fn again(
+    mut playback: Playback,
+    bar: &ProgressBar,
+    costs: &mut Vec<f64>,
+) -> Result<Procedure, String> {
+    let ticks = playback.recording().ticks();
+    while !playback.is_over() {
+        bar.set_position((1000 * playback.procedure().ticks() / ticks) as u64);
+        let began = ThreadTime::now();
+        playback.step().map_err(|error| error.to_string())?;
+        costs.push(began.elapsed().as_secs_f64());
+    }
+    bar.println("it came out as it was made, to the last bit");
+    Ok(playback.into_procedure())
+}
+
+/// What ticks took, but for the first.
+fn told(procedure: &Procedure, laid: f32, mut costs: Vec<f64>) -> String {
+    costs = costs.split_off(costs.len().min(1));
+    costs.sort_by(f64::total_cmp);
+    let at = |share: f64| {
+        let last = costs.len().saturating_sub(1) as f64;
+        1e3 * costs.get((share * last) as usize).copied().unwrap_or(0.0)
+    };
+    let late = costs.iter().filter(|cost| **cost > f64::from(TICK)).count();
+    format!(
+        "{} elements, on the table after {laid:.1} s; {} ticks after the first, by processor time: median {:.1} ms, 99 % below {:.1} ms, \
+         longest {:.1} ms, {late} longer than {:.1} ms",
+        procedure.organ().mesh().element_count(),
+        costs.len(),
+        at(0.5),
+        at(0.99),
+        at(1.0),
+        1e3 * TICK,
+    )
+}

@@ -1,0 +1,77 @@
+//! A made-up organ, so that there is something on the table before a scan is read. Left and right, front and back, head
+//! and feet differ:
+//!
+//! ```text
+//!   from behind        S             from the left     S
+//!             ╭────────────────╮               ╭──────────────────╮
+//!             │  ○ vessel      │               │  growth ◌        │
+//!           L │    ◌ growth  R │ core        A │      core        │ P     96 × 72 × 128 mm
+//!             ╰────────────────╯               ╰──────────────────╯
+//! ```
+//!
+//! Material 1 is its flesh, 2 a firmer core, 3 a hard growth in the patient's *right* half, in front, and 4 a tough vessel
+//! that runs from front to back through the *left* half.
+
+use crate::case::{Case, CaseError, tissues};
+use fuwafuwa::VoxelGrid;
+
+/// Half axes [mm]: to the patient's right, to the front, up.
+pub const HALF: [f64; 3] = [48.0, 64.0, 36.0];
+/// The growth: its middle (RAS+) and its radius [mm].
+pub const GROWTH: ([f64; 3], f64) = ([22.0, 18.0, 12.0], 11.0);
+/// The vessel: where it runs to the right and up, and its radius [mm].
+const VESSEL: ([f64; 2], f64) = ([-20.0, 8.0], 5.0);
+/// How much smaller the core is.
+const CORE: f64 = 0.45;
+
+/// The material at a place in the patient, RAS+ [mm]; 0 outside.
+pub fn material(patient: [f64; 3]) -> u8 {
+    let [right, front, up] = patient;
+    let share = |axis: usize, of: f64| {
+        let part = patient[axis] / (of * HALF[axis]);
+        part * part
+    };
+    let is_inside = |of: f64| (0..3).map(|axis| share(axis, of)).sum::<f64>() < 1.0;
+    // A furrow parts its halves from above, as in a brain.
+    let depth = up - 0.45 * HALF[2];
+    if !is_inside(1.0) || right.abs() < (0.22 * depth).min(4.0) {
+        return 0;
+    }
+    let squared = |a: f64, b: f64| (a - b) * (a - b);
+    let (middle, radius) = GROWTH;
+    let away: f64 = (0..3)
+        .map(|axis| squared(patient[axis], middle[axis]))
+        .sum();
+    let ([x, z], wide) = VESSEL;
+    let is_in_vessel = squared(right, x) + squared(up, z) < wide * wide;
+    match (away < radius * radius, is_in_vessel) {
+        (true, _) => 3,
+        (_, true) if front.abs() < 0.8 * HALF[1] => 4,
+        _ if is_inside(CORE) => 2,
+        _ => 1,
+    }
+}
+
+/// It as a case, with so many voxels along its longest side.
+///
+/// # Errors
+/// [`CaseError`] when the engine takes no such grid.
+pub fn case(resolution: usize) -> Result<Case, CaseError> {
+    let resolution = resolution.max(8);
+    let voxel = 2.0 * HALF[1] / (resolution as f64 - 2.0);
+    let [right, front, up] = HALF;
+    let count = |half: f64| (2.0 * half / voxel).ceil() as usize + 2;
+    let size = [count(right), count(up), count(front)];
+    let half = size.map(|extent| 0.5 * extent as f64 * voxel);
+    let corner = [-half[0], half[2], -half[1]];
+    let grid = VoxelGrid::from_fn(size, (voxel / 1000.0) as f32, |at| {
+        let [x, y, z] = at.map(|k| (f64::from(k) + 0.5) * voxel);
+        material([corner[0] + x, corner[1] - z, corner[2] + y])
+    });
+    Ok(Case {
+        name: "made-up organ".into(),
+        grid: grid.map_err(CaseError::Grid)?,
+        tissues: tissues(4),
+        corner,
+    })
+}

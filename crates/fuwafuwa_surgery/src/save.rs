@@ -1,0 +1,47 @@
+//! What came of a procedure, as files that overwrite none.
+
+use crate::loading::ENDING;
+use crate::procedure::Procedure;
+use crate::record::Recording;
+use crate::report;
+use std::fs::OpenOptions;
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+/// Writes a recording, a table and plots into a folder, of a name that is free there; returns that of the recording.
+///
+/// # Errors
+/// Which file could not be written, and why.
+pub fn save(folder: &Path, procedure: &Procedure) -> Result<PathBuf, String> {
+    let recording = Recording::of(procedure).bytes();
+    let table = report::csv(procedure.samples());
+    let plots = report::svg(procedure.samples()).map_err(|error| error.to_string())?;
+    let mut number = 1;
+    let path = loop {
+        let path = folder.join(format!("procedure-{number}.{ENDING}"));
+        match write_new(&path, &recording) {
+            Ok(()) => break path,
+            Err(error) if error.kind() == ErrorKind::AlreadyExists && number < 10_000 => {
+                number += 1
+            }
+            Err(error) => return Err(format!("{}: {error}", path.display())),
+        }
+    };
+    for (ending, bytes) in [("csv", table), ("svg", plots)] {
+        write(&path.with_extension(ending), bytes.as_bytes())?;
+    }
+    Ok(path)
+}
+
+/// Writes a file, over one of that name.
+///
+/// # Errors
+/// Which file could not be written, and why.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    std::fs::write(path, bytes).map_err(|error| format!("{}: {error}", path.display()))
+}
+
+fn write_new(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    let file = OpenOptions::new().write(true).create_new(true).open(path);
+    file?.write_all(bytes)
+}

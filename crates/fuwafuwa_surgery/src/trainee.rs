@@ -1,0 +1,168 @@
+//! A procedure by itself: what somebody might do who knows nothing, the same for the same seed. For tests, for
+//! measurements, and to show.
+
+use crate::procedure::{Input, Procedure};
+use crate::tools::Tool;
+use fuwafuwa::vector::{minus, plus, scaled};
+use fuwafuwa::world::TICK;
+use fuwafuwa::{Rotation, Vector};
+
+/// A way from one place to the next.
+#[derive(Clone, Debug)]
+struct Leg {
+    tool: Tool,
+    from: Vector,
+    to: Vector,
+    rotation: Rotation,
+    grips: bool,
+    ticks: usize,
+}
+
+/// Somebody who does one thing after the other.
+#[derive(Clone, Debug)]
+pub struct Trainee {
+    legs: Vec<Leg>,
+    /// Radius of the knife's edge [µm].
+    dull: u16,
+}
+
+/// What the legs are put together from.
+struct Plan {
+    legs: Vec<Leg>,
+    at: Vector,
+    random: fastrand::Rng,
+}
+
+impl Trainee {
+    /// Who does what the seed says to the organ of a procedure that begins.
+    pub fn new(procedure: &Procedure, seed: u64) -> Self {
+        let [low, high] = span(procedure);
+        let middle = scaled(plus(low, high), 0.5);
+        let size = minus(high, low);
+        let above = high[1] + 0.15 * size[1];
+        let mut plan = Plan {
+            legs: Vec::new(),
+            at: [middle[0], above, middle[2]],
+            random: fastrand::Rng::with_seed(seed),
+        };
+        let dull = plan.random.u16(20..=600);
+        plan.cut(middle, size, above);
+        plan.push_aside(middle, size, above);
+        plan.pull_up(procedure, middle, size, above);
+        Self {
+            legs: plan.legs,
+            dull,
+        }
+    }
+
+    /// What it wants in a tick.
+    pub fn input(&self, tick: usize) -> Input {
+        let dull = self.dull;
+        let base = Input {
+            dull,
+            ..Input::default()
+        };
+        let mut left = tick;
+        for leg in &self.legs {
+            if left < leg.ticks {
+                let share = left as f32 / leg.ticks as f32;
+                let place = plus(leg.from, scaled(minus(leg.to, leg.from), share));
+                let input = base.at(leg.tool, place, leg.rotation);
+                let grips = leg.grips;
+                return Input { grips, ..input };
+            }
+            left -= leg.ticks;
+        }
+        let last = self.legs.last();
+        last.map_or(base, |leg| base.at(leg.tool, leg.to, leg.rotation))
+    }
+
+    /// Ticks until it is done.
+    pub fn ticks(&self) -> usize {
+        self.legs.iter().map(|leg| leg.ticks).sum()
+    }
+}
+
+impl Plan {
+    fn between(&mut self, low: f32, high: f32) -> f32 {
+        low + (high - low) * self.random.f32()
+    }
+
+    /// Goes somewhere at a speed [m/s].
+    fn go(&mut self, tool: Tool, to: Vector, rotation: Rotation, grips: bool, speed: f32) {
+        let far = fuwafuwa::vector::length(minus(to, self.at));
+        self.legs.push(Leg {
+            tool,
+            from: self.at,
+            to,
+            rotation,
+            grips,
+            ticks: (far / speed / TICK).ceil().max(1.0) as usize,
+        });
+        self.at = to;
+    }
+
+    /// Lets the knife down into the organ and draws it along.
+    fn cut(&mut self, middle: Vector, size: Vector, above: f32) {
+        let heading = self.between(-1.5, 1.5);
+        let turned = Rotation::about([0.0, 1.0, 0.0], heading);
+        let way = turned.apply([self.between(0.25, 0.45) * size[0], 0.0, 0.0]);
+        let x = middle[0] + self.between(-0.15, 0.15) * size[0];
+        let z = middle[2] + self.between(-0.15, 0.15) * size[2];
+        let deep = above - self.between(0.35, 0.6) * size[1];
+        let from = minus([x, above, z], scaled(way, 0.5));
+        let to = plus(from, way);
+        self.go(Tool::Knife, from, turned, false, 0.2);
+        self.go(Tool::Knife, [from[0], deep, from[2]], turned, false, 0.05);
+        self.go(Tool::Knife, [to[0], deep, to[2]], turned, false, 0.04);
+        self.go(Tool::Knife, to, turned, false, 0.1);
+    }
+
+    /// Presses the hook into the organ and draws it along.
+    fn push_aside(&mut self, middle: Vector, size: Vector, above: f32) {
+        let x = middle[0] + self.between(-0.2, 0.2) * size[0];
+        let z = middle[2] + self.between(-0.2, 0.2) * size[2];
+        let deep = above - self.between(0.25, 0.45) * size[1];
+        let turned = Rotation::about([0.0, 1.0, 0.0], self.between(-1.5, 1.5));
+        let aside = self.between(-0.15, 0.15) * size[0];
+        self.go(Tool::Hook, [x, above, z], turned, false, 0.2);
+        self.go(Tool::Hook, [x, deep, z], turned, false, 0.06);
+        self.go(Tool::Hook, [x + aside, deep, z], turned, false, 0.04);
+        self.go(Tool::Hook, [x, above, z], turned, false, 0.15);
+    }
+
+    /// Takes hold of what is on top and pulls.
+    fn pull_up(&mut self, procedure: &Procedure, middle: Vector, size: Vector, above: f32) {
+        let x = middle[0] + self.between(-0.2, 0.2) * size[0];
+        let z = middle[2] + self.between(-0.2, 0.2) * size[2];
+        let top = top_at(procedure, [x, z]).unwrap_or(middle[1]);
+        let none = Rotation::NONE;
+        self.go(Tool::Forceps, [x, above, z], none, false, 0.2);
+        self.go(Tool::Forceps, [x, top - 0.002, z], none, false, 0.06);
+        let up = top + self.between(0.1, 0.25) * size[1];
+        let aside = x + self.between(-0.1, 0.1) * size[0];
+        self.go(Tool::Forceps, [aside, up, z], none, true, 0.04);
+        self.go(Tool::Forceps, [x, above, z], none, false, 0.15);
+    }
+}
+
+/// The low and the high corner of the organ [m].
+fn span(procedure: &Procedure) -> [Vector; 2] {
+    let mut span = [[f32::MAX; 3], [f32::MIN; 3]];
+    for view in procedure.organ().piece_views() {
+        for axis in 0..3 {
+            span[0][axis] = span[0][axis].min(view.low[axis]);
+            span[1][axis] = span[1][axis].max(view.high[axis]);
+        }
+    }
+    span
+}
+
+/// How high the organ is near a place, seen from above [m].
+fn top_at(procedure: &Procedure, [x, z]: [f32; 2]) -> Option<f32> {
+    let organ = procedure.organ();
+    let reach = 1.5 * organ.grid().voxel_size();
+    let nodes = organ.mesh().nodes().map(|(id, _)| organ.node_state(id).0);
+    let near = nodes.filter(|at| (at[0] - x).abs() < reach && (at[2] - z).abs() < reach);
+    near.map(|at| at[1]).reduce(f32::max)
+}

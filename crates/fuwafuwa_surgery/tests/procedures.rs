@@ -1,0 +1,270 @@
+//! Procedures without a window: they stay whole, come out again as they were, and cut what they should.
+
+use fuwafuwa::{Rotation, Vector};
+use fuwafuwa_surgery::measures::parts;
+use fuwafuwa_surgery::phantom;
+use fuwafuwa_surgery::procedure::{Input, Procedure};
+use fuwafuwa_surgery::record::{Playback, RecordError, Recording};
+use fuwafuwa_surgery::report;
+use fuwafuwa_surgery::save;
+use fuwafuwa_surgery::tools::Tool;
+use fuwafuwa_surgery::trainee::Trainee;
+use std::sync::Arc;
+
+fn procedure(resolution: usize) -> Procedure {
+    Procedure::new(Arc::new(phantom::case(resolution).unwrap())).unwrap()
+}
+
+/// That the organ is as an organ has to be.
+fn check(procedure: &Procedure, what: &str) {
+    let organ = procedure.organ();
+    let valid = organ.mesh().validate(organ.grid(), organ.sharing());
+    valid.unwrap_or_else(|defect| panic!("{what}: {defect}"));
+    for view in organ.piece_views() {
+        assert!(!view.quarantined, "{what}: a piece went out of hand");
+        let numbers = [view.centre, view.velocity, view.low, view.high];
+        let is_finite = numbers.as_flattened().iter().all(|k| k.is_finite());
+        assert!(is_finite || view.element_count == 0, "{what}: {view:?}");
+    }
+    let sample = procedure.samples().last().unwrap();
+    let numbers = [sample.at, sample.force, sample.torque];
+    assert!(
+        numbers.as_flattened().iter().all(|k| k.is_finite()),
+        "{what}: {sample:?}"
+    );
+    assert!(
+        sample.peak.is_finite() && sample.work.is_finite(),
+        "{what}: {sample:?}"
+    );
+}
+
+#[test]
+fn twenty_trainees_leave_an_organ_that_is_whole_or_in_whole_pieces() {
+    let mut cut = 0.0;
+    for seed in 0..20 {
+        let mut procedure = procedure(18);
+        let trainee = Trainee::new(&procedure, seed);
+        for tick in 0..trainee.ticks() {
+            procedure.step(trainee.input(tick)).unwrap();
+            if tick % 120 == 0 {
+                check(&procedure, &format!("seed {seed}, tick {tick}"));
+            }
+        }
+        check(&procedure, &format!("seed {seed}"));
+        cut += procedure.samples().last().unwrap().area;
+        let whole = procedure.case().grid.solid_count() as f64 * procedure.case().millilitres();
+        let parts = parts(procedure.organ(), procedure.case().millilitres());
+        let sum: f64 = parts.iter().map(|part| part.millilitres).sum();
+        assert!(
+            (sum / whole - 1.0).abs() < 1e-9,
+            "{sum} of {whole} ml are left"
+        );
+    }
+    assert!(
+        cut > 20.0 * 1e-4,
+        "twenty cuts of some square centimetres, not {cut} m²"
+    );
+}
+
+#[test]
+fn a_recording_comes_out_as_it_was_and_says_when_it_does_not() {
+    let mut procedure = procedure(16);
+    let trainee = Trainee::new(&procedure, 3);
+    for tick in 0..trainee.ticks() {
+        procedure.step(trainee.input(tick)).unwrap();
+    }
+    let recording = Recording::of(&procedure);
+    let read = Recording::read(&recording.bytes()).unwrap();
+    assert_eq!(read, recording);
+    let mut playback = Playback::new(Arc::new(read)).unwrap();
+    while !playback.is_over() {
+        playback.step().unwrap();
+    }
+    assert_eq!(
+        playback.procedure().world().hash(),
+        procedure.world().hash()
+    );
+    assert_eq!(playback.procedure().samples(), procedure.samples());
+
+    // Somebody holds the tool a little lower in the third second: it is told within that one.
+    let mut other = recording.clone();
+    for input in &mut other.inputs[150..160] {
+        input.goal[1] -= 700;
+    }
+    let mut playback = Playback::new(Arc::new(other)).unwrap();
+    let wrong = loop {
+        if let Err(error) = playback.step() {
+            break error;
+        }
+        assert!(!playback.is_over(), "nobody noticed");
+    };
+    assert!(
+        matches!(wrong, RecordError::Differs { second: 2 }),
+        "{wrong}"
+    );
+}
+
+/// Lets the tool go from where it is from place to place at a pace [m/s]; what was felt most strongly on the way [N].
+fn go(procedure: &mut Procedure, input: Input, way: &[Vector], pace: f32) -> f32 {
+    let begun = procedure.samples().len();
+    let here = procedure.tool().position();
+    let way: Vec<Vector> = [here].into_iter().chain(way.iter().copied()).collect();
+    for pair in way.windows(2) {
+        let far = fuwafuwa::vector::length(fuwafuwa::vector::minus(pair[1], pair[0]));
+        let ticks = (far / pace * 60.0).ceil().max(1.0) as usize;
+        for tick in 1..=ticks {
+            let share = tick as f32 / ticks as f32;
+            let at = [0, 1, 2].map(|k: usize| pair[0][k] + share * (pair[1][k] - pair[0][k]));
+            let next = input.at(input.tool, at, input.rotation());
+            procedure.step(next).unwrap();
+        }
+    }
+    let samples = &procedure.samples()[begun..];
+    let forces = samples
+        .iter()
+        .map(|sample| fuwafuwa::vector::length(sample.force));
+    forces.fold(0.0, f32::max)
+}
+
+fn with(tool: Tool, dull: u16) -> Input {
+    let input = Input {
+        dull,
+        ..Input::default()
+    };
+    input.at(tool, [0.0; 3], Rotation::NONE)
+}
+
+#[test]
+fn a_knife_cuts_what_it_passes_and_a_dull_one_presses_instead() {
+    let (mut felt, mut areas) = (Vec::new(), Vec::new());
+    for dull in [20, 800] {
+        let mut procedure = procedure(28);
+        let input = with(Tool::Knife, dull);
+        let way = [[-0.02, 0.1, 0.02], [-0.02, 0.04, 0.02], [0.03, 0.04, 0.02]];
+        felt.push(go(&mut procedure, input, &way, 0.06));
+        let last = procedure.samples().last().unwrap();
+        // An edge of three centimetres went down some three, and five sideways; a dull one presses before it cuts.
+        areas.push(1e4 * last.area);
+        assert!(last.path > 0.03 && last.work > 0.0, "{last:?}");
+        check(&procedure, "cut");
+    }
+    assert!((3.0..30.0).contains(&areas[0]), "{areas:?} cm²");
+    assert!(areas[1] < 0.8 * areas[0], "{areas:?} cm²");
+    assert!(felt[0] > 0.1 && felt[1] > felt[0], "{felt:?} N");
+}
+
+#[test]
+fn forceps_hold_what_they_grip_and_let_it_go() {
+    let mut procedure = procedure(20);
+    let input = with(Tool::Forceps, 0);
+    let top = procedure.organ().piece_views()[0].high[1];
+    let at = |y: f32| [0.02, y, 0.0];
+    go(
+        &mut procedure,
+        input,
+        &[at(top + 0.02), at(top - 0.003)],
+        0.06,
+    );
+    assert!(!procedure.held().grips());
+    let grips = true;
+    let closed = Input { grips, ..input };
+    let pulled = go(
+        &mut procedure,
+        closed,
+        &[at(top - 0.003), at(top + 0.015)],
+        0.04,
+    );
+    let raised = procedure.organ().piece_views()[0].high[1] - top;
+    assert!(procedure.held().grips() && raised > 0.004, "{raised} m");
+    assert!(
+        procedure.held().pull(procedure.world()) > 0.05,
+        "felt {pulled} N"
+    );
+    go(
+        &mut procedure,
+        input,
+        &[at(top + 0.015), at(top + 0.016)],
+        0.01,
+    );
+    assert!(!procedure.held().grips());
+    // Far off there is nothing to be gripped.
+    go(
+        &mut procedure,
+        closed,
+        &[at(top + 0.04), at(top + 0.05)],
+        0.04,
+    );
+    assert!(!procedure.held().grips());
+}
+
+#[test]
+fn a_hook_feels_what_it_pushes() {
+    let mut procedure = procedure(20);
+    let top = procedure.organ().piece_views()[0].high[1];
+    let way = [[0.0, top + 0.02, 0.0], [0.0, top - 0.015, 0.0]];
+    go(&mut procedure, with(Tool::Hook, 0), &way, 0.05);
+    let last = procedure.samples().last().unwrap();
+    assert!(last.force[1] > 0.1, "{:?}", last.force);
+    assert_eq!((last.area, last.tool), (0.0, Tool::Hook));
+}
+
+#[test]
+fn tables_and_plots_hold_what_was_measured() {
+    let mut procedure = procedure(12);
+    for tick in 0..50 {
+        let input =
+            with(Tool::Hook, 0).at(Tool::Hook, [0.0, 0.1, 0.001 * tick as f32], Rotation::NONE);
+        procedure.step(input).unwrap();
+    }
+    let table = report::csv(procedure.samples());
+    let lines: Vec<Vec<&str>> = table
+        .lines()
+        .map(|line| line.split(',').collect())
+        .collect();
+    assert_eq!(lines.len(), 51);
+    for line in &lines[1..] {
+        assert_eq!(line.len(), lines[0].len());
+        assert_eq!(line[2], "hook");
+        let numbers = line.iter().enumerate().filter(|(column, _)| *column != 2);
+        numbers.for_each(|(_, word)| assert!(word.parse::<f64>().is_ok(), "{word}"));
+    }
+    assert_eq!((lines[50][0], lines[50][1]), ("50", "0.8333"));
+    let z: f64 = lines[50][5].parse().unwrap();
+    let found = 1000.0 * f64::from(procedure.samples()[49].at[2]);
+    assert!((z - found).abs() < 1e-3, "{z} {found}");
+    let plots = report::svg(procedure.samples()).unwrap();
+    assert!(plots.starts_with("<svg") && plots.contains("force on the tool [N]"));
+    assert!(plots.contains("Not a medical device"));
+    assert!(report::svg(&[]).is_ok());
+}
+
+#[test]
+fn what_is_saved_overwrites_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut procedure = procedure(8);
+    procedure.step(Input::default()).unwrap();
+    let names = [1, 2].map(|_| {
+        let saved = save::save(folder.path(), &procedure).unwrap();
+        saved.file_name().unwrap().to_str().unwrap().to_owned()
+    });
+    assert_eq!(names, ["procedure-1.fuwacut", "procedure-2.fuwacut"]);
+    let bytes = std::fs::read(folder.path().join("procedure-2.fuwacut")).unwrap();
+    assert_eq!(Recording::read(&bytes).unwrap().ticks(), 1);
+    for name in [
+        "procedure-1.csv",
+        "procedure-2.csv",
+        "procedure-1.svg",
+        "procedure-2.svg",
+    ] {
+        assert!(
+            folder.path().join(name).metadata().unwrap().len() > 100,
+            "{name}"
+        );
+    }
+    let nowhere = folder.path().join("there is none");
+    assert!(
+        save::save(&nowhere, &procedure)
+            .unwrap_err()
+            .contains("there is none")
+    );
+}

@@ -1,0 +1,179 @@
+//! Slices show what is inside, where it is: left on the left, and what was cut open.
+
+use fuwafuwa::{Blade, Body};
+use fuwafuwa_scan::{Options, Organ, Scan, Segmentation};
+use fuwafuwa_surgery::case::{Case, Table};
+use fuwafuwa_surgery::phantom::{GROWTH, HALF, case};
+use fuwafuwa_surgery::slices::{Cut, Slice};
+
+fn table() -> (Case, Table) {
+    let case = case(40).unwrap();
+    let table = case.lay().unwrap();
+    (case, table)
+}
+
+/// Where a place in the patient, RAS+ [mm], is in the world [m].
+fn place(case: &Case, table: &Table, [right, front, up]: [f64; 3]) -> [f32; 3] {
+    let own = [
+        right - case.corner[0],
+        up - case.corner[2],
+        case.corner[1] - front,
+    ];
+    [0, 1, 2].map(|axis: usize| table.corner[axis] + (own[axis] / 1000.0) as f32)
+}
+
+fn organ(table: &Table) -> &Body<fuwafuwa::Dim3> {
+    &table.world.bodies()[table.organ]
+}
+
+#[test]
+fn the_growth_is_on_the_right_in_front_and_above() {
+    let (case, table) = table();
+    let (growth, _) = GROWTH;
+    let at = place(&case, &table, growth);
+    for cut in Cut::ALL {
+        let slice = Slice::of(organ(&table), cut, at[cut.axis()]);
+        let page = cut.on_page(at);
+        assert_eq!(slice.material_at(page), Some(3), "{cut:?}");
+        let whole = cut.on_page(place(&case, &table, [0.0; 3]));
+        // On the page: right of the middle is the patient's right, but from the left side the back; above is in front or up.
+        let beside = page[0] - whole[0];
+        let above = page[1] - whole[1];
+        match cut {
+            Cut::Axial | Cut::Coronal => assert!(beside > 0.015 && above > 0.008, "{cut:?}"),
+            Cut::Sagittal => assert!(beside < -0.015 && above > 0.008),
+        }
+        // And on the other side there is none.
+        let other = [whole[0] - beside, page[1]];
+        assert_ne!(slice.material_at(other), Some(3), "{cut:?}");
+        assert_eq!(slice.material_at([page[0] + 1.0, page[1]]), None);
+    }
+}
+
+#[test]
+fn a_slice_is_as_large_as_the_organ_is_there_and_follows_it() {
+    let (case, mut table) = table();
+    let at = place(&case, &table, [0.0, 0.0, -8.0]);
+    let [right, front, up] = HALF;
+    // Through an ellipsoid, below its middle.
+    let share = 1.0 - (8.0 / up).powi(2);
+    let ellipse = (1e-6 * std::f64::consts::PI * right * front * share) as f32;
+    let area = Slice::of(organ(&table), Cut::Axial, at[1]).area();
+    assert!((area / ellipse - 1.0).abs() < 0.03, "{area} {ellipse}");
+    // Drawn out by a tenth to the right.
+    let body = table.world.body_mut(table.organ).unwrap();
+    let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
+    for id in nodes {
+        let ([x, y, z], ..) = body.node_state(id);
+        body.set_node_state(id, [1.1 * x, y, z], [0.0; 3]);
+    }
+    let slice = Slice::of(organ(&table), Cut::Axial, at[1]);
+    assert!((slice.area() / (1.1 * area) - 1.0).abs() < 1e-3);
+    let strains = slice.patches.iter().map(|patch| patch.strain);
+    assert!(
+        strains.clone().all(|strain| (strain - 0.1).abs() < 0.02),
+        "{:?}",
+        strains.fold(0.0, f32::max)
+    );
+}
+
+#[test]
+fn a_cut_that_is_still_closed_is_seen() {
+    let (case, mut table) = table();
+    let at = place(&case, &table, [10.0, 0.0, 0.0]);
+    assert!(
+        Slice::of(organ(&table), Cut::Axial, at[1])
+            .cracks
+            .is_empty()
+    );
+    let blade = Blade {
+        from: [at[0] + 0.0003, at[1] - 0.01, at[2] - 0.02],
+        across: [0.0, 0.1, 0.0],
+        along: [0.0, 0.0, 0.04],
+    };
+    table.world.cut(table.organ, &blade).unwrap();
+    let slice = Slice::of(organ(&table), Cut::Axial, at[1]);
+    assert!(slice.cracks.len() > 20, "{}", slice.cracks.len());
+    let voxel = case.grid.voxel_size();
+    for end in slice.cracks.as_flattened() {
+        assert!((end[0] - at[0]).abs() < 1.5 * voxel, "{end:?}");
+        assert!((end[1] + at[2]).abs() < 0.02 + 1.5 * voxel, "{end:?}");
+    }
+    // Nothing of the organ is hidden by it.
+    let whole = Slice::of(
+        &Body::new(case.grid.clone(), &case.tissues).unwrap(),
+        Cut::Axial,
+        at[1] - table.corner[1],
+    );
+    assert!((slice.area() / whole.area() - 1.0).abs() < 1e-3);
+    // Beside it there is none.
+    assert!(
+        Slice::of(organ(&table), Cut::Sagittal, at[0] - 0.02)
+            .cracks
+            .is_empty()
+    );
+}
+
+/// NIfTI-1 as it is laid out: voxels of 2 mm whose first axis runs to the patient's *left*, and among labels 1 one ball of
+/// label 2 on the right.
+fn scan() -> Vec<u8> {
+    let side = 32usize;
+    let mut bytes = vec![0; 352 + side * side * side];
+    bytes[..4].copy_from_slice(&348_i32.to_le_bytes());
+    let extent = side as i16;
+    for (index, number) in [3, extent, extent, extent, 1, 1, 1, 1]
+        .into_iter()
+        .enumerate()
+    {
+        bytes[40 + 2 * index..][..2].copy_from_slice(&i16::to_le_bytes(number));
+    }
+    (bytes[70], bytes[72], bytes[123], bytes[254]) = (2, 8, 2, 1);
+    bytes[108..112].copy_from_slice(&352_f32.to_le_bytes());
+    let rows = [
+        [-2.0, 0.0, 0.0, 31.0],
+        [0.0, 2.0, 0.0, -31.0],
+        [0.0, 0.0, 2.0, -31.0],
+    ];
+    for (index, number) in rows.as_flattened().iter().enumerate() {
+        bytes[280 + 4 * index..][..4].copy_from_slice(&f32::to_le_bytes(*number));
+    }
+    bytes[344..348].copy_from_slice(b"n+1\0");
+    for at in 0..side * side * side {
+        let voxel = [at % side, at / side % side, at / side / side].map(|k| 2.0 * k as f32 - 31.0);
+        let patient = [-voxel[0], voxel[1], voxel[2]];
+        let away = |middle: [f32; 3]| {
+            let squares = [0, 1, 2].map(|k: usize| (patient[k] - middle[k]).powi(2));
+            squares.iter().sum::<f32>().sqrt()
+        };
+        bytes[352 + at] = match (away([0.0; 3]) < 28.0, away([14.0, 0.0, 0.0]) < 8.0) {
+            (_, true) => 2,
+            (true, false) => 1,
+            (false, false) => 0,
+        };
+    }
+    bytes
+}
+
+#[test]
+fn a_scan_that_counts_to_the_left_is_shown_with_right_on_the_right() {
+    let scan = Scan::decode("marked.nii", &scan(), |_| {}).unwrap();
+    let options = Options {
+        resolution: 32,
+        ..Options::default()
+    };
+    let labels = Segmentation::labels(&[(1, 1), (2, 2)]);
+    let organ = Organ::of(&[&scan], &labels, &options, |_| {}).unwrap();
+    let case = Case::of("marked", &organ);
+    let table = case.lay().unwrap();
+    let body = &table.world.bodies()[table.organ];
+    let [mark, mirrored] = [14.0, -14.0].map(|right| place(&case, &table, [right, 0.0, 0.0]));
+    for cut in [Cut::Axial, Cut::Coronal] {
+        let slice = Slice::of(body, cut, mark[cut.axis()]);
+        assert_eq!(slice.material_at(cut.on_page(mark)), Some(2), "{cut:?}");
+        assert_eq!(slice.material_at(cut.on_page(mirrored)), Some(1), "{cut:?}");
+        assert!(cut.on_page(mark)[0] > cut.on_page(mirrored)[0]);
+        assert_eq!(cut.letters()[1], "R");
+    }
+    let right = case.patient_at([0, 1, 2].map(|k: usize| mark[k] - table.corner[k]));
+    assert!((right[0] - 14.0).abs() < 1e-3, "{right:?}");
+}
