@@ -186,6 +186,16 @@ impl<D: Dim> Body<D> {
         &self.truth.mesh
     }
 
+    /// By which law its elements answer.
+    pub fn law(&self) -> Law {
+        self.state.blocks.law()
+    }
+
+    /// How fine its elements are.
+    pub fn grading(&self) -> Grading {
+        self.truth.pyramid.grading()
+    }
+
     /// Its pieces.
     pub fn pieces(&self) -> &Pieces {
         &self.truth.pieces

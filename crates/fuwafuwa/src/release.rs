@@ -70,6 +70,7 @@ impl<D: Dim> Body<D> {
             parted: self.truth.pieces.part(&self.truth.mesh, &places),
             nodes: new.chain(remodelled.abandoned).collect(),
             elements: [beside, remodelled.removed, remodelled.seated].concat(),
+            removed: Vec::new(),
         };
         let most = self.truth.mesh.element_capacity();
         self.cache.history.add(&changes, most);

@@ -10,7 +10,7 @@ use crate::world::World;
 use std::fmt;
 
 /// Number of the format. It changes when an older world would be misread or go on differently.
-pub const VERSION: u32 = 15;
+pub const VERSION: u32 = 16;
 
 const MAGIC: [u8; 4] = *b"fuwa";
 const HEADER: usize = 17;

@@ -29,6 +29,8 @@ pub struct PieceView {
     pub asleep: bool,
     /// Whether it was stopped for good.
     pub quarantined: bool,
+    /// Whether it was removed: then all the rest is 0.
+    pub removed: bool,
 }
 
 /// A bare face of a voxel: a segment in 2D, a quad in 3D.
@@ -170,6 +172,7 @@ impl<D: Dim> Body<D> {
             element_count: 0,
             asleep: piece.asleep,
             quarantined: piece.quarantined,
+            removed: piece.removed,
         };
         let pieces = &self.truth.pieces;
         let mut views: Vec<PieceView> = pieces.list.entries().map(none).collect();
@@ -188,6 +191,10 @@ impl<D: Dim> Body<D> {
             }
         }
         for view in &mut views {
+            if view.removed {
+                (view.low, view.high) = ([0.0; 3], [0.0; 3]);
+                continue;
+            }
             view.centre = scaled(view.centre, 1.0 / view.mass);
             view.velocity = scaled(view.velocity, 1.0 / view.mass);
         }

@@ -230,6 +230,7 @@ impl Scene {
             gravity: self.gravity,
             drag: self.drag,
             most_substeps: self.most_substeps,
+            ..Settings::default()
         };
         let mut world = World::new(settings).map_err(|refused| match refused {
             Refused::Setting { field, expected } => {

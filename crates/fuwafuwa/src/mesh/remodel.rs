@@ -95,6 +95,38 @@ impl<D: Dim> Mesh<D> {
         })
     }
 
+    /// Takes out elements, and the nodes that no other carries, which it returns; grid, sharing and
+    /// pyramid have them no more.
+    pub(crate) fn take_out(&mut self, sharing: &Sharing<D>, elements: &[ElementId]) -> Vec<NodeId> {
+        let mut nodes = Vec::new();
+        for &id in elements {
+            let Some(element) = self.elements[id].take() else {
+                continue;
+            };
+            if let Some(place) = self.places.number(element.cell) {
+                self.by_cell.remove(place, id);
+            }
+            for voxel in self.voxels(&element) {
+                if let Some(place) = self.places.number(Cell::of(voxel)) {
+                    self.owners[place] = 0;
+                }
+            }
+            for &node in &element.nodes {
+                self.carriers[node] -= 1;
+            }
+            self.free_elements.push(id);
+            nodes.extend(element.nodes);
+        }
+        nodes.retain(|&node| self.carriers[node] == 0);
+        let gone = ascending(nodes.into_iter(), self.carriers.len());
+        for &id in &gone {
+            let point = sharing.index(self.node(id).at);
+            self.by_point.remove(point, id);
+        }
+        self.free_nodes.extend(&gone);
+        gone
+    }
+
     /// The elements that may need other nodes, ascending: those in cells that were `refitted`, and those
     /// around points whose groups have changed or which are corners of cells that were `born`, for
     /// nodes come into being nowhere else.
