@@ -47,6 +47,8 @@ macro_rules! entries {
             $crate::Body::<$dim>::element_view,
             $crate::Body::<$dim>::strain,
             $crate::measure::strained::<$dim>,
+            $crate::measure::strained_after::<$dim>,
+            $crate::plasticity::forces_after::<$dim>,
             $crate::Body::<$dim>::strained,
             $crate::Body::<$dim>::energies,
             $crate::World::<$dim>::new,

@@ -52,6 +52,7 @@ pub mod measure;
 pub mod mesh;
 pub mod momentum;
 pub mod piece;
+pub mod plasticity;
 pub mod pyramid;
 pub mod query;
 mod release;

@@ -314,14 +314,15 @@ impl<D: Dim> Body<D> {
         }
     }
 
-    /// How far an element is strained, if it is alive: ‖F − R‖, where 0.1 is a stretch by a tenth.
+    /// How far an element is strained, if it is alive: ‖F − R‖, where 0.1 is a stretch by a tenth; of what was kneaded,
+    /// [what is left](Body::plastic_strain) of that.
     #[inline(never)]
     pub fn strain(&self, id: ElementId) -> Option<f32> {
         Some(self.strain_of(id, self.truth.mesh.element(id)?))
     }
 
     fn strain_of(&self, id: ElementId, element: &Element) -> f32 {
-        let deformation = self.deformation(element).1;
+        let deformation = self.elastic_part(id, element);
         let rotation = self.state.blocks.rotation(id);
         let mut sum = 0.0;
         for i in 0..D::N {
