@@ -30,7 +30,8 @@ pub fn world<D: Dim>(scene: &Drop) -> Result<World<D>> {
         gravity: [0.0, -scene.gravity, 0.0],
         drag: 0.0,
         most_substeps: asked.clamp(FEWEST_SUBSTEPS, MOST_SUBSTEPS),
-    })?;
+            ..Settings::default()
+        })?;
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
     world.add_rigid(Rigid::fixed(floor, scene.friction))?;
     let lowest = span(&body).lowest;

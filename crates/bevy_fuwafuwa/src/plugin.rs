@@ -55,7 +55,8 @@ impl<D: Dimension> Default for FuwafuwaPlugin<D> {
 }
 
 impl<D: Dimension> FuwafuwaPlugin<D> {
-    /// The same in another schedule; each run of it is a tick of 1/60 s.
+    /// The same in another schedule; each run of it is a tick, as long as [`Settings::tick`] says: 1/60 s unless
+    /// told otherwise.
     pub fn in_schedule(self, schedule: impl ScheduleLabel) -> Self {
         let schedule = schedule.intern();
         Self { schedule, ..self }

@@ -139,6 +139,10 @@ impl Writers<'_> {
                 let (body, piece) = (of_body(body)?, Some(piece));
                 self.woke.write(Woke { body, piece });
             }
+            // Only what has the engine removes, and is told by it at once.
+            Event::PieceRemoved { .. }
+            | Event::BodyRemoved { .. }
+            | Event::RigidRemoved { .. } => {}
             Event::Quarantined { body, piece } => {
                 let body = of_body(body)?;
                 self.quarantined.write(Quarantined { body, piece });

@@ -13,17 +13,20 @@ use std::error::Error;
 use std::time::Instant;
 
 /// About as a brain is: a square metre of cut takes 8 J.
-const ORGAN: Material = Material {
-    elasticity: Elasticity {
-        young: 3000.0,
-        poisson: 0.3,
-    },
-    density: 1000.0,
-    damping: 0.2,
-    friction: 0.5,
-    strength: 2000.0,
-    toughness: 155.0,
-};
+fn organ() -> Material {
+    Material {
+        elasticity: Elasticity {
+            young: 3000.0,
+            poisson: 0.3,
+        },
+        density: 1000.0,
+        damping: 0.2,
+        friction: 0.5,
+        strength: 2000.0,
+        toughness: 155.0,
+        ..Material::default()
+    }
+}
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut numbers = std::env::args().skip(1);
@@ -47,7 +50,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         u8::from(apart.iter().map(|k| k * k).sum::<f32>() < 1.0)
     })?;
     let solid = grid.solid_count();
-    let organ = world.add_body(Body::new(grid, &[ORGAN])?);
+    let organ = world.add_body(Body::new(grid, &[organ()])?);
     let mut holder = Rigid::hand([0.081, 0.14, 0.08], 0.01).with_drive(Drive::Kinematic);
     holder.is_sensor = true;
     let holder = world.add_rigid(holder)?;

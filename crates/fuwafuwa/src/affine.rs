@@ -2,7 +2,7 @@
 
 use crate::body::Body;
 use crate::dim::Dim;
-use crate::ids::NodeId;
+use crate::ids::{ElementId, NodeId};
 use crate::mesh::Element;
 use crate::shape::Vector;
 use crate::stencil::slot_at;
@@ -34,6 +34,16 @@ impl<D: Dim> Body<D> {
             .skip(D::N)
             .for_each(|(k, row)| row[k] = 1.0);
         (centre, gradient)
+    }
+
+    /// What of its deformation gradient is elastic: all but the dent that it keeps.
+    pub(crate) fn elastic_part(&self, id: ElementId, element: &Element) -> [Vector; 3] {
+        let (_, gradient) = self.deformation(element);
+        let Some(undone) = self.state.blocks.undone(id) else {
+            return gradient;
+        };
+        let column = |j: usize| [undone[0][j], undone[1][j], undone[2][j]];
+        gradient.map(|row| [0, 1, 2].map(|j: usize| dot(row, column(j))))
     }
 
     /// Where an element takes a point of the undeformed body, given in voxels: its affine motion [m].

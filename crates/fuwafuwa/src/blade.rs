@@ -129,11 +129,11 @@ impl<D: Dim> Body<D> {
             for axis in 0..D::N {
                 let mut next = voxel;
                 next[axis] += 1;
-                if !self.truth.grid.is_solid(next) {
+                if !self.truth.grid.is_left(next) {
                     continue;
                 }
-                let there =
-                    middles[self.truth.grid.index(next)].expect("every solid voxel is owned");
+                let there = middles[self.truth.grid.index(next)]
+                    .expect("every voxel that is left is owned");
                 if blade.parts(here, there) {
                     crossed.insert((voxel, axis));
                 }

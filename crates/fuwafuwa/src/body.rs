@@ -26,7 +26,7 @@ use crate::pyramid::{Grading, Pyramid};
 use crate::sharing::Sharing;
 use crate::solve::{Blocks, Row};
 use crate::vector::{as_row, dot, three};
-use blend::{Blend, elasticities};
+use blend::{Blend, elasticities, plasticities};
 use cache::Cache;
 pub(crate) use state::MOST_GRAVITY;
 use state::State;
@@ -86,7 +86,8 @@ impl<D: Dim> Body<D> {
         let sharing = Sharing::new(&grid);
         let pyramid = Pyramid::new(&grid, &sharing, grading);
         let mesh = Mesh::grade(&grid, &sharing, &pyramid)?;
-        let blocks = Blocks::new(law, &elasticities(materials, 1.0), grid.voxel_size());
+        let mut blocks = Blocks::new(law, &elasticities(materials, 1.0), grid.voxel_size());
+        blocks.set_plasticities(&plasticities(materials));
         let mut body = Self {
             truth: Truth {
                 pieces: Pieces::new(&mesh),
@@ -184,6 +185,16 @@ impl<D: Dim> Body<D> {
     /// Its elements and nodes.
     pub fn mesh(&self) -> &Mesh<D> {
         &self.truth.mesh
+    }
+
+    /// By which law its elements answer.
+    pub fn law(&self) -> Law {
+        self.state.blocks.law()
+    }
+
+    /// How fine its elements are.
+    pub fn grading(&self) -> Grading {
+        self.truth.pyramid.grading()
     }
 
     /// Its pieces.

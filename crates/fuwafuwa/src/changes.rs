@@ -1,4 +1,4 @@
-//! What tears changed in a body, for whoever keeps something that follows from it: contact, pictures, a game.
+//! What tears and removals changed in a body, for whoever keeps something that follows from it: contact, pictures, a game.
 
 use crate::ids::{ElementId, NodeId, PieceId};
 use std::collections::VecDeque;
@@ -13,6 +13,8 @@ pub struct Changes {
     pub elements: Vec<ElementId>,
     /// Pieces that came off.
     pub parted: Vec<PieceId>,
+    /// Pieces that were removed: their nodes and elements are gone.
+    pub removed: Vec<PieceId>,
 }
 
 /// Up to where somebody has followed a body; at first, nowhere.
@@ -38,7 +40,7 @@ pub(crate) struct History {
 impl Changes {
     /// How much there is to look at.
     fn size(&self) -> usize {
-        self.nodes.len() + self.elements.len() + self.parted.len()
+        self.nodes.len() + self.elements.len() + self.parted.len() + self.removed.len()
     }
 }
 
@@ -95,10 +97,12 @@ impl History {
             all.nodes.extend(&changes.nodes);
             all.elements.extend(&changes.elements);
             all.parted.extend(&changes.parted);
+            all.removed.extend(&changes.removed);
         }
         sort(&mut all.nodes);
         sort(&mut all.elements);
         sort(&mut all.parted);
+        sort(&mut all.removed);
         Some(all)
     }
 }

@@ -114,6 +114,23 @@ pub enum Event {
         /// Number of the piece.
         piece: PieceId,
     },
+    /// A piece was [removed](crate::World::remove_piece) from the world.
+    PieceRemoved {
+        /// The body, which may be gone with it.
+        body: BodyId,
+        /// Number of the piece.
+        piece: PieceId,
+    },
+    /// The last piece of a body was removed, and the body with it.
+    BodyRemoved {
+        /// Which one it was.
+        body: BodyId,
+    },
+    /// Something rigid was removed because it [left a region](crate::World::remove_outside).
+    RigidRemoved {
+        /// Which one it was.
+        rigid: RigidId,
+    },
     /// A piece went out of hand and was stopped for good, so that it spoils nothing else.
     Quarantined {
         /// The body.

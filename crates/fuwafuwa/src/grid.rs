@@ -79,6 +79,8 @@ pub struct VoxelGrid<D: Dim> {
     size: Point,
     voxel_size: f32,
     materials: Vec<u8>,
+    /// Of each voxel, whether it was taken out since; empty while none was.
+    taken_out: Vec<bool>,
     dim: PhantomData<D>,
 }
 
@@ -202,6 +204,29 @@ impl<D: Dim> VoxelGrid<D> {
         self.material(voxel) != 0
     }
 
+    /// Whether a voxel is solid and still there: that of a body whose pieces were
+    /// [removed](crate::World::remove_piece) may be gone, and yet tells what lay around the rest.
+    #[inline]
+    pub fn is_left(&self, voxel: Point) -> bool {
+        self.is_solid(voxel) && (self.taken_out.is_empty() || !self.taken_out[self.index(voxel)])
+    }
+
+    /// Number of solid voxels that are still there.
+    #[inline(never)]
+    pub fn left_count(&self) -> usize {
+        let gone = self.taken_out.iter().filter(|&&gone| gone).count();
+        self.solid_count() - gone
+    }
+
+    /// Takes solid voxels out.
+    pub(crate) fn take_out(&mut self, voxels: &[Point]) {
+        self.taken_out.resize(self.materials.len(), false);
+        for &voxel in voxels {
+            let index = self.index(voxel);
+            self.taken_out[index] = true;
+        }
+    }
+
     /// All voxels of the box, solid or not.
     pub fn voxels(&self) -> impl Iterator<Item = Point> + use<D> {
         let size = self.size;
@@ -218,7 +243,11 @@ impl<D: Dim> VoxelGrid<D> {
     #[cfg(feature = "serde")]
     pub(crate) fn is_sound(&self) -> bool {
         let size = self.size.map(|extent| usize::try_from(extent).unwrap_or(0));
-        Self::from_materials(size, self.voxel_size, self.materials.clone()).is_ok()
+        let is_box = Self::from_materials(size, self.voxel_size, self.materials.clone()).is_ok();
+        let are_solid = |(&gone, &material): (&bool, &u8)| !gone || material != 0;
+        let gone = &self.taken_out;
+        let is_known = gone.is_empty() || gone.len() == self.materials.len();
+        is_box && is_known && gone.iter().zip(&self.materials).all(are_solid)
     }
 
     fn checked_size(size: [usize; 3]) -> Result<Point, BuildError> {
@@ -247,6 +276,7 @@ impl<D: Dim> VoxelGrid<D> {
             size,
             voxel_size,
             materials,
+            taken_out: Vec::new(),
             dim: PhantomData,
         })
     }

@@ -162,10 +162,22 @@ fn patch_exact<D: Dim>(
     size: f64,
     positions: &[Vector64],
 ) -> Vec<Vector64> {
+    let (deformation, _) = deformation_of(stencil, size, positions);
+    let stress = stress(elasticity, &deformation);
+    forces_of_stress(elasticity, &stress, stencil, size, positions)
+}
+
+/// The forces of a stress [Pa], and those that hold against hourglass modes.
+pub(crate) fn forces_of_stress<D: Dim>(
+    elasticity: Elasticity,
+    stress: &Matrix,
+    stencil: &Stencil<D>,
+    size: f64,
+    positions: &[Vector64],
+) -> Vec<Vector64> {
     let volume = volume_of(stencil, 0.5 * size);
     let gradient = |k: usize| gradient_of(stencil, size, k);
     let (deformation, centre) = deformation_of(stencil, size, positions);
-    let stress = stress(elasticity, &deformation);
     let (stiffness, hourglass) =
         hourglass(elasticity, stencil, size, positions, &deformation, centre);
     let mut skew = [[0.0; 3]; 3];
@@ -177,7 +189,7 @@ fn patch_exact<D: Dim>(
             let b = gradient(k);
             let correction = plus(hourglass[k], scaled(apply(&skew, b), -1.0 / volume));
             plus(
-                scaled(apply(&stress, b), -1.0),
+                scaled(apply(stress, b), -1.0),
                 scaled(correction, -stiffness),
             )
         })

@@ -2,6 +2,7 @@
 
 use crate::law::{BadElasticity, Elasticity};
 use crate::mesh::Defect;
+use crate::plasticity::Plasticity;
 use std::fmt;
 
 /// What a voxel is made of.
@@ -26,6 +27,14 @@ pub struct Material {
     /// load whatever its resolution [Griffith 1921]. A fifth of the strength, in these units, is a
     /// body whose cracks run once they have begun; half of it is one that only scuffs.
     pub toughness: f32,
+    /// The strain that it bears: what is drawn out, pressed or bent by more keeps the rest as a dent, its volume kept;
+    /// infinite = it springs back from anything, as rubber does. About 0.05 is clay, which stays as it is pressed, 0.3 is
+    /// dough, which gives way slowly. Far below 0.01 it runs under its own weight. Without meaning under
+    /// [`Law::Endo2004`](crate::Law::Endo2004).
+    pub yield_strain: f32,
+    /// How far it can be kneaded, 1 to 4: to how many times less than its width it is pressed for good; beyond that it
+    /// springs. About 2; more makes thin sheets, whose elements are as flat.
+    pub plastic_limit: f32,
 }
 
 impl Default for Material {
@@ -43,6 +52,8 @@ impl Default for Material {
             friction: 0.4,
             strength: 1000.0,
             toughness: 200.0,
+            yield_strain: f32::INFINITY,
+            plastic_limit: 2.0,
         }
     }
 }
@@ -127,7 +138,54 @@ impl Material {
         within("friction", self.friction, 0.0, 2.0, "0 to 2")?;
         let infinite = f32::INFINITY;
         within("strength", self.strength, tiny, infinite, "positive")?;
-        within("toughness", self.toughness, tiny, infinite, "positive")
+        within("toughness", self.toughness, tiny, infinite, "positive")?;
+        within(
+            "yield_strain",
+            self.yield_strain,
+            tiny,
+            infinite,
+            "positive",
+        )?;
+        within("plastic_limit", self.plastic_limit, 1.0, 4.0, "1 to 4")
+    }
+
+    /// Soft clay, for a game: what it is pressed into it stays.
+    ///
+    /// ```
+    /// use fuwafuwa::{Body, Dim2, Material, Rigid, Settings, Shape, VoxelGrid, World};
+    ///
+    /// let mut world = World::<Dim2>::new(Settings::default())?;
+    /// world.add_rigid(Rigid::fixed(Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]), 0.5))?;
+    /// let block = Body::new(VoxelGrid::cube(12, 1.0)?, &[Material::clay()])?;
+    /// let block = world.add_body(block);
+    /// let hand = world.add_rigid(Rigid::hand([0.5, 1.2, 0.0], 0.2))?;
+    /// for height in [0.6, 1.6] {
+    ///     world.set_goal(hand, [0.5, height, 0.0])?;
+    ///     (0..60).for_each(|_| _ = world.step());
+    /// }
+    /// let body = &world.bodies()[block];
+    /// let most = body.mesh().elements().filter_map(|(id, _)| body.plastic_strain(id));
+    /// assert!(most.fold(0.0, f32::max) > 0.1);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn clay() -> Self {
+        Self {
+            density: 400.0,
+            damping: 0.5,
+            friction: 0.6,
+            strength: f32::INFINITY,
+            toughness: f32::INFINITY,
+            yield_strain: 0.05,
+            ..Self::default()
+        }
+    }
+
+    /// When it keeps its dents, if it does.
+    pub(crate) fn plasticity(&self) -> Option<Plasticity> {
+        (self.yield_strain < f32::INFINITY).then(|| Plasticity {
+            yield_strain: f64::from(self.yield_strain),
+            limit: f64::from(self.plastic_limit),
+        })
     }
 
     /// The energy that a square metre of crack takes: toughness² / Y [J/m²] [Irwin 1957].

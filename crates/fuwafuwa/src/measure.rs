@@ -6,8 +6,9 @@ use crate::dim::Dim;
 use crate::ids::{ElementId, NodeId};
 use crate::law::{
     Elasticity, IDENTITY, Law, Matrix, SQUASH_LIMIT, cofactor, deformation_of, endo_offsets,
-    hourglass, rotation_of, stress, volume_of,
+    hourglass, rotation_of, volume_of,
 };
+use crate::plasticity::{elastic_part, softening, stress_after};
 use crate::shape::Vector;
 use crate::stencil::{Stencil, Vector64};
 use crate::vector::{dot, three};
@@ -15,7 +16,7 @@ use crate::vector::{dot, three};
 /// How an element is deformed, what that does in it, and the energy that it stores.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Strained {
-    /// The deformation gradient F, by rows.
+    /// The deformation gradient F, by rows, with what was kneaded into it.
     pub deformation: Matrix,
     /// Biot's strain, the symmetric part of RᵀF less 1: along the axes of the body at rest, 0.1 where it is stretched by a
     /// tenth.
@@ -39,8 +40,25 @@ pub fn strained<D: Dim>(
     size: f64,
     positions: &[Vector64],
 ) -> Strained {
+    strained_after(law, elasticity, &IDENTITY, stencil, size, positions)
+}
+
+/// The same of an element that keeps a dent: `undone` is G of [`crate::plasticity`], and strain is what it springs back by.
+///
+/// # Panics
+/// When the number of positions is not the number of nodes of the stencil.
+#[inline(never)]
+pub fn strained_after<D: Dim>(
+    law: Law,
+    elasticity: Elasticity,
+    undone: &Matrix,
+    stencil: &Stencil<D>,
+    size: f64,
+    positions: &[Vector64],
+) -> Strained {
     assert_eq!(positions.len(), stencil.slots.len(), "one position a node");
-    let (deformation, centre) = deformation_of(stencil, size, positions);
+    let (whole, centre) = deformation_of(stencil, size, positions);
+    let deformation = elastic_part(&whole, undone);
     let rotation = rotation_of(&deformation);
     let column = |m: &Matrix, k: usize| [m[0][k], m[1][k], m[2][k]];
     let mut stretch = [[0.0; 3]; 3];
@@ -59,18 +77,18 @@ pub fn strained<D: Dim>(
         let (stiffness, apart) = endo_offsets(elasticity, stencil, size, positions);
         let energy = apart.iter().map(|&d| 0.5 * stiffness * dot(d, d)).sum();
         return Strained {
-            deformation,
+            deformation: whole,
             strain,
             energy,
             ..Strained::default()
         };
     }
     let squash = dot(deformation[0], cofactor(&deformation)[0]);
-    let nominal = stress(elasticity, &deformation);
+    let nominal = stress_after::<D>(elasticity, &whole, undone);
     let mut cauchy = [[0.0; 3]; 3];
     for i in 0..3 {
         for j in 0..3 {
-            cauchy[i][j] = dot(nominal[i], deformation[j]) / squash;
+            cauchy[i][j] = dot(nominal[i], whole[j]) / squash;
         }
     }
     let squared: f64 = strain.iter().map(|&row| dot(row, row)).sum();
@@ -80,13 +98,13 @@ pub fn strained<D: Dim>(
         + 0.5 * elasticity.lame() * spread * spread
         + 0.5 * elasticity.young * below * below;
     let half = 0.5 * size;
-    let (stiffness, hourglass) =
-        hourglass(elasticity, stencil, size, positions, &deformation, centre);
+    let (stiffness, hourglass) = hourglass(elasticity, stencil, size, positions, &whole, centre);
     let weights = stencil.volumes.iter().zip(&hourglass);
     let swings = weights.map(|(&weight, &h)| dot(h, h) / weight);
+    let density = softening::<D>(undone) * density;
     let energy = density * volume_of(stencil, half) + 0.5 * stiffness * swings.sum::<f64>();
     Strained {
-        deformation,
+        deformation: whole,
         strain,
         stress: cauchy,
         energy,
@@ -124,7 +142,21 @@ impl<D: Dim> Body<D> {
         let size = f64::from(self.truth.grid.voxel_size()) * f64::from(element.cell.width());
         let stencil = self.truth.mesh.stencil(element);
         let law = self.state.blocks.law();
-        Some(strained(law, elasticity, stencil, size, &positions))
+        let undone = self.state.blocks.undone(id);
+        let undone = undone.map_or(IDENTITY, |undone| undone.map(|row| row.map(f64::from)));
+        Some(strained_after(
+            law, elasticity, &undone, stencil, size, &positions,
+        ))
+    }
+
+    /// How far an element was kneaded for good, if it is alive: 0 where nothing was, 0.5 where it was pressed to 1 / 1.5 of
+    /// its width along some axis, or drawn out as far in the plane. Of materials that keep no dents, 0.
+    pub fn plastic_strain(&self, id: ElementId) -> Option<f32> {
+        self.truth.mesh.element(id)?;
+        let undone = self.state.blocks.undone(id);
+        let undone = undone.map_or(IDENTITY, |undone| undone.map(|row| row.map(f64::from)));
+        let most = 1.0 / softening::<D>(&undone);
+        Some((most.sqrt() - 1.0).max(0.0) as f32)
     }
 
     /// How far a node has given way to what is more than it bears: from 0, not at all, to 1, at which it comes off.

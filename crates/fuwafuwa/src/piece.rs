@@ -22,6 +22,8 @@ pub struct Piece {
     pub asleep: bool,
     /// Whether it went out of hand (not finite) and was stopped for good.
     pub quarantined: bool,
+    /// Whether it was [removed](crate::World::remove_piece): nothing is left of it but its number.
+    pub removed: bool,
     /// How long it has been slow [s].
     pub still: f32,
 }
@@ -93,6 +95,11 @@ impl Pieces {
             }
         }
         pieces
+    }
+
+    /// How many there are, without those that were removed.
+    pub fn count(&self) -> usize {
+        self.list.iter().filter(|piece| !piece.removed).count()
     }
 
     /// The piece of an element.

@@ -227,7 +227,7 @@ impl<D: Dim> Pyramid<D> {
         }
         (0..D::CORNERS).fold(0, |mask, index| {
             let child = cell.child(index);
-            let own = !self.exists(child) && grid.is_solid(child.first_voxel());
+            let own = !self.exists(child) && grid.is_left(child.first_voxel());
             mask | u8::from(own) << index
         })
     }
@@ -284,7 +284,7 @@ impl<D: Dim> Pyramid<D> {
                     at: voxel,
                 };
                 let cell = if is_coarse { finest.parent() } else { finest };
-                if grid.is_solid(voxel) && self.add(cell) {
+                if grid.is_left(voxel) && self.add(cell) {
                     layer.push(cell);
                 }
             }
@@ -308,6 +308,48 @@ impl<D: Dim> Pyramid<D> {
         }
         born.sort_unstable_by_key(|cell| (cell.level, [cell.at[2], cell.at[1], cell.at[0]]));
         born
+    }
+
+    /// Takes out the cells of voxels that are gone from grid and sharing, and those that were there for
+    /// them alone: what is left is what a pyramid from scratch has. Where something is left of a cell, it
+    /// touched what is gone in an open point, and so stands for itself.
+    pub(crate) fn take_out(&mut self, grid: &VoxelGrid<D>, sharing: &Sharing<D>, voxels: &[Point]) {
+        if self.grading == Grading::Coarse {
+            // Its cells of level 0 never are.
+            *self = Self::new(grid, sharing, self.grading);
+            return;
+        }
+        let mut gone: Vec<Cell> = voxels.iter().map(|&voxel| Cell::of(voxel)).collect();
+        gone.retain(|&cell| self.remove(cell));
+        while let Some(&Cell { level, .. }) = gone.first() {
+            if usize::from(level) + 2 >= self.level_count() {
+                return;
+            }
+            let around = |cell: &Cell| {
+                let near = neighbourhood::<D>(cell.at, 1);
+                near.map(move |at| Cell { level, at }.parent())
+            };
+            let mut above: Vec<Cell> = gone.iter().flat_map(around).collect();
+            above.sort_unstable();
+            above.dedup();
+            let is_alone = |cell: &Cell| {
+                let [low, high] = [-1, 2].map(|by| {
+                    let mut at = scale(cell.at, 2);
+                    at.iter_mut().take(D::N).for_each(|k| *k += by);
+                    at
+                });
+                !points_in(low, high).any(|at| self.exists(Cell { level, at }))
+            };
+            above.retain(is_alone);
+            above.retain(|&cell| self.remove(cell));
+            gone = above;
+        }
+    }
+
+    /// Makes a cell exist no more; false when it did not.
+    fn remove(&mut self, cell: Cell) -> bool {
+        let number = self.places.number(cell);
+        number.is_some_and(|number| std::mem::replace(&mut self.exists[number], false))
     }
 
     /// Makes a cell exist; false when it did already or lies outside the pyramid.

@@ -70,6 +70,7 @@ impl<D: Dim> Body<D> {
             parted: self.truth.pieces.part(&self.truth.mesh, &places),
             nodes: new.chain(remodelled.abandoned).collect(),
             elements: [beside, remodelled.removed, remodelled.seated].concat(),
+            removed: Vec::new(),
         };
         let most = self.truth.mesh.element_capacity();
         self.cache.history.add(&changes, most);
@@ -131,9 +132,12 @@ impl<D: Dim> Body<D> {
             self.truth.pieces.adopt(id, &element.nodes);
             self.cache.bare[id] = 0;
         }
-        self.state
-            .blocks
-            .update(&self.truth.mesh, &self.truth.grid, removed, seated);
+        let dents = self.dents_of(remodelled, &new);
+        let blocks = &mut self.state.blocks;
+        blocks.update(&self.truth.mesh, &self.truth.grid, removed, seated);
+        for (id, dent) in dents {
+            blocks.set_undone(id, dent);
+        }
         self.settle(&new);
         for &id in seated {
             let piece = self.truth.pieces.of_element(id);
@@ -154,6 +158,24 @@ impl<D: Dim> Body<D> {
                 self.restore_momentum(nodes, momentum, centre);
             }
         }
+    }
+
+    /// What new elements have from those that filled their voxels before, where a material keeps dents.
+    fn dents_of(
+        &self,
+        remodelled: &Remodelled,
+        new: &[ElementId],
+    ) -> Vec<(ElementId, [[f32; 3]; 3])> {
+        let blocks = &self.state.blocks;
+        if !blocks.has_plastic() {
+            return Vec::new();
+        }
+        let of = |&id: &ElementId| {
+            let voxel = self.truth.mesh.first_voxel(self.truth.mesh.element(id)?);
+            let origin = remodelled.origin::<D>(voxel)?;
+            Some((id, blocks.undone(origin)?))
+        };
+        new.iter().filter_map(of).collect()
     }
 
     /// Those of some nodes that are not held, those of each piece together, in ascending order of the

@@ -11,12 +11,12 @@
 //!   c ┃ d
 //! ```
 
+mod removal;
 use crate::chains::ascending;
 use crate::dim::{Dim, FAR, Point, add, neighbourhood, points_in, voxel_around};
 use crate::grid::VoxelGrid;
 use crate::ids::id;
 use std::marker::PhantomData;
-
 /// The label of a side of a lattice point where there is no voxel.
 const EMPTY: u32 = 15;
 
@@ -159,7 +159,7 @@ impl<D: Dim> Sharing<D> {
         let groups = points_in([0; 3], high)
             .map(|at| {
                 let solid = (0..D::CORNERS).fold(0u8, |mask, octant| {
-                    mask | u8::from(grid.is_solid(voxel_around::<D>(at, octant))) << octant
+                    mask | u8::from(grid.is_left(voxel_around::<D>(at, octant))) << octant
                 });
                 Groups::joined(solid)
             })

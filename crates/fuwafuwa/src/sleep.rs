@@ -62,7 +62,10 @@ pub fn wake<D: Dim>(bodies: &mut Bodies<D>, hits: &[Hit]) -> Vec<Hit> {
         return Vec::new();
     }
     change(bodies, false, |body, number, piece| {
-        piece.asleep && !piece.quarantined && hits.binary_search(&(body, number)).is_ok()
+        piece.asleep
+            && !piece.quarantined
+            && !piece.removed
+            && hits.binary_search(&(body, number)).is_ok()
     })
 }
 

@@ -12,6 +12,7 @@
 mod assign;
 mod block;
 mod kernel;
+mod plastic;
 #[cfg(feature = "serde")]
 mod restore;
 #[cfg(feature = "serde")]
@@ -24,12 +25,14 @@ use crate::dim::Dim;
 use crate::ids::{ElementId, NodeId, Table};
 use crate::lanes::{Eight, LANES, on_widest_lanes, splat, sum};
 use crate::law::{Elasticity, Law};
+use crate::plasticity::Plasticity;
 use crate::rotation::Rotation;
 use crate::threads::{self, Rows};
 use crate::vector::{plus, scaled};
 use block::{Block, GROUP, Group, Home, Shared, VACANT, evaluate_best};
 use fearless_simd::Simd;
 use kernel::{Moduli, Scratch};
+use plastic::Flow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::marker::PhantomData;
 
@@ -46,6 +49,8 @@ const PAD: usize = 4;
 pub struct Blocks<D: Dim> {
     law: Law,
     moduli: Vec<Moduli>,
+    /// When elements of each material flow; of those that keep no dents, never.
+    flows: Vec<Option<Flow>>,
     voxel_size: f32,
     blocks: Vec<Block>,
     /// Blocks with vacant lanes.
@@ -94,6 +99,7 @@ impl<D: Dim> Blocks<D> {
         Self {
             law,
             moduli: moduli::<D>(elasticities),
+            flows: Vec::new(),
             voxel_size,
             blocks: Vec::new(),
             open: BTreeMap::new(),
@@ -120,6 +126,37 @@ impl<D: Dim> Blocks<D> {
     /// Other stiffnesses for the materials, in their order.
     pub fn set_elasticities(&mut self, elasticities: &[Elasticity]) {
         self.moduli = moduli::<D>(elasticities);
+    }
+
+    /// Says which materials keep dents, in their order, before any element is put in. Under [`Law::Endo2004`] none does.
+    pub fn set_plasticities(&mut self, plasticities: &[Option<Plasticity>]) {
+        self.flows.clear();
+        if self.law == Law::PatchExact {
+            let flow = |plasticity: &Option<Plasticity>| plasticity.map(Flow::of::<D>);
+            self.flows.extend(plasticities.iter().map(flow));
+        }
+    }
+
+    /// What was kneaded into an element for good, undone: G of [`crate::plasticity`], by rows; none where its material keeps
+    /// no dents.
+    pub fn undone(&self, id: ElementId) -> Option<[[f32; 3]; 3]> {
+        let &(block, lane) = self.assigned.get(id.index())?;
+        let block = self.blocks.get(block as usize)?;
+        let undone = block.undone.as_ref()?;
+        Some(undone.get(lane as usize))
+    }
+
+    /// Gives an element what another one had.
+    pub fn set_undone(&mut self, id: ElementId, undone: [[f32; 3]; 3]) {
+        let (block, lane) = self.assigned[id];
+        if let Some(own) = &mut self.blocks[block as usize].undone {
+            own.set(lane as usize, undone);
+        }
+    }
+
+    /// Whether some material keeps dents.
+    pub fn has_plastic(&self) -> bool {
+        self.flows.iter().any(Option::is_some)
     }
 
     /// Computes the forces of all elements that are awake, at the given node positions [m].
@@ -149,6 +186,7 @@ impl<D: Dim> Blocks<D> {
         let Self {
             law,
             moduli,
+            flows,
             numbers,
             pooled,
             nodes,
@@ -157,6 +195,7 @@ impl<D: Dim> Blocks<D> {
         let shared = Shared {
             law: *law,
             moduli,
+            flows,
             numbers,
             pooled,
             nodes,

@@ -22,11 +22,11 @@ use crate::body::{Bodies, Body};
 use crate::changes::Changes;
 use crate::dim::Dim;
 use crate::handle::{BodySlot, RigidSlot};
-use crate::ids::PieceId;
+use crate::ids::{ElementId, PieceId};
 use crate::rigid::Rigids;
 pub use captives::{Captive, Captives};
 pub use impulse::Impulse;
-pub use leaning::{leaning_on_body, leaning_on_rigid};
+pub use leaning::{leaning_on_body, leaning_on_pieces, leaning_on_rigid};
 pub use nodes::{NodePair, NodePairs};
 pub use pair::MARGIN;
 use pair::renumber;
@@ -94,6 +94,22 @@ impl Nearby {
             .retain(|pair| !pair.spheres.iter().any(is_of_it));
         self.nodes.list.retain(|pair| pair.body != slot);
         self.spheres.remove_body(slot);
+    }
+
+    /// Elements of a body, ascending, are gone, and nodes with them.
+    pub fn remove_elements<D: Dim>(
+        &mut self,
+        slot: BodySlot,
+        body: &Body<D>,
+        elements: &[ElementId],
+    ) {
+        self.spheres.remove_elements(slot, elements);
+        let is_gone = |&sphere: &SphereId| self.spheres.body_of(sphere) == BodySlot::NONE;
+        let pairs = &mut self.pairs.list;
+        pairs.retain(|pair| !pair.spheres.iter().any(is_gone));
+        let is_there = |node| body.truth.mesh.is_alive(node);
+        let nodes = &mut self.nodes.list;
+        nodes.retain(|pair| pair.body != slot || is_there(pair.node));
     }
 
     /// Forgets what was read from a file and is of nothing that is there. What a tick forgets by itself, because

@@ -29,6 +29,8 @@ pub struct PieceView {
     pub asleep: bool,
     /// Whether it was stopped for good.
     pub quarantined: bool,
+    /// Whether it was removed: then all the rest is 0.
+    pub removed: bool,
 }
 
 /// A bare face of a voxel: a segment in 2D, a quad in 3D.
@@ -170,6 +172,7 @@ impl<D: Dim> Body<D> {
             element_count: 0,
             asleep: piece.asleep,
             quarantined: piece.quarantined,
+            removed: piece.removed,
         };
         let pieces = &self.truth.pieces;
         let mut views: Vec<PieceView> = pieces.list.entries().map(none).collect();
@@ -188,6 +191,10 @@ impl<D: Dim> Body<D> {
             }
         }
         for view in &mut views {
+            if view.removed {
+                (view.low, view.high) = ([0.0; 3], [0.0; 3]);
+                continue;
+            }
             view.centre = scaled(view.centre, 1.0 / view.mass);
             view.velocity = scaled(view.velocity, 1.0 / view.mass);
         }
@@ -307,14 +314,15 @@ impl<D: Dim> Body<D> {
         }
     }
 
-    /// How far an element is strained, if it is alive: ‖F − R‖, where 0.1 is a stretch by a tenth.
+    /// How far an element is strained, if it is alive: ‖F − R‖, where 0.1 is a stretch by a tenth; of what was kneaded,
+    /// [what is left](Body::plastic_strain) of that.
     #[inline(never)]
     pub fn strain(&self, id: ElementId) -> Option<f32> {
         Some(self.strain_of(id, self.truth.mesh.element(id)?))
     }
 
     fn strain_of(&self, id: ElementId, element: &Element) -> f32 {
-        let deformation = self.deformation(element).1;
+        let deformation = self.elastic_part(id, element);
         let rotation = self.state.blocks.rotation(id);
         let mut sum = 0.0;
         for i in 0..D::N {

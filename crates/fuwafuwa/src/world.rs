@@ -4,6 +4,8 @@ mod acts;
 mod contents;
 mod cuts;
 mod hooks;
+mod removal;
+mod settings;
 mod ties;
 mod touches;
 
@@ -18,25 +20,18 @@ use crate::ids::{PieceId, Table};
 use crate::joint::{self, Joints};
 use crate::knife::{Knife, Knives};
 use crate::rigid::{BadRigid, Rigids};
-use crate::shape::Vector;
 use crate::sleep::{fall_asleep, fall_asleep_rigid, wake};
 use crate::solve::Row;
 use crate::touch::{Nearby, NodePair};
 use crate::vector::{is_finite, plus, three};
 pub use hooks::{Hooks, Substep, field_around};
+pub use removal::{PieceSize, Removed};
+use settings::BadSetting;
+pub use settings::{FEWEST_SUBSTEPS, LONGEST_TICK, SHORTEST_TICK, Settings, TICK, USUAL_SUBSTEPS};
 use std::fmt;
 
-/// Length of a tick [s].
-pub const TICK: f32 = 1.0 / 60.0;
-/// Substeps in a tick at the least, where the settings allow as many: a force-feedback stick wants its
-/// force 960 times a second.
-pub const USUAL_SUBSTEPS: u32 = 16;
-/// The settings allow so many at the least: with them a soft ball is squashed as it is with 16.
-pub const FEWEST_SUBSTEPS: u32 = 8;
-/// Cracks are looked for this many times in a tick: 240 times a second.
-const FRACTURE_ROUNDS: u32 = 4;
-/// Swings are damped this many times in a tick: 240 times a second.
-const DAMPING_ROUNDS: u32 = 4;
+/// Cracks are looked for, and swings are damped, so often in a second.
+const ROUNDS: f64 = 240.0;
 /// A piece of one voxel does not roll on what it touches; its spin dies at this rate [1/s]: in
 /// a tenth of a second but for an eighth. Faster would stop it in the air between two bounces.
 const CRUMB_SPIN_LOSS: f32 = 20.0;
@@ -48,50 +43,6 @@ const SETTLING_SPEED: f64 = 0.1;
 /// A piece with a node faster than this [m/s] has gone out of hand. Small voxels cannot: no node
 /// moves by more than a voxel in a substep.
 const TOP_SPEED: f32 = 1000.0;
-
-/// What holds for the whole world.
-#[derive(Copy, Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Settings {
-    /// [m/s²]; the third component does not count in 2D.
-    pub gravity: Vector,
-    /// Share of its speed that everything loses to the air in a second [1/s]; 0 to 10. With no
-    /// gravity and about 1, bodies float.
-    pub drag: f32,
-    /// Substeps in a tick at most, 8 to 1024; 64 if speed matters. A body too stiff for so many is
-    /// softened until it is not, see [`Body::stiffness_scale`]. Fewer than 16 make large soft bodies cheap.
-    pub most_substeps: u32,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            gravity: [0.0, -9.81, 0.0],
-            drag: 0.0,
-            most_substeps: 64,
-        }
-    }
-}
-
-impl Settings {
-    fn check(&self) -> Result<(), Refused> {
-        let range = FEWEST_SUBSTEPS..=1024;
-        let is_finite = self.gravity.iter().all(|k| k.is_finite());
-        let checks = [
-            ("gravity", "finite", is_finite),
-            ("drag", "0 to 10", (0.0..=10.0).contains(&self.drag)),
-            (
-                "most_substeps",
-                "8 to 1024",
-                range.contains(&self.most_substeps),
-            ),
-        ];
-        let bad = checks.into_iter().find(|(.., is_good)| !is_good);
-        bad.map_or(Ok(()), |(field, expected, _)| {
-            Err(Refused::Setting { field, expected })
-        })
-    }
-}
 
 /// Why something was not let into the world, or could not be done with what is in it.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -114,6 +65,12 @@ pub enum Refused {
     Rigid(BadRigid),
     /// It is not there.
     Gone(Gone),
+}
+
+impl Refused {
+    fn setting((field, expected): BadSetting) -> Self {
+        Self::Setting { field, expected }
+    }
 }
 
 impl From<BadRigid> for Refused {
@@ -170,7 +127,7 @@ impl<D: Dim> World<D> {
     /// [`Refused::Setting`] when a setting is out of range.
     #[inline(never)]
     pub fn new(settings: Settings) -> Result<Self, Refused> {
-        settings.check()?;
+        settings.check().map_err(Refused::setting)?;
         Ok(Self {
             settings,
             bodies: Bodies::default(),
@@ -214,7 +171,8 @@ impl<D: Dim> World<D> {
     pub fn step_with(&mut self, hooks: &mut Hooks<'_>) -> StepReport {
         self.events.clear();
         let substeps = self.substeps();
-        let duration = TICK / substeps as f32;
+        let duration = self.settings.tick / substeps as f32;
+        let rounds = self.settings.in_tick(ROUNDS);
         let mut report = StepReport {
             substeps,
             ..StepReport::default()
@@ -223,11 +181,11 @@ impl<D: Dim> World<D> {
             self.bodies.iter().map(Body::points_and_positions).collect();
         self.start_tick();
         for substep in 0..substeps {
-            if is_due(substep, substeps, FRACTURE_ROUNDS) {
+            if is_due(substep, substeps, rounds) {
                 self.cut_along_edges(&mut report);
                 self.fracture(&mut report);
             }
-            if is_due(substep, substeps, DAMPING_ROUNDS) {
+            if is_due(substep, substeps, rounds) {
                 self.damp(duration);
             }
             self.push(duration, hooks);
@@ -246,20 +204,21 @@ impl<D: Dim> World<D> {
         report
     }
 
-    /// Substeps that the stiffest body asks for: at least 16 and at most what the settings allow.
+    /// Substeps that the stiffest body asks for: at least 16 in 1/60 s and at most what the settings allow.
     pub fn substeps(&self) -> u32 {
         let longest = self.bodies.iter().map(Body::longest_substep);
         let longest = longest.fold(f64::INFINITY, f64::min);
-        let asked = (f64::from(TICK) / longest - 1e-6).ceil() as u32;
-        let most = self.settings.most_substeps;
-        asked.clamp(USUAL_SUBSTEPS.min(most), most)
+        let asked = (f64::from(self.settings.tick) / longest - 1e-6).ceil() as u32;
+        let most = self.settings.most_in_tick();
+        let usual = self.settings.in_tick(60.0 * f64::from(USUAL_SUBSTEPS));
+        asked.clamp(usual.min(most), most)
     }
 
     fn start_tick(&mut self) {
         for rigid in self.rigids.iter_mut() {
-            rigid.start_tick(TICK);
+            rigid.start_tick(self.settings.tick);
         }
-        self.nearby.start_tick(&self.bodies, TICK);
+        self.nearby.start_tick(&self.bodies, self.settings.tick);
     }
 
     fn end_tick(&mut self) {
@@ -272,7 +231,7 @@ impl<D: Dim> World<D> {
 
     /// Releases what is overstrained, and remodels around it.
     fn fracture(&mut self, report: &mut StepReport) {
-        let duration = TICK / FRACTURE_ROUNDS as f32;
+        let duration = self.settings.tick / self.settings.in_tick(ROUNDS) as f32;
         for (id, body) in self.bodies.entries_mut() {
             let failures = failures(body, duration);
             if failures.is_empty() {
@@ -298,7 +257,7 @@ impl<D: Dim> World<D> {
 
     /// Calms the swings within each piece, and slows what moves through air.
     fn damp(&mut self, substep: f32) {
-        let duration = TICK / DAMPING_ROUNDS as f32;
+        let duration = self.settings.tick / self.settings.in_tick(ROUNDS) as f32;
         let touching = self.touching();
         for (slot, body) in self.bodies.by_slot_mut() {
             body.refresh_awake();
@@ -409,14 +368,14 @@ impl<D: Dim> World<D> {
         let pushed = self.knives.iter().filter(is_pushed);
         let cut = pushed.flat_map(|knife| knife.held(&self.bodies));
         let handled: Vec<Hit> = handled.chain(captives).chain(cut).collect();
-        let fallen = fall_asleep(&mut self.bodies, &motions, &handled, TICK);
+        let fallen = fall_asleep(&mut self.bodies, &motions, &handled, self.settings.tick);
         let events = fallen.iter().map(|&(body, piece)| Event::FellAsleep {
             body: self.bodies.id(body),
             piece,
         });
         self.events.extend(events);
         let handled = self.contacts.handled(&self.rigids);
-        fall_asleep_rigid(&mut self.rigids, &handled, TICK);
+        fall_asleep_rigid(&mut self.rigids, &handled, self.settings.tick);
     }
 
     /// Wakes free things that were hit.

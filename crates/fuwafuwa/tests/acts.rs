@@ -12,6 +12,7 @@ const WEIGHTLESS: Settings = Settings {
     gravity: [0.0; 3],
     drag: 0.0,
     most_substeps: 64,
+    tick: fuwafuwa::world::TICK,
 };
 const SOMEWHERE: Vector = [3.0, -2.0, 0.0];
 
@@ -429,6 +430,7 @@ fn act<D: Dim>(world: &mut World<D>, which: usize, body: BodyId, k: f32) -> Resu
             gravity: vector,
             drag: k,
             most_substeps: 16,
+            ..Settings::default()
         }),
     }
 }

@@ -136,6 +136,7 @@ fn weightless<D: Dim>() -> World<D> {
         gravity: [0.0; 3],
         drag: 1.0,
         most_substeps: 64,
+        ..Settings::default()
     };
     World::new(settings).unwrap()
 }
@@ -247,6 +248,7 @@ fn left_of_a_swing<D: Dim>(poisson: f64, substeps: u32) -> f32 {
         gravity: [0.0; 3],
         drag: 0.0,
         most_substeps: substeps,
+        ..Settings::default()
     };
     let mut world = World::<D>::new(settings).unwrap();
     // It is damped as the large body is that it came off.

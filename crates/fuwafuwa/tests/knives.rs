@@ -9,6 +9,7 @@ const NO_GRAVITY: Settings = Settings {
     gravity: [0.0; 3],
     drag: 0.0,
     most_substeps: 64,
+    tick: 1.0 / 60.0,
 };
 const DOWN: Vector = [0.0, -1.0, 0.0];
 

@@ -15,6 +15,7 @@ const WEIGHTLESS: Settings = Settings {
     gravity: [0.0; 3],
     drag: 0.0,
     most_substeps: 64,
+    tick: fuwafuwa::world::TICK,
 };
 
 /// A ball of two materials, number 2 within a quarter of its middle, which is at the origin.

@@ -11,6 +11,7 @@ const WEIGHTLESS: Settings = Settings {
     gravity: [0.0; 3],
     drag: 0.0,
     most_substeps: 64,
+    tick: fuwafuwa::world::TICK,
 };
 
 fn unbreakable() -> Material {
@@ -403,6 +404,7 @@ fn eight_substeps_squash_a_soft_ball_as_sixteen_do() {
             gravity: [0.0, -3.0, 0.0],
             drag: 0.5,
             most_substeps,
+            ..Settings::default()
         })
         .unwrap();
         let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);

@@ -42,7 +42,7 @@ pub fn anchor<D: Dim>(body: &Body<D>) -> Anchor {
     };
     let (position, _, turn) = frame::<D, _>(states);
     let whole: f32 = masses.iter().sum();
-    let voxels = body.grid().solid_count() as f32 * masses[largest] / whole;
+    let voxels = body.grid().left_count() as f32 * masses[largest] / whole;
     Anchor {
         position: position.into(),
         axes: turn.unwrap_or_default().to_cols_array_2d(),

@@ -3,6 +3,7 @@
 //! ```toml
 //! dim = 2
 //! gravity = [0.0, -9.81, 0.0]     # [m/s²]
+//! tick = 0.0166666667             # [s]; that of Settings when left out, as drag and most_substeps
 //!
 //! [[material]]                    # number 1
 //! young = 5000.0                  # [Pa]; what is not named is that of `Material::default`
@@ -36,6 +37,23 @@
 //! radius = 0.1                    # [m]; or a box or a capsule
 //! path = [[0.0, -0.3, 0.5, 0.0], [1.0, 1.2, 0.5, 0.0]]   # seconds, then where [m]
 //!
+//! [[rigid]]                       # anything rigid; its shape is as it would be at the origin
+//! ball = { centre = [0.0, 0.0, 0.0], radius = 0.2 }
+//! drive = "free"                  # falls; or fixed, kinematic, hand
+//! mass = 3.0                      # [kg]
+//! at = [0.5, 2.0, 0.0]            # [m]
+//! turned = [0.0, 0.0, 0.5]        # axis times angle [rad]
+//! layers = { memberships = 1, filters = 3 }
+//!
+//! [[rigid]]
+//! box = { centre = [0.0, 0.0, 0.0], half = [0.5, 0.5, 0.5] }
+//! sensor = true                   # touches nobody, tells who comes in
+//!
+//! [[joint]]                       # pin, spring or rope
+//! tie = "rope"
+//! length = 0.5                    # [m]
+//! ends = [{ body = 1, at = [0.5, 1.2, 0.0], radius = 0.1 }, { at = [0.5, 1.7, 0.0] }]   # or rigid, obstacle, hand
+//!
 //! [game]                          # only where a scene is a level of the game
 //! name = { en = "Over the wall", ja = "かべのむこう" }
 //! basket = { centre = [1.2, 0.3, 0.0], half = [0.4, 0.4, 0.0] }   # [m]
@@ -45,6 +63,7 @@
 //! How pictures and models become voxels is said at [`Picture::grid`](crate::import::Picture::grid)
 //! and [`Model::grid`](crate::import::Model::grid).
 
+mod any_rigid;
 mod body;
 mod budget;
 mod build;
@@ -53,19 +72,25 @@ mod embed;
 mod error;
 mod game;
 mod grid;
+mod joint;
 mod rigid;
+mod state;
+mod write;
 
-pub use body::{BodyText, Form, MaterialText, PartText, ending_of};
+pub use any_rigid::{DriveText, RigidText};
+pub use body::{BodyText, Form, LayersText, MaterialText, PartText, VoxelsText, ending_of};
 pub use embed::Fetch;
 pub use error::{SceneError, shortened};
 pub use game::{AssistText, GameText, RouteText, WishText, Words};
+pub use joint::{EndText, JointText, TieText};
 pub(crate) use rigid::send;
 pub use rigid::{BallText, BoxText, CapsuleText, HalfSpaceText, HandText, ObstacleText};
 
 use budget::Budget;
 use error::{Origin, Wrong, require, require_vector};
-use fuwafuwa::world::Refused;
+use fuwafuwa::world::{Refused, SHORTEST_TICK, TICK};
 use fuwafuwa::{Dim, Material, Settings, Shape, World};
+use joint::Known;
 use serde::{Deserialize, Serialize};
 
 /// Most bytes of a scene's file.
@@ -99,9 +124,12 @@ pub struct Scene {
     /// Air drag [1/s].
     #[serde(default)]
     pub drag: f32,
-    /// Substeps in a tick at most.
+    /// Substeps in 1/60 s at most.
     #[serde(default = "usual_substeps")]
     pub most_substeps: u32,
+    /// Length of a tick [s].
+    #[serde(default = "usual_tick", skip_serializing_if = "is_usual_tick")]
+    pub tick: f32,
     /// How long to watch it [s].
     #[serde(default = "usual_seconds")]
     pub seconds: f32,
@@ -120,6 +148,12 @@ pub struct Scene {
     /// Hands.
     #[serde(default)]
     pub hand: Vec<HandText>,
+    /// Anything rigid.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rigid: Vec<RigidText>,
+    /// What ties things together.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub joint: Vec<JointText>,
     /// What makes a game of it.
     pub game: Option<GameText>,
     #[serde(skip)]
@@ -230,11 +264,13 @@ impl Scene {
             gravity: self.gravity,
             drag: self.drag,
             most_substeps: self.most_substeps,
+            tick: self.tick,
         };
         let mut world = World::new(settings).map_err(|refused| match refused {
             Refused::Setting { field, expected } => {
                 let found = match field {
                     "drag" => self.drag.to_string(),
+                    "tick" => self.tick.to_string(),
                     _ => self.most_substeps.to_string(),
                 };
                 Wrong::new(field, format!("expected {expected}, found {found}"))
@@ -252,15 +288,20 @@ impl Scene {
         let count = self.body.len();
         let expected = format!("expected {MAX_BODIES} bodies at most, found {count}");
         require(count <= MAX_BODIES, "body", expected)?;
-        let counts = [("obstacle", self.obstacle.len()), ("hand", self.hand.len())];
+        let counts = [
+            ("obstacle", self.obstacle.len()),
+            ("hand", self.hand.len()),
+            ("rigid", self.rigid.len()),
+            ("joint", self.joint.len()),
+        ];
         for (field, count) in counts {
             let expected = format!("expected {MAX_RIGID} at most, found {count}");
             require(count <= MAX_RIGID, field, expected)?;
         }
         let mut budget = Budget::of_scene(most_voxels);
         for (index, text) in self.body.iter().enumerate() {
-            let body = text.build(&materials, &mut budget);
-            world.add_body(body.map_err(|wrong| wrong.inside("body", index))?);
+            let added = text.add_to(&mut world, &materials, &mut budget);
+            added.map_err(|wrong| wrong.inside("body", index))?;
         }
         for (index, text) in self.obstacle.iter().enumerate() {
             let added = text.add_to(&mut world);
@@ -269,6 +310,22 @@ impl Scene {
         for (index, text) in self.hand.iter().enumerate() {
             let added = text.add_to(&mut world);
             added.map_err(|wrong| wrong.inside("hand", index))?;
+        }
+        for (index, text) in self.rigid.iter().enumerate() {
+            let added = text.add_to(&mut world);
+            added.map_err(|wrong| wrong.inside("rigid", index))?;
+        }
+        // All were put into an empty world, one after another.
+        let mut rigids = world.rigids().ids();
+        let known = Known {
+            bodies: world.bodies().ids().collect(),
+            obstacles: rigids.by_ref().take(self.obstacle.len()).collect(),
+            hands: rigids.by_ref().take(self.hand.len()).collect(),
+            rigids: rigids.collect(),
+        };
+        for (index, text) in self.joint.iter().enumerate() {
+            let added = text.add_to(&mut world, &known);
+            added.map_err(|wrong| wrong.inside("joint", index))?;
         }
         Ok(world)
     }
@@ -307,7 +364,10 @@ impl Scene {
 
     /// Where its hands are to be at the end of a tick [m].
     pub fn goals(&self, tick: u64) -> Vec<[f32; 3]> {
-        let seconds = (tick + 1) as f32 / 60.0;
+        let seconds = match is_usual_tick(&self.tick) {
+            true => (tick + 1) as f32 / 60.0,
+            false => (tick + 1) as f32 * self.tick,
+        };
         self.hand.iter().map(|hand| hand.goal(seconds)).collect()
     }
 
@@ -318,7 +378,11 @@ impl Scene {
 
     /// How many ticks to watch it.
     pub fn ticks(&self) -> u64 {
-        (self.seconds.clamp(0.0, MAX_SECONDS) * 60.0) as u64
+        let seconds = self.seconds.clamp(0.0, MAX_SECONDS);
+        match is_usual_tick(&self.tick) {
+            true => (seconds * 60.0) as u64,
+            false => (seconds / self.tick.max(SHORTEST_TICK)) as u64,
+        }
     }
 
     fn check_dim(&self) -> Result<(), Wrong> {
@@ -333,6 +397,14 @@ fn usual_gravity() -> [f32; 3] {
 
 fn usual_substeps() -> u32 {
     64
+}
+
+fn usual_tick() -> f32 {
+    TICK
+}
+
+fn is_usual_tick(tick: &f32) -> bool {
+    *tick == TICK
 }
 
 fn usual_seconds() -> f32 {

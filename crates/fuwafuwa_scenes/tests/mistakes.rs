@@ -61,7 +61,7 @@ fn a_mistake_is_told_with_file_line_field_and_what_was_expected() {
         (
             "young",
             "yuong",
-            ", line 3: yuong = 5000.0: unknown field `yuong`, expected one of `young`, `poisson`, `density`, `damping`, `friction`, `strength`, `toughness`, `unbreakable`",
+            ", line 3: yuong = 5000.0: unknown field `yuong`, expected one of `young`, `poisson`, `density`, `damping`, `friction`, `strength`, `toughness`, `yield_strain`, `plastic_limit`, `unbreakable`",
         ),
         (
             "\"ball\"",
@@ -147,12 +147,12 @@ fn a_mistake_is_told_with_file_line_field_and_what_was_expected() {
         (
             "shape = \"ball\"",
             "",
-            ", line 5: body 1, shape: expected either a shape or a file",
+            ", line 5: body 1, shape: expected either a shape, a file, voxels or a state",
         ),
         (
             "shape = \"ball\"",
             "shape = \"ball\"\nfile = \"a.png\"",
-            ", line 6: body 1, shape: expected either a shape or a file",
+            ", line 6: body 1, shape: expected either a shape, a file, voxels or a state",
         ),
         (
             "shape = \"ball\"",

@@ -6,7 +6,7 @@ use crate::Route;
 use fuwafuwa::hash::Hash;
 use fuwafuwa::{Dim, Dim2, Dim3, Shape, World};
 use fuwafuwa_scenes::scene::{
-    BodyText, Fetch, GameText, MAX_TEXT_BYTES, Scene, SceneError, ending_of,
+    BodyText, DriveText, Fetch, GameText, MAX_TEXT_BYTES, RigidText, Scene, SceneError, ending_of,
 };
 use std::any::Any;
 use std::io;
@@ -226,6 +226,13 @@ impl Level {
         }
         if scene.body.is_empty() {
             return Err(missing("body", "expected a table [[body]] at least"));
+        }
+        if scene.tick != fuwafuwa::world::TICK {
+            return Err(missing("tick", "expected none: ticks are of 1/60 s"));
+        }
+        let falls = |drive| matches!(drive, DriveText::Fixed | DriveText::Free);
+        if !{ scene.rigid.iter() }.all(|rigid| falls(rigid.drive) && rigid.state.is_none()) {
+            return Err(missing("rigid", "expected drive = \"fixed\" or \"free\""));
         }
         let [low, high] = scene.view;
         if low.iter().chain(&high).any(|k| k.abs() > 3.9) {

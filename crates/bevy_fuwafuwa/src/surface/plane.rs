@@ -102,7 +102,7 @@ impl Surface<Dim2> for Sheet {
             Changes {
                 nodes: mesh.nodes().map(|(id, _)| id).collect(),
                 elements: mesh.elements().map(|(id, _)| id).collect(),
-                parted: Vec::new(),
+                ..Changes::default()
             }
         });
         self.change(body, &changes);

@@ -4,6 +4,7 @@ use crate::dim::Dim;
 use crate::grid::VoxelGrid;
 use crate::law::Elasticity;
 use crate::material::Material;
+use crate::plasticity::Plasticity;
 
 /// What the materials of its voxels come to in a body as a whole.
 #[derive(Copy, Clone, Debug, Default)]
@@ -58,6 +59,10 @@ impl Blend {
             fastest_swing: swings.fold(0.0, f64::max) / f64::from(grid.voxel_size()),
         }
     }
+}
+
+pub fn plasticities(materials: &[Material]) -> Vec<Option<Plasticity>> {
+    materials.iter().map(Material::plasticity).collect()
 }
 
 pub fn elasticities(materials: &[Material], stiffness_scale: f64) -> Vec<Elasticity> {

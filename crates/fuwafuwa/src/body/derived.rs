@@ -57,13 +57,13 @@ impl<D: Dim> Body<D> {
     pub(crate) fn expose(&mut self, voxels: &[Point]) {
         for &voxel in voxels
             .iter()
-            .filter(|&&voxel| self.truth.grid.is_solid(voxel))
+            .filter(|&&voxel| self.truth.grid.is_left(voxel))
         {
             let owner = self
                 .truth
                 .mesh
                 .owner(voxel)
-                .expect("a solid voxel has an owner");
+                .expect("a voxel that is left has an owner");
             let element = self.truth.mesh.element(owner).expect("owners are alive");
             if element.cell.level > 0 {
                 continue;

@@ -64,8 +64,10 @@ impl<D: Dim> Body<D> {
                 .element(id)
                 .expect("only live elements settle");
             let wide = |rows: [[f32; 3]; 3]| rows.map(|row| row.map(f64::from));
-            let (rotation, deformation) =
-                (self.state.blocks.rotation(id), self.deformation(element).1);
+            let (rotation, deformation) = (
+                self.state.blocks.rotation(id),
+                self.elastic_part(id, element),
+            );
             if let Some(turned) = turn_far_from(&wide(rotation), &wide(deformation)) {
                 self.state
                     .blocks

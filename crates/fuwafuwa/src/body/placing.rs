@@ -22,6 +22,12 @@ impl<D: Dim> Body<D> {
         self.state.user_data
     }
 
+    /// How many times as strongly as on others gravity pulls on it:
+    /// [`World::set_gravity_scale`](crate::World::set_gravity_scale).
+    pub fn gravity_scale(&self) -> f32 {
+        self.state.gravity_scale
+    }
+
     /// The same body, moved `by` [m]. What is then not finite is quarantined in its first tick.
     #[inline(never)]
     pub fn moved(mut self, by: Vector) -> Self {

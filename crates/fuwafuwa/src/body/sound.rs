@@ -2,6 +2,7 @@
 //! it was written, not who wrote it.
 
 use super::Body;
+use super::blend::plasticities;
 use super::state::{MOST_GRAVITY, State};
 use super::truth::Truth;
 use crate::dim::Dim;
@@ -46,8 +47,14 @@ impl<D: Dim> Body<D> {
 
     /// Works out what no snapshot has, once it has been checked.
     pub(crate) fn restore(&mut self) {
-        let Truth { mesh, grid, .. } = &self.truth;
-        self.state.blocks.restore(mesh, grid);
+        let Truth {
+            mesh,
+            grid,
+            materials,
+            ..
+        } = &self.truth;
+        let plasticities = plasticities(materials);
+        self.state.blocks.restore(mesh, grid, &plasticities);
         for (id, _) in mesh.elements() {
             let piece = self.truth.pieces.of_element(id);
             let asleep = self.truth.pieces.list[piece].asleep;

@@ -23,6 +23,8 @@ pub struct Remodelled {
     pub shares: Vec<(NodeId, f64)>,
     /// Nodes that no element carries any more.
     pub abandoned: Vec<NodeId>,
+    /// What the elements that are gone filled, in the order of their cells.
+    gone: Vec<(Cell, u8, ElementId)>,
 }
 
 /// A new node and the old nodes whose state it takes, with weights that add up to 1.
@@ -42,6 +44,16 @@ impl Remodelled {
     /// The old nodes, and their weights, whose state a new one takes.
     pub fn from(&self, new: &Inheritance) -> &[(NodeId, f64)] {
         &self.shares[new.from.clone()]
+    }
+
+    /// The element that is gone and filled a voxel before.
+    pub fn origin<D: Dim>(&self, voxel: Point) -> Option<ElementId> {
+        path::<D>(voxel).find_map(|(cell, child)| {
+            let first = self.gone.partition_point(|gone| gone.0 < cell);
+            let mut here = self.gone[first..].iter().take_while(|gone| gone.0 == cell);
+            let own = here.find(|(_, children, _)| children >> child & 1 == 1);
+            own.map(|&(.., id)| id)
+        })
     }
 }
 
@@ -72,6 +84,12 @@ impl<D: Dim> Mesh<D> {
         for &cell in &refitted {
             self.refit(cell, pyramid.filled(grid, cell), &mut past, &mut removed);
         }
+        let filled = { past.removed.iter() }.map(|element| (element.cell, element.children));
+        let gone = filled.zip(&removed);
+        let mut gone: Vec<_> = gone
+            .map(|((cell, children), &id)| (cell, children, id))
+            .collect();
+        gone.sort_unstable();
         past.removed.sort_unstable_by_key(|element| element.cell);
         let mut seated = Vec::new();
         for id in self.elements_touched(sharing, changed, born, &refitted) {
@@ -87,12 +105,45 @@ impl<D: Dim> Mesh<D> {
         self.free_nodes.extend(&abandoned);
         self.free_elements.extend(&removed);
         Ok(Remodelled {
+            gone,
             removed,
             seated,
             inherited: past.inherited,
             shares: past.shares,
             abandoned,
         })
+    }
+
+    /// Takes out elements, and the nodes that no other carries, which it returns; grid, sharing and
+    /// pyramid have them no more.
+    pub(crate) fn take_out(&mut self, sharing: &Sharing<D>, elements: &[ElementId]) -> Vec<NodeId> {
+        let mut nodes = Vec::new();
+        for &id in elements {
+            let Some(element) = self.elements[id].take() else {
+                continue;
+            };
+            if let Some(place) = self.places.number(element.cell) {
+                self.by_cell.remove(place, id);
+            }
+            for voxel in self.voxels(&element) {
+                if let Some(place) = self.places.number(Cell::of(voxel)) {
+                    self.owners[place] = 0;
+                }
+            }
+            for &node in &element.nodes {
+                self.carriers[node] -= 1;
+            }
+            self.free_elements.push(id);
+            nodes.extend(element.nodes);
+        }
+        nodes.retain(|&node| self.carriers[node] == 0);
+        let gone = ascending(nodes.into_iter(), self.carriers.len());
+        for &id in &gone {
+            let point = sharing.index(self.node(id).at);
+            self.by_point.remove(point, id);
+        }
+        self.free_nodes.extend(&gone);
+        gone
     }
 
     /// The elements that may need other nodes, ascending: those in cells that were `refitted`, and those

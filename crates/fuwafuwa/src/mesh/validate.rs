@@ -43,7 +43,7 @@ impl<D: Dim> Mesh<D> {
                         "{id} fills {voxel:?}, listed for {other:?}"
                     )));
                 }
-                if !grid.is_solid(voxel) {
+                if !grid.is_left(voxel) {
                     let cell = element.cell;
                     return Err(Defect(format!("{cell:?} fills the empty voxel {voxel:?}")));
                 }
@@ -55,7 +55,7 @@ impl<D: Dim> Mesh<D> {
             }
         }
         let is_orphan =
-            |&voxel: &Point| grid.is_solid(voxel) && owners[grid.index(voxel)] == u8::MAX;
+            |&voxel: &Point| grid.is_left(voxel) && owners[grid.index(voxel)] == u8::MAX;
         match grid.voxels().find(is_orphan) {
             Some(voxel) => Err(Defect(format!("no element owns the voxel {voxel:?}"))),
             None => Ok(owners),
@@ -229,9 +229,9 @@ fn are_just<I: Id + Ord>(ids: &[I], expected: impl Iterator<Item = I>) -> bool {
 }
 
 fn check_grading<D: Dim>(grid: &VoxelGrid<D>, levels: &[u8]) -> Result<(), Defect> {
-    for voxel in grid.voxels().filter(|&voxel| grid.is_solid(voxel)) {
+    for voxel in grid.voxels().filter(|&voxel| grid.is_left(voxel)) {
         let level = levels[grid.index(voxel)];
-        for near in neighbourhood::<D>(voxel, 1).filter(|&near| grid.is_solid(near)) {
+        for near in neighbourhood::<D>(voxel, 1).filter(|&near| grid.is_left(near)) {
             if level.abs_diff(levels[grid.index(near)]) > 1 {
                 return Err(Defect(format!(
                     "levels jump between {voxel:?} and {near:?}"

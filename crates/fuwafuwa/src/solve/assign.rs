@@ -2,6 +2,7 @@
 
 use super::block::{ALL_LANES, Block, Home, VACANT};
 use super::kernel::{numbers, numbers_a_node, symmetric};
+use super::plastic::{Dent, NO_DENT, Undone};
 use super::{Blocks, PAD};
 use crate::chains::ascending;
 use crate::dim::Dim;
@@ -23,12 +24,13 @@ impl<D: Dim> Blocks<D> {
         removed: &[ElementId],
         seated: &[ElementId],
     ) {
-        let rotations: Vec<[f32; 4]> = seated.iter().map(|&id| self.rotation_of(id)).collect();
+        let state = |&id: &ElementId| (self.rotation_of(id), self.undone(id).unwrap_or(NO_DENT));
+        let states: Vec<([f32; 4], Dent)> = seated.iter().map(state).collect();
         for &id in removed.iter().chain(seated) {
             self.take_out(id);
         }
         let mut classes: BTreeMap<(u8, u32), Vec<Newcomer>> = BTreeMap::new();
-        for (&id, rotation) in seated.iter().zip(rotations) {
+        for (&id, (rotation, undone)) in seated.iter().zip(states) {
             let element = mesh.element(id).expect("seated elements are alive");
             let material = grid.material(mesh.first_voxel(element));
             let class = classes.entry((material, element.stencil)).or_default();
@@ -36,6 +38,7 @@ impl<D: Dim> Blocks<D> {
                 id,
                 element,
                 rotation,
+                undone,
             });
         }
         for (&(material, class), newcomers) in &classes {
@@ -128,7 +131,9 @@ impl<D: Dim> Blocks<D> {
     fn empty_block(&mut self, home: Home, count: u32) -> u32 {
         let kind = (count, home.is_pool());
         if let Some(index) = self.empty.get_mut(&kind).and_then(Vec::pop) {
-            self.blocks[index as usize].home = home;
+            let undone = self.undone_in(home);
+            let block = &mut self.blocks[index as usize];
+            (block.home, block.undone) = (home, undone);
             return index;
         }
         let first = self.nodes.len() as u32;
@@ -140,8 +145,10 @@ impl<D: Dim> Blocks<D> {
             let length = self.pooled.len() + numbers::<D>(count as usize);
             self.pooled.resize(length, [0.0; LANES]);
         }
+        let undone = self.undone_in(home);
         self.blocks.push(Block {
             home,
+            undone,
             elements: [VACANT; LANES],
             asleep: ALL_LANES,
             inverted: 0,
@@ -153,6 +160,12 @@ impl<D: Dim> Blocks<D> {
             numbers: numbers::<D>(count as usize) as u32,
         });
         self.blocks.len() as u32 - 1
+    }
+
+    /// What the elements of a block start with, where their material keeps dents.
+    fn undone_in(&self, home: Home) -> Option<Box<Undone>> {
+        let flow = self.flows.get(home.material() as usize - 1);
+        flow.copied().flatten().map(|_| Undone::none())
     }
 
     /// Where the numbers of a class stand.
@@ -179,6 +192,9 @@ impl<D: Dim> Blocks<D> {
             block.half_size[lane] = half_size;
             for part in 0..4 {
                 block.rotation[part][lane] = newcomer.rotation[part];
+            }
+            if let Some(undone) = &mut block.undone {
+                undone.set(lane, newcomer.undone);
             }
             for (place, &node) in newcomer.element.nodes.iter().enumerate() {
                 self.nodes[first + place * LANES + lane] = node.0;
@@ -216,6 +232,7 @@ struct Newcomer<'a> {
     id: ElementId,
     element: &'a Element,
     rotation: [f32; 4],
+    undone: Dent,
 }
 
 /// A stencil in single precision, as the kernel reads it.

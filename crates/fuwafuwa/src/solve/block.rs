@@ -4,6 +4,7 @@ use super::kernel::{
     BlockView, Moduli, PerLane, Scratch, Uniform, forces, gradient, plain_forces, plain_gradient,
     stress,
 };
+use super::plastic::{Flow, Undone, plastic_stress};
 use crate::dim::Dim;
 use crate::lanes::{Eight, LANES, Row, on_widest_lanes};
 use crate::law::Law;
@@ -18,7 +19,6 @@ pub const ALL_LANES: u8 = u8::MAX;
 
 /// Elements side by side, and where their nodes, forces and stencils stand.
 #[derive(Clone, Debug)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Block {
     pub home: Home,
     pub elements: [u32; LANES],
@@ -29,6 +29,8 @@ pub struct Block {
     pub half_size: Eight,
     /// In space a quaternion; in the plane cosine and sine.
     pub rotation: [Eight; 4],
+    /// What was kneaded into each, where their material keeps dents.
+    pub undone: Option<Box<Undone>>,
     pub node_count: u32,
     /// Where its nodes and forces begin.
     pub first: u32,
@@ -66,6 +68,7 @@ impl Home {
 pub struct Shared<'a> {
     pub law: Law,
     pub moduli: &'a [Moduli],
+    pub flows: &'a [Option<Flow>],
     pub numbers: &'a [f32],
     pub pooled: &'a [Eight],
     pub nodes: &'a [u32],
@@ -142,6 +145,7 @@ struct Kept {
     sleepers: u8,
     inverted: u8,
     rotation: [Eight; 4],
+    undone: Option<Box<Undone>>,
     forces: Vec<f32>,
 }
 
@@ -153,6 +157,7 @@ impl Kept {
             sleepers,
             inverted: block.inverted,
             rotation: block.rotation,
+            undone: block.undone.clone(),
             forces: all[block.forces::<D>(first)].to_vec(),
         })
     }
@@ -164,6 +169,10 @@ impl Kept {
         let forces = forces.zip(self.forces.chunks_exact(D::N)).enumerate();
         for (_, (force, kept)) in forces.filter(|(at, _)| self.sleepers >> (at % LANES) & 1 == 1) {
             force.copy_from_slice(kept);
+        }
+        if let (Some(undone), Some(kept)) = (&mut block.undone, &self.undone) {
+            let sleepers = (0..LANES).filter(|lane| self.sleepers >> lane & 1 == 1);
+            sleepers.for_each(|lane| undone.set(lane, kept.get(lane)));
         }
         for (parts, kept) in block.rotation.iter_mut().zip(&self.rotation) {
             for lane in (0..LANES).filter(|lane| self.sleepers >> lane & 1 == 1) {
@@ -208,9 +217,17 @@ pub fn evaluate_group<D: Dim, S: Simd>(
         if block.asleep == ALL_LANES {
             continue;
         }
-        let moduli = &shared.moduli[block.home.material() as usize - 1];
+        let material = block.home.material() as usize - 1;
+        let moduli = &shared.moduli[material];
+        let mut undone = block.undone.take();
         let mut view = block.view::<D>(&shared, all, first);
-        stress::<D, S>(simd, law, moduli, &mut view, scratch);
+        match (&mut undone, shared.flows.get(material)) {
+            (Some(undone), Some(Some(flow))) => {
+                plastic_stress::<D, S>(simd, (moduli, flow), &mut view, undone, scratch);
+            }
+            _ => stress::<D, S>(simd, law, moduli, &mut view, scratch),
+        }
+        block.undone = undone;
     }
     for (block, scratch) in blocks.iter_mut().zip(&*scratch) {
         if block.asleep == ALL_LANES {

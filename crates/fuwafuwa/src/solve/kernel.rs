@@ -38,9 +38,9 @@ pub struct BlockView<'a> {
 /// The stiffnesses of a material in single precision.
 #[derive(Copy, Clone, Debug)]
 pub struct Moduli {
-    twice_shear: f32,
-    lame: f32,
-    young: f32,
+    pub twice_shear: f32,
+    pub lame: f32,
+    pub young: f32,
     hourglass: f32,
 }
 
@@ -96,11 +96,11 @@ pub const fn numbers<D: Dim>(nodes: usize) -> usize {
 pub struct Scratch {
     /// Positions of the nodes from the first of them.
     x: [[Eight; 3]; 27],
-    f: [[Eight; 3]; 3],
+    pub f: [[Eight; 3]; 3],
     moment: [[Eight; 3]; 3],
     centre: [Eight; 3],
     /// The stress; for [`Law::Endo2004`] the rotation.
-    stress: [[Eight; 3]; 3],
+    pub stress: [[Eight; 3]; 3],
 }
 
 impl Scratch {
@@ -357,7 +357,7 @@ fn scales<D: Dim, S: Simd>(simd: S, moduli: &Moduli, half: Lanes<S>) -> (Lanes<S
 /// First Piola–Kirchhoff stress [Pa] of the deformation f with rotation r; notes where f turns
 /// inside out.
 #[inline(always)]
-fn stress_of<D: Dim, S: Simd>(
+pub(super) fn stress_of<D: Dim, S: Simd>(
     simd: S,
     moduli: &Moduli,
     f: &Matrix<S>,

@@ -3,12 +3,15 @@
 
 use super::Blocks;
 use super::block::VACANT;
+use super::plastic::{Dent, NO_DENT};
 use super::saved::Saved;
 use crate::dim::Dim;
 use crate::grid::VoxelGrid;
 use crate::ids::ElementId;
 use crate::lanes::LANES;
 use crate::mesh::{Element, Mesh};
+use crate::plasticity::Plasticity;
+use crate::vector::{cross, dot};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::ops::Range;
 
@@ -19,25 +22,41 @@ impl<D: Dim> Blocks<D> {
         let numbers = |(_, element): (_, &Element)| parts::<D>() + element.nodes.len() * D::N;
         let numbers: usize = mesh.elements().map(numbers).sum();
         let fits = |saved: &Saved| {
-            saved.inverted.len() == mesh.element_count() && saved.numbers.len() == numbers
+            let undone = &saved.undone;
+            let is_one =
+                |(id, dent): &(ElementId, Dent)| mesh.element(*id).is_some() && is_sound::<D>(dent);
+            saved.inverted.len() == mesh.element_count()
+                && saved.numbers.len() == numbers
+                && undone.is_sorted_by(|a, b| a.0 < b.0)
+                && undone.iter().all(is_one)
         };
         self.saved.as_ref().is_some_and(fits)
     }
 
     /// Puts the elements of a mesh into blocks and gives them the state that was read from a file. Sleepers are
     /// still to be told, and stiffnesses to be set.
-    pub fn restore(&mut self, mesh: &Mesh<D>, grid: &VoxelGrid<D>) {
+    pub fn restore(
+        &mut self,
+        mesh: &Mesh<D>,
+        grid: &VoxelGrid<D>,
+        plasticities: &[Option<Plasticity>],
+    ) {
         let Some(Saved {
             law,
             numbers,
+            undone,
             inverted,
         }) = self.saved.take()
         else {
             return;
         };
         *self = Self::new(law, &[], grid.voxel_size());
+        self.set_plasticities(plasticities);
         let all: Vec<ElementId> = mesh.elements().map(|(id, _)| id).collect();
         self.update(mesh, grid, &[], &all);
+        for (id, dent) in undone {
+            self.set_undone(id, dent);
+        }
         let mut numbers = numbers.into_iter();
         for (&id, inverted) in all.iter().zip(inverted) {
             let (index, lane) = self.assigned[id];
@@ -58,9 +77,12 @@ impl<D: Dim> Blocks<D> {
     }
 
     fn to_be_saved(&self) -> Saved {
+        let known = self.assigned.ids();
+        let undone = known.filter_map(|id| Some((id, self.undone(id)?)));
         let mut saved = Saved {
             law: self.law,
             numbers: Vec::new(),
+            undone: undone.filter(|(_, dent)| *dent != NO_DENT).collect(),
             inverted: Vec::new(),
         };
         let assigned = self.assigned.iter();
@@ -84,6 +106,21 @@ impl<D: Dim> Blocks<D> {
         let place = (first + node * LANES + lane as usize) * D::N;
         place..place + D::N
     }
+}
+
+/// Whether something can have been kneaded into an element: it kept its volume, and is flat in the plane.
+fn is_sound<D: Dim>(dent: &Dent) -> bool {
+    let [x, y, z] = *dent;
+    let volume = dot(x, cross(y, z));
+    let is_flat = (D::N..3).all(|axis| {
+        let column = [x[axis], y[axis], z[axis]];
+        dent[axis] == NO_DENT[axis] && column == NO_DENT[axis]
+    });
+    let most = dent
+        .iter()
+        .flatten()
+        .fold(0.0f32, |most, k| most.max(k.abs()));
+    is_flat && most < 100.0 && (volume - 1.0).abs() < 0.1
 }
 
 /// How many numbers a rotation has: cosine and sine, or a quaternion.

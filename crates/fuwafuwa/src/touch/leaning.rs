@@ -16,7 +16,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::marker::PhantomData;
 
 /// A piece: its body and number.
-type Sleeper = (BodySlot, PieceId);
+pub type Sleeper = (BodySlot, PieceId);
 
 /// The sleepers that lean on something rigid, by body and number in ascending order.
 pub fn leaning_on_rigid<D: Dim>(rigid: &Rigid, bodies: &Bodies<D>) -> Vec<Sleeper> {
@@ -43,6 +43,27 @@ pub fn leaning_on_body<D: Dim>(body: &Body<D>, bodies: &Bodies<D>) -> Vec<Sleepe
         leaning.extend(sleepers.touching(at, sphere.radius));
     }
     sleepers.with_those_on(leaning)
+}
+
+/// The sleepers that lean on some pieces, given in ascending order, and are none of them; ascending.
+pub fn leaning_on_pieces<D: Dim>(pieces: &[Sleeper], bodies: &Bodies<D>) -> Vec<Sleeper> {
+    let sleepers = Sleepers::of(bodies);
+    let is_one = |piece: &Sleeper| pieces.binary_search(piece).is_ok();
+    let mut leaning = BTreeSet::new();
+    for (slot, body) in bodies.by_slot() {
+        if pieces.iter().all(|&(body, _)| body != slot) {
+            continue;
+        }
+        let own = spheres_of(slot, body).filter(|own| is_one(&(slot, own.piece)));
+        for sphere in own {
+            let at = sphere.mean::<D>(&body.state.position);
+            leaning.extend(sleepers.touching(at, sphere.radius));
+        }
+    }
+    leaning.retain(|piece| !is_one(piece));
+    let mut leaning = sleepers.with_those_on(leaning);
+    leaning.retain(|piece| !is_one(piece));
+    leaning
 }
 
 /// The contact spheres of all sleepers.

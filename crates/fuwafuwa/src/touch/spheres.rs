@@ -70,6 +70,16 @@ impl Spheres {
         self.followed.clear();
     }
 
+    /// Elements of a body, ascending, are gone: who has their ids next is another one.
+    pub fn remove_elements(&mut self, slot: BodySlot, elements: &[ElementId]) {
+        for key in self.keys.iter_mut().filter(|(body, _)| *body == slot) {
+            if elements.binary_search(&key.1).is_ok() {
+                *key = (BodySlot::NONE, ElementId(u32::MAX));
+            }
+        }
+        self.followed.clear();
+    }
+
     /// A tick begins: keeps up with what tore since the last one, and adds who fell asleep to `changed`; where bodies
     /// may be anything, lists the spheres anew, and returns then the number that each of those before has now, or
     /// [`SphereId::NONE`].

@@ -1,6 +1,6 @@
 //! What is done to bodies from outside: moved, turned, thrown, pushed, put to sleep.
 
-use super::{Refused, Settings, TICK, World};
+use super::{Refused, Settings, World};
 use crate::body::{Body, MOST_GRAVITY};
 use crate::contact::Hit;
 use crate::dim::Dim;
@@ -251,16 +251,16 @@ impl<D: Dim> World<D> {
         Ok(())
     }
 
-    /// Changes what holds for the whole world. Everything wakes. Bodies are softened or stiffened as the most substeps ask
-    /// for now: see [`Body::stiffness_scale`].
+    /// Changes what holds for the whole world, from the next tick on. Everything wakes. Bodies are softened or stiffened as
+    /// the most substeps ask for now: see [`Body::stiffness_scale`].
     ///
     /// # Errors
     /// [`Refused::Setting`], and all stays as it was, when a setting is out of range.
     #[inline(never)]
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), Refused> {
-        settings.check()?;
+        settings.check().map_err(Refused::setting)?;
         self.settings = settings;
-        let shortest = f64::from(TICK) / f64::from(settings.most_substeps);
+        let shortest = settings.shortest_substep();
         let mut all: Vec<Hit> = Vec::new();
         for (slot, body) in self.bodies.by_slot_mut() {
             body.scale_stiffness_for(shortest);

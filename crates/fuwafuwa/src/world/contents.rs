@@ -1,6 +1,6 @@
 //! What stands in a world: put in, taken out, changed and looked at from outside.
 
-use super::{Refused, Settings, TICK, World};
+use super::{Refused, Settings, World};
 use crate::blade::{Blade, CutReport};
 use crate::body::{Bodies, Body};
 use crate::changes::History;
@@ -27,8 +27,7 @@ impl<D: Dim> World<D> {
     /// [`Body::stiffness_scale`].
     #[inline(never)]
     pub fn add_body(&mut self, mut body: Body<D>) -> BodyId {
-        let shortest = f64::from(TICK) / f64::from(self.settings.most_substeps);
-        body.scale_stiffness_for(shortest);
+        body.scale_stiffness_for(self.settings.shortest_substep());
         let id = self.bodies.insert(body);
         // It may have fallen asleep elsewhere.
         self.wake_body(id);

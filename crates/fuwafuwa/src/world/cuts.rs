@@ -1,6 +1,6 @@
 //! Knives: put in, taken out, looked at, and their phases of a substep.
 
-use super::{FRACTURE_ROUNDS, Refused, TICK, World};
+use super::{ROUNDS, Refused, World};
 use crate::contact::Hit;
 use crate::dim::Dim;
 use crate::event::{Event, StepReport};
@@ -74,9 +74,10 @@ impl<D: Dim> World<D> {
     /// Lets edges hold what they are in. Returns the sleepers that they wake.
     pub(super) fn hold_edges(&mut self, duration: f32) -> Vec<Hit> {
         let mut woken = Vec::new();
+        let round = self.settings.tick / self.settings.in_tick(ROUNDS) as f32;
         for knife in self.knives.iter_mut() {
             if let Ok(holder) = self.rigids.get(knife.holder) {
-                knife.follow(&self.bodies, holder, TICK / FRACTURE_ROUNDS as f32);
+                knife.follow(&self.bodies, holder, round);
                 woken.extend(knife.solve(&mut self.bodies, &mut self.rigids, duration));
             }
         }

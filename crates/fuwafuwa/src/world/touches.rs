@@ -171,7 +171,7 @@ impl<D: Dim> World<D> {
             Party::Rigid(id) => self.rigids.get(id).is_ok_and(|rigid| !rigid.moves()),
             Party::Piece { body, piece } => self.bodies.get(body).is_ok_and(|body| {
                 let piece = body.truth.pieces.list.get(piece.index());
-                piece.is_some_and(|piece| piece.asleep)
+                piece.is_some_and(|piece| piece.asleep && !piece.removed)
             }),
         }
     }

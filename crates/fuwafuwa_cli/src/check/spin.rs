@@ -192,6 +192,7 @@ fn spinning<D: Dim>(n: usize, material: Material) -> Result<World<D>> {
         gravity: [0.0; 3],
         drag: 0.0,
         most_substeps: 1024,
+        ..Settings::default()
     })?;
     world.add_body(body);
     Ok(world)

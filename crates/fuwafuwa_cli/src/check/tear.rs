@@ -100,6 +100,7 @@ fn load<D: Dim>(n: usize, notched: bool) -> Result<f64> {
         gravity: [0.0; 3],
         drag: 0.0,
         most_substeps: 256,
+        ..Settings::default()
     })?;
     world.add_body(body);
     let mut peak = 0.0f64;

@@ -190,7 +190,7 @@ impl Faces {
 
     /// Which elements differ from what they were, and what they are now.
     fn compare(&mut self, body: &Body<Dim3>) -> Vec<(ElementId, Form)> {
-        let mut stale = Vec::new();
+        let (mut stale, mut has_lost) = (Vec::new(), false);
         let changes = body.changes_since(&mut self.followed);
         let is_other = changes.is_none();
         if is_other {
@@ -212,12 +212,17 @@ impl Faces {
                 },
                 _ => NO_FORM,
             };
-            if bare == ALL_FACES && (is_other || known.bare != ALL_FACES) {
+            let (is_crumb, was_crumb) = (now.bare == ALL_FACES, known.bare == ALL_FACES);
+            if is_crumb && (is_other || !was_crumb) {
                 self.crumbs.push(id);
             }
+            has_lost |= was_crumb && !is_crumb;
             if (now.bare, now.at, now.nodes) != (known.bare, known.at, known.nodes) {
                 stale.push((id, now));
             }
+        }
+        if has_lost {
+            self.crumbs.retain(|&id| body.bare_faces(id) == ALL_FACES);
         }
         stale
     }

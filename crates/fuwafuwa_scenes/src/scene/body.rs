@@ -5,7 +5,7 @@ use super::rigid::{BallText, BoxText, CapsuleText, HalfSpaceText};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD as BASE64;
 use fuwafuwa::law::Elasticity;
-use fuwafuwa::{BodyError, Material};
+use fuwafuwa::{BodyError, Layers, Material};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -27,12 +27,18 @@ pub struct MaterialText {
     pub strength: Option<f32>,
     /// [Pa √m]
     pub toughness: Option<f32>,
+    /// The strain beyond which it keeps a dent; none when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub yield_strain: Option<f32>,
+    /// To how many times less than its width it is pressed for good.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plastic_limit: Option<f32>,
     /// Whether it never tears.
     #[serde(default)]
     pub unbreakable: bool,
 }
 
-/// A body as it is written down. It needs a `shape` or a `file`.
+/// A body as it is written down. It needs a `shape`, a `file`, `voxels` or a `state`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyText {
@@ -43,6 +49,14 @@ pub struct BodyText {
     pub file: Option<String>,
     /// The bytes of that file in base64, once they travel with the scene.
     pub content: Option<String>,
+    /// In place of a shape: its voxels, one by one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub voxels: Option<VoxelsText>,
+    /// In place of a shape: all of it as it was, however torn, deformed and thrown; see [`Scene::of_world`].
+    ///
+    /// [`Scene::of_world`]: super::Scene::of_world
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub state: Option<String>,
     /// Voxels across; of a silhouette at most so many, of a model it is not asked.
     pub n: Option<usize>,
     /// Width of the grid [m]; with a file, of its longest side.
@@ -67,6 +81,18 @@ pub struct BodyText {
     /// [m/s]
     #[serde(default)]
     pub velocity: [f32; 3],
+    /// Turned about its low corner, before it is moved there: axis times angle [rad]; in the plane about the third alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub turned: Option<[f32; 3]>,
+    /// How many times as strongly as on others gravity pulls on it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gravity_scale: Option<f32>,
+    /// Whom it touches.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub layers: Option<LayersText>,
+    /// A number of the user's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub user_data: Option<u64>,
     /// Cut along planes this far apart on every axis [m].
     pub diced: Option<f32>,
     /// Cut into single voxels.
@@ -78,6 +104,57 @@ pub struct BodyText {
     /// The elastic force of the paper instead of the patch-exact one.
     #[serde(default)]
     pub paper_law: bool,
+}
+
+/// The voxels of a grid as they are written down.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct VoxelsText {
+    /// Voxels on each axis; 1 on the third in 2D.
+    pub size: [usize; 3],
+    /// Edge length of a voxel [m].
+    pub voxel_size: f32,
+    /// Runs of materials, the first axis running fastest: `"12x0 4x1"` are twelve voxels that are empty and four of material 1.
+    pub runs: String,
+}
+
+/// Layers as they are written down: see [`fuwafuwa::Layers`].
+#[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LayersText {
+    /// Those that it is in, bit by bit.
+    #[serde(default = "first_layer")]
+    pub memberships: u32,
+    /// Those that it meets, bit by bit.
+    #[serde(default = "all_layers")]
+    pub filters: u32,
+}
+
+impl From<LayersText> for Layers {
+    fn from(text: LayersText) -> Self {
+        Self {
+            memberships: text.memberships,
+            filters: text.filters,
+        }
+    }
+}
+
+impl LayersText {
+    /// What is to be said of layers, if they are not the usual ones.
+    pub(super) fn of(layers: Layers) -> Option<Self> {
+        (layers != Layers::default()).then_some(Self {
+            memberships: layers.memberships,
+            filters: layers.filters,
+        })
+    }
+}
+
+fn first_layer() -> u32 {
+    Layers::default().memberships
+}
+
+fn all_layers() -> u32 {
+    Layers::default().filters
 }
 
 /// What fills a grid.
@@ -143,6 +220,28 @@ impl MaterialText {
             friction: self.friction.unwrap_or(usual.friction),
             strength: borne(self.strength, usual.strength),
             toughness: borne(self.toughness, usual.toughness),
+            yield_strain: self.yield_strain.unwrap_or(usual.yield_strain),
+            plastic_limit: self.plastic_limit.unwrap_or(usual.plastic_limit),
+        }
+    }
+
+    /// What is to be said of a material: every number, so that it stays what it is.
+    pub(super) fn of(material: &Material) -> Self {
+        let Elasticity { young, poisson } = material.elasticity;
+        let unbreakable = material.strength == f32::INFINITY && material.toughness == f32::INFINITY;
+        let finite = |borne: f32| (!unbreakable).then_some(borne);
+        Self {
+            young: Some(young),
+            poisson: Some(poisson),
+            density: Some(material.density),
+            damping: Some(material.damping),
+            friction: Some(material.friction),
+            strength: finite(material.strength),
+            toughness: finite(material.toughness),
+            yield_strain: (material.yield_strain < f32::INFINITY).then_some(material.yield_strain),
+            plastic_limit: (material.plastic_limit != Material::default().plastic_limit)
+                .then_some(material.plastic_limit),
+            unbreakable,
         }
     }
 
@@ -185,6 +284,34 @@ impl BodyText {
     /// Takes the bytes of its file along.
     pub(super) fn embed(&mut self, bytes: &[u8]) {
         self.content = Some(BASE64.encode(bytes));
+    }
+}
+
+impl Default for BodyText {
+    fn default() -> Self {
+        Self {
+            shape: None,
+            file: None,
+            content: None,
+            voxels: None,
+            state: None,
+            n: None,
+            width: one(),
+            proportions: unit_proportions(),
+            material: None,
+            colours: BTreeMap::new(),
+            part: Vec::new(),
+            at: [0.0; 3],
+            velocity: [0.0; 3],
+            turned: None,
+            gravity_scale: None,
+            layers: None,
+            user_data: None,
+            diced: None,
+            crumbled: false,
+            uniform: false,
+            paper_law: false,
+        }
     }
 }
 

@@ -4,9 +4,10 @@ use super::body::BodyText;
 use super::budget::Budget;
 use super::error::{Wrong, require, require_vector};
 use super::grid;
+use super::state;
 use fuwafuwa::law::Law;
 use fuwafuwa::pyramid::Grading;
-use fuwafuwa::{Blade, Body, BodyError, Dim, Material, VoxelGrid};
+use fuwafuwa::{Blade, Body, BodyError, Dim, Material, Refused, Rotation, VoxelGrid, World};
 
 impl BodyText {
     /// The body, where it and those before it take no more work than the budget has.
@@ -17,6 +18,17 @@ impl BodyText {
     ) -> Result<Body<D>, Wrong> {
         require_vector(D::N, "at", self.at)?;
         require_vector(D::N, "velocity", self.velocity)?;
+        if let Some(state) = &self.state {
+            let good = self.without_state() == Self::default();
+            require(
+                good,
+                "state",
+                "expected nothing beside it: it says all of a body",
+            )?;
+            let body = state::body::<D>(state)?;
+            budget.take_voxels(body.grid().voxels().count())?;
+            return Ok(body);
+        }
         let grid = grid::of::<D>(self, budget)?;
         self.check_diced(&grid, budget)?;
         let law = match self.paper_law {
@@ -46,7 +58,41 @@ impl BodyText {
                 cut.map_err(|error| broken(error.to_string()))?;
             }
         }
+        if let Some(turned) = self.turned {
+            body = body.rotated(rotation_of::<D>(turned)?, [0.0; 3]);
+        }
         Ok(body.moved(self.at).thrown(self.velocity))
+    }
+
+    /// Puts the body into a world.
+    pub(super) fn add_to<D: Dim>(
+        &self,
+        world: &mut World<D>,
+        materials: &[Material],
+        budget: &mut Budget,
+    ) -> Result<(), Wrong> {
+        let body = world.add_body(self.build(materials, budget)?);
+        let wrong = |field: &'static str| move |refused: Refused| Wrong::new(field, refused);
+        if let Some(scale) = self.gravity_scale {
+            let set = world.set_gravity_scale(body, scale);
+            set.map_err(wrong("gravity_scale"))?;
+        }
+        if let Some(layers) = self.layers {
+            let set = world.set_layers(body, layers.into());
+            set.map_err(wrong("layers"))?;
+        }
+        if let Some(data) = self.user_data {
+            let set = world.set_user_data(body, data);
+            set.map_err(wrong("user_data"))?;
+        }
+        Ok(())
+    }
+
+    fn without_state(&self) -> Self {
+        Self {
+            state: None,
+            ..self.clone()
+        }
     }
 
     fn check_diced<D: Dim>(&self, grid: &VoxelGrid<D>, budget: &mut Budget) -> Result<(), Wrong> {
@@ -66,6 +112,22 @@ impl BodyText {
         budget.crossings -= crossings;
         Ok(())
     }
+}
+
+/// Axis times angle [rad] as a rotation.
+pub(super) fn rotation_of<D: Dim>(turned: [f32; 3]) -> Result<Rotation, Wrong> {
+    let good = turned.iter().all(|k| k.is_finite());
+    let found = format!("expected axis times angle, found {turned:?}");
+    require(good, "turned", found)?;
+    let flat = D::N == 3 || turned[..2] == [0.0; 2];
+    let expected = "expected 0 but for the third axis in a world with dim = 2";
+    require(flat, "turned", expected)?;
+    let squared = turned.iter().map(|&k| f64::from(k) * f64::from(k));
+    let angle = squared.sum::<f64>().sqrt() as f32;
+    Ok(match angle > 0.0 {
+        true => Rotation::about(turned, angle),
+        false => Rotation::NONE,
+    })
 }
 
 /// Planes a distance apart on every axis, through the whole body.

@@ -1,6 +1,6 @@
 //! The grid of a body, from what a scene says about its shape.
 
-use super::body::{BodyText, Form, PartText, ending_of};
+use super::body::{BodyText, Form, PartText, VoxelsText, ending_of};
 use super::budget::Budget;
 use super::error::{Wrong, require, shortened};
 use super::rigid::Shapes;
@@ -17,10 +17,16 @@ pub(super) fn of<D: Dim>(text: &BodyText, budget: &mut Budget) -> Result<VoxelGr
     let good = text.width > 0.0 && text.width.is_finite();
     let expected = format!("expected a positive number of metres, found {}", text.width);
     require(good, "width", expected)?;
-    let mut voxels = match (text.shape, &text.file) {
-        (Some(form), None) => of_form::<D>(text, form, budget)?,
-        (None, Some(file)) => of_file::<D>(text, file, budget)?,
-        _ => return Err(Wrong::new("shape", "expected either a shape or a file")),
+    let mut voxels = match (text.shape, &text.file, &text.voxels) {
+        (Some(form), None, None) => of_form::<D>(text, form, budget)?,
+        (None, Some(file), None) => of_file::<D>(text, file, budget)?,
+        (None, None, Some(voxels)) => {
+            of_voxels::<D>(voxels, budget).map_err(|wrong| wrong.under("voxels"))?
+        }
+        _ => {
+            let expected = "expected either a shape, a file, voxels or a state";
+            return Err(Wrong::new("shape", expected));
+        }
     };
     let count = voxels.materials.len();
     budget.take_voxels(count)?;
@@ -126,6 +132,43 @@ fn of_form<D: Dim>(text: &BodyText, form: Form, budget: &Budget) -> Result<Voxel
         Form::Empty => 0,
         _ => solid * material,
     }))
+}
+
+fn of_voxels<D: Dim>(text: &VoxelsText, budget: &Budget) -> Result<Voxels, Wrong> {
+    let good = text.size.iter().all(|k| (1..=MAX_EXTENT).contains(k));
+    let found = format!(
+        "expected 1 to {MAX_EXTENT} on each axis, found {:?}",
+        text.size
+    );
+    require(good, "size", found)?;
+    let good = text.size[D::N..].iter().all(|&k| k == 1);
+    require(good, "size", "expected 1 on the third axis in 2D")?;
+    let count = text.size.iter().product();
+    budget.check_voxels(count)?;
+    let mut materials: Vec<u8> = Vec::with_capacity(count);
+    for run in text.runs.split_ascii_whitespace() {
+        let both = run.split_once('x');
+        let both = both.and_then(|(length, material)| {
+            Some((length.parse::<usize>().ok()?, material.parse::<u8>().ok()?))
+        });
+        let Some((length, material)) = both else {
+            let found = shortened(run, 40);
+            let reason = format!("expected runs such as 12x1, found {found:?}");
+            return Err(Wrong::new("runs", reason));
+        };
+        let left = count - materials.len();
+        let reason = format!("expected {count} voxels, found more");
+        require(length <= left, "runs", reason)?;
+        materials.resize(materials.len() + length, material);
+    }
+    let found = materials.len();
+    let reason = format!("expected {count} voxels, found {found}");
+    require(found == count, "runs", reason)?;
+    Ok(Voxels {
+        size: text.size,
+        voxel_size: text.voxel_size,
+        materials,
+    })
 }
 
 fn of_file<D: Dim>(text: &BodyText, file: &str, budget: &mut Budget) -> Result<Voxels, Wrong> {

@@ -1,0 +1,260 @@
+//! Elements that keep their dents, all lanes at once: [`crate::plasticity`] in single precision.
+
+use super::kernel::{BlockView, Moduli, Scratch, stress_of};
+use super::turn::{Matrix, turn};
+use crate::dim::Dim;
+use crate::lanes::{Eight, LANES, Lanes, at_least, if_positive, load, splat};
+use crate::law::SQUASH_LIMIT;
+use crate::plasticity::{LEAST_VOLUME, MOST_FLOW, Plasticity};
+use fearless_simd::prelude::*;
+
+/// What was kneaded into each lane, undone: G, by rows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Undone(pub [[Eight; 3]; 3]);
+
+/// G of one element.
+pub type Dent = [[f32; 3]; 3];
+
+pub const NO_DENT: Dent = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+/// When elements of a material flow, in single precision.
+#[derive(Copy, Clone, Debug)]
+pub struct Flow {
+    most_deviator: f32,
+    most_flown: f32,
+}
+
+impl Flow {
+    pub fn of<D: Dim>(plasticity: Plasticity) -> Self {
+        Self {
+            most_deviator: plasticity.most_deviator::<D>() as f32,
+            most_flown: plasticity.most_flown::<D>() as f32,
+        }
+    }
+}
+
+impl Undone {
+    /// Nothing kneaded.
+    pub fn none() -> Box<Self> {
+        Box::new(Self(NO_DENT.map(|row| row.map(|entry| [entry; LANES]))))
+    }
+
+    pub fn get(&self, lane: usize) -> Dent {
+        self.0.map(|row| row.map(|entry| entry[lane]))
+    }
+
+    pub fn set(&mut self, lane: usize, dent: Dent) {
+        for (row, numbers) in self.0.iter_mut().zip(dent) {
+            for (entry, number) in row.iter_mut().zip(numbers) {
+                entry[lane] = number;
+            }
+        }
+    }
+}
+
+/// Second loop, as that of the kernel; then lets flow what is strained more than it bears.
+#[inline(always)]
+pub fn plastic_stress<D: Dim, S: Simd>(
+    simd: S,
+    (moduli, flow): (&Moduli, &Flow),
+    view: &mut BlockView,
+    undone: &mut Undone,
+    scratch: &mut Scratch,
+) {
+    let zero = splat(simd, 0.0);
+    let (mut f, mut g) = ([[zero; 3]; 3], [[zero; 3]; 3]);
+    for i in 0..D::N {
+        for j in 0..D::N {
+            f[i][j] = load(simd, &scratch.f[i][j]);
+            g[i][j] = load(simd, &undone.0[i][j]);
+        }
+    }
+    let elastic = product::<D, S>(zero, &f, &g);
+    let rotation = turn::<D, S>(simd, &elastic, view.rotation);
+    let own = stress_of::<D, S>(simd, moduli, &elastic, &rotation, view.inverted);
+    let soft = softening::<D, S>(simd, &g);
+    for i in 0..D::N {
+        for j in 0..D::N {
+            let mut sum = zero;
+            for k in 0..D::N {
+                sum += own[i][k] * g[j][k];
+            }
+            (soft * sum).store_array(&mut scratch.stress[i][j]);
+        }
+    }
+    let next = flown::<D, S>(simd, (moduli, flow), &elastic, &rotation, &g);
+    for i in 0..D::N {
+        for j in 0..D::N {
+            next[i][j].store_array(&mut undone.0[i][j]);
+        }
+    }
+}
+
+#[inline(always)]
+fn flown<D: Dim, S: Simd>(
+    simd: S,
+    (moduli, flow): (&Moduli, &Flow),
+    elastic: &Matrix<S>,
+    rotation: &Matrix<S>,
+    g: &Matrix<S>,
+) -> Matrix<S> {
+    let (zero, one) = (splat(simd, 0.0), splat(simd, 1.0));
+    let half = splat(simd, 0.5);
+    let mut stretch = [[zero; 3]; 3];
+    let mut mean = zero;
+    for i in 0..D::N {
+        for j in 0..D::N {
+            let mut both = zero;
+            for k in 0..D::N {
+                both += rotation[k][i] * elastic[k][j] + rotation[k][j] * elastic[k][i];
+            }
+            stretch[i][j] = half * both;
+        }
+        mean += stretch[i][i];
+    }
+    mean *= splat(simd, 1.0 / D::N as f32);
+    let (mut deviator, mut size) = (stretch, zero);
+    for i in 0..D::N {
+        deviator[i][i] -= mean;
+        for j in 0..D::N {
+            size += deviator[i][j] * deviator[i][j];
+        }
+    }
+    let size = size.sqrt();
+    let excess = size - splat(simd, flow.most_deviator);
+    let most = splat(simd, MOST_FLOW as f32);
+    let bounded = most - at_least(most - at_least(excess, zero), zero);
+    let share = bounded / at_least(size, splat(simd, 1e-6));
+    let mut step = [[zero; 3]; 3];
+    for i in 0..D::N {
+        for j in 0..D::N {
+            let own = if i == j { one } else { zero };
+            step[i][j] = own - share * deviator[i][j];
+        }
+    }
+    let mut next = product::<D, S>(zero, g, &step);
+    let scale = inverse_root::<D, S>(simd, determinant::<D, S>(&next));
+    for i in 0..D::N {
+        for j in 0..D::N {
+            next[i][j] *= scale;
+        }
+    }
+    let mut eased = product::<D, S>(zero, &stretch, &step);
+    for i in 0..D::N {
+        for j in 0..D::N {
+            eased[i][j] *= scale;
+        }
+    }
+    // What was kneaded back is stiffer: it must not store more than before.
+    let whole = determinant::<D, S>(elastic);
+    let before = softening::<D, S>(simd, g) * density::<D, S>(simd, moduli, &stretch, whole);
+    let after = softening::<D, S>(simd, &next) * density::<D, S>(simd, moduli, &eased, whole);
+    // Four things must hold, and numbers that are none hold nothing.
+    let (now, then) = (squared::<D, S>(zero, g), squared::<D, S>(zero, &next));
+    let room = splat(simd, flow.most_flown) - then;
+    let room = if_positive(room, room, now - then);
+    let volume = whole - splat(simd, LEAST_VOLUME as f32);
+    let may = if_positive(room, if_positive(before - after, volume, zero), zero);
+    let may = if_positive(excess, may, zero);
+    let mut kept = *g;
+    for i in 0..D::N {
+        for j in 0..D::N {
+            kept[i][j] = if_positive(may, next[i][j], g[i][j]);
+        }
+    }
+    kept
+}
+
+/// Elastic energy in a unit of volume, of a stretch in an element of a volume.
+#[inline(always)]
+fn density<D: Dim, S: Simd>(
+    simd: S,
+    moduli: &Moduli,
+    stretch: &Matrix<S>,
+    volume: Lanes<S>,
+) -> Lanes<S> {
+    let (zero, half) = (splat(simd, 0.0), splat(simd, 0.5));
+    let (mut strain, mut trace) = (*stretch, zero);
+    for i in 0..D::N {
+        strain[i][i] -= splat(simd, 1.0);
+        trace += strain[i][i];
+    }
+    let below = at_least(splat(simd, SQUASH_LIMIT as f32) - volume, zero);
+    half * (splat(simd, moduli.twice_shear) * squared::<D, S>(zero, &strain)
+        + splat(simd, moduli.lame) * trace * trace
+        + splat(simd, moduli.young) * below * below)
+}
+
+/// 1 / λ_max(GᵀG), bounded from the trace and the norm.
+#[inline(always)]
+fn softening<D: Dim, S: Simd>(simd: S, g: &Matrix<S>) -> Lanes<S> {
+    let zero = splat(simd, 0.0);
+    let (mut trace, mut norm) = (zero, zero);
+    for i in 0..D::N {
+        for j in 0..D::N {
+            let mut sum = zero;
+            for k in 0..D::N {
+                sum += g[k][i] * g[k][j];
+            }
+            norm += sum * sum;
+            if i == j {
+                trace += sum;
+            }
+        }
+    }
+    let axes = D::N as f32;
+    let mean = trace / splat(simd, axes);
+    let spread = at_least(norm - trace * mean, zero);
+    let share = splat(simd, (axes - 1.0) / axes);
+    splat(simd, 1.0) / (mean + (share * spread).sqrt())
+}
+
+/// One over the square or the cube root of what is near 1.
+#[inline(always)]
+fn inverse_root<D: Dim, S: Simd>(simd: S, of: Lanes<S>) -> Lanes<S> {
+    let one = splat(simd, 1.0);
+    if D::N == 2 {
+        return one / of.sqrt();
+    }
+    // Newton's iteration: from 1, three rounds are enough for 0.8 to 1.2.
+    let (four, third) = (splat(simd, 4.0), splat(simd, 1.0 / 3.0));
+    let mut root = one;
+    for _ in 0..3 {
+        root = root * (four - of * root * root * root) * third;
+    }
+    root
+}
+
+#[inline(always)]
+fn product<D: Dim, S: Simd>(zero: Lanes<S>, a: &Matrix<S>, b: &Matrix<S>) -> Matrix<S> {
+    let mut product = [[zero; 3]; 3];
+    for i in 0..D::N {
+        for j in 0..D::N {
+            for k in 0..D::N {
+                product[i][j] += a[i][k] * b[k][j];
+            }
+        }
+    }
+    product
+}
+
+#[inline(always)]
+fn determinant<D: Dim, S: Simd>(m: &Matrix<S>) -> Lanes<S> {
+    if D::N == 2 {
+        return m[0][0] * m[1][1] - m[0][1] * m[1][0];
+    }
+    m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1])
+        - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
+        + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0])
+}
+
+#[inline(always)]
+fn squared<D: Dim, S: Simd>(zero: Lanes<S>, m: &Matrix<S>) -> Lanes<S> {
+    let mut sum = zero;
+    for i in 0..D::N {
+        for j in 0..D::N {
+            sum += m[i][j] * m[i][j];
+        }
+    }
+    sum
+}

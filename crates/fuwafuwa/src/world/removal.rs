@@ -1,0 +1,233 @@
+//! Pieces that are taken out of a world, and what left a region.
+
+use super::{Refused, World};
+use crate::body::Body;
+use crate::contact::Hit;
+use crate::dim::Dim;
+use crate::event::Event;
+use crate::handle::{BodyId, Gone, RigidId};
+use crate::ids::PieceId;
+use crate::shape::Shape;
+use crate::touch::leaning_on_pieces;
+use crate::vector::three;
+
+/// How large a piece is, to be compared with others.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub enum PieceSize {
+    /// So many voxels.
+    Voxels(usize),
+    /// A volume as it was built [m³]; in the plane that of a sheet 1 m deep.
+    Volume(f64),
+    /// A mass [kg].
+    Mass(f64),
+}
+
+/// What was taken out of a world at once; the same stands among its [events](World::events) until the next tick.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Removed {
+    /// The pieces, by body and number in ascending order.
+    pub pieces: Vec<(BodyId, PieceId)>,
+    /// Bodies of which no piece is left: they are gone from the world.
+    pub bodies: Vec<BodyId>,
+    /// What was free and rigid.
+    pub rigids: Vec<RigidId>,
+    /// Mass of the pieces together [kg].
+    pub mass: f64,
+}
+
+impl<D: Dim> World<D> {
+    /// Takes a piece of a body out of the world for good: its voxels, elements and nodes are gone, what it touched is touched
+    /// no more, joints to it break. The rest of the body and all others stay as and where they are; those that leant on it
+    /// wake, and all that is free and rigid. A number of a piece is never given again. With its last piece a body leaves the
+    /// world, as by [`World::remove_body`]: its handle is stale from then on.
+    ///
+    /// ```
+    /// use fuwafuwa::{Blade, Body, Dim2, Material, PieceId, Settings, VoxelGrid, World};
+    ///
+    /// let mut world = World::<Dim2>::new(Settings::default())?;
+    /// let cake = Body::new(VoxelGrid::cube(16, 1.0)?, &[Material::default()])?;
+    /// let cake = world.add_body(cake);
+    /// let across = Blade::segment([0.3, -1.0], [0.3, 2.0]);
+    /// world.cut(cake, &across)?;
+    /// assert_eq!(world.bodies()[cake].pieces().count(), 2);
+    /// let removed = world.remove_piece(cake, PieceId(1))?;
+    /// assert!((removed.mass + world.bodies()[cake].total_mass() - 100.0).abs() < 1e-3);
+    /// assert_eq!(world.bodies()[cake].pieces().count(), 1);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Gone`] when there is no such body, or no such piece of it.
+    #[inline(never)]
+    pub fn remove_piece(&mut self, body: BodyId, piece: PieceId) -> Result<Removed, Gone> {
+        match self.bodies.get(body)?.has_piece(piece) {
+            true => Ok(self.take_out(&[(body, piece)])),
+            false => Err(Gone {
+                kind: "piece",
+                slot: piece.0,
+            }),
+        }
+    }
+
+    /// Takes all pieces below a size out of the world, as [`World::remove_piece`] does: the crumbs of a long game, which cost
+    /// time and hold nothing.
+    ///
+    /// ```
+    /// use fuwafuwa::world::PieceSize;
+    /// use fuwafuwa::{Body, Dim3, Material, Settings, VoxelGrid, World};
+    ///
+    /// let mut world = World::<Dim3>::new(Settings::default())?;
+    /// let ball = Body::new(VoxelGrid::ball(8, 0.4)?, &[Material::default()])?;
+    /// let ball = world.add_body(ball);
+    /// world.body_mut(ball)?.crumble()?;
+    /// assert_eq!(world.remove_small_pieces(PieceSize::Voxels(1))?.pieces, []);
+    /// let removed = world.remove_small_pieces(PieceSize::Voxels(2))?;
+    /// assert_eq!(removed.bodies, [ball]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Refused::Argument`] when a volume or a mass is negative or not finite.
+    #[inline(never)]
+    pub fn remove_small_pieces(&mut self, below: PieceSize) -> Result<Removed, Refused> {
+        let (PieceSize::Volume(least) | PieceSize::Mass(least)) = below else {
+            return Ok(self.take_out_where(|body| is_below(body, below)));
+        };
+        match least >= 0.0 && least.is_finite() {
+            true => Ok(self.take_out_where(|body| is_below(body, below))),
+            false => Err(Refused::Argument {
+                field: "size",
+                expected: "0 or more, and finite",
+            }),
+        }
+    }
+
+    /// Takes out of the world what left a region: pieces, as [`World::remove_piece`] does, of which no node is in it, and what
+    /// is free and rigid and does not reach into it. Hands and obstacles stay. For what falls for ever, a half-space below
+    /// the lowest floor is no region to stay in; the one above it is:
+    ///
+    /// ```
+    /// use fuwafuwa::{Dim3, Rigid, Settings, Shape, World};
+    ///
+    /// let mut world = World::<Dim3>::new(Settings::default())?;
+    /// let ball = Shape::Ball { centre: [0.0; 3], radius: 0.1 };
+    /// let ball = world.add_rigid(Rigid::free(ball, 1.0))?;
+    /// // Solid is what is above: its normal points down.
+    /// let above = Shape::half_space([0.0, -1.0, 0.0], [0.0, -2.0, 0.0]);
+    /// let mut removed = world.remove_outside(&above)?;
+    /// while removed.rigids.is_empty() && world.ticks() < 60 {
+    ///     world.step();
+    ///     removed = world.remove_outside(&above)?;
+    /// }
+    /// assert_eq!((removed.rigids, world.rigids().len()), (vec![ball], 0));
+    /// # Ok::<(), fuwafuwa::Refused>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Refused::Argument`] when the region is no [shape](Shape::check).
+    #[inline(never)]
+    pub fn remove_outside(&mut self, region: &Shape) -> Result<Removed, Refused> {
+        let region = region.seen_in::<D>();
+        let checked = region.check();
+        checked.map_err(|bad| Refused::Argument {
+            field: bad.field,
+            expected: bad.expected,
+        })?;
+        let mut removed = self.take_out_where(|body| {
+            let mut outside: Vec<bool> = vec![true; body.truth.pieces.list.len()];
+            for (id, _) in body.truth.mesh.nodes() {
+                let at = three(body.state.position[id]);
+                // What is nowhere is in no region.
+                let is_inside = region.distance(at).0 <= 0.0;
+                outside[body.truth.pieces.of_node(id).index()] &= !is_inside;
+            }
+            outside
+        });
+        let free = self.rigids.entries().filter(|(_, rigid)| rigid.is_free());
+        let left = free.filter(|(_, rigid)| rigid.shape().gap(&region).0 > 0.0);
+        removed.rigids = left.map(|(id, _)| id).collect();
+        for &rigid in &removed.rigids {
+            if self.remove_rigid(rigid).is_ok() {
+                self.events.push(Event::RigidRemoved { rigid });
+            }
+        }
+        Ok(removed)
+    }
+
+    /// Takes out the pieces that are marked, for each body by number.
+    fn take_out_where(&mut self, marks: impl Fn(&Body<D>) -> Vec<bool>) -> Removed {
+        let mut pieces = Vec::new();
+        for (id, body) in self.bodies.entries() {
+            let marked = body.truth.pieces.list.ids().zip(marks(body));
+            let marked = marked.filter(|&(piece, is_marked)| is_marked && body.has_piece(piece));
+            pieces.extend(marked.map(|(piece, _)| (id, piece)));
+        }
+        self.take_out(&pieces)
+    }
+
+    /// Takes out pieces that are there, given in ascending order.
+    fn take_out(&mut self, pieces: &[(BodyId, PieceId)]) -> Removed {
+        let mut removed = Removed::default();
+        if pieces.is_empty() {
+            return removed;
+        }
+        let hits = pieces.iter().map(|&(body, piece)| (body.slot(), piece));
+        let leaning = leaning_on_pieces(&hits.collect::<Vec<Hit>>(), &self.bodies);
+        for own in pieces.chunk_by(|a, b| a.0 == b.0) {
+            let id = own[0].0;
+            let of_it = own.iter().map(|&(_, piece)| piece);
+            self.take_out_of(id, &of_it.collect::<Vec<PieceId>>(), &mut removed);
+        }
+        self.wake_leaning(&leaning);
+        removed
+    }
+
+    /// Takes pieces out of a body, and the body out of the world when none is left.
+    fn take_out_of(&mut self, id: BodyId, pieces: &[PieceId], removed: &mut Removed) {
+        let body = self.bodies.at_mut(id.slot());
+        let whole = body.total_mass();
+        let events = pieces
+            .iter()
+            .map(|&piece| Event::PieceRemoved { body: id, piece });
+        self.events.extend(events);
+        removed
+            .pieces
+            .extend(pieces.iter().map(|&piece| (id, piece)));
+        if pieces.len() == body.truth.pieces.count() {
+            removed.mass += whole;
+            if self.bodies.remove(id).is_ok() {
+                self.nearby.remove_body(id.slot());
+                self.events.push(Event::BodyRemoved { body: id });
+                removed.bodies.push(id);
+            }
+            return;
+        }
+        let changes = body.take_out(pieces);
+        removed.mass += whole - body.total_mass();
+        let nearby = &mut self.nearby;
+        nearby.remove_elements(id.slot(), body, &changes.elements);
+    }
+}
+
+/// Which pieces of a body are below a size, by number.
+fn is_below<D: Dim>(body: &Body<D>, size: PieceSize) -> Vec<bool> {
+    let (mesh, pieces) = (&body.truth.mesh, &body.truth.pieces);
+    let mut found = vec![0.0; pieces.list.len()];
+    if let PieceSize::Mass(_) = size {
+        for (id, _) in mesh.nodes() {
+            found[pieces.of_node(id).index()] += f64::from(body.state.mass[id]);
+        }
+    } else {
+        for (id, element) in mesh.elements() {
+            found[pieces.of_element(id).index()] += mesh.voxels(element).count() as f64;
+        }
+    }
+    let width = f64::from(body.truth.grid.voxel_size());
+    let voxel = (0..D::N).fold(1.0, |volume, _| volume * width);
+    let least = match size {
+        PieceSize::Voxels(count) => count as f64,
+        PieceSize::Volume(volume) => volume / voxel,
+        PieceSize::Mass(mass) => mass,
+    };
+    found.into_iter().map(|size| size < least).collect()
+}

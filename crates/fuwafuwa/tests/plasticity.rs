@@ -1,0 +1,384 @@
+//! Materials that keep their dents.
+
+use fuwafuwa::plasticity::Plasticity;
+use fuwafuwa::plasticity::{elastic_part, flow, forces_after};
+use fuwafuwa::{
+    Blade, Body, BodyId, Dim, Dim2, Dim3, Drive, Elasticity, Material, Rigid, Settings, Shape,
+    VoxelGrid, World,
+};
+
+fn rubber() -> Material {
+    Material {
+        yield_strain: f32::INFINITY,
+        ..Material::clay()
+    }
+}
+
+fn weightless() -> Settings {
+    Settings {
+        gravity: [0.0; 3],
+        ..Settings::default()
+    }
+}
+
+/// A block between two plates; presses it to a share of its height and lets it go. Returns its height, width and volume after
+/// that, in terms of what they were.
+fn pressed<D: Dim>(material: Material, share: f32) -> ([f32; 3], World<D>, BodyId) {
+    let mut world = World::<D>::new(weightless()).unwrap();
+    let body = Body::new(VoxelGrid::<D>::cube(8, 1.0).unwrap(), &[material]).unwrap();
+    let id = world.add_body(body);
+    let plate = |y: f32| {
+        let half = [3.0, 0.25, 3.0];
+        let form = Shape::Box {
+            centre: [0.0; 3],
+            half,
+        };
+        let mut plate = Rigid::driven(form, [0.5, y, 0.0], Drive::Kinematic);
+        plate.friction = 0.0;
+        plate
+    };
+    let low = world.add_rigid(plate(-0.25)).unwrap();
+    let high = world.add_rigid(plate(1.25)).unwrap();
+    let _ = low;
+    let go = |world: &mut World<D>, from: f32, to: f32, ticks: u32| {
+        for tick in 1..=ticks {
+            let y = from + (to - from) * tick as f32 / ticks as f32;
+            world.set_goal(high, [0.5, 0.25 + y, 0.0]).unwrap();
+            let report = world.step();
+            assert_eq!(report.quarantined, 0);
+        }
+    };
+    go(&mut world, 1.0, share, 60);
+    go(&mut world, share, share, 20);
+    go(&mut world, share, 2.0, 60);
+    go(&mut world, 2.0, 2.0, 120);
+    let view = world.bodies()[id].piece_views()[0];
+    let [height, width] = [1, 0].map(|axis: usize| view.high[axis] - view.low[axis]);
+    let volume = volume(&world.bodies()[id]);
+    ([height, width, volume], world, id)
+}
+
+/// The volume of a body [m³]: of its elements as they are deformed.
+fn volume<D: Dim>(body: &Body<D>) -> f32 {
+    let width = f64::from(body.grid().voxel_size());
+    let parts = body.mesh().elements().map(|(id, element)| {
+        let f = body.strained(id).unwrap().deformation;
+        let det = f[0][0] * (f[1][1] * f[2][2] - f[1][2] * f[2][1])
+            - f[0][1] * (f[1][0] * f[2][2] - f[1][2] * f[2][0])
+            + f[0][2] * (f[1][0] * f[2][1] - f[1][1] * f[2][0]);
+        det * body.mesh().voxels(element).count() as f64
+    });
+    let voxel = (0..D::N).fold(1.0, |volume, _| volume * width);
+    (parts.sum::<f64>() * voxel) as f32
+}
+
+fn check_dent<D: Dim>() {
+    let ([height, width, volume], world, clay) = pressed::<D>(Material::clay(), 0.65);
+    assert!((0.6..0.8).contains(&height), "clay is {height} m high");
+    assert!(width > 1.05, "it went {width} m aside");
+    assert!((volume - 1.0).abs() < 0.05, "its volume is {volume}");
+    let body = &world.bodies()[clay];
+    let dents = body
+        .mesh()
+        .elements()
+        .filter_map(|(id, _)| body.plastic_strain(id));
+    assert!(dents.fold(0.0, f32::max) > 0.2);
+    let ([height, width, volume], world, rubber) = pressed::<D>(rubber(), 0.65);
+    assert!((height - 1.0).abs() < 0.01, "rubber is {height} m high");
+    assert!((width - 1.0).abs() < 0.01 && (volume - 1.0).abs() < 0.01);
+    let body = &world.bodies()[rubber];
+    assert!({ body.mesh().elements() }.all(|(id, _)| body.plastic_strain(id) == Some(0.0)));
+}
+
+#[test]
+fn a_squashed_block_of_clay_keeps_its_dent_and_one_of_rubber_does_not() {
+    check_dent::<Dim2>();
+    check_dent::<Dim3>();
+}
+
+/// What bears any strain is the same to the last bit as what knows of none, and so is what never strains so far.
+fn check_same_bits<D: Dim>() {
+    let run = |material: Material| {
+        let mut world = World::<D>::new(Settings::default()).unwrap();
+        let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+        world.add_rigid(Rigid::fixed(floor, 0.4)).unwrap();
+        let body = Body::new(VoxelGrid::<D>::ball(10, 1.0).unwrap(), &[material]).unwrap();
+        world.add_body(body.moved([0.0, 0.2, 0.0]));
+        (0..60).for_each(|_| _ = world.step());
+        world.hash()
+    };
+    let strong = |yield_strain| Material {
+        strength: f32::INFINITY,
+        toughness: f32::INFINITY,
+        yield_strain,
+        ..Material::default()
+    };
+    let rubber = run(strong(f32::INFINITY));
+    assert_eq!(run(strong(1e30)), rubber, "bears anything");
+    assert_ne!(run(strong(0.01)), rubber, "bears nothing");
+}
+
+#[test]
+fn what_is_not_strained_so_far_is_elastic_to_the_last_bit() {
+    check_same_bits::<Dim2>();
+    check_same_bits::<Dim3>();
+}
+
+/// Nodes of a cube moved at random: forces of the fast path against the reference, and what flows of both.
+fn check_reference<D: Dim>(seed: u32) -> f32 {
+    let mut state = seed.wrapping_mul(2_654_435_761).wrapping_add(9);
+    let mut random = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) as f32 / (1 << 24) as f32 - 0.5
+    };
+    let clay = Material::clay();
+    let grid = VoxelGrid::<D>::cube(1, 1.0).unwrap();
+    let mut body = Body::new(grid, &[clay]).unwrap();
+    let (id, element) = body.mesh().elements().next().unwrap();
+    let element = element.clone();
+    let stencil = body.mesh().stencil(&element).clone();
+    let mut undone = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let plasticity = Plasticity {
+        yield_strain: f64::from(clay.yield_strain),
+        limit: f64::from(clay.plastic_limit),
+    };
+    let elasticity: Elasticity = clay.elasticity;
+    for _ in 0..30 {
+        for &node in &element.nodes {
+            let rest = body.mesh().node(node).at.map(|k| k as f32);
+            let at = [0, 1, 2].map(|k: usize| rest[k] + 0.35 * random());
+            let mut at = at;
+            at[D::N..].fill(0.0);
+            assert!(body.set_node_state(node, at, [0.0; 3]));
+        }
+        let place = |&node: &_| body.node_state(node).0.map(f64::from);
+        let positions: Vec<[f64; 3]> = element.nodes.iter().map(place).collect();
+        let expected = forces_after(elasticity, &undone, &stencil, 1.0, &positions);
+        let deformation = body.strained(id).unwrap().deformation;
+        let before = body.strained(id).unwrap().energy;
+        undone = flow::<D>(plasticity, elasticity, &deformation, &undone);
+        // A substep of no length moves nothing.
+        body.advance(0.0, [0.0; 3]);
+        let after = body.strained(id).unwrap().energy;
+        assert!(after <= before * (1.0 + 1e-5), "energy {before} to {after}");
+        for (&node, expected) in element.nodes.iter().zip(&expected) {
+            let found = body.force_on(node);
+            for axis in 0..D::N {
+                let apart = (f64::from(found[axis]) - expected[axis]).abs();
+                assert!(
+                    apart < 2e-3 * elasticity.young,
+                    "{found:?} for {expected:?}"
+                );
+            }
+        }
+        let strain = body.plastic_strain(id).unwrap();
+        let other = fuwafuwa::plasticity::softening::<D>(&undone);
+        let expected = (1.0 / other).sqrt() - 1.0;
+        assert!(
+            (f64::from(strain) - expected).abs() < 2e-3,
+            "{strain} for {expected}"
+        );
+        let left = elastic_part(&deformation, &undone);
+        assert!(left.iter().flatten().all(|k| k.is_finite()));
+    }
+    body.plastic_strain(id).unwrap()
+}
+
+#[test]
+fn the_fast_path_flows_as_the_reference_does() {
+    for check in [check_reference::<Dim2>, check_reference::<Dim3>] {
+        let most = (0..20).map(check).fold(0.0, f32::max);
+        assert!(most > 0.1, "it never flowed");
+    }
+}
+
+/// A ball of clay that is thrown apart, spins, and flows: momentum and spin stay, energy never grows.
+fn check_kept<D: Dim>() {
+    let clay = Material {
+        damping: 0.0,
+        ..Material::clay()
+    };
+    let mut world = World::<D>::new(weightless()).unwrap();
+    let body = Body::new(VoxelGrid::<D>::ball(8, 1.0).unwrap(), &[clay]).unwrap();
+    let id = world.add_body(body);
+    let body = world.body_mut(id).unwrap();
+    let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
+    for node in nodes {
+        let (at, _, _) = body.node_state(node);
+        let [x, y, _] = [0, 1, 2].map(|k: usize| at[k] - 0.5);
+        let mut velocity = [2.5 * x - 3.0 * y, -2.0 * y + 1.0 * x, 1.5 * x];
+        velocity[D::N..].fill(0.0);
+        body.set_node_state(node, at, velocity);
+    }
+    let energy = |world: &World<D>| {
+        let energies = world.bodies()[id].energies([0.0; 3]);
+        energies.iter().map(|energy| energy.total()).sum::<f64>()
+    };
+    let momentum = world.bodies()[id].momentum();
+    let mut before = energy(&world);
+    let first = before;
+    for tick in 0..90 {
+        world.step();
+        let now = energy(&world);
+        assert!(
+            now < before + 0.005 * first,
+            "tick {tick}: {before} to {now} J"
+        );
+        before = before.min(now).max(now);
+        let other = world.bodies()[id].momentum();
+        for axis in 0..3 {
+            let linear = other.linear[axis] - momentum.linear[axis];
+            let spin = other.angular[axis] - momentum.angular[axis];
+            assert!(linear.abs() < 1e-2, "tick {tick}: {linear} N s");
+            assert!(
+                spin.abs() < 2e-2 * momentum.angular[2].abs().max(1.0),
+                "tick {tick}: {spin}"
+            );
+        }
+    }
+    let body = &world.bodies()[id];
+    let dents = body
+        .mesh()
+        .elements()
+        .filter_map(|(id, _)| body.plastic_strain(id));
+    assert!(dents.fold(0.0, f32::max) > 0.05, "nothing flowed");
+    assert!(
+        before < 0.99 * first,
+        "flow takes energy: {first} to {before} J"
+    );
+}
+
+#[test]
+fn momentum_is_kept_and_energy_never_grows() {
+    check_kept::<Dim2>();
+    check_kept::<Dim3>();
+}
+
+/// A dented body is cut: what comes of large elements has their dents, and a file has them too.
+fn check_inherited<D: Dim>() {
+    let (_, mut world, id) = pressed::<D>(Material::clay(), 0.6);
+    let mean = |world: &World<D>| {
+        let body = &world.bodies()[id];
+        let dents = body.mesh().elements().map(|(own, element)| {
+            let voxels = body.mesh().voxels(element).count() as f32;
+            (voxels * body.plastic_strain(own).unwrap(), voxels)
+        });
+        let (sum, voxels) = dents.fold((0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1));
+        sum / voxels
+    };
+    let (dent, elements) = (mean(&world), world.bodies()[id].mesh().element_count());
+    assert!(dent > 0.1);
+    let [x, y, _] = world.bodies()[id].centre_of_mass();
+    let blade = Blade {
+        from: [x - 0.03, y - 2.0, -3.0],
+        across: [0.05, 4.0, 0.0],
+        along: [0.0, 0.0, 6.0],
+    };
+    world.cut(id, &blade).unwrap();
+    let body = &world.bodies()[id];
+    assert!(body.pieces().count() == 2 && body.mesh().element_count() >= elements);
+    assert!(
+        (mean(&world) - dent).abs() < 1e-4,
+        "{} for {dent}",
+        mean(&world)
+    );
+    body.mesh().validate(body.grid(), body.sharing()).unwrap();
+    #[cfg(feature = "serde")]
+    {
+        use fuwafuwa::snapshot::{load, save};
+        let mut loaded = load::<D>(&save(&world)).unwrap();
+        assert_eq!(mean(&loaded), mean(&world));
+        for _ in 0..20 {
+            world.step();
+            loaded.step();
+        }
+        assert_eq!(loaded.hash(), world.hash());
+    }
+    (0..60).for_each(|_| _ = world.step());
+    assert!((mean(&world) - dent).abs() < 0.05, "it sprang back");
+}
+
+#[test]
+fn dents_outlast_cuts_and_files() {
+    check_inherited::<Dim2>();
+    check_inherited::<Dim3>();
+}
+
+/// Hands that beat on clay from everywhere: nothing goes out of hand.
+fn check_abuse<D: Dim>(seed: u32) {
+    let mut state = seed.wrapping_mul(2_654_435_761).wrapping_add(5);
+    let mut random = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) as f32 / (1 << 24) as f32
+    };
+    let clay = Material {
+        yield_strain: 0.005 + 0.3 * random() * random(),
+        plastic_limit: 1.0 + 3.0 * random(),
+        elasticity: Elasticity::new(
+            500.0 + 20_000.0 * f64::from(random()),
+            0.4 * f64::from(random()),
+        )
+        .unwrap(),
+        strength: if random() < 0.5 { 800.0 } else { f32::INFINITY },
+        ..Material::clay()
+    };
+    let mut world = World::<D>::new(Settings::default()).unwrap();
+    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    world.add_rigid(Rigid::fixed(floor, 0.4)).unwrap();
+    let body = Body::new(VoxelGrid::<D>::ball(8, 1.0).unwrap(), &[clay]).unwrap();
+    let id = world.add_body(body);
+    let hand = world.add_rigid(Rigid::hand([0.5, 2.0, 0.5], 0.2)).unwrap();
+    let limit = f64::from(clay.plastic_limit);
+    let (mut place, mut target) = ([0.5, 2.0, 0.5], [0.5; 3]);
+    for tick in 0..120 {
+        if tick % 8 == 0 {
+            target = [random() * 2.0 - 0.5, random() * 1.2, random()];
+        }
+        // Some metres in a second: faster, and rubber is shot away as well.
+        let goal = [0, 1, 2].map(|k: usize| place[k] + (target[k] - place[k]).clamp(-0.08, 0.08));
+        place = goal;
+        world.set_goal(hand, goal).unwrap();
+        let report = world.step();
+        assert_eq!(report.quarantined, 0, "{}D, seed {seed}, tick {tick}", D::N);
+    }
+    let body = &world.bodies()[id];
+    for (own, _) in body.mesh().elements() {
+        let dent = f64::from(body.plastic_strain(own).unwrap());
+        assert!(dent < limit * 1.05 + 0.05, "{dent} of {limit}");
+    }
+    let energy = body.kinetic_energy();
+    assert!(
+        energy < 1e4,
+        "{}D, seed {seed}: {energy} J of {clay:?}",
+        D::N
+    );
+}
+
+#[test]
+fn whatever_is_done_to_it_clay_stays_in_hand() {
+    (0..20).for_each(check_abuse::<Dim2>);
+    (0..20).for_each(check_abuse::<Dim3>);
+}
+
+#[test]
+fn bad_numbers_are_refused() {
+    for (yield_strain, limit, expected) in [
+        (0.0, 2.0, "material 1: yield_strain = 0 must be positive"),
+        (
+            f32::NAN,
+            2.0,
+            "material 1: yield_strain = NaN must be positive",
+        ),
+        (0.1, 0.5, "material 1: plastic_limit = 0.5 must be 1 to 4"),
+        (0.1, 5.0, "material 1: plastic_limit = 5 must be 1 to 4"),
+    ] {
+        let material = Material {
+            yield_strain,
+            plastic_limit: limit,
+            ..Material::default()
+        };
+        let grid = VoxelGrid::<Dim2>::cube(2, 1.0).unwrap();
+        let error = Body::new(grid, &[material]).unwrap_err();
+        assert_eq!(error.to_string(), expected);
+    }
+}

@@ -1,0 +1,469 @@
+//! Pieces that are taken out of a world: what is gone is gone, and the rest does not notice.
+#![cfg(feature = "serde")]
+
+use fuwafuwa::pyramid::Pyramid;
+use fuwafuwa::snapshot::{load, save};
+use fuwafuwa::{
+    Blade, Body, BodyId, Bookmark, Dim, Dim2, Dim3, End, Event, Grading, Joint, Material, Mesh,
+    Party, PieceId, PieceSize, Removed, Rigid, Settings, Shape, VoxelGrid, World,
+};
+
+const WEIGHTLESS: Settings = Settings {
+    gravity: [0.0; 3],
+    drag: 0.0,
+    most_substeps: 64,
+    tick: fuwafuwa::world::TICK,
+};
+
+fn random(seed: &mut u32, below: usize) -> usize {
+    *seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+    (*seed >> 8) as usize % below
+}
+
+/// The mesh of a body, and what it follows from, against all of it from scratch, and against a file.
+fn check_whole<D: Dim>(world: &World<D>, what: &str) {
+    for body in world.bodies() {
+        let (grid, sharing) = (body.grid(), body.sharing());
+        let fresh = Pyramid::new(grid, sharing, Grading::Graded);
+        let mesh = Mesh::grade(grid, sharing, &fresh).unwrap();
+        assert!(body.mesh().is_same_as(&mesh), "{what}: not as from scratch");
+        let valid = body.mesh().validate(grid, sharing);
+        valid.unwrap_or_else(|defect| panic!("{what}: {defect}"));
+        assert_eq!(
+            { body.mesh().elements() }
+                .map(|(_, element)| body.mesh().voxels(element).count())
+                .sum::<usize>(),
+            grid.left_count(),
+            "{what}"
+        );
+    }
+    let loaded = load::<D>(&save(world)).unwrap_or_else(|bad| panic!("{what}: {bad}"));
+    assert_eq!(loaded.hash(), world.hash(), "{what}");
+}
+
+fn blade<D: Dim>(seed: &mut u32) -> Blade {
+    let mut number = || random(seed, 1000) as f32 / 1000.0;
+    let from = [0.1 + 0.8 * number(), -1.0 - number(), -2.0];
+    let along = [number() - 0.5, 4.0, number() - 0.5];
+    Blade {
+        from,
+        across: along,
+        along: [0.0, 0.0, 5.0],
+    }
+}
+
+/// Cuts, tears, ticks and removals in any order.
+fn check_history<D: Dim>(seed: u32, n: usize) -> usize {
+    let mut seed_of = seed.wrapping_mul(2_654_435_761).wrapping_add(17);
+    let seed = &mut seed_of;
+    let soft = Material {
+        strength: 400.0,
+        toughness: 80.0,
+        ..Material::default()
+    };
+    let mut world = World::<D>::new(Settings::default()).unwrap();
+    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    world.add_rigid(Rigid::fixed(floor, 0.3)).unwrap();
+    let body = Body::new(VoxelGrid::<D>::ball(n, 1.0).unwrap(), &[soft]).unwrap();
+    let id = world.add_body(body);
+    let mut bookmark = world.bodies()[id].bookmark();
+    let mut gone = 0;
+    for round in 0..12 {
+        let what = format!("{}D, seed {seed}, round {round}", D::N);
+        match random(seed, 3) {
+            0 => drop(world.cut(id, &blade::<D>(seed)).unwrap()),
+            1 => {
+                let mut at = [0; 3];
+                (0..D::N).for_each(|axis| at[axis] = random(seed, n + 1) as i32);
+                let side = 1 + random(seed, (1 << D::CORNERS) - 2) as u8;
+                world.body_mut(id).unwrap().release(&[(at, side)]).unwrap();
+                bookmark = world.bodies()[id].bookmark();
+            }
+            _ => drop((0..2).map(|_| world.step()).collect::<Vec<_>>()),
+        }
+        let views = world.bodies()[id].piece_views();
+        let left = views.iter().filter(|view| !view.removed).count();
+        let largest = { views.iter() }.max_by_key(|view| view.element_count);
+        let largest = largest.unwrap().number;
+        if left < 2 {
+            continue;
+        }
+        world.bodies()[id].changes_since(&mut bookmark);
+        let other = views
+            .iter()
+            .find(|view| view.number != largest && !view.removed && random(seed, 2) == 0);
+        let removed = match other {
+            Some(view) => world.remove_piece(id, view.number).unwrap(),
+            None => world.remove_small_pieces(PieceSize::Voxels(3)).unwrap(),
+        };
+        gone += removed.pieces.len();
+        check_whole(&world, &what);
+        let body = &world.bodies()[id];
+        let pieces: Vec<PieceId> = removed.pieces.iter().map(|&(_, piece)| piece).collect();
+        // Too much to be kept is not told.
+        if let Some(changes) = body.changes_since(&mut bookmark) {
+            assert_eq!(changes.removed, pieces, "{what}");
+            assert!({ changes.elements.iter() }.all(|&id| body.mesh().element(id).is_none()));
+            assert!({ changes.nodes.iter() }.all(|&id| !body.mesh().is_alive(id)));
+        }
+        let now = body.piece_views();
+        assert!(
+            pieces.iter().all(|piece| now[piece.index()].removed),
+            "{what}"
+        );
+        // A tick and its copy from a file go the same way.
+        let mut loaded = load::<D>(&save(&world)).unwrap();
+        world.step();
+        loaded.step();
+        assert_eq!(loaded.hash(), world.hash(), "{what}");
+        check_whole(&world, &what);
+    }
+    gone
+}
+
+#[test]
+fn whatever_is_removed_the_rest_is_as_from_scratch() {
+    let flat = (0..20).map(|seed| check_history::<Dim2>(seed, 12 + seed as usize % 9));
+    assert!(flat.sum::<usize>() > 30, "hardly anything came off");
+    let solid = (0..8).map(|seed| check_history::<Dim3>(seed, 7 + seed as usize % 4));
+    assert!(solid.sum::<usize>() > 10, "hardly anything came off");
+}
+
+/// A cube cut in two halves side by side.
+fn halves<D: Dim>(settings: Settings) -> (World<D>, BodyId) {
+    let mut world = World::new(settings).unwrap();
+    let cube = VoxelGrid::cube(8, 1.0).unwrap();
+    let cube = Body::new(cube, &[Material::default()]).unwrap();
+    let cube = world.add_body(cube);
+    let blade = Blade {
+        from: [0.5, -1.0, -1.0],
+        across: [0.0, 3.0, 0.0],
+        along: [0.0, 0.0, 3.0],
+    };
+    world.cut(cube, &blade).unwrap();
+    assert_eq!(world.bodies()[cube].pieces().count(), 2);
+    (world, cube)
+}
+
+fn check_rest_untouched<D: Dim>() {
+    let (mut world, cube) = halves::<D>(WEIGHTLESS);
+    world
+        .add_velocity(cube, [0.3, 0.1, 0.0], [0.0, 0.0, 0.5])
+        .unwrap();
+    (0..3).for_each(|_| _ = world.step());
+    let states = |world: &World<D>, piece: u32| -> Vec<_> {
+        let body = &world.bodies()[cube];
+        let nodes = body.mesh().nodes().map(|(id, _)| id);
+        let own = nodes.filter(|&id| body.pieces().of_node(id) == PieceId(piece));
+        own.map(|id| (id, body.node_state(id))).collect()
+    };
+    let (before, whole) = (states(&world, 0), world.bodies()[cube].total_mass());
+    let removed = world.remove_piece(cube, PieceId(1)).unwrap();
+    assert_eq!(states(&world, 0), before);
+    assert_eq!(states(&world, 1), []);
+    let left = world.bodies()[cube].total_mass();
+    assert!((removed.mass + left - whole).abs() < 1e-9 * whole && removed.mass > 0.3 * whole);
+    let events = [Event::PieceRemoved {
+        body: cube,
+        piece: PieceId(1),
+    }];
+    assert_eq!(world.events()[world.events().len() - 1..], events);
+    // Once more it is not there.
+    let error = world.remove_piece(cube, PieceId(1)).unwrap_err();
+    assert_eq!((error.kind, error.slot), ("piece", 1));
+    assert!(world.remove_piece(cube, PieceId(7)).is_err());
+    let momentum = world.bodies()[cube].momentum().linear;
+    (0..30).for_each(|_| _ = world.step());
+    let now = world.bodies()[cube].momentum().linear;
+    for axis in 0..3 {
+        assert!(
+            (now[axis] - momentum[axis]).abs() < 1e-3 * left,
+            "{now:?} {momentum:?}"
+        );
+    }
+}
+
+#[test]
+fn the_rest_keeps_its_places_its_mass_and_its_motion() {
+    check_rest_untouched::<Dim2>();
+    check_rest_untouched::<Dim3>();
+}
+
+/// What crumbles away around a piece leaves what holds it, how it is damped and what it bears as it was.
+#[test]
+fn the_rest_swings_as_if_the_other_half_were_far_away() {
+    let (mut world, cube) = halves::<Dim2>(WEIGHTLESS);
+    let (mut other, _) = halves::<Dim2>(WEIGHTLESS);
+    world.remove_piece(cube, PieceId(1)).unwrap();
+    let far = |world: &mut World<Dim2>| {
+        let body = world.body_mut(cube).unwrap();
+        let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
+        for id in nodes {
+            let (mut at, _, _) = body.node_state(id);
+            match body.pieces().of_node(id) {
+                PieceId(0) => at[1] *= 1.2,
+                _ => at[0] += 50.0,
+            }
+            body.set_node_state(id, at, [0.0; 3]);
+        }
+    };
+    far(&mut world);
+    far(&mut other);
+    for _ in 0..30 {
+        world.step();
+        other.step();
+    }
+    let [alone, beside] = [&world, &other].map(|world| {
+        let body = &world.bodies()[cube];
+        let nodes = body.mesh().nodes().map(|(id, _)| id);
+        let own = nodes.filter(|&id| body.pieces().of_node(id) == PieceId(0));
+        own.map(|id| body.node_state(id)).collect::<Vec<_>>()
+    });
+    assert_eq!(alone, beside);
+}
+
+fn check_leaning<D: Dim>() {
+    let mut world = World::<D>::new(Settings::default()).unwrap();
+    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    world.add_rigid(Rigid::fixed(floor, 0.5)).unwrap();
+    let cube = |n, width| {
+        let strong = Material {
+            strength: f32::INFINITY,
+            ..Material::default()
+        };
+        Body::new(VoxelGrid::<D>::cube(n, width).unwrap(), &[strong]).unwrap()
+    };
+    let below = world.add_body(cube(8, 0.8).moved([0.0, 0.0, 0.0]));
+    let blade = Blade {
+        from: [0.4, -1.0, -1.0],
+        across: [0.0, 3.0, 0.0],
+        along: [0.0, 0.0, 3.0],
+    };
+    world.cut(below, &blade).unwrap();
+    // One on each half, one elsewhere.
+    let on_left = world.add_body(cube(3, 0.3).moved([0.05, 0.82, 0.2]));
+    let on_right = world.add_body(cube(3, 0.3).moved([0.45, 0.82, 0.2]));
+    let far = world.add_body(cube(3, 0.3).moved([5.0, 0.01, 0.0]));
+    let all_sleep = |world: &World<D>| {
+        let pieces = world.bodies().iter().flat_map(|body| &body.pieces().list);
+        pieces.into_iter().all(|piece| piece.asleep)
+    };
+    // They may lean on each other for long; what they lie on is all that counts.
+    (0..40).for_each(|_| _ = world.step());
+    for id in [below, on_left, on_right, far] {
+        world.put_to_sleep(id).unwrap();
+    }
+    (0..10).for_each(|_| _ = world.step());
+    assert!(all_sleep(&world), "somebody does not rest");
+    let touching = |world: &World<D>| -> Vec<Event> {
+        let ended = |event: &&Event| matches!(event, Event::ContactEnded { .. });
+        world.events().iter().filter(ended).copied().collect()
+    };
+    let asleep = |world: &World<D>, id: BodyId, piece: usize| {
+        world.bodies()[id].pieces().list[PieceId(piece as u32)].asleep
+    };
+    let centre = world.bodies()[on_right].centre_of_mass();
+    let right = if { world.bodies()[below].piece_views() }[0].centre[0] > 0.4 {
+        0
+    } else {
+        1
+    };
+    world.remove_piece(below, PieceId(right as u32)).unwrap();
+    assert!(!asleep(&world, on_right, 0), "it leant on what is gone");
+    // The other half leant on it too, and so who lies on that.
+    assert!(!asleep(&world, on_left, 0) && asleep(&world, far, 0));
+    let woken = |event: &Event| matches!(event, Event::Woke { body, .. } if *body == on_right);
+    assert!(world.events().iter().any(woken));
+    world.step();
+    let gone = Party::Piece {
+        body: below,
+        piece: PieceId(right as u32),
+    };
+    let ended = touching(&world);
+    let told =
+        |event: &Event| matches!(event, Event::ContactEnded { both } if both.contains(&gone));
+    assert!(ended.iter().any(told), "{ended:?}");
+    (0..40).for_each(|_| _ = world.step());
+    let now = world.bodies()[on_right].centre_of_mass();
+    assert!(now[1] < centre[1] - 0.3, "{centre:?} to {now:?}");
+    assert!(asleep(&world, far, 0));
+}
+
+#[test]
+fn who_leant_on_it_falls_and_others_sleep_on() {
+    check_leaning::<Dim2>();
+    check_leaning::<Dim3>();
+}
+
+fn check_ties<D: Dim>() {
+    let (mut world, cube) = halves::<D>(WEIGHTLESS);
+    let middle = if D::N == 3 { 0.5 } else { 0.0 };
+    let sensor = Shape::Ball {
+        centre: [0.5, 0.5, middle],
+        radius: 3.0,
+    };
+    let mut sensor = Rigid::fixed(sensor, 0.0);
+    sensor.is_sensor = true;
+    let sensor = world.add_rigid(sensor).unwrap();
+    let [to_left, to_right] = [0.1, 0.9].map(|x| {
+        let at = [x, 0.5, middle];
+        let end = End::Soft {
+            body: cube,
+            at,
+            radius: 0.1,
+        };
+        world.add_joint(Joint::pin(end, End::Place(at))).unwrap()
+    });
+    world.step();
+    let views = world.bodies()[cube].piece_views();
+    let right = views
+        .iter()
+        .find(|view| view.centre[0] > 0.5)
+        .unwrap()
+        .number;
+    world.remove_piece(cube, right).unwrap();
+    world.step();
+    let events = world.events();
+    assert!(
+        events.contains(&Event::JointBroke { joint: to_right }),
+        "{events:?}"
+    );
+    let who = Party::Piece {
+        body: cube,
+        piece: right,
+    };
+    assert!(events.contains(&Event::Left { sensor, who }), "{events:?}");
+    assert!(world.joints().get(to_left).is_ok() && world.joints().get(to_right).is_err());
+}
+
+#[test]
+fn joints_break_and_sensors_tell() {
+    check_ties::<Dim2>();
+    check_ties::<Dim3>();
+}
+
+fn check_last<D: Dim>() {
+    let (mut world, cube) = halves::<D>(Settings::default());
+    world.remove_piece(cube, PieceId(0)).unwrap();
+    let removed = world.remove_piece(cube, PieceId(1)).unwrap();
+    assert_eq!(
+        (removed.pieces.len(), &removed.bodies[..]),
+        (1, &[cube][..])
+    );
+    assert!(world.bodies().get(cube).is_err() && world.bodies().is_empty());
+    assert!(world.events().contains(&Event::BodyRemoved { body: cube }));
+    assert!(world.remove_piece(cube, PieceId(1)).is_err());
+    world.step();
+    // Its slot is free for another one.
+    let ball = Body::new(VoxelGrid::ball(6, 1.0).unwrap(), &[Material::default()]).unwrap();
+    let ball = world.add_body(ball);
+    (0..30).for_each(|_| _ = world.step());
+    assert!(world.bodies().get(ball).is_ok() && world.bodies().get(cube).is_err());
+    check_whole(&world, "after the last piece");
+}
+
+#[test]
+fn with_its_last_piece_a_body_leaves_the_world() {
+    check_last::<Dim2>();
+    check_last::<Dim3>();
+}
+
+fn check_sizes<D: Dim>() {
+    let (mut world, cube) = halves::<D>(WEIGHTLESS);
+    let half = 0.5 * world.bodies()[cube].total_mass();
+    let none = Removed::default();
+    for size in [
+        PieceSize::Mass(0.9 * half),
+        PieceSize::Volume(0.45),
+        PieceSize::Voxels(0),
+        PieceSize::Voxels(4 * 8usize.pow(D::N as u32 - 1)),
+    ] {
+        assert_eq!(
+            world.clone().remove_small_pieces(size),
+            Ok(none.clone()),
+            "{size:?}"
+        );
+    }
+    for size in [
+        PieceSize::Mass(1.1 * half),
+        PieceSize::Volume(0.55),
+        PieceSize::Voxels(5 * 8usize.pow(D::N as u32 - 1)),
+    ] {
+        let removed = world.clone().remove_small_pieces(size).unwrap();
+        assert_eq!(removed.pieces.len(), 2, "{size:?}");
+    }
+    for bad in [f64::NAN, -1.0, f64::INFINITY] {
+        let error = world.remove_small_pieces(PieceSize::Mass(bad)).unwrap_err();
+        assert_eq!(error.to_string(), "the size must be 0 or more, and finite");
+    }
+}
+
+#[test]
+fn small_pieces_go_by_mass_volume_or_voxels() {
+    check_sizes::<Dim2>();
+    check_sizes::<Dim3>();
+}
+
+fn check_outside<D: Dim>() {
+    let (mut world, cube) = halves::<D>(WEIGHTLESS);
+    let views = world.bodies()[cube].piece_views();
+    let right = views
+        .iter()
+        .find(|view| view.centre[0] > 0.5)
+        .unwrap()
+        .number;
+    let ball = |x| {
+        Rigid::free(
+            Shape::Ball {
+                centre: [x, 0.0, 0.0],
+                radius: 0.2,
+            },
+            1.0,
+        )
+    };
+    let near = world.add_rigid(ball(-2.1)).unwrap();
+    let far = world.add_rigid(ball(-2.3)).unwrap();
+    let hand = world.add_rigid(Rigid::hand([-9.0, 0.0, 0.0], 0.1)).unwrap();
+    let region = Shape::Box {
+        centre: [-0.8, 0.0, 0.0],
+        half: [1.2, 3.0, 3.0],
+    };
+    let removed = world.remove_outside(&region).unwrap();
+    assert_eq!(
+        (removed.pieces, removed.rigids),
+        (vec![(cube, right)], vec![far])
+    );
+    assert!(world.rigids().get(near).is_ok() && world.rigids().get(hand).is_ok());
+    assert!(world.events().contains(&Event::RigidRemoved { rigid: far }));
+    let bad = Shape::Ball {
+        centre: [0.0; 3],
+        radius: -1.0,
+    };
+    let error = world.remove_outside(&bad).unwrap_err();
+    assert_eq!(error.to_string(), "the radius must be positive and finite");
+}
+
+#[test]
+fn what_left_a_region_is_removed() {
+    check_outside::<Dim2>();
+    check_outside::<Dim3>();
+}
+
+/// A reader that follows hears of a tear and a removal together.
+#[test]
+fn what_was_torn_and_removed_is_told_once() {
+    let mut world = World::<Dim2>::new(WEIGHTLESS).unwrap();
+    let cube = Body::new(VoxelGrid::cube(32, 1.0).unwrap(), &[Material::default()]).unwrap();
+    let cube = world.add_body(cube);
+    let mut bookmark: Bookmark = world.bodies()[cube].bookmark();
+    let blade = Blade::segment([-0.1, 0.2], [0.2, -0.1]);
+    world.cut(cube, &blade).unwrap();
+    world.remove_piece(cube, PieceId(1)).unwrap();
+    let body = &world.bodies()[cube];
+    let changes = body.changes_since(&mut bookmark).unwrap();
+    assert_eq!(
+        (changes.parted, changes.removed),
+        (vec![PieceId(1)], vec![PieceId(1)])
+    );
+    assert!(changes.elements.is_sorted() && changes.nodes.is_sorted());
+}

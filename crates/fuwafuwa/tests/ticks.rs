@@ -1,0 +1,306 @@
+//! Ticks of other lengths: what counts in seconds takes as many seconds.
+
+use fuwafuwa::world::{LONGEST_TICK, SHORTEST_TICK, TICK};
+use fuwafuwa::{
+    Body, Dim, Dim2, Dim3, Event, Hooks, Material, Refused, Rigid, Settings, Shape, Substep,
+    VoxelGrid, World,
+};
+
+const TICKS: [f32; 6] = [
+    SHORTEST_TICK,
+    1.0 / 120.0,
+    1.0 / 90.0,
+    TICK,
+    1.0 / 50.0,
+    LONGEST_TICK,
+];
+
+fn world<D: Dim>(tick: f32) -> World<D> {
+    let settings = Settings {
+        tick,
+        ..Settings::default()
+    };
+    let mut world = World::new(settings).unwrap();
+    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    world.add_rigid(Rigid::fixed(floor, 0.4)).unwrap();
+    world
+}
+
+fn ball<D: Dim>(n: usize) -> Body<D> {
+    let strong = Material {
+        strength: f32::INFINITY,
+        toughness: f32::INFINITY,
+        ..Material::default()
+    };
+    Body::new(VoxelGrid::ball(n, 1.0).unwrap(), &[strong]).unwrap()
+}
+
+/// How often something happens in so many seconds, and in which of them it first does.
+fn pass<D: Dim>(world: &mut World<D>, seconds: f32, mut watch: impl FnMut(&World<D>)) {
+    let ticks = (seconds / world.settings().tick).round() as u32;
+    for _ in 0..ticks {
+        world.step();
+        watch(world);
+    }
+}
+
+fn check_fall<D: Dim>() {
+    // In half a second it falls by 1.226 m, whatever the tick.
+    for tick in TICKS {
+        let mut world = world::<D>(tick);
+        let ball = world.add_body(ball::<D>(12).moved([0.0, 5.0, 0.0]));
+        let start = world.bodies()[ball].centre_of_mass()[1];
+        pass(&mut world, 0.5, |_| {});
+        let seconds = (0.5 / tick).round() * tick;
+        let fallen = start - world.bodies()[ball].centre_of_mass()[1];
+        let expected = 0.5 * 9.81 * seconds * seconds;
+        assert!(
+            (fallen / expected - 1.0).abs() < 0.01,
+            "tick {tick}: {fallen} m"
+        );
+    }
+}
+
+#[test]
+fn what_falls_comes_as_far_in_any_tick() {
+    check_fall::<Dim2>();
+    check_fall::<Dim3>();
+}
+
+/// When a ball that is dropped first touches the floor, how far it is squashed at the most, and when it sleeps.
+fn landing<D: Dim>(tick: f32) -> [f32; 3] {
+    let mut world = world::<D>(tick);
+    let ball = world.add_body(ball::<D>(12).moved([0.0, 0.5, 0.0]));
+    let (mut lowest, mut touched, mut slept) = (f32::MAX, 0.0, 0.0);
+    pass(&mut world, 12.0, |world| {
+        let seconds = world.ticks() as f32 * tick;
+        if touched == 0.0 && { world.events().iter() }
+            .any(|event| matches!(event, Event::Touched { .. }))
+        {
+            touched = seconds;
+        }
+        lowest = lowest.min(world.bodies()[ball].centre_of_mass()[1]);
+        if slept == 0.0
+            && world.bodies()[ball]
+                .pieces()
+                .list
+                .iter()
+                .all(|piece| piece.asleep)
+        {
+            slept = seconds;
+        }
+    });
+    [touched, lowest, slept]
+}
+
+fn check_landing<D: Dim>() {
+    let [touched, lowest, slept] = landing::<D>(TICK);
+    assert!(slept > 0.0, "it never sleeps");
+    for tick in TICKS {
+        let [other, squashed, resting] = landing::<D>(tick);
+        assert!(
+            (other - touched).abs() <= tick + TICK,
+            "{tick}: {other} for {touched} s"
+        );
+        assert!(
+            (squashed - lowest).abs() < 0.02,
+            "{tick}: {squashed} for {lowest} m"
+        );
+        assert!(
+            (resting / slept - 1.0).abs() < 0.3,
+            "{tick}: {resting} for {slept} s"
+        );
+    }
+}
+
+#[test]
+fn what_lands_is_squashed_and_comes_to_rest_alike() {
+    check_landing::<Dim2>();
+    check_landing::<Dim3>();
+}
+
+/// How many nodes a hand tears that is driven through a ball at the same speed.
+fn torn<D: Dim>(tick: f32) -> u32 {
+    let mut world = world::<D>(tick);
+    let soft = Material {
+        strength: 500.0,
+        toughness: 100.0,
+        ..Material::default()
+    };
+    let body = Body::new(VoxelGrid::<D>::ball(12, 1.0).unwrap(), &[soft]).unwrap();
+    world.add_body(body);
+    let wall = Shape::half_space([-1.0, 0.0, 0.0], [1.1, 0.0, 0.0]);
+    world.add_rigid(Rigid::fixed(wall, 0.2)).unwrap();
+    let depth = if D::N == 3 { 0.5 } else { 0.0 };
+    let hand = world
+        .add_rigid(Rigid::hand([-0.3, 0.5, depth], 0.1))
+        .unwrap();
+    let mut released = 0;
+    for number in 1..=(1.0 / tick).round() as u32 {
+        let along = -0.3 + 1.5 * number as f32 * tick;
+        world.set_goal(hand, [along, 0.5, depth]).unwrap();
+        released += world.step().released;
+    }
+    released
+}
+
+#[test]
+fn a_hand_tears_alike() {
+    for tear in [torn::<Dim2>, torn::<Dim3>] {
+        let usual = tear(TICK);
+        assert!(usual > 10);
+        for tick in TICKS {
+            let other = f64::from(tear(tick)) / f64::from(usual);
+            assert!(
+                (0.4..2.5).contains(&other),
+                "tick {tick}: {other} of {usual}"
+            );
+        }
+    }
+}
+
+#[test]
+fn substeps_are_as_many_in_a_second() {
+    for tick in TICKS {
+        let mut world = world::<Dim2>(tick);
+        world.add_body(ball::<Dim2>(12));
+        let a_second = world.step().substeps as f32 / tick;
+        assert!(
+            (a_second / 960.0 - 1.0).abs() < 0.05,
+            "tick {tick}: {a_second}"
+        );
+    }
+    // A body that is too stiff is softened as much in any tick.
+    let scale = |tick| {
+        let stiff = Material {
+            elasticity: fuwafuwa::Elasticity::new(5e7, 0.3).unwrap(),
+            ..Material::default()
+        };
+        let mut world = world::<Dim3>(tick);
+        let body = Body::new(VoxelGrid::ball(8, 0.2).unwrap(), &[stiff]).unwrap();
+        let id = world.add_body(body);
+        world.bodies()[id].stiffness_scale()
+    };
+    let usual = scale(TICK);
+    assert!(usual < 0.5);
+    for tick in TICKS {
+        assert!((scale(tick) / usual - 1.0).abs() < 0.05, "tick {tick}");
+    }
+}
+
+#[test]
+fn bad_ticks_are_refused() {
+    for tick in [0.0, -TICK, f32::NAN, f32::INFINITY, 1.0 / 29.0, 1.0 / 250.0] {
+        let settings = Settings {
+            tick,
+            ..Settings::default()
+        };
+        let refused = World::<Dim2>::new(settings).unwrap_err();
+        assert_eq!(
+            refused.to_string(),
+            "the setting tick must be 1/240 to 1/30 s",
+            "{tick}"
+        );
+        let mut world = world::<Dim2>(TICK);
+        assert!(matches!(
+            world.set_settings(settings),
+            Err(Refused::Setting { field: "tick", .. })
+        ));
+        assert_eq!(world.settings().tick, TICK);
+    }
+}
+
+/// Every setting takes effect on a world that runs.
+#[test]
+fn settings_change_on_the_way() {
+    let usual = Settings::default();
+    let mut world = world::<Dim2>(TICK);
+    let ball = world.add_body(ball::<Dim2>(12).moved([0.0, 50.0, 0.0]));
+    let speed = |world: &World<Dim2>| {
+        let body = &world.bodies()[ball];
+        body.momentum().linear[1] / body.total_mass()
+    };
+    let mut gain = |settings: Settings| {
+        world.set_settings(settings).unwrap();
+        let before = speed(&world);
+        let substeps = world.step().substeps;
+        (speed(&world) - before, before, substeps)
+    };
+    let near = |found: f64, expected: f64| {
+        assert!((found - expected).abs() < 1e-3, "{found} for {expected}");
+    };
+    let tick = f64::from(TICK);
+    near(gain(usual).0, -9.81 * tick);
+    let gravity = [0.0, 3.0, 0.0];
+    near(gain(Settings { gravity, ..usual }).0, 3.0 * tick);
+    let halved = Settings {
+        tick: 0.5 * TICK,
+        ..usual
+    };
+    let (found, _, substeps) = gain(halved);
+    near(found, -9.81 * 0.5 * tick);
+    assert_eq!(substeps, 8);
+    let few = Settings {
+        most_substeps: 8,
+        ..usual
+    };
+    assert_eq!(gain(few).2, 8);
+    let braked = Settings {
+        drag: 10.0,
+        gravity: [0.0; 3],
+        ..usual
+    };
+    let (found, before, _) = gain(braked);
+    near(found / before, (1.0f64 - 10.0 / 240.0).powi(4) - 1.0);
+}
+
+/// What a stick is told in each substep is what the tick tells at its end, force and torque.
+fn check_callback<D: Dim>(tick: f32) {
+    let mut world = world::<D>(tick);
+    world.add_body(ball::<D>(12).moved([0.0, 0.0, 0.0]));
+    let depth = if D::N == 3 { 0.5 } else { 0.0 };
+    // A bar that meets the ball with one end: it is pushed and turned.
+    let bar = Shape::Capsule {
+        from: [-1.0, 0.0, 0.0],
+        to: [0.3, 0.0, 0.0],
+        radius: 0.1,
+    };
+    let from = [-0.2, 1.2, depth];
+    let hand = Rigid::driven(bar, from, fuwafuwa::Drive::default());
+    let hand = world.add_rigid(hand).unwrap();
+    let mut most = 0.0f32;
+    for number in 1..=(0.5 / tick).round() as u32 {
+        let down = (1.2 * number as f32 * tick).min(0.4);
+        world.set_goal(hand, [-0.2, 1.2 - down, depth]).unwrap();
+        let mut felt = Vec::new();
+        let mut time = 0.0;
+        let mut note = |substep: &Substep| {
+            felt.push(substep.reaction(hand).unwrap());
+            time += substep.duration;
+        };
+        let hooks = &mut Hooks {
+            after_substep: Some(&mut note),
+            ..Hooks::default()
+        };
+        let report = world.step_with(hooks);
+        assert_eq!(felt.len(), report.substeps as usize);
+        assert!((time - tick).abs() < 1e-6);
+        assert_eq!(felt, world.rigids()[hand].reactions());
+        for reaction in felt {
+            most = most.max(reaction.torque[2]);
+            if reaction.contact[1] > 1.0 {
+                // To the right of the hand, and pushed up.
+                assert!(reaction.torque[2] > 0.0, "{reaction:?}");
+            }
+        }
+    }
+    assert!(most > 1.0, "tick {tick}: {most} N m");
+}
+
+#[test]
+fn each_substep_tells_force_and_torque() {
+    for tick in [SHORTEST_TICK, TICK, LONGEST_TICK] {
+        check_callback::<Dim2>(tick);
+        check_callback::<Dim3>(tick);
+    }
+}

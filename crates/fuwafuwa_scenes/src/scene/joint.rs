@@ -1,0 +1,177 @@
+//! What ties things together in a scene.
+
+use super::error::{Wrong, require, require_vector};
+use fuwafuwa::{BodyId, Dim, End, Joint, RigidId, Tie, World};
+use serde::{Deserialize, Serialize};
+
+/// A joint as it is written down: two ends, and how they are tied.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct JointText {
+    /// How.
+    pub tie: TieText,
+    /// What.
+    pub ends: Vec<EndText>,
+    /// Of a spring [N/m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stiffness: Option<f32>,
+    /// Of a spring [N s/m]; 0 when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub damping: Option<f32>,
+    /// Of a spring at rest, of a rope at the most [m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub length: Option<f32>,
+    /// At which it breaks [N]; never when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub breaking_force: Option<f32>,
+}
+
+/// How two ends are tied, as it is written down: see [`fuwafuwa::Tie`].
+#[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TieText {
+    /// They stay together.
+    Pin,
+    /// They are drawn to be so far apart.
+    Spring,
+    /// They are at most so far apart.
+    Rope,
+}
+
+/// One end: a number of a body, an obstacle, a hand or something rigid, counted from 1 in its own list, or none for a place of
+/// the world.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EndText {
+    /// Which `[[body]]`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub body: Option<usize>,
+    /// Which `[[obstacle]]`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub obstacle: Option<usize>,
+    /// Which `[[hand]]`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hand: Option<usize>,
+    /// Which `[[rigid]]`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rigid: Option<usize>,
+    /// Where in the world [m].
+    pub at: [f32; 3],
+    /// Of a body: it is held by its nodes within [m], or by the nearest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub radius: Option<f32>,
+}
+
+/// What the ends of joints may be tied to, in the order of their lists.
+pub(super) struct Known {
+    pub(super) bodies: Vec<BodyId>,
+    pub(super) obstacles: Vec<RigidId>,
+    pub(super) hands: Vec<RigidId>,
+    pub(super) rigids: Vec<RigidId>,
+}
+
+impl JointText {
+    pub(super) fn add_to<D: Dim>(&self, world: &mut World<D>, known: &Known) -> Result<(), Wrong> {
+        let [first, second] = &self.ends[..] else {
+            let found = self.ends.len();
+            return Err(Wrong::new("ends", format!("expected two, found {found}")));
+        };
+        let end = |index: usize, text: &EndText| {
+            let end = text.end::<D>(known);
+            end.map_err(|wrong| wrong.inside("ends", index))
+        };
+        let ends = [end(0, first)?, end(1, second)?];
+        let mut joint = Joint::new(ends, self.tie()?);
+        if let Some(force) = self.breaking_force {
+            joint = joint.breaking_at(force);
+        }
+        let added = world.add_joint(joint);
+        added
+            .map(drop)
+            .map_err(|refused| Wrong::new("tie", refused))
+    }
+
+    fn tie(&self) -> Result<Tie, Wrong> {
+        let missing = |field: &'static str| move || Wrong::new(field, "expected a number");
+        let is = |tie| self.tie == tie;
+        let good = is(TieText::Spring) || self.stiffness.is_none() && self.damping.is_none();
+        require(good, "stiffness", "expected of tie = \"spring\" alone")?;
+        let good = !is(TieText::Pin) || self.length.is_none();
+        require(good, "length", "expected of a spring or a rope alone")?;
+        Ok(match self.tie {
+            TieText::Pin => Tie::Pin,
+            TieText::Rope => Tie::Rope {
+                length: self.length.ok_or_else(missing("length"))?,
+            },
+            TieText::Spring => Tie::Spring {
+                stiffness: self.stiffness.ok_or_else(missing("stiffness"))?,
+                damping: self.damping.unwrap_or(0.0),
+                length: self.length.ok_or_else(missing("length"))?,
+            },
+        })
+    }
+
+    /// What there is to say of a joint whose ends are as given.
+    pub(super) fn of(joint: &Joint, ends: [EndText; 2]) -> Self {
+        let (tie, stiffness, damping, length) = match joint.tie {
+            Tie::Pin => (TieText::Pin, None, None, None),
+            Tie::Rope { length } => (TieText::Rope, None, None, Some(length)),
+            Tie::Spring {
+                stiffness,
+                damping,
+                length,
+            } => (
+                TieText::Spring,
+                Some(stiffness),
+                Some(damping),
+                Some(length),
+            ),
+        };
+        let force = joint.breaking_force;
+        Self {
+            tie,
+            ends: ends.into(),
+            stiffness,
+            damping,
+            length,
+            breaking_force: (force < f32::INFINITY).then_some(force),
+        }
+    }
+}
+
+impl EndText {
+    fn end<D: Dim>(&self, known: &Known) -> Result<End, Wrong> {
+        require_vector(D::N, "at", self.at)?;
+        let at = self.at;
+        let good = self.body.is_some() || self.radius.is_none();
+        require(good, "radius", "expected of a body alone")?;
+        let is_rigid = [
+            ("obstacle", self.obstacle, &known.obstacles),
+            ("hand", self.hand, &known.hands),
+            ("rigid", self.rigid, &known.rigids),
+        ];
+        let named = is_rigid.iter().filter(|(_, number, _)| number.is_some());
+        let count = named.clone().count() + usize::from(self.body.is_some());
+        let expected = "expected one of body, obstacle, hand and rigid, or none for a place";
+        require(count <= 1, "body", expected)?;
+        if let Some(number) = self.body {
+            let body = nth("body", number, &known.bodies)?;
+            let radius = self.radius.unwrap_or(0.0);
+            return Ok(End::Soft { body, at, radius });
+        }
+        for &(field, number, list) in &is_rigid {
+            if let Some(number) = number {
+                let rigid = nth(field, number, list)?;
+                return Ok(End::Rigid { rigid, at });
+            }
+        }
+        Ok(End::Place(at))
+    }
+}
+
+fn nth<T: Copy>(field: &str, number: usize, list: &[T]) -> Result<T, Wrong> {
+    let count = list.len();
+    let found = number.checked_sub(1).and_then(|index| list.get(index));
+    let reason = || format!("expected 1 to {count}, found {number}");
+    found.copied().ok_or_else(|| Wrong::new(field, reason()))
+}

@@ -1,0 +1,48 @@
+//! What has no words in a scene: a body or something rigid as it is, as the snapshot of a world that has nothing else.
+
+use super::error::Wrong;
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD as BASE64;
+use fuwafuwa::{Body, Dim, Rigid, Settings, World, snapshot};
+
+/// A body, in letters.
+pub(super) fn of_body<D: Dim>(body: &Body<D>, settings: Settings) -> Option<String> {
+    let mut world = World::new(settings).ok()?;
+    world.add_body(body.clone());
+    Some(BASE64.encode(snapshot::save(&world)))
+}
+
+/// Something rigid, in letters.
+pub(super) fn of_rigid<D: Dim>(rigid: &Rigid) -> Option<String> {
+    let mut world = World::<D>::new(Settings::default()).ok()?;
+    world.add_rigid(rigid.clone()).ok()?;
+    Some(BASE64.encode(snapshot::save(&world)))
+}
+
+/// The body that letters say.
+pub(super) fn body<D: Dim>(text: &str) -> Result<Body<D>, Wrong> {
+    let mut world = world::<D>(text)?;
+    let id = world.nth_body(0).filter(|_| world.bodies().len() == 1);
+    let body = id.and_then(|id| world.remove_body(id).ok());
+    body.ok_or_else(|| Wrong::new("state", "expected the snapshot of a world with one body"))
+}
+
+/// The rigid thing that letters say.
+pub(super) fn rigid<D: Dim>(text: &str) -> Result<Rigid, Wrong> {
+    let mut world = world::<D>(text)?;
+    let id = world.rigids().ids().next();
+    let id = id.filter(|_| world.rigids().len() == 1);
+    let rigid = id.and_then(|id| world.remove_rigid(id).ok());
+    rigid.ok_or_else(|| {
+        Wrong::new(
+            "state",
+            "expected the snapshot of a world with one rigid thing",
+        )
+    })
+}
+
+fn world<D: Dim>(text: &str) -> Result<World<D>, Wrong> {
+    let bytes = BASE64.decode(text);
+    let bytes = bytes.map_err(|error| Wrong::new("state", format!("expected base64: {error}")))?;
+    snapshot::load(&bytes).map_err(|bad| Wrong::new("state", bad))
+}

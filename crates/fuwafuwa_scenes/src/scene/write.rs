@@ -1,0 +1,342 @@
+//! A world, written down.
+
+use super::any_rigid::RigidText;
+use super::body::{BodyText, LayersText, MaterialText, VoxelsText};
+use super::error::{Origin, Wrong, require};
+use super::joint::{EndText, JointText};
+use super::state;
+use super::{MAX_BODIES, MAX_MATERIALS, MAX_RIGID, MAX_TEXT_BYTES, Scene, SceneError};
+use fuwafuwa::law::Law;
+use fuwafuwa::{Body, BodyId, Dim, End, Grading, Material, RigidId, Settings, VoxelGrid, World};
+use fuwafuwa::{Joint, snapshot};
+use std::fmt::Write;
+
+/// Ends of a joint that were written down are where they were but for so much [m].
+const NEAR: f32 = 1e-3;
+
+impl Scene {
+    /// A world as it is now, written down: settings, bodies, what is rigid, joints.
+    ///
+    /// What is as it was built is said in words: a body by its voxels, materials, place and velocity, what is rigid by its
+    /// shape, its drive, how it lies and moves. What words do not make again to the bit, as a body that is torn or deformed,
+    /// or a hand on its way, is taken along whole as its `state`, which no reader understands but all of it is there. So the
+    /// world of the text has the same [hash](World::hash) but for ticks. What is not said is what passed: contacts, events,
+    /// who rests, ticks, where the paths of hands lead; a world that is to go on to the same bits is saved by
+    /// [`fuwafuwa::snapshot`].
+    ///
+    /// ```
+    /// use fuwafuwa::{Dim2, Settings, World};
+    /// use fuwafuwa_scenes::Scene;
+    ///
+    /// let scene = Scene::open("drop", &["body.n=12".into()])?;
+    /// let world = scene.build::<Dim2>()?;
+    /// let text = Scene::of_world(&world)?.text()?;
+    /// let again = Scene::read("again", &text, &[])?.build::<Dim2>()?;
+    /// assert_eq!(again.hash(), world.hash());
+    /// # Ok::<(), fuwafuwa_scenes::SceneError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SceneError::Build`] names what cannot be said: more bodies, materials or rigid things than a scene may have, and
+    /// joints that hold what has moved since they were tied.
+    pub fn of_world<D: Dim>(world: &World<D>) -> Result<Self, SceneError> {
+        written(world).map_err(|wrong| Origin::named("world").error(wrong))
+    }
+
+    /// It as a text, if that can be read again.
+    ///
+    /// # Errors
+    /// [`SceneError::Text`] when it is longer than [`MAX_TEXT_BYTES`].
+    pub fn text(&self) -> Result<String, SceneError> {
+        let wrong = |reason: String| SceneError::Text {
+            name: "scene".into(),
+            line: None,
+            reason,
+        };
+        let text = toml::to_string(self).map_err(|error| wrong(error.to_string()))?;
+        let found = text.len() as u64;
+        match found <= MAX_TEXT_BYTES {
+            true => Ok(text),
+            false => Err(wrong(format!(
+                "expected {MAX_TEXT_BYTES} bytes at most, found {found}; bodies that are torn or deformed take the most: save \
+                 a snapshot instead"
+            ))),
+        }
+    }
+}
+
+fn written<D: Dim>(world: &World<D>) -> Result<Scene, Wrong> {
+    let settings = *world.settings();
+    let mut scene = Scene {
+        dim: D::N as u8,
+        gravity: settings.gravity,
+        drag: settings.drag,
+        most_substeps: settings.most_substeps,
+        tick: settings.tick,
+        seconds: super::usual_seconds(),
+        view: view_of(world),
+        material: Vec::new(),
+        body: Vec::new(),
+        obstacle: Vec::new(),
+        hand: Vec::new(),
+        rigid: Vec::new(),
+        joint: Vec::new(),
+        game: None,
+        origin: Origin::default(),
+    };
+    let found = world.bodies().len();
+    let expected = format!("expected {MAX_BODIES} bodies at most, found {found}");
+    require(found <= MAX_BODIES, "body", expected)?;
+    let found = world.rigids().len();
+    let expected = format!("expected {MAX_RIGID} at most, found {found}");
+    require(found <= MAX_RIGID, "rigid", expected)?;
+    let mut materials: Vec<Material> = Vec::new();
+    for (index, body) in world.bodies().iter().enumerate() {
+        let text = body_text(body, settings, &mut materials);
+        scene
+            .body
+            .push(text.map_err(|wrong| wrong.inside("body", index))?);
+    }
+    scene.material = materials.iter().map(MaterialText::of).collect();
+    if scene.material.is_empty() {
+        scene.material = super::usual_materials();
+    }
+    for (index, rigid) in world.rigids().iter().enumerate() {
+        let text = RigidText::of::<D>(rigid);
+        let wrong = || Wrong::new("state", "cannot be written down").inside("rigid", index);
+        scene.rigid.push(text.ok_or_else(wrong)?);
+    }
+    write_joints(world, &mut scene)?;
+    Ok(scene)
+}
+
+/// A body in words, or whole.
+fn body_text<D: Dim>(
+    body: &Body<D>,
+    settings: Settings,
+    materials: &mut Vec<Material>,
+) -> Result<BodyText, Wrong> {
+    let of_world = |body: Body<D>| {
+        let mut world = World::new(settings).ok()?;
+        world.add_body(body);
+        Some(snapshot::save(&world))
+    };
+    let words = in_words(body).filter(|(_, made)| {
+        let (made, own) = (of_world(made.clone()), of_world(body.clone()));
+        made.is_some() && made == own
+    });
+    if let Some((mut text, made)) = words {
+        let numbers = numbers_in(materials, body.materials());
+        let found = materials.len();
+        let expected = format!("expected {MAX_MATERIALS} materials at most, found {found}");
+        require(found <= MAX_MATERIALS, "material", expected)?;
+        let grid = made.grid();
+        let number = |voxel| match grid.material(voxel) {
+            0 => 0,
+            own => numbers[usize::from(own) - 1],
+        };
+        if let Some(voxels) = &mut text.voxels {
+            voxels.runs = runs(grid.voxels().map(number));
+        }
+        return Ok(text);
+    }
+    let unsaid = || Wrong::new("state", "cannot be written down");
+    let state = state::of_body(body, settings).ok_or_else(unsaid)?;
+    Ok(BodyText {
+        state: Some(state),
+        ..BodyText::default()
+    })
+}
+
+/// What there may be to say of a body, and the body that it makes.
+fn in_words<D: Dim>(body: &Body<D>) -> Option<(BodyText, Body<D>)> {
+    let (grid, grading) = (body.grid(), body.grading());
+    if grading == Grading::Coarse || grid.left_count() < grid.solid_count() {
+        return None;
+    }
+    let size = grid.size().map(|extent| extent as usize);
+    let materials = grid.voxels().map(|voxel| grid.material(voxel));
+    let whole = VoxelGrid::from_materials(size, grid.voxel_size(), materials.collect());
+    let made = Body::with(whole.ok()?, body.materials(), body.law(), grading).ok()?;
+    if !made.mesh().is_same_as(body.mesh()) {
+        return None;
+    }
+    let at = place_of(&made, body)?;
+    let (first, _) = body.mesh().nodes().next()?;
+    let velocity = body.node_state(first).1;
+    let made = made.moved(at).thrown(velocity);
+    let text = BodyText {
+        voxels: Some(VoxelsText {
+            size,
+            voxel_size: grid.voxel_size(),
+            runs: String::new(),
+        }),
+        at,
+        velocity,
+        gravity_scale: (body.gravity_scale() != 1.0).then_some(body.gravity_scale()),
+        layers: LayersText::of(body.layers()),
+        user_data: (body.user_data() != 0).then_some(body.user_data()),
+        uniform: grading == Grading::Uniform,
+        paper_law: body.law() == Law::Endo2004,
+        ..BodyText::default()
+    };
+    Some((text, of_the_same_kind(made, body)?))
+}
+
+/// The same body with what a world says of another one.
+fn of_the_same_kind<D: Dim>(made: Body<D>, body: &Body<D>) -> Option<Body<D>> {
+    let mut world = World::new(Settings::default()).ok()?;
+    let id = world.add_body(made);
+    world.set_gravity_scale(id, body.gravity_scale()).ok()?;
+    world.set_layers(id, body.layers()).ok()?;
+    world.set_user_data(id, body.user_data()).ok()?;
+    world.remove_body(id).ok()
+}
+
+/// How far a body was moved as a whole [m], if that is all that happened to its places: so far that rounding gives the same.
+fn place_of<D: Dim>(made: &Body<D>, body: &Body<D>) -> Option<[f32; 3]> {
+    let mut at = [0.0; 3];
+    let mut ids = made.mesh().nodes().map(|(id, _)| id);
+    if !ids.all(|id| id.index() < body.positions().len()) {
+        return None;
+    }
+    let both = || {
+        let ids = made.mesh().nodes().map(|(id, _)| id);
+        ids.map(|id| (made.positions()[id], body.positions()[id]))
+    };
+    for axis in 0..D::N {
+        let fits = |by: f32| both().all(|(from, to)| from[axis] + by == to[axis]);
+        // Where the sum was rounded least the difference is exact, but for the last bit.
+        let lowest = both().min_by(|a, b| a.0[axis].abs().total_cmp(&b.0[axis].abs()));
+        let (from, to) = lowest?;
+        let by = to[axis] - from[axis];
+        let near = [by, by.next_up(), by.next_down()];
+        at[axis] = near.into_iter().find(|&by| fits(by))?;
+    }
+    Some(at)
+}
+
+/// The numbers that materials have among those of the scene; those that are new are added.
+fn numbers_in(all: &mut Vec<Material>, own: &[Material]) -> Vec<u8> {
+    if all.is_empty() {
+        all.extend(own);
+    }
+    let mut numbers = Vec::new();
+    for (index, material) in own.iter().enumerate() {
+        // Where the lists begin alike, the numbers stay what they are.
+        let same = all.get(index) == Some(material);
+        let known = all.iter().position(|known| known == material);
+        let place = if same { Some(index) } else { known };
+        let place = place.unwrap_or_else(|| {
+            all.push(*material);
+            all.len() - 1
+        });
+        numbers.push(u8::try_from(place + 1).unwrap_or(u8::MAX));
+    }
+    numbers
+}
+
+fn runs(materials: impl Iterator<Item = u8>) -> String {
+    let all: Vec<u8> = materials.collect();
+    let mut runs = String::new();
+    for run in all.chunk_by(|a, b| a == b) {
+        let space = if runs.is_empty() { "" } else { " " };
+        // Nothing goes wrong as letters are added.
+        let _ = write!(runs, "{space}{}x{}", run.len(), run[0]);
+    }
+    runs
+}
+
+/// Writes joints as they were tied, or else as they are now, and looks whether that holds the same.
+fn write_joints<D: Dim>(world: &World<D>, scene: &mut Scene) -> Result<(), Wrong> {
+    if world.joints().is_empty() {
+        return Ok(());
+    }
+    for (index, (id, joint)) in world.joints().entries().enumerate() {
+        let inside = |wrong: Wrong| wrong.inside("joint", index);
+        let gone = || Wrong::new("ends", "expected both ends to be there");
+        let places = world.joint_places(id).ok().flatten();
+        let places = places.ok_or_else(|| inside(gone()))?;
+        let tied = joint.ends.each_ref().map(|end| end_text(world, end, None));
+        let [first, second] = &joint.ends;
+        let now = [(first, places[0]), (second, places[1])];
+        let now = now.map(|(end, at)| end_text(world, end, Some(at)));
+        let fits = [tied, now].into_iter().find_map(|[first, second]| {
+            let text = JointText::of(joint, [first?, second?]);
+            holds(scene, &text, places, joint).then_some(text)
+        });
+        let moved = "what it holds has moved since it was tied, and words would hold something else: save a snapshot";
+        let text = fits.ok_or_else(|| inside(Wrong::new("ends", moved)))?;
+        scene.joint.push(text);
+    }
+    Ok(())
+}
+
+/// Whether a joint in the world of a scene is as strained as it was, at the same places.
+fn holds(scene: &Scene, text: &JointText, places: [[f32; 3]; 2], joint: &Joint) -> bool {
+    let mut scene = scene.clone();
+    scene.joint = vec![text.clone()];
+    let found = match scene.dim {
+        2 => only_joint(scene.build::<fuwafuwa::Dim2>()),
+        _ => only_joint(scene.build::<fuwafuwa::Dim3>()),
+    };
+    found.is_some_and(|(found, made)| {
+        let apart = |axis: usize, end: usize| (found[end][axis] - places[end][axis]).abs();
+        let is_near = (0..2).all(|end| (0..3).all(|axis| apart(axis, end) <= NEAR));
+        is_near && made.tie == joint.tie
+    })
+}
+
+fn only_joint<D: Dim>(world: Result<World<D>, SceneError>) -> Option<([[f32; 3]; 2], Joint)> {
+    let world = world.ok()?;
+    let (id, joint) = world.joints().entries().next()?;
+    Some((world.joint_places(id).ok()??, joint.clone()))
+}
+
+/// An end as it was tied, or at another place.
+fn end_text<D: Dim>(world: &World<D>, end: &End, other: Option<[f32; 3]>) -> Option<EndText> {
+    let rank_of_body = |id: BodyId| world.bodies().rank(id).map(|rank| rank + 1);
+    let rank_of_rigid = |id: RigidId| world.rigids().rank(id).map(|rank| rank + 1);
+    let flat = |mut at: [f32; 3]| {
+        at[D::N..].fill(0.0);
+        at
+    };
+    Some(match *end {
+        End::Place(at) => EndText {
+            at: flat(other.unwrap_or(at)),
+            ..EndText::default()
+        },
+        End::Rigid { rigid, at } => EndText {
+            rigid: Some(rank_of_rigid(rigid)?),
+            at: flat(other.unwrap_or(at)),
+            ..EndText::default()
+        },
+        End::Soft { body, at, radius } => EndText {
+            body: Some(rank_of_body(body)?),
+            at: flat(other.unwrap_or(at)),
+            radius: Some(radius),
+            ..EndText::default()
+        },
+    })
+}
+
+/// What part of a world there is to look at.
+fn view_of<D: Dim>(world: &World<D>) -> [[f32; 3]; 2] {
+    let nodes = world.bodies().iter().flat_map(|body| {
+        let ids = body.mesh().nodes().map(|(id, _)| id);
+        ids.map(|id| body.node_state(id).0)
+    });
+    let free = world.rigids().iter().filter(|rigid| rigid.is_free());
+    let middles = free.map(|rigid| rigid.position());
+    let (mut low, mut high) = ([f32::MAX; 3], [f32::MIN; 3]);
+    for at in nodes.chain(middles) {
+        for axis in 0..3 {
+            low[axis] = low[axis].min(at[axis] - 0.5);
+            high[axis] = high[axis].max(at[axis] + 0.5);
+        }
+    }
+    match low.iter().chain(&high).all(|k| k.abs() < f32::MAX) {
+        true => [low, high],
+        false => super::usual_view(),
+    }
+}

@@ -1,0 +1,406 @@
+//! Worlds that are written down: text → world → text → world.
+
+use fuwafuwa::{
+    Body, Dim, Dim2, Dim3, End, Event, Joint, Layers, Material, Rigid, Rotation, Settings, Shape,
+    VoxelGrid, World,
+};
+use fuwafuwa_scenes::Scene;
+use fuwafuwa_scenes::scene::NAMED;
+
+const RICH: &str = r#"
+dim = DIM
+gravity = [0.3, -9.0, 0.0]
+drag = 0.1
+tick = 0.0083333333
+
+[[material]]
+young = 6000.0
+unbreakable = true
+
+[[material]]
+density = 200.0
+strength = 700.0
+
+[[body]]
+shape = "ball"
+n = 12
+width = 0.7
+at = [0.1, 0.33, FLAT]
+velocity = [0.4, 0.0, 0.0]
+gravity_scale = 0.5
+layers = { memberships = 2, filters = 5 }
+user_data = 7
+
+[[body.part]]
+paint = 2
+ball = { centre = [0.35, 0.35, HALF], radius = 0.15 }
+
+[[body]]
+shape = "box"
+n = 6
+width = 0.5
+at = [1.3, 0.5, 0.0]
+turned = [0.0, 0.0, 0.4]
+
+[[obstacle]]
+half_space = { normal = [0.0, 1.0, 0.0], point = [0.0, -0.2, 0.0] }
+
+[[hand]]
+radius = 0.1
+path = [[0.0, -0.5, 0.5, 0.0], [1.0, 1.2, 0.5, 0.0]]
+
+[[rigid]]
+ball = { centre = [0.0, 0.0, 0.0], radius = 0.15 }
+drive = "free"
+mass = 3.0
+at = [0.4, 1.4, 0.0]
+velocity = [0.0, -1.0, 0.0]
+spin = [0.0, 0.0, 2.0]
+restitution = 0.3
+
+[[rigid]]
+box = { centre = [0.0, 0.0, 0.0], half = [0.2, 0.1, 0.1] }
+drive = "free"
+mass = 1.0
+at = [1.6, 1.5, 0.0]
+turned = [0.0, 0.0, 0.5]
+layers = { memberships = 4 }
+user_data = 9
+
+[[rigid]]
+capsule = { from = [-0.2, 0.0, 0.0], to = [0.2, 0.0, 0.0], radius = 0.05 }
+drive = "kinematic"
+at = [-0.6, 1.0, 0.0]
+
+[[rigid]]
+box = { centre = [0.5, 0.5, 0.0], half = [0.6, 0.6, 0.6] }
+sensor = true
+
+[[joint]]
+tie = "pin"
+ends = [{ body = 2, at = [1.4, 0.9, 0.0], radius = 0.15 }, { rigid = 2, at = [1.6, 1.5, 0.0] }]
+
+[[joint]]
+tie = "rope"
+length = 0.8
+breaking_force = 900.0
+ends = [{ body = 1, at = [0.4, 0.9, 0.0] }, { at = [0.4, 1.6, 0.0] }]
+
+[[joint]]
+tie = "spring"
+stiffness = 200.0
+damping = 3.0
+length = 0.4
+ends = [{ hand = 1, at = [-0.5, 0.5, 0.0] }, { rigid = 1, at = [0.4, 1.4, 0.0] }]
+"#;
+
+fn rich(dim: u8) -> String {
+    let [flat, half] = if dim == 2 {
+        ["0.0", "0.0"]
+    } else {
+        ["-0.3", "0.35"]
+    };
+    let text = RICH.replace("DIM", &dim.to_string());
+    text.replace("FLAT", flat).replace("HALF", half)
+}
+
+fn again<D: Dim>(world: &World<D>, what: &str) -> World<D> {
+    let text = Scene::of_world(world).and_then(|scene| scene.text());
+    let text = text.unwrap_or_else(|error| panic!("{what}: {error}"));
+    let scene = Scene::read(what, &text, &[]).unwrap_or_else(|error| panic!("{error}"));
+    scene.build::<D>().unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn check_round_trip<D: Dim>(scene: &Scene, what: &str) {
+    let mut world = scene.build::<D>().unwrap_or_else(|error| panic!("{error}"));
+    let mut other = again(&world, what);
+    assert_eq!(other.settings(), world.settings(), "{what}");
+    assert_eq!(other.hash(), world.hash(), "{what}, tick 0");
+    // A text of what was read from a text is the same text.
+    let texts = [&world, &other].map(|world| Scene::of_world(world).unwrap().text().unwrap());
+    assert_eq!(texts[0], texts[1], "{what}");
+    for tick in 0..60 {
+        scene.send(&mut world, tick);
+        scene.send(&mut other, tick);
+        world.step();
+        other.step();
+    }
+    assert_eq!(other.hash(), world.hash(), "{what}, tick 60");
+}
+
+#[test]
+fn every_scene_that_comes_along_is_written_and_read_again() {
+    for (name, _) in NAMED {
+        let n = if name == "pile-3d" {
+            "body.n=6"
+        } else {
+            "body.n=10"
+        };
+        let small = [n, "body.diced=0.3"].map(String::from);
+        let count = if name == "diced" { 2 } else { 1 };
+        let scene = Scene::open(name, &small[..count]).unwrap();
+        match scene.dim {
+            2 => check_round_trip::<Dim2>(&scene, name),
+            _ => check_round_trip::<Dim3>(&scene, name),
+        }
+    }
+}
+
+#[test]
+fn all_that_a_scene_can_say_is_written_and_read_again() {
+    for dim in [2, 3] {
+        let scene = Scene::read("rich", &rich(dim), &[]).unwrap_or_else(|error| panic!("{error}"));
+        match dim {
+            2 => check_round_trip::<Dim2>(&scene, "rich"),
+            _ => check_round_trip::<Dim3>(&scene, "rich-3d"),
+        }
+    }
+}
+
+#[test]
+fn what_a_scene_says_is_in_its_world() {
+    let scene = Scene::read("rich", &rich(2), &[]).unwrap();
+    let world = scene.build::<Dim2>().unwrap();
+    assert!((world.settings().tick - 1.0 / 120.0).abs() < 1e-8);
+    let bodies: Vec<&Body<Dim2>> = world.bodies().iter().collect();
+    let layers = Layers {
+        memberships: 2,
+        filters: 5,
+    };
+    assert_eq!(
+        (
+            bodies[0].layers(),
+            bodies[0].user_data(),
+            bodies[0].gravity_scale()
+        ),
+        (layers, 7, 0.5)
+    );
+    let rigids: Vec<&Rigid> = world.rigids().iter().collect();
+    assert!(rigids[2].is_free() && rigids[2].velocity() == [0.0, -1.0, 0.0]);
+    assert_eq!(rigids[2].angular_velocity(), [0.0, 0.0, 2.0]);
+    assert!(rigids[4].is_driven() && rigids[5].is_sensor);
+    assert_eq!(
+        (rigids[3].user_data, rigids[3].layers.filters),
+        (9, u32::MAX)
+    );
+    let [x, y, _] = rigids[3].rotation().apply([1.0, 0.0, 0.0]);
+    assert!((x - 0.5f32.cos()).abs() < 1e-6 && (y - 0.5f32.sin()).abs() < 1e-6);
+    assert_eq!(world.joints().len(), 3);
+    // Text stays readable where words do.
+    let text = Scene::of_world(&world).unwrap().text().unwrap();
+    assert!(
+        text.contains("runs = ") && text.contains("drive = \"free\""),
+        "{text}"
+    );
+}
+
+fn check_torn<D: Dim>() {
+    let mut world = World::<D>::new(Settings::default()).unwrap();
+    let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
+    world.add_rigid(Rigid::fixed(floor, 0.3)).unwrap();
+    let soft = Material {
+        strength: 200.0,
+        toughness: 40.0,
+        ..Material::default()
+    };
+    let grid = VoxelGrid::<D>::ball(8, 0.5).unwrap();
+    let ball = world.add_body(Body::new(grid, &[soft]).unwrap().moved([0.0, 1.2, 0.0]));
+    let cube = Shape::Box {
+        centre: [0.2, 2.5, 0.2],
+        half: [0.1; 3],
+    };
+    let turned = Rotation::about([1.0, 1.0, 0.0], 0.4);
+    world
+        .add_rigid(Rigid::free(cube, 4.0).rotated(turned))
+        .unwrap();
+    let hand = world.add_rigid(Rigid::hand([-1.0, 0.2, 0.2], 0.1)).unwrap();
+    for tick in 0..50 {
+        world
+            .set_goal(hand, [-1.0 + 0.02 * tick as f32, 0.2, 0.2])
+            .unwrap();
+        world.step();
+    }
+    assert!(
+        world.bodies()[ball].pieces().count() > 1,
+        "nothing came off"
+    );
+    let other = again(&world, "torn");
+    let states = |world: &World<D>| -> Vec<_> {
+        let body = world.bodies().first().unwrap();
+        let ids = body.mesh().nodes().map(|(id, _)| id);
+        ids.map(|id| (id, body.node_state(id))).collect()
+    };
+    assert_eq!(states(&other), states(&world));
+    for (a, b) in other.rigids().iter().zip(world.rigids()) {
+        assert_eq!(
+            (a.position(), a.velocity(), a.rotation()),
+            (b.position(), b.velocity(), b.rotation())
+        );
+        assert_eq!(a.angular_velocity(), b.angular_velocity());
+        assert!(!a.is_driven() || a.goal() == b.goal());
+    }
+    // And on from there, alike.
+    let (mut world, mut other) = (world, other);
+    (0..30).for_each(|_| _ = (world.step(), other.step()));
+    let centres = [&world, &other].map(|world| world.bodies().first().unwrap().centre_of_mass());
+    for axis in 0..3 {
+        assert!(
+            (centres[0][axis] - centres[1][axis]).abs() < 0.05,
+            "{centres:?}"
+        );
+    }
+}
+
+#[test]
+fn what_is_torn_is_taken_along_whole() {
+    check_torn::<Dim2>();
+    check_torn::<Dim3>();
+}
+
+fn complaint(scene: &str) -> String {
+    let built = Scene::read("toy.toml", scene, &[]).and_then(|scene| scene.build::<Dim2>());
+    built
+        .err()
+        .map_or_else(|| "fine".into(), |error| error.to_string())
+}
+
+#[test]
+fn mistakes_are_told_with_line_and_field() {
+    let good = rich(2);
+    assert_eq!(complaint(&good), "fine");
+    for (replaced, by, expected) in [
+        (
+            "tick = 0.0083333333",
+            "tick = 0.5",
+            "tick: expected 1/240 to 1/30 s, found 0.5",
+        ),
+        (
+            "mass = 3.0\n",
+            "",
+            "rigid 1, mass: expected the mass of what falls [kg]",
+        ),
+        (
+            "drive = \"kinematic\"",
+            "drive = \"kinematic\"\nmass = 1.0",
+            "rigid 3, mass: expected of drive = \"free\" or \"hand\" alone",
+        ),
+        (
+            "drive = \"kinematic\"",
+            "drive = \"magic\"",
+            "unknown variant `magic`",
+        ),
+        (
+            "body = 2, at",
+            "body = 3, at",
+            "joint 1, ends 1, body: expected 1 to 2, found 3",
+        ),
+        (
+            "tie = \"pin\"",
+            "tie = \"pin\"\nlength = 1.0",
+            "joint 1, length: expected of a spring or a rope alone",
+        ),
+        (
+            "{ at = [0.4, 1.6, 0.0] }",
+            "{ at = [0.4, 1.6, 0.0], radius = 1.0 }",
+            "joint 2, ends 2, radius: expected of a body alone",
+        ),
+        (
+            "gravity_scale = 0.5",
+            "gravity_scale = 500.0",
+            "body 1, gravity_scale: the gravity scale must be -100 to 100",
+        ),
+        (
+            "turned = [0.0, 0.0, 0.4]",
+            "turned = [0.1, 0.0, 0.4]",
+            "body 2, turned: expected 0 but for the third axis",
+        ),
+        (
+            "at = [1.6, 1.5, 0.0]\n",
+            "at = [1.6, 1.5, 0.0]\nstate = \"%\"\n",
+            "rigid 2, state: expected nothing beside it",
+        ),
+        (
+            "shape = \"box\"",
+            "state = \"%\"",
+            "body 2, state: expected nothing beside it",
+        ),
+    ] {
+        assert!(good.contains(replaced), "{replaced}");
+        let found = complaint(&good.replacen(replaced, by, 1));
+        assert!(found.contains(expected), "{by}: {found}");
+    }
+    for (voxels, expected) in [
+        ("size = [2, 2, 1], voxel_size = 0.1, runs = \"4x1\"", "fine"),
+        (
+            "size = [2, 2, 1], voxel_size = 0.1, runs = \"3x1\"",
+            "voxels, runs: expected 4 voxels, found 3",
+        ),
+        (
+            "size = [2, 2, 1], voxel_size = 0.1, runs = \"9999999999x1\"",
+            "voxels, runs: expected 4 voxels, found more",
+        ),
+        (
+            "size = [2, 2, 1], voxel_size = 0.1, runs = \"4y1\"",
+            "voxels, runs: expected runs such as 12x1, found \"4y1\"",
+        ),
+        (
+            "size = [2, 2, 2], voxel_size = 0.1, runs = \"8x1\"",
+            "voxels, size: expected 1 on the third axis in 2D",
+        ),
+        (
+            "size = [0, 2, 1], voxel_size = 0.1, runs = \"\"",
+            "voxels, size: expected 1 to 1024 on each axis",
+        ),
+    ] {
+        let scene = format!("dim = 2\n[[body]]\nvoxels = {{ {voxels} }}\n");
+        let found = complaint(&scene);
+        assert!(found.contains(expected), "{voxels}: {found}");
+    }
+    let state = "dim = 2\n[[body]]\nstate = \"AAAA\"\n";
+    assert!(complaint(state).contains("line 3: body 1, state: this is no snapshot of a world"));
+}
+
+#[test]
+fn a_joint_that_holds_what_moved_is_refused_or_held_where_it_is() {
+    let mut world = World::<Dim2>::new(Settings::default()).unwrap();
+    let grid = VoxelGrid::<Dim2>::cube(8, 0.5).unwrap();
+    let cube = world.add_body(Body::new(grid, &[Material::default()]).unwrap());
+    let at = [0.25, 0.5, 0.0];
+    let end = End::Soft {
+        body: cube,
+        at,
+        radius: 0.1,
+    };
+    world.add_joint(Joint::pin(end, End::Place(at))).unwrap();
+    (0..30).for_each(|_| _ = world.step());
+    assert!(
+        !world
+            .events()
+            .iter()
+            .any(|event| matches!(event, Event::JointBroke { .. }))
+    );
+    let other = again(&world, "hanging");
+    let places = [&world, &other].map(|world| {
+        let joint = world.joints().ids().next().unwrap();
+        world.joint_places(joint).unwrap().unwrap()
+    });
+    assert!((places[0][0][1] - places[1][0][1]).abs() < 1e-3);
+}
+
+#[test]
+fn what_is_too_long_is_refused() {
+    let mut world = World::<Dim3>::new(Settings::default()).unwrap();
+    let grid = VoxelGrid::<Dim3>::ball(40, 1.0).unwrap();
+    let ball = Body::new(grid, &[Material::default()]).unwrap();
+    let id = world.add_body(ball);
+    assert!(
+        Scene::of_world(&world).unwrap().text().is_ok(),
+        "its voxels are few letters"
+    );
+    world.body_mut(id).unwrap().crumble().unwrap();
+    let error = Scene::of_world(&world).unwrap().text().unwrap_err();
+    assert!(
+        error.to_string().contains("save a snapshot instead"),
+        "{error}"
+    );
+}
