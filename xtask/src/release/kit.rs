@@ -108,6 +108,14 @@ impl Kit {
         }
     }
 
+    /// Takes away what a part made that did not go well.
+    pub fn discard(&self) {
+        for file in self.made.iter().filter(|file| file.is_file()) {
+            // Then it was not there.
+            let _removed = fs::remove_file(file);
+        }
+    }
+
     fn note(&self, part: &str) -> PathBuf {
         self.folder.join("parts").join(part)
     }

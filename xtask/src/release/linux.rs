@@ -151,9 +151,8 @@ pub fn deb(kit: &mut Kit) -> Result<(), Failure> {
     let pages = package.join("usr/share/man/man1");
     let entries = fs::read_dir(&pages).map_err(|error| told(&pages, &error))?;
     let pages = entries.flatten().map(|entry| entry.path());
-    for file in pages.chain([changelog, papers.join("licences.txt")]) {
-        compress(&file)?;
-    }
+    let others = [changelog, papers.join("licences.txt")];
+    compress(&pages.chain(others).collect::<Vec<_>>())?;
     let unit = papers.join("examples/tamaire-stand.service");
     let text = fs::read_to_string(&unit).map_err(|error| told(&unit, &error))?;
     put_text(&text.replace("/usr/local/bin/", "/usr/bin/"), &unit)?;
