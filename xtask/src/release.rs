@@ -9,13 +9,12 @@ mod trust;
 mod windows;
 
 use crate::packages::IfMissing;
-use crate::shell::{CANNOT, FAILED, Failure, execute, root};
+use crate::shell::{FAILED, Failure, execute};
 use crate::web;
 use files::zip;
 use kit::{Kit, size};
 use std::fmt::Write;
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
 use std::time::Instant;
 
@@ -164,26 +163,4 @@ fn web_archive(kit: &mut Kit) -> Result<(), Failure> {
     copy.arg("-r").arg(&site).arg(stage.join(&name));
     execute(&mut copy, "the page could not be copied")?;
     zip(kit, &stage, &name)
-}
-
-/// Reads a file of the repository.
-fn text_of(path: &str) -> Result<String, Failure> {
-    let path = root().join(path);
-    fs::read_to_string(&path).map_err(|error| told(&path, &error))
-}
-
-/// What an error means for a file.
-fn told(path: &Path, error: &dyn std::error::Error) -> Failure {
-    Failure {
-        message: format!("{}: {error}", path.display()),
-        code: FAILED,
-    }
-}
-
-/// That something is not on this machine.
-fn lacking(program: &str, how: &str) -> Failure {
-    Failure {
-        message: format!("there is no {program}: {how}"),
-        code: CANNOT,
-    }
 }

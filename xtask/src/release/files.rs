@@ -1,11 +1,16 @@
 //! Files and archives that come out the same each time: in the order of their names, of nobody, with the time of the commit.
 
 use super::kit::Kit;
-use super::{lacking, told};
-use crate::shell::{FAILED, Failure, is_on_path};
+use crate::shell::{FAILED, Failure, is_on_path, lacking, root, told};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+
+/// Reads a file of the repository.
+pub fn text_of(path: &str) -> Result<String, Failure> {
+    let path = root().join(path);
+    fs::read_to_string(&path).map_err(|error| told(&path, &error))
+}
 
 /// Copies a file to where it belongs, with the folders above it.
 pub fn put(from: &Path, to: &Path) -> Result<(), Failure> {

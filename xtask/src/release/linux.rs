@@ -1,9 +1,9 @@
 //! Packages for Linux: the same tree for a .deb and for an archive that needs no installing.
 
-use super::files::{compress, put, put_text, settle, tar as archive};
+use super::files::{compress, put, put_text, settle, tar as archive, text_of};
 use super::kit::Kit;
-use super::{lacking, programs, text_of, told};
-use crate::shell::{CANNOT, FAILED, Failure, execute, is_on_path, output_of, root};
+use super::programs;
+use crate::shell::{CANNOT, FAILED, Failure, execute, is_on_path, lacking, output_of, root, told};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
