@@ -9,17 +9,16 @@ mod trust;
 mod windows;
 
 use crate::packages::IfMissing;
-use crate::shell::{CANNOT, FAILED, Failure, execute, root};
+use crate::shell::{FAILED, Failure, execute};
 use crate::web;
 use files::zip;
 use kit::{Kit, size};
 use std::fmt::Write;
-use std::fs;
-use std::path::Path;
+use std::path::PathBuf;
 use std::process::Command;
 use std::time::Instant;
 
-/// A package is a few seconds of a home's line. The web page has limits of its own.
+/// What one downloads is a few seconds of a home's line.
 const MOST_BYTES: u64 = 12_000_000;
 
 /// Which parts of a release to make.
@@ -125,17 +124,20 @@ fn make(part: &Part, kit: &mut Kit) -> Went {
         .and_then(|()| kit.finish());
     match made {
         Ok(()) => Went::Made,
-        Err(failure) => Went::Not(failure),
+        Err(failure) => {
+            kit.discard();
+            Went::Not(failure)
+        }
     }
 }
 
-/// Refuses what is larger than it may be.
+/// Refuses a package that is larger than it may be. What is for those without packages may be a little larger.
 fn too_large(kit: &Kit) -> Result<(), Failure> {
-    for file in kit
-        .made()
-        .iter()
-        .filter(|file| file.extension().is_some_and(|name| name != "json"))
-    {
+    let is_package = |file: &&PathBuf| {
+        file.extension()
+            .is_some_and(|name| name == "deb" || name == "zip")
+    };
+    for file in kit.made().iter().filter(is_package) {
         let bytes = size(file)?;
         if bytes > MOST_BYTES {
             let name = file.display();
@@ -161,26 +163,4 @@ fn web_archive(kit: &mut Kit) -> Result<(), Failure> {
     copy.arg("-r").arg(&site).arg(stage.join(&name));
     execute(&mut copy, "the page could not be copied")?;
     zip(kit, &stage, &name)
-}
-
-/// Reads a file of the repository.
-fn text_of(path: &str) -> Result<String, Failure> {
-    let path = root().join(path);
-    fs::read_to_string(&path).map_err(|error| told(&path, &error))
-}
-
-/// What an error means for a file.
-fn told(path: &Path, error: &dyn std::error::Error) -> Failure {
-    Failure {
-        message: format!("{}: {error}", path.display()),
-        code: FAILED,
-    }
-}
-
-/// That something is not on this machine.
-fn lacking(program: &str, how: &str) -> Failure {
-    Failure {
-        message: format!("there is no {program}: {how}"),
-        code: CANNOT,
-    }
 }

@@ -36,6 +36,22 @@ pub fn execute(command: &mut Command, hint: &str) -> Result<(), Failure> {
     }
 }
 
+/// What an error means for a file.
+pub fn told(path: &Path, error: &dyn std::error::Error) -> Failure {
+    Failure {
+        message: format!("{}: {error}", path.display()),
+        code: FAILED,
+    }
+}
+
+/// That something is not on this machine.
+pub fn lacking(program: &str, how: &str) -> Failure {
+    Failure {
+        message: format!("there is no {program}: {how}"),
+        code: CANNOT,
+    }
+}
+
 /// The command as one would type it, without the folder of the program.
 pub fn show(command: &Command) -> String {
     let program = Path::new(command.get_program());

@@ -45,7 +45,8 @@ pub fn write(mut command: Command, folder: &Path) -> io::Result<()> {
     for shell in [Shell::Bash, Shell::Fish, Shell::Zsh, Shell::PowerShell] {
         generate_to(shell, &mut command, &name, &completions)?;
     }
-    clap_mangen::generate_to(command, pages)
+    // Of `help`, which only shows the same, there would be a page for each subcommand.
+    clap_mangen::generate_to(command.disable_help_subcommand(true), pages)
 }
 
 #[cfg(test)]
@@ -71,7 +72,9 @@ mod tests {
         }
         assert!(read("man/broomer.1").contains("1.2.3"));
         assert!(read("man/broomer-sweep.1").contains("With this"));
-        assert!(!folder.path().join("man/broomer-secret.1").exists());
+        for page in ["broomer-secret.1", "broomer-help.1"] {
+            assert!(!folder.path().join("man").join(page).exists(), "{page}");
+        }
     }
 
     #[test]

@@ -1,11 +1,16 @@
 //! Files and archives that come out the same each time: in the order of their names, of nobody, with the time of the commit.
 
 use super::kit::Kit;
-use super::{lacking, told};
-use crate::shell::{Failure, execute, is_on_path};
+use crate::shell::{FAILED, Failure, is_on_path, lacking, root, told};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
+
+/// Reads a file of the repository.
+pub fn text_of(path: &str) -> Result<String, Failure> {
+    let path = root().join(path);
+    fs::read_to_string(&path).map_err(|error| told(&path, &error))
+}
 
 /// Copies a file to where it belongs, with the folders above it.
 pub fn put(from: &Path, to: &Path) -> Result<(), Failure> {
@@ -25,11 +30,11 @@ fn make_room(path: &Path) -> Result<(), Failure> {
     fs::create_dir_all(folder).map_err(|error| told(folder, &error))
 }
 
-/// Compresses a file, as manual pages and changelogs are on Debian.
-pub fn compress(file: &Path) -> Result<(), Failure> {
+/// Compresses files, as manual pages and changelogs are on Debian.
+pub fn compress(files: &[PathBuf]) -> Result<(), Failure> {
     let mut gzip = Command::new("gzip");
-    gzip.args(["--no-name", "--best", "--force"]).arg(file);
-    execute(&mut gzip, "Debian: gzip")
+    gzip.args(["--no-name", "--best", "--force"]).args(files);
+    run(&mut gzip, "gzip failed; Debian: gzip")
 }
 
 /// Gives all files below a folder the time of the commit and the usual rights; those in `bin` can be run.
@@ -46,7 +51,10 @@ pub fn settle(kit: &Kit, folder: &Path) -> Result<(), Failure> {
         .args(["-c", script, "settle"])
         .arg(folder)
         .arg(&kit.epoch);
-    execute(&mut shell, "it needs the usual programs of Linux")
+    run(
+        &mut shell,
+        "times and rights could not be set: it needs the usual programs of Linux",
+    )
 }
 
 /// A .tar.gz of a folder in the stage.
@@ -87,8 +95,18 @@ pub fn zip(kit: &mut Kit, stage: &Path, name: &str) -> Result<(), Failure> {
 
 /// Runs a script in a folder.
 fn execute_in(shell: &mut Command, folder: &Path, hint: &str) -> Result<(), Failure> {
-    let mut within = Command::new("env");
-    within.arg("--chdir").arg(folder).arg(shell.get_program());
-    within.args(shell.get_args());
-    execute(&mut within, hint)
+    run(shell.current_dir(folder), hint)
+}
+
+/// Runs what nobody wants to read.
+fn run(command: &mut Command, hint: &str) -> Result<(), Failure> {
+    let program = Path::new(command.get_program()).to_path_buf();
+    let status = command.status().map_err(|error| told(&program, &error))?;
+    match status.success() {
+        true => Ok(()),
+        false => Err(Failure {
+            message: format!("{hint} ({status})"),
+            code: FAILED,
+        }),
+    }
 }

@@ -1,7 +1,7 @@
 //! What a release is made of: its version, its time, its folder, and which parts were made from this very commit.
 
 use crate::packages::IfMissing;
-use crate::shell::{CANNOT, FAILED, Failure, output_of, root, target};
+use crate::shell::{CANNOT, FAILED, Failure, output_of, root, target, told};
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -37,7 +37,7 @@ impl Kit {
                 .ok_or_else(cannot)
         };
         let folder = root().join(target()).join("packages");
-        fs::create_dir_all(folder.join("parts")).map_err(|error| super::told(&folder, &error))?;
+        fs::create_dir_all(folder.join("parts")).map_err(|error| told(&folder, &error))?;
         Ok(Self {
             version: env!("CARGO_PKG_VERSION").to_string(),
             epoch: line(&["log", "-1", "--format=%ct"])?,
@@ -104,7 +104,15 @@ impl Kit {
         // What was built from changes belongs to no commit.
         match self.is_dirty {
             true => Ok(()),
-            false => fs::write(&path, note).map_err(|error| super::told(&path, &error)),
+            false => fs::write(&path, note).map_err(|error| told(&path, &error)),
+        }
+    }
+
+    /// Takes away what a part made that did not go well.
+    pub fn discard(&self) {
+        for file in self.made.iter().filter(|file| file.is_file()) {
+            // Then it was not there.
+            let _removed = fs::remove_file(file);
         }
     }
 
@@ -117,7 +125,7 @@ impl Kit {
         let stage = self.folder.join("stage").join(name);
         // There may be none.
         let _removed = fs::remove_dir_all(&stage);
-        fs::create_dir_all(&stage).map_err(|error| super::told(&stage, &error))?;
+        fs::create_dir_all(&stage).map_err(|error| told(&stage, &error))?;
         Ok(stage)
     }
 
@@ -135,8 +143,7 @@ impl Kit {
 
     /// The packages of this version, by name.
     pub fn packages(&self) -> Result<Vec<PathBuf>, Failure> {
-        let entries =
-            fs::read_dir(&self.folder).map_err(|error| super::told(&self.folder, &error))?;
+        let entries = fs::read_dir(&self.folder).map_err(|error| told(&self.folder, &error))?;
         let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
         let version = &self.version;
         files.retain(|path| {
@@ -163,7 +170,7 @@ impl Kit {
 
 /// The bytes of a file.
 pub fn size(file: &Path) -> Result<u64, Failure> {
-    let data = fs::metadata(file).map_err(|error| super::told(file, &error))?;
+    let data = fs::metadata(file).map_err(|error| told(file, &error))?;
     match data.len() {
         0 => Err(Failure {
             message: format!("{} is empty", file.display()),

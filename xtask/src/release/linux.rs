@@ -1,9 +1,9 @@
 //! Packages for Linux: the same tree for a .deb and for an archive that needs no installing.
 
-use super::files::{compress, put, put_text, settle, tar as archive};
+use super::files::{compress, put, put_text, settle, tar as archive, text_of};
 use super::kit::Kit;
-use super::{lacking, programs, text_of, told};
-use crate::shell::{CANNOT, FAILED, Failure, execute, is_on_path, output_of, root};
+use super::programs;
+use crate::shell::{CANNOT, FAILED, Failure, execute, is_on_path, lacking, output_of, root, told};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -151,9 +151,8 @@ pub fn deb(kit: &mut Kit) -> Result<(), Failure> {
     let pages = package.join("usr/share/man/man1");
     let entries = fs::read_dir(&pages).map_err(|error| told(&pages, &error))?;
     let pages = entries.flatten().map(|entry| entry.path());
-    for file in pages.chain([changelog, papers.join("licences.txt")]) {
-        compress(&file)?;
-    }
+    let others = [changelog, papers.join("licences.txt")];
+    compress(&pages.chain(others).collect::<Vec<_>>())?;
     let unit = papers.join("examples/tamaire-stand.service");
     let text = fs::read_to_string(&unit).map_err(|error| told(&unit, &error))?;
     put_text(&text.replace("/usr/local/bin/", "/usr/bin/"), &unit)?;

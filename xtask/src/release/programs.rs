@@ -2,9 +2,8 @@
 
 use super::files::put;
 use super::kit::Kit;
-use super::told;
 use crate::cross::Compiler;
-use crate::shell::{Failure, answers, cargo, execute, root, target};
+use crate::shell::{Failure, answers, cargo, execute, root, target, told};
 use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};

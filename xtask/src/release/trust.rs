@@ -1,10 +1,12 @@
 //! What lets others check what they got: sums, what is inside, and whether that is known to be bad.
 
 use super::kit::Kit;
-use super::{lacking, programs, told};
+use super::programs;
 use crate::cross::WINDOWS;
 use crate::packages::IfMissing;
-use crate::shell::{CANNOT, Failure, answers, cargo, execute, is_on_path, output_of};
+use crate::shell::{
+    CANNOT, Failure, answers, cargo, execute, is_on_path, lacking, output_of, told,
+};
 use std::fs;
 use std::path::Path;
 use std::process::Command;

@@ -1,10 +1,10 @@
 //! An archive for Windows: programs that need nothing beside them.
 
-use super::files::{put, zip};
+use super::files::{put, put_text, zip};
 use super::kit::Kit;
-use super::{programs, told};
+use super::programs;
 use crate::cross::{WINDOWS, Wanted};
-use crate::shell::{FAILED, Failure, output_of, root};
+use crate::shell::{FAILED, Failure, lacking, output_of, root, told};
 use std::fs;
 use std::path::Path;
 
@@ -39,7 +39,7 @@ pub fn archive(kit: &mut Kit) -> Result<(), Failure> {
         let path = root().join(from);
         let text = fs::read_to_string(&path).map_err(|error| told(&path, &error))?;
         let text = text.replace("\r\n", "\n").replace('\n', "\r\n");
-        super::files::put_text(&text, &folder.join(to))?;
+        put_text(&text, &folder.join(to))?;
     }
     zip(kit, &stage, &name)
 }
@@ -48,7 +48,7 @@ pub fn archive(kit: &mut Kit) -> Result<(), Failure> {
 fn check_imports(program: &Path) -> Result<(), Failure> {
     let path = program.display().to_string();
     let Some(text) = output_of("x86_64-w64-mingw32-objdump", &["-p", &path]) else {
-        return Err(super::lacking(
+        return Err(lacking(
             "x86_64-w64-mingw32-objdump",
             "Debian: binutils-mingw-w64-x86-64",
         ));
