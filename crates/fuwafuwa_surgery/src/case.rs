@@ -221,15 +221,16 @@ impl Case {
 
 /// What the materials of an organ are made of, until somebody says more: they get firmer with their number, and start over.
 ///
-/// Brain bears 1 to 2 kPa in a slow test [Budday 2015] and other soft organs some more; to part them takes tens to a few
-/// hundred J/m². A toughness is the root of that times Young's modulus.
+/// Brain bears 1 to 2 kPa in a slow test, and other soft organs some more. The energies of cuts are rough numbers, chosen so
+/// that a sharp edge cuts before the organ gives way by more than a centimetre. A toughness is the root of such an energy
+/// times Young's modulus.
 pub fn tissues(count: usize) -> Vec<Material> {
     // Young's modulus [Pa], and the energy of an area that is cut [J/m²].
     const KINDS: [(f64, f32); 4] = [
-        (2000.0, 40.0),
-        (3000.0, 60.0),
-        (6000.0, 120.0),
-        (4000.0, 250.0),
+        (2000.0, 8.0),
+        (3000.0, 12.0),
+        (6000.0, 25.0),
+        (4000.0, 80.0),
     ];
     let kinds = KINDS.iter().cycle().take(count.clamp(1, MOST_MATERIALS));
     let tissue = |&(young, energy): &(f64, f32)| Material {
