@@ -13,6 +13,7 @@
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
+#![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
 
 #[cfg(feature = "window")]
 pub mod app;

@@ -252,7 +252,6 @@ impl Procedure {
             released: before.released + report.released,
             pieces: measures::pieces(self.organ()),
             grips: self.held.grips(),
-            ..before
         }
     }
 }

@@ -100,13 +100,12 @@ fn line(samples: &[Sample], value: fn(&Sample) -> f64) -> Vec<(f64, f64)> {
     points.map(point).collect()
 }
 
+/// A line: its name, its colour, and seconds with values.
+type Line<'a> = (&'a str, RGBColor, Vec<(f64, f64)>);
+
 type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 
-fn draw(
-    area: &Area<'_>,
-    title: &str,
-    lines: &[(&str, RGBColor, Vec<(f64, f64)>)],
-) -> Result<(), Box<dyn Error>> {
+fn draw(area: &Area<'_>, title: &str, lines: &[Line<'_>]) -> Result<(), Box<dyn Error>> {
     let points = || lines.iter().flat_map(|(.., points)| points);
     let long = points().map(|point| point.0).fold(1.0, f64::max);
     let high = points().map(|point| point.1).fold(0.0, f64::max);
