@@ -42,11 +42,12 @@ pub fn write(mut command: Command, folder: &Path) -> io::Result<()> {
     fs::create_dir_all(&pages)?;
     fs::create_dir_all(&completions)?;
     let name = command.get_name().to_string();
+    // Of `help`, which only shows the same, there would be a page for each subcommand.
+    clap_mangen::generate_to(command.clone().disable_help_subcommand(true), pages)?;
     for shell in [Shell::Bash, Shell::Fish, Shell::Zsh, Shell::PowerShell] {
         generate_to(shell, &mut command, &name, &completions)?;
     }
-    // Of `help`, which only shows the same, there would be a page for each subcommand.
-    clap_mangen::generate_to(command.disable_help_subcommand(true), pages)
+    Ok(())
 }
 
 #[cfg(test)]
