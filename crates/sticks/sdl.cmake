@@ -18,3 +18,12 @@ set(SDL_PIPEWIRE OFF CACHE BOOL "")
 foreach(build DEBUG RELEASE RELWITHDEBINFO MINSIZEREL)
     set(CMAKE_C_FLAGS_${build} "" CACHE STRING "")
 endforeach()
+
+# A toolchain file keeps the cmake crate from saying which system is meant, and SDL would be built for this one.
+if("$ENV{TARGET}" STREQUAL "x86_64-pc-windows-gnu" AND NOT CMAKE_HOST_WIN32)
+    set(CMAKE_SYSTEM_NAME Windows)
+    set(CMAKE_SYSTEM_PROCESSOR x86_64)
+    set(CMAKE_C_COMPILER x86_64-w64-mingw32-gcc)
+    set(CMAKE_CXX_COMPILER x86_64-w64-mingw32-g++)
+    set(CMAKE_RC_COMPILER x86_64-w64-mingw32-windres)
+endif()
