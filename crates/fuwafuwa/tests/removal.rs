@@ -41,7 +41,7 @@ fn check_whole<D: Dim>(world: &World<D>, what: &str) {
     assert_eq!(loaded.hash(), world.hash(), "{what}");
 }
 
-fn blade<D: Dim>(seed: &mut u32) -> Blade {
+fn blade(seed: &mut u32) -> Blade {
     let mut number = || random(seed, 1000) as f32 / 1000.0;
     let from = [0.1 + 0.8 * number(), -1.0 - number(), -2.0];
     let along = [number() - 0.5, 4.0, number() - 0.5];
@@ -71,7 +71,7 @@ fn check_history<D: Dim>(seed: u32, n: usize) -> usize {
     for round in 0..12 {
         let what = format!("{}D, seed {seed}, round {round}", D::N);
         match random(seed, 3) {
-            0 => drop(world.cut(id, &blade::<D>(seed)).unwrap()),
+            0 => drop(world.cut(id, &blade(seed)).unwrap()),
             1 => {
                 let mut at = [0; 3];
                 (0..D::N).for_each(|axis| at[axis] = random(seed, n + 1) as i32);

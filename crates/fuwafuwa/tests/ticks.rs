@@ -251,7 +251,8 @@ fn settings_change_on_the_way() {
         ..usual
     };
     let (found, before, _) = gain(braked);
-    near(found / before, (1.0f64 - 10.0 / 240.0).powi(4) - 1.0);
+    let kept = 1.0f64 - 10.0 / 240.0;
+    near(found / before, kept * kept * kept * kept - 1.0);
 }
 
 /// What a stick is told in each substep is what the tick tells at its end, force and torque.

@@ -153,6 +153,7 @@ impl Case {
             gravity: [0.0, -9.81 * AFLOAT / inertia, 0.0],
             drag: DRAG,
             most_substeps: substeps,
+            ..Settings::default()
         })?;
         let top = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
         world.add_rigid(Rigid::fixed(top, 0.6))?;
@@ -243,6 +244,7 @@ pub fn tissues(count: usize) -> Vec<Material> {
         friction: 0.1,
         strength: 30_000.0,
         toughness: (young as f32 * energy).sqrt(),
+        ..Material::default()
     };
     kinds.map(tissue).collect()
 }

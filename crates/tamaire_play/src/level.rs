@@ -6,7 +6,7 @@ use crate::Route;
 use fuwafuwa::hash::Hash;
 use fuwafuwa::{Dim, Dim2, Dim3, Shape, World};
 use fuwafuwa_scenes::scene::{
-    BodyText, DriveText, Fetch, GameText, MAX_TEXT_BYTES, RigidText, Scene, SceneError, ending_of,
+    BodyText, DriveText, Fetch, GameText, MAX_TEXT_BYTES, Scene, SceneError, ending_of,
 };
 use std::any::Any;
 use std::io;
