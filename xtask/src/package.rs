@@ -15,13 +15,14 @@ pub enum Package {
 
 /// The crates, each with the folders that its package has. Those of the game, and those that only tests use, say
 /// `publish = false`.
-const CRATES: [(&str, &[&str]); 8] = [
+const CRATES: [(&str, &[&str]); 9] = [
     ("fuwafuwa", &["src", "guide", "examples"]),
     ("fuwafuwa_scenes", &["src", "scenes", "examples"]),
     ("fuwafuwa_render", &["src"]),
     ("fuwafuwa_painter", &["src"]),
     ("fuwafuwa_scan", &["src"]),
     ("fuwafuwa_cli", &["src"]),
+    ("fuwafuwa_manual", &["src"]),
     ("force_feedback", &["src"]),
     ("sticks", &["src", "examples"]),
 ];
