@@ -55,13 +55,11 @@ impl Plasticity {
 }
 
 /// What is elastic of a deformation F, after G: Fₑ = F G.
-#[inline(never)]
 pub fn elastic_part(deformation: &Matrix, undone: &Matrix) -> Matrix {
     product(deformation, undone)
 }
 
 /// First Piola–Kirchhoff stress [Pa] of a deformation, after G.
-#[inline(never)]
 pub fn stress_after<D: Dim>(
     elasticity: Elasticity,
     deformation: &Matrix,
@@ -97,7 +95,6 @@ pub fn forces_after<D: Dim>(
 }
 
 /// What G becomes when a deformation is more than a material bears.
-#[inline(never)]
 pub fn flow<D: Dim>(
     plasticity: Plasticity,
     elasticity: Elasticity,
@@ -171,7 +168,6 @@ pub fn flow<D: Dim>(
 }
 
 /// Elastic energy in a unit of volume [J/m³], of a stretch S in an element of a volume, in terms of what it was.
-#[inline(never)]
 fn density(elasticity: Elasticity, stretch: &Matrix, volume: f64) -> f64 {
     let mut strain = *stretch;
     (0..3).for_each(|k| strain[k][k] -= 1.0);
@@ -184,7 +180,6 @@ fn density(elasticity: Elasticity, stretch: &Matrix, volume: f64) -> f64 {
 
 /// By how much less what was kneaded resists in terms of what it was built as: 1 / λ_max(GᵀG), bounded from the trace and the
 /// norm; exact in the plane and for what was pressed flat.
-#[inline(never)]
 pub fn softening<D: Dim>(undone: &Matrix) -> f64 {
     let axes = D::N as f64;
     let mut squares = [[0.0; 3]; 3];
@@ -198,7 +193,6 @@ pub fn softening<D: Dim>(undone: &Matrix) -> f64 {
     1.0 / (trace / axes + ((axes - 1.0) / axes * spread).sqrt())
 }
 
-#[inline(never)]
 fn product(a: &Matrix, b: &Matrix) -> Matrix {
     let mut product = [[0.0; 3]; 3];
     for i in 0..3 {
@@ -209,7 +203,6 @@ fn product(a: &Matrix, b: &Matrix) -> Matrix {
     product
 }
 
-#[inline(never)]
 fn determinant(m: &Matrix) -> f64 {
     dot(m[0], cross(m[1], m[2]))
 }

@@ -14,7 +14,6 @@ pub type Place = [f64; 3];
 pub type Faces = BTreeSet<(Point, usize)>;
 
 /// Adds the faces that a patch goes through; its corners are in the order of its outline.
-#[inline(never)]
 pub fn go_through<D: Dim>([a, b, c, d]: [Place; 4], faces: &mut Faces) {
     for triangle in [[a, b, c], [a, c, d]] {
         for axis in 0..D::N {
@@ -37,7 +36,6 @@ pub fn area([a, b, c, d]: [Place; 4]) -> f64 {
 }
 
 /// The faces across an axis that a triangle goes through.
-#[inline(never)] // what calls it with numbers that are known would unroll all of it
 fn go_along(triangle: [Place; 3], axis: usize, faces: &mut Faces) {
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
     let seen = triangle.map(|corner| [corner[u], corner[v]]);

@@ -52,9 +52,24 @@ impl Undone {
     }
 }
 
-/// Second loop, as that of the kernel; then lets flow what is strained more than it bears.
-#[inline(always)]
+/// Second loop, as that of the kernel; then lets flow what is strained more than it bears. It stays out of the kernel, and
+/// its parts out of each other: compilers took minutes over all of it in one, where lanes are single numbers.
+#[inline(never)]
 pub fn plastic_stress<D: Dim, S: Simd>(
+    simd: S,
+    material: (&Moduli, &Flow),
+    view: &mut BlockView,
+    undone: &mut Undone,
+    scratch: &mut Scratch,
+) {
+    simd.vectorize(
+        #[inline(always)]
+        || flow_on::<D, S>(simd, material, view, undone, scratch),
+    );
+}
+
+#[inline(always)]
+fn flow_on<D: Dim, S: Simd>(
     simd: S,
     (moduli, flow): (&Moduli, &Flow),
     view: &mut BlockView,
@@ -82,12 +97,26 @@ pub fn plastic_stress<D: Dim, S: Simd>(
             (soft * sum).store_array(&mut scratch.stress[i][j]);
         }
     }
-    let next = flown::<D, S>(simd, (moduli, flow), &elastic, &rotation, &g);
+    let next = flown_apart::<D, S>(simd, (moduli, flow), &elastic, &rotation, &g);
     for i in 0..D::N {
         for j in 0..D::N {
             next[i][j].store_array(&mut undone.0[i][j]);
         }
     }
+}
+
+#[inline(never)]
+fn flown_apart<D: Dim, S: Simd>(
+    simd: S,
+    material: (&Moduli, &Flow),
+    elastic: &Matrix<S>,
+    rotation: &Matrix<S>,
+    g: &Matrix<S>,
+) -> Matrix<S> {
+    simd.vectorize(
+        #[inline(always)]
+        || flown::<D, S>(simd, material, elastic, rotation, g),
+    )
 }
 
 #[inline(always)]
