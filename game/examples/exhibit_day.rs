@@ -10,6 +10,7 @@
 //!
 //! leaves a copy of the logbook where that is named.
 
+use cpu_time::ThreadTime;
 use eframe::egui_wgpu::{RenderState, RendererOptions};
 use eframe::wgpu::PollType;
 use egui::{Event, Key, Modifiers, PointerButton, pos2, vec2};
@@ -18,7 +19,6 @@ use egui_kittest::wgpu::{WgpuTestRenderer, create_render_state, default_wgpu_set
 use peak_alloc::PeakAlloc;
 use std::path::Path;
 use std::process::ExitCode;
-use std::time::Instant;
 use sticks::{About, Device, DeviceId, Labels, Pad, PadButton, Snapshot};
 use tamaire::app::App;
 use tamaire::exhibit::Stand;
@@ -225,12 +225,13 @@ impl Day {
         let plugged = vec![self.pad.clone()];
         self.window.state_mut().game.controls.pads = Pads::of(Snapshot { devices: plugged });
         let was_there = self.is_played();
-        let began = worked();
+        let began = ThreadTime::now();
         self.window.step();
         // A screen would wait for it. One in software is slower than the stand, and what it has still to do piles up.
         let waited = self.gpu.device.poll(PollType::wait_indefinitely());
         waited.expect("the GPU is there");
-        let time = 1000.0 * (worked() - began);
+        // Others on the machine do not count.
+        let time = 1000.0 * began.elapsed().as_secs_f64();
         self.times.push(time);
         if !was_there && self.is_played() {
             self.welcome = self.welcome.max(time);
@@ -294,20 +295,6 @@ fn middle(numbers: &mut Vec<f64>) -> f64 {
     let middle = numbers[numbers.len() / 2];
     numbers.clear();
     middle
-}
-
-/// For how long this thread has worked [s]: others on the machine do not count where the system tells them apart.
-fn worked() -> f64 {
-    thread_local!(static BEGAN: Instant = Instant::now());
-    let told = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-    let nanoseconds = told
-        .split(' ')
-        .next()
-        .and_then(|word| word.parse::<f64>().ok());
-    nanoseconds.map_or_else(
-        || BEGAN.with(|began| began.elapsed().as_secs_f64()),
-        |ns| 1e-9 * ns,
-    )
 }
 
 fn tap(events: &mut Vec<Event>, key: Key) {

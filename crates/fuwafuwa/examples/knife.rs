@@ -4,13 +4,11 @@
 //! cargo run --release -p fuwafuwa --example knife -- [VOXELS [SUBSTEPS]]
 //! ```
 
-#![allow(clippy::disallowed_types)] // a benchmark needs the clock
-
+use cpu_time::ThreadTime;
 use fuwafuwa::{
     Body, Dim3, Drive, Elasticity, Event, Knife, Material, Rigid, Settings, Shape, VoxelGrid, World,
 };
 use std::error::Error;
-use std::time::Instant;
 
 /// About as a brain is: a square metre of cut takes 8 J.
 fn organ() -> Material {
@@ -61,9 +59,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         // It waits for half a second, and goes down in two.
         let deep = 0.001 * (tick as f32 - 30.0).clamp(0.0, 135.0);
         world.set_goal(holder, [0.081, 0.14 - deep, 0.08])?;
-        let began = worked();
+        let began = ThreadTime::now();
         world.step();
-        times.push(1000.0 * (worked() - began));
+        times.push(1000.0 * began.elapsed().as_secs_f64());
         for event in world.events() {
             if let Event::Cut { area, work, .. } = event {
                 sums = [sums[0] + area, sums[1] + work];
@@ -86,18 +84,4 @@ fn main() -> Result<(), Box<dyn Error>> {
         times[times.len() - 1]
     );
     Ok(())
-}
-
-/// For how long this thread has worked [s]: others on the machine do not count where the system tells them apart.
-fn worked() -> f64 {
-    thread_local!(static BEGAN: Instant = Instant::now());
-    let told = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-    let nanoseconds = told
-        .split(' ')
-        .next()
-        .and_then(|word| word.parse::<f64>().ok());
-    nanoseconds.map_or_else(
-        || BEGAN.with(|began| began.elapsed().as_secs_f64()),
-        |ns| 1e-9 * ns,
-    )
 }

@@ -193,6 +193,13 @@ struct Stance {
     across: Vector,
 }
 
+impl Stance {
+    /// How long the edge is [m].
+    fn long(&self) -> f32 {
+        length(minus(self.levers[1], self.levers[0]))
+    }
+}
+
 fn direction(vector: Vector) -> Vector {
     scaled(vector, 1.0 / length(vector).max(f32::MIN_POSITIVE))
 }

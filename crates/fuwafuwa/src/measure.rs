@@ -142,20 +142,23 @@ impl<D: Dim> Body<D> {
         let size = f64::from(self.truth.grid.voxel_size()) * f64::from(element.cell.width());
         let stencil = self.truth.mesh.stencil(element);
         let law = self.state.blocks.law();
-        let undone = self.state.blocks.undone(id);
-        let undone = undone.map_or(IDENTITY, |undone| undone.map(|row| row.map(f64::from)));
+        let undone = self.undone(id);
         Some(strained_after(
             law, elasticity, &undone, stencil, size, &positions,
         ))
+    }
+
+    /// What was kneaded into an element for good, undone.
+    fn undone(&self, id: ElementId) -> Matrix {
+        let undone = self.state.blocks.undone(id);
+        undone.map_or(IDENTITY, |undone| undone.map(|row| row.map(f64::from)))
     }
 
     /// How far an element was kneaded for good, if it is alive: 0 where nothing was, 0.5 where it was pressed to 1 / 1.5 of
     /// its width along some axis, or drawn out as far in the plane. Of materials that keep no dents, 0.
     pub fn plastic_strain(&self, id: ElementId) -> Option<f32> {
         self.truth.mesh.element(id)?;
-        let undone = self.state.blocks.undone(id);
-        let undone = undone.map_or(IDENTITY, |undone| undone.map(|row| row.map(f64::from)));
-        let most = 1.0 / softening::<D>(&undone);
+        let most = 1.0 / softening::<D>(&self.undone(id));
         Some((most.sqrt() - 1.0).max(0.0) as f32)
     }
 

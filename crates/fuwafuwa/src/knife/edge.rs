@@ -76,7 +76,7 @@ impl Knife {
         if D::N == 2 {
             return 1.0;
         }
-        let spacing = length(minus(stance.levers[1], stance.levers[0])) / last as f32;
+        let spacing = stance.long() / last as f32;
         match place == 0 || place == last {
             true => 0.5 * spacing,
             false => spacing,
@@ -128,7 +128,7 @@ impl Knife {
     ) -> Vec<Vec<Near>> {
         let mut near = vec![Vec::new(); self.samples.len()];
         let from = plus(holder.position(), stance.levers[0]);
-        let long = length(minus(stance.levers[1], stance.levers[0]));
+        let long = stance.long();
         let spacing = match D::N {
             2 => f32::INFINITY,
             _ => long / (self.samples.len() - 1) as f32,
@@ -221,8 +221,7 @@ impl Knife {
                 add(patch, cuts(0) / f64::from(size));
             }
         } else {
-            let long = length(minus(stance.levers[1], stance.levers[0]));
-            let apart = f64::from(long / size) / (self.samples.len() - 1) as f64;
+            let apart = f64::from(stance.long() / size) / (self.samples.len() - 1) as f64;
             for (place, pair) in rows.windows(2).enumerate() {
                 let [Some([a, b]), Some([d, c])] = pair else {
                     continue;
@@ -279,8 +278,7 @@ impl Knife {
             let place = before.map(f64::from);
             return Some([place, place]);
         }
-        let ahead = base.extend(body, plus(at, scaled(stance.toward, size)))?;
-        let toward = minus(ahead, base.extend(body, at)?);
+        let toward = base.direction(body, stance.toward)?;
         let [now, before, toward] = [now, before, toward].map(|place| place.map(f64::from));
         let way = minus(now, before);
         let reach = f64::from(length(minus(at, sample.before)) / size);

@@ -4,7 +4,7 @@ use crate::body::Body;
 use crate::dim::{Dim, Point, voxel_around};
 use crate::mesh::Element;
 use crate::shape::Vector;
-use crate::vector::{cross, length, minus};
+use crate::vector::{cross, length, minus, plus, scaled};
 
 /// From a voxel to the one that has a place leads a way of so many elements at most.
 const STEPS: usize = 6;
@@ -52,6 +52,15 @@ impl Spot {
     pub fn extend<D: Dim>(&self, body: &Body<D>, at: Vector) -> Option<Vector> {
         let mesh = &body.truth.mesh;
         body.at_rest(mesh.element(mesh.owner(self.voxel)?)?, at)
+    }
+
+    /// Where a direction of the world points in the body at rest, for the width of a voxel [voxels].
+    pub fn direction<D: Dim>(&self, body: &Body<D>, way: Vector) -> Option<Vector> {
+        let mesh = &body.truth.mesh;
+        let element = mesh.element(mesh.owner(self.voxel)?)?;
+        let from = body.carry(element)(self.at);
+        let to = plus(from, scaled(way, body.truth.grid.voxel_size()));
+        Some(minus(body.at_rest(element, to)?, self.at))
     }
 
     /// Whether it is within half a voxel of a place [m].

@@ -102,20 +102,12 @@ impl Knife {
         let owner = mesh.owner(spot.voxel).expect("a place is in a solid voxel");
         let element = mesh.element(owner).expect("owners are alive");
         let material = body.material(element);
-        let size = body.truth.grid.voxel_size();
-        // The same directions in the body at rest.
-        let (along, toward) = {
-            let at = body.carry(element)(spot.at);
-            let rest = |way: Vector| {
-                let end = spot.extend(body, plus(at, scaled(way, size)));
-                end.map_or(way, |end| minus(end, spot.at))
-            };
-            let along = match D::N {
-                2 => stance.along,
-                _ => rest(stance.along),
-            };
-            (along, rest(stance.toward))
+        let rest = |way: Vector| spot.direction(body, way).unwrap_or(way);
+        let along = match D::N {
+            2 => stance.along,
+            _ => rest(stance.along),
         };
+        let toward = rest(stance.toward);
         let forth = match spot.is_whole_ahead(body, along, toward) {
             true => self.force_of_a_cut(material),
             false => 0.0,
