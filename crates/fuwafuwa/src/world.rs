@@ -184,8 +184,6 @@ impl<D: Dim> World<D> {
             if is_due(substep, substeps, rounds) {
                 self.cut_along_edges(&mut report);
                 self.fracture(&mut report);
-            }
-            if is_due(substep, substeps, rounds) {
                 self.damp(duration);
             }
             self.push(duration, hooks);

@@ -228,7 +228,6 @@ mod tests {
 
     #[test]
     fn what_is_not_seen_stands_still() {
-        let mut game = game(0.001);
         for screen in [
             Screen::Levels,
             Screen::Replays,
@@ -237,6 +236,7 @@ mod tests {
             Screen::Licences,
             Screen::Paused,
         ] {
+            let mut game = game(0.001);
             game.go(Screen::Title);
             assert_eq!(ticks_in(&mut game, 0.02), 1, "what plays by itself is seen");
             game.go(screen);

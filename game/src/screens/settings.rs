@@ -131,9 +131,6 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 );
             });
             controls(ui, game, &mut chosen);
-            to_licences =
-                button(ui, &theme, said.licences, vec2(240.0, 48.0), Weight::Other).clicked();
-            ui.add_space(8.0);
             if button(ui, &theme, said.reset, vec2(240.0, 48.0), Weight::Other).clicked() {
                 let usual = Settings::default();
                 chosen = Settings {
@@ -148,6 +145,9 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                     ..usual
                 };
             }
+            ui.add_space(8.0);
+            to_licences =
+                button(ui, &theme, said.licences, vec2(240.0, 48.0), Weight::Other).clicked();
         });
     });
     if chosen != before {
