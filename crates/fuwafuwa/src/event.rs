@@ -140,6 +140,15 @@ pub enum Event {
     },
 }
 
+impl Event {
+    /// These pieces of a body came off.
+    pub(crate) fn parted(body: BodyId, pieces: &[PieceId]) -> impl Iterator<Item = Self> {
+        pieces
+            .iter()
+            .map(move |&piece| Self::Parted { body, piece })
+    }
+}
+
 /// What a piece can press on.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

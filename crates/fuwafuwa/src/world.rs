@@ -246,9 +246,7 @@ impl<D: Dim> World<D> {
             let changes = changes.expect("a release leaves the mesh whole");
             report.released += failures.len() as u32;
             report.parted += changes.parted.len() as u32;
-            let parts = changes.parted.iter();
-            let events = parts.map(|&piece| Event::Parted { body: id, piece });
-            self.events.extend(events);
+            self.events.extend(Event::parted(id, &changes.parted));
             self.nearby.tear(id.slot(), body, &changes);
         }
     }

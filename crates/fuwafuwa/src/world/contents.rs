@@ -78,8 +78,7 @@ impl<D: Dim> World<D> {
         let positions = released.iter();
         let releases = positions.map(|&at| Event::Released { body, at, energy });
         self.events.extend(releases);
-        let parts = parted.iter().map(|&piece| Event::Parted { body, piece });
-        self.events.extend(parts);
+        self.events.extend(Event::parted(body, &parted));
         Ok(released.len())
     }
 

@@ -60,12 +60,7 @@ impl<D: Dim> World<D> {
                     area,
                     work,
                 });
-                let parts = changes.parted.iter();
-                let parted = parts.map(|&piece| Event::Parted {
-                    body: cut.body,
-                    piece,
-                });
-                self.events.extend(parted);
+                self.events.extend(Event::parted(cut.body, &changes.parted));
                 self.nearby.tear(cut.body.slot(), body, &changes);
             }
         }
