@@ -140,9 +140,8 @@ impl Writers<'_> {
                 self.woke.write(Woke { body, piece });
             }
             // Only what has the engine removes, and is told by it at once.
-            Event::PieceRemoved { .. }
-            | Event::BodyRemoved { .. }
-            | Event::RigidRemoved { .. } => {}
+            Event::PieceRemoved { .. } | Event::BodyRemoved { .. } | Event::RigidRemoved { .. } => {
+            }
             Event::Quarantined { body, piece } => {
                 let body = of_body(body)?;
                 self.quarantined.write(Quarantined { body, piece });
