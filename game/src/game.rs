@@ -162,7 +162,12 @@ impl Game {
         self.notices.tell(&text);
     }
 
-    /// Why nothing is heard, if so.
+    /// Whether nothing is heard by choice.
+    pub fn is_mute(&self) -> bool {
+        self.sound.is_off()
+    }
+
+    /// Why nothing is heard that should be, if so.
     pub fn sound_trouble(&self) -> Option<String> {
         self.trouble.clone()
     }

@@ -163,9 +163,9 @@ checked! {
 }
 checked! {
     /// Four to eight digits.
-    Pin(String), String, |pin| match (4..=8).contains(&pin.len()) && pin.bytes().all(|digit| digit.is_ascii_digit()) {
-        true => Ok(pin),
-        false => Err("expected 4 to 8 digits in quotation marks".into()),
+    Pin(String), toml::Value, |pin| match pin.as_str() {
+        Some(pin) if (4..=8).contains(&pin.len()) && pin.bytes().all(|digit| digit.is_ascii_digit()) => Ok(pin.into()),
+        _ => Err("expected 4 to 8 digits in quotation marks, as in \"2004\"".into()),
     }
 }
 
@@ -380,6 +380,7 @@ mod tests {
             ("language = \"japanese\"", "language = \"latin\"", "latin"),
             ("#page = ", "page = \"museum\" #", "address of a page"),
             ("#pin = ", "pin = \"12a4\" #", "4 to 8 digits"),
+            ("#pin = ", "pin = 1234 #", "in quotation marks"),
             ("#open = ", "open = \"25:00\" #", "10:00"),
         ] {
             assert!(USUAL.contains(right), "{right}");

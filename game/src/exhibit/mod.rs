@@ -30,7 +30,7 @@ use tamaire_play::Level;
 use visit::Visit;
 
 /// Side of the corner that is held to get behind the stand [points].
-const CORNER: f32 = 90.0;
+pub const CORNER: f32 = 90.0;
 /// What is pressed counts when this has passed since another screen came up [s].
 const SETTLED: f32 = 0.4;
 /// A code may hide the body that is in: it comes up so much later than the result [s].

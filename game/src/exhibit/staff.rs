@@ -5,6 +5,8 @@ use sticks::{Device, PadButton};
 
 /// The entrance opens when it is held for so long [s].
 const HELD: f32 = 3.0;
+/// Who only touched it is shown nothing: it is hidden for such a share of that time.
+const HESITATION: f32 = 0.3;
 /// So many wrong numbers are taken for slips of a finger; then there is a pause, twice as long after each further one.
 const SLIPS: u32 = 3;
 const PAUSE: f64 = 30.0;
@@ -31,10 +33,12 @@ pub enum Page {
     Health,
     /// What the stand is like.
     Settings,
+    /// Whether it is to end.
+    End,
 }
 
 impl Page {
-    /// All of them.
+    /// Those that there is a way to from each other.
     pub const ALL: [Self; 3] = [Self::Today, Self::Health, Self::Settings];
 }
 
@@ -76,6 +80,12 @@ impl Entrance {
             self.entered.clear();
         }
         opens
+    }
+
+    /// Which share of the time it has been held, once it is clear that it is held on purpose.
+    pub fn held(&self) -> Option<f32> {
+        let share = self.held / HELD;
+        (share > HESITATION).then_some(share)
     }
 
     /// For how long no number is looked at [s], at a time on the stand's clock [s].
@@ -145,7 +155,11 @@ mod tests {
             assert!(!entrance.pass(true, 2.9));
             assert!(!entrance.pass(false, 0.1));
         }
-        assert!(!entrance.pass(true, 2.9) && entrance.pass(true, 0.2));
+        assert!(!entrance.pass(true, 0.5));
+        assert_eq!(entrance.held(), None, "a touch shows nothing");
+        assert!(!entrance.pass(true, 2.4));
+        assert!(entrance.held().is_some_and(|share| share > 0.9));
+        assert!(entrance.pass(true, 0.2));
     }
 
     #[test]

@@ -33,7 +33,12 @@ impl Sound {
         }
     }
 
-    /// Why nothing is heard, if so.
+    /// Whether nothing is heard by choice.
+    pub fn is_off(&self) -> bool {
+        self.speaker.is_none()
+    }
+
+    /// Why nothing is heard that should be, if so.
     pub fn trouble(&self) -> Option<String> {
         let trouble = match self.speaker.as_ref()? {
             Ok(speaker) => speaker.trouble(),

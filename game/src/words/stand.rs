@@ -33,6 +33,8 @@ pub struct StandWords {
     pub export: &'static str,
     pub exported: fn(&str) -> String,
     pub end: &'static str,
+    pub ends: &'static str,
+    pub off: &'static str,
 }
 
 impl Language {
@@ -92,6 +94,8 @@ const ENGLISH: StandWords = StandWords {
     export: "Copy the logbook",
     exported: |path| format!("Copied to {path}"),
     end: "End the game",
+    ends: "Then the screen stays dark until the machine or the service is started again.",
+    off: "off",
 };
 
 const JAPANESE: StandWords = StandWords {
@@ -141,6 +145,8 @@ const JAPANESE: StandWords = StandWords {
     export: "記録をコピー",
     exported: |path| format!("コピーしました：{path}"),
     end: "ゲームを おわる",
+    ends: "おわると、コンピューターかサービスを もう一度 起動するまで 画面は暗いままです。",
+    off: "切",
 };
 
 fn megabytes(bytes: u64) -> String {

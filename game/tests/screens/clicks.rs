@@ -324,6 +324,7 @@ fn the_font_has_every_letter_of_the_game() {
     let mut texts = vec![
         include_str!("../../src/words/en.rs"),
         include_str!("../../src/words/ja.rs"),
+        include_str!("../../src/words/stand.rs"),
     ];
     texts.extend(tamaire_play::level::NAMED.map(|(_, text)| text));
     let font = egui::FontId::proportional(20.0);

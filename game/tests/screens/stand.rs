@@ -13,11 +13,12 @@ use sticks::{About, Device, DeviceId, Labels, Snapshot};
 use tamaire::app::App;
 use tamaire::exhibit::config::USUAL;
 use tamaire::exhibit::presence::Attention;
+use tamaire::exhibit::staff::Page;
 use tamaire::exhibit::{Phase, Stand};
 use tamaire::game::{Game, Screen};
 use tamaire::look::Stage;
 use tamaire::platform::{Clock, Files, Pads, Sound, StandFolder, TextFile};
-use tamaire::screens::Attendant;
+use tamaire::screens::{Attendant, Calm};
 use tamaire::words::Language;
 use tamaire_logbook::{End, Error, Kind, Logbook, Round, Visit};
 use tamaire_play::{BotKind, Playback, Replay};
@@ -323,6 +324,9 @@ fn staff_gets_in_by_a_corner_and_a_number_and_changes_what_it_is_like() {
             .unwrap()
             .contains("language = \"japanese\"")
     );
+    let end = Language::Japanese.at_stand().end;
+    click(&mut shown.window, end);
+    assert!(!shown.stand.borrow().is_ended, "it asks first");
     click(&mut shown.window, "もどる");
     assert_eq!(shown.phase(), Phase::Attract);
     assert_eq!(
@@ -405,6 +409,7 @@ fn stand_seen() {
         (vec2(1920.0, 1080.0), "wide"),
         (vec2(1080.0, 1920.0), "upright"),
         (vec2(3840.0, 2160.0), "4k"),
+        (vec2(1280.0, 720.0), "small"),
     ] {
         for (language, tag) in [("english", "en"), ("japanese", "ja")] {
             let changes = [
@@ -446,11 +451,14 @@ fn stand_seen() {
             shown.stand.borrow_mut().phase = Phase::Door;
             frames(&mut shown.window, 3);
             save(&mut shown, "door");
-            for page in tamaire::exhibit::staff::Page::ALL {
+            for page in Page::ALL.into_iter().chain([Page::End]) {
                 shown.stand.borrow_mut().phase = Phase::Staff(page);
                 frames(&mut shown.window, 4);
                 save(&mut shown, &format!("{page:?}"));
             }
+            shown.window.state_mut().attendant = Some(Box::new(Calm::default()));
+            frames(&mut shown.window, 2);
+            save(&mut shown, "calm");
         }
     }
 }

@@ -45,7 +45,12 @@ impl Sound {
         self.message.borrow_mut().play(cue);
     }
 
-    /// Why nothing is heard, if so.
+    /// Whether nothing is heard by choice.
+    pub fn is_off(&self) -> bool {
+        self.speaker.is_none()
+    }
+
+    /// Why nothing is heard that should be, if so.
     pub fn trouble(&self) -> Option<String> {
         self.speaker.as_ref()?.trouble()
     }

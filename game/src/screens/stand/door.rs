@@ -1,10 +1,10 @@
 //! The number that staff is asked for.
 
-use super::super::play::focus_first;
 use super::super::widgets::{Weight, button, card, column, fitted, veil};
-use crate::exhibit::Stand;
+use super::super::{icons, play::focus_first};
+use crate::exhibit::{CORNER, Stand};
 use crate::game::Game;
-use egui::{Sense, Ui, Vec2, vec2};
+use egui::{Sense, Stroke, Ui, Vec2, vec2};
 use tamaire_sound::Menu;
 
 const KEY: Vec2 = vec2(96.0, 60.0);
@@ -72,6 +72,15 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
     } else if let Some(digit) = digit {
         game.blip(Menu::Confirm);
         stand.enter(game, digit);
+    }
+}
+
+/// A ring that closes while the corner or the chord is held, for who does that on purpose.
+pub(super) fn knocked(stand: &Stand, game: &Game, ui: &Ui) {
+    if let Some(share) = stand.entrance.held() {
+        let middle = ui.max_rect().right_top() + vec2(-0.5, 0.5) * CORNER;
+        let stroke = Stroke::new(5.0, game.theme().faint);
+        icons::arc(ui.painter(), middle, 0.3 * CORNER, share, stroke);
     }
 }
 

@@ -30,7 +30,7 @@ impl Attendant for Stand {
 
     fn show(&mut self, game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
         match self.phase {
-            Phase::Closed => return closed(self, game, ui),
+            Phase::Closed => closed(self, game, ui),
             Phase::Staff(page) => {
                 staff::show(self, game, page, ui);
                 notices::show(game, ui);
@@ -53,6 +53,7 @@ impl Attendant for Stand {
             language::show(game, ui);
         }
         leaving::show(self, game, ui);
+        door::knocked(self, game, ui);
         if self.is_pointer_left() {
             ui.ctx().set_cursor_icon(CursorIcon::None);
         }

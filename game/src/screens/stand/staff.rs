@@ -20,7 +20,7 @@ use tamaire_sound::Menu;
 
 /// Width of a page, height of a line, and how far cards are apart [points].
 const WIDE: f32 = 780.0;
-const LINE: f32 = 38.0;
+const LINE: f32 = 34.0;
 const GAP: f32 = 12.0;
 /// When a stand opens and closes where that is first said.
 const USUAL_HOURS: [Time; 2] = [Time::constant(10, 0, 0, 0), Time::constant(18, 0, 0, 0)];
@@ -58,7 +58,14 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, shown: Page, ui: &mut Ui)
             wish = Some(Wish::Leave);
         }
         page(ui, "staff", WIDE, |ui| {
-            let width = (ui.available_width() - 2.0 * GAP) / 3.0;
+            let (name, deed) = match shown {
+                Page::Today => (said.export, Wish::Export),
+                Page::Health => (said.try_stick, Wish::TryStick),
+                Page::Settings => (said.end, Wish::See(Page::End)),
+                Page::End => (said.end, Wish::End),
+            };
+            // What can be done there takes as much room as a page and a half.
+            let width = (ui.available_width() - 5.0 * GAP) / 4.5;
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = GAP;
                 for (seen, name) in Page::ALL.into_iter().zip(said.pages) {
@@ -70,6 +77,10 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, shown: Page, ui: &mut Ui)
                     if button(ui, &theme, name, vec2(width, 48.0), weight).clicked() {
                         wish = Some(Wish::See(seen));
                     }
+                }
+                ui.add_space(GAP);
+                if button(ui, &theme, name, vec2(1.5 * width, 48.0), Weight::Other).clicked() {
+                    wish = Some(deed);
                 }
             });
             ui.add_space(GAP);
@@ -87,19 +98,11 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, shown: Page, ui: &mut Ui)
                             wish = Some(Wish::Change(change));
                         }
                     }
+                    Page::End => {
+                        ui.label(RichText::new(said.ends).size(21.0).color(theme.ink));
+                    }
                 }
             });
-            ui.add_space(GAP);
-            let deeds = match shown {
-                Page::Today => vec![(said.export, Wish::Export)],
-                Page::Health => vec![(said.try_stick, Wish::TryStick)],
-                Page::Settings => vec![(said.end, Wish::End)],
-            };
-            for (name, deed) in deeds {
-                if button(ui, &theme, name, vec2(320.0, 52.0), Weight::Other).clicked() {
-                    wish = Some(deed);
-                }
-            }
         });
     });
     match stand.take_exported() {
@@ -187,7 +190,10 @@ fn health(stand: &Stand, game: &Game, ui: &mut Ui) {
         true => game.words().forces_cut.into(),
         false => format!("{:.0} %", 100.0 * game.settings.haptics),
     };
-    let sound = game.sound_trouble().unwrap_or_else(|| "✓".into());
+    let sound = match game.is_mute() || game.settings.volume == 0.0 {
+        true => said.off.into(),
+        false => game.sound_trouble().unwrap_or_else(|| "✓".into()),
+    };
     let values = [
         frame(50).unwrap_or_else(unknown),
         frame(99).unwrap_or_else(unknown),
