@@ -108,16 +108,29 @@ impl<D: Dim> Body<D> {
 
     /// Where a place [m] was at rest, as seen from the centroid of an element [m], in all three coordinates.
     fn offset_at_rest(&self, element: &Element, at: Vector) -> Option<Vector> {
+        let (centre, undo) = self.undo(element)?;
+        Some(undo(minus(at, centre)))
+    }
+
+    /// The centre of an element [m], and what undoes its deformation: which way something at rest points that points this
+    /// way now. Nothing where the element is flat.
+    pub(crate) fn undo(
+        &self,
+        element: &Element,
+    ) -> Option<(Vector, impl Fn(Vector) -> Vector + use<D>)> {
         let (centre, [x, y, z]) = self.deformation(element);
         let volume = dot(x, cross(y, z));
         if volume.abs() < FLAT {
             return None;
         }
         // Cramer's rule.
-        let by = scaled(minus(at, centre), 1.0 / volume);
         let columns = [cross(y, z), cross(z, x), cross(x, y)];
-        let along = |axis: usize| (0..3).map(|k| columns[k][axis] * by[k]).sum();
-        Some([0, 1, 2].map(along))
+        let undo = move |way| {
+            let by = scaled(way, 1.0 / volume);
+            let along = |axis: usize| (0..3).map(|k| columns[k][axis] * by[k]).sum();
+            [0, 1, 2].map(along)
+        };
+        Some((centre, undo))
     }
 
     /// The child of an element's cell that a position [m] lies in.

@@ -1,6 +1,6 @@
 //! Follows an edge through bodies: where each of its samples is, and what their sheet went through.
 
-use super::inside::Spot;
+use super::inside::{self, Spot};
 use super::sample::{MOST_SAMPLES, Near, Sample};
 use super::sheet::{self, Faces, Place};
 use super::{Knife, Stance};
@@ -187,9 +187,14 @@ impl Knife {
         let known = known.map(|(body, spot)| (body, spot.voxel));
         let near = self.near.as_ref().map(|near| near[place].iter());
         let is_in_reach = |near: &&Near| {
-            let body = bodies.get(near.body).ok();
-            let node = body.map(|body| three(body.state.position[near.node]));
-            node.is_some_and(|node| length(minus(node, at)) <= near.reach)
+            let Ok(body) = bodies.get(near.body) else {
+                return false;
+            };
+            let node = three(body.state.position[near.node]);
+            let mesh = &body.truth.mesh;
+            let element = || mesh.element(mesh.owner(near.voxel)?);
+            length(minus(node, at)) <= near.reach
+                && element().is_some_and(|element| inside::may_have(body, element, at))
         };
         let near = near.into_iter().flatten().filter(is_in_reach);
         let mut tried = known.chain(near.map(|near| (near.body, near.voxel)));
@@ -278,7 +283,7 @@ impl Knife {
             let place = before.map(f64::from);
             return Some([place, place]);
         }
-        let toward = base.direction(body, stance.toward)?;
+        let [toward] = base.directions(body, [stance.toward])?;
         let [now, before, toward] = [now, before, toward].map(|place| place.map(f64::from));
         let way = minus(now, before);
         let reach = f64::from(length(minus(at, sample.before)) / size);

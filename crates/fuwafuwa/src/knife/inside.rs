@@ -2,9 +2,10 @@
 
 use crate::body::Body;
 use crate::dim::{Dim, Point, voxel_around};
+use crate::ids::NodeId;
 use crate::mesh::Element;
 use crate::shape::Vector;
-use crate::vector::{cross, length, minus, plus, scaled};
+use crate::vector::{cross, length, minus};
 
 /// From a voxel to the one that has a place leads a way of so many elements at most.
 const STEPS: usize = 6;
@@ -54,13 +55,15 @@ impl Spot {
         body.at_rest(mesh.element(mesh.owner(self.voxel)?)?, at)
     }
 
-    /// Where a direction of the world points in the body at rest, for the width of a voxel [voxels].
-    pub fn direction<D: Dim>(&self, body: &Body<D>, way: Vector) -> Option<Vector> {
+    /// Where directions of the world point in the body at rest, for the width of a voxel [voxels].
+    pub fn directions<D: Dim, const COUNT: usize>(
+        &self,
+        body: &Body<D>,
+        ways: [Vector; COUNT],
+    ) -> Option<[Vector; COUNT]> {
         let mesh = &body.truth.mesh;
-        let element = mesh.element(mesh.owner(self.voxel)?)?;
-        let from = body.carry(element)(self.at);
-        let to = plus(from, scaled(way, body.truth.grid.voxel_size()));
-        Some(minus(body.at_rest(element, to)?, self.at))
+        let (_, undo) = body.undo(mesh.element(mesh.owner(self.voxel)?)?)?;
+        Some(ways.map(undo))
     }
 
     /// Whether it is within half a voxel of a place [m].
@@ -114,6 +117,19 @@ fn voxel_of<D: Dim>(at: Vector) -> Option<Point> {
         voxel[axis] = at[axis].floor() as i32;
     }
     Some(voxel)
+}
+
+/// Whether an element may have a place [m] in it: whether it is in the box around its nodes, or little out of it.
+pub fn may_have<D: Dim>(body: &Body<D>, element: &Element, at: Vector) -> bool {
+    let margin = LITTLE * body.truth.grid.voxel_size() * element.cell.width() as f32;
+    (0..D::N).all(|axis| {
+        let apart = |&node: &NodeId| body.state.position[node][axis] - at[axis];
+        let apart = element.nodes.iter().map(apart);
+        let (low, high) = apart.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), k| {
+            (low.min(k), high.max(k))
+        });
+        low <= margin && high >= -margin
+    })
 }
 
 /// How far a place is out of the cell of an element [voxels].

@@ -102,12 +102,8 @@ impl Knife {
         let owner = mesh.owner(spot.voxel).expect("a place is in a solid voxel");
         let element = mesh.element(owner).expect("owners are alive");
         let material = body.material(element);
-        let rest = |way: Vector| spot.direction(body, way).unwrap_or(way);
-        let along = match D::N {
-            2 => stance.along,
-            _ => rest(stance.along),
-        };
-        let toward = rest(stance.toward);
+        let ways = [stance.along, stance.toward];
+        let [along, toward] = spot.directions(body, ways).unwrap_or(ways);
         let forth = match spot.is_whole_ahead(body, along, toward) {
             true => self.force_of_a_cut(material),
             false => 0.0,

@@ -37,6 +37,7 @@ impl<D: Dim> World<D> {
     }
 
     /// Opens what edges went through.
+    #[inline(never)]
     pub(super) fn cut_along_edges(&mut self, report: &mut StepReport) {
         for (id, knife) in self.knives.entries_mut() {
             let Ok(holder) = self.rigids.get(knife.holder) else {
@@ -67,6 +68,7 @@ impl<D: Dim> World<D> {
     }
 
     /// Lets edges hold what they are in. Returns the sleepers that they wake.
+    #[inline(never)]
     pub(super) fn hold_edges(&mut self, duration: f32) -> Vec<Hit> {
         let mut woken = Vec::new();
         let round = self.settings.tick / self.settings.in_tick(ROUNDS) as f32;
