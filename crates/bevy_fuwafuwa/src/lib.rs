@@ -107,8 +107,8 @@ pub mod prelude {
         Velocity,
     };
     pub use crate::message::{
-        ContactBegan, ContactEnded, Entered, FellAsleep, JointBroke, Left, Parted, Rejection, Torn,
-        Touched, Woke,
+        ContactBegan, ContactEnded, Cut, Entered, FellAsleep, JointBroke, Left, Parted, Rejection,
+        Removed, Torn, Touched, Woke,
     };
     pub use crate::{
         FuwafuwaPlugin, FuwafuwaPlugin2d, FuwafuwaPlugin3d, FuwafuwaSystems, Rejected, RigidBody2d,

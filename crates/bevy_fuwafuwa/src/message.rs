@@ -7,7 +7,7 @@ use crate::problem::Problem;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::message::Message;
 use bevy_math::Vec3;
-use fuwafuwa::{JointId, PieceId};
+use fuwafuwa::{JointId, KnifeId, PieceId};
 
 /// Voxels stopped sharing a node: a crack went on.
 #[derive(Message, Copy, Clone, Debug, PartialEq)]
@@ -99,6 +99,31 @@ pub struct Left {
 pub struct JointBroke {
     /// Which one it was.
     pub joint: JointId,
+}
+
+/// A knife of the engine's world went on through a soft body.
+#[derive(Message, Copy, Clone, Debug, PartialEq)]
+pub struct Cut {
+    /// The knife.
+    pub knife: KnifeId,
+    /// The soft body.
+    pub body: Entity,
+    /// Where in the world [m].
+    pub at: Vec3,
+    /// How much it cut since it told of that last [m²].
+    pub area: f32,
+    /// The work that it did in that time [J].
+    pub work: f32,
+}
+
+/// A piece, a soft body or something rigid was taken out of the engine's world by hand. It is told in the next tick, and the
+/// entity stays.
+#[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Removed {
+    /// The soft body, or what is rigid.
+    pub body: Entity,
+    /// Number of the piece; none when nothing is left.
+    pub piece: Option<PieceId>,
 }
 
 /// A piece came to rest, or something rigid that is free.

@@ -5,8 +5,8 @@ use crate::component::SoftBody;
 use crate::dimension::Dimension;
 use crate::enter::enter_and_leave;
 use crate::message::{
-    ContactBegan, ContactEnded, Entered, FellAsleep, JointBroke, Left, Parted, Quarantined,
-    Rejection, Torn, Touched, Woke,
+    ContactBegan, ContactEnded, Cut, Entered, FellAsleep, JointBroke, Left, Parted, Quarantined,
+    Rejection, Removed, Torn, Touched, Woke,
 };
 use crate::push::{change_settings, push_bodies};
 use crate::queue::Queue;
@@ -90,6 +90,8 @@ impl<D: Dimension> Plugin for FuwafuwaPlugin<D> {
             .add_message::<Entered>()
             .add_message::<Left>()
             .add_message::<JointBroke>()
+            .add_message::<Cut>()
+            .add_message::<Removed>()
             .add_message::<FellAsleep>()
             .add_message::<Woke>()
             .add_message::<Quarantined>()

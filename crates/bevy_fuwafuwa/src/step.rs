@@ -2,8 +2,8 @@
 
 use crate::dimension::Dimension;
 use crate::message::{
-    ContactBegan, ContactEnded, Entered, FellAsleep, JointBroke, Left, Parted, Quarantined, Torn,
-    Touched, Woke,
+    ContactBegan, ContactEnded, Cut, Entered, FellAsleep, JointBroke, Left, Parted, Quarantined,
+    Removed, Torn, Touched, Woke,
 };
 use crate::world::SoftWorld;
 use bevy_ecs::change_detection::ResMut;
@@ -25,12 +25,17 @@ pub struct Writers<'w> {
     entered: MessageWriter<'w, Entered>,
     left: MessageWriter<'w, Left>,
     joint_broke: MessageWriter<'w, JointBroke>,
+    cut: MessageWriter<'w, Cut>,
+    removed: MessageWriter<'w, Removed>,
 }
 
 /// Lets a tick pass, unless time stands still.
 pub fn step<D: Dimension>(mut world: ResMut<SoftWorld<D>>, mut writers: Writers<'_>) {
+    // What was removed since the last tick; all else that is there was told then.
+    let since = world.engine().events().iter().copied();
+    let removed: Vec<Event> = since.filter(is_removal).collect();
     if world.tick() {
-        for event in world.engine().events() {
+        for event in removed.iter().chain(world.engine().events()) {
             writers.tell(&world, *event);
         }
         for (body, is_asleep) in world.follow_sleep() {
@@ -126,8 +131,22 @@ impl Writers<'_> {
                 let (sensor, (who, piece)) = (world.entity_of_rigid(sensor)?, of(who)?);
                 self.left.write(Left { sensor, who, piece });
             }
-            // The plugin has no knives.
-            Event::Cut { .. } => {}
+            Event::Cut {
+                knife,
+                body,
+                at,
+                area,
+                work,
+            } => {
+                let (body, at) = (of_body(body)?, at.into());
+                self.cut.write(Cut {
+                    knife,
+                    body,
+                    at,
+                    area,
+                    work,
+                });
+            }
             Event::JointBroke { joint } => {
                 self.joint_broke.write(JointBroke { joint });
             }
@@ -139,8 +158,17 @@ impl Writers<'_> {
                 let (body, piece) = (of_body(body)?, Some(piece));
                 self.woke.write(Woke { body, piece });
             }
-            // Only what has the engine removes, and is told by it at once.
-            Event::PieceRemoved { .. } | Event::BodyRemoved { .. } | Event::RigidRemoved { .. } => {
+            Event::PieceRemoved { body, piece } => {
+                let (body, piece) = (of_body(body)?, Some(piece));
+                self.removed.write(Removed { body, piece });
+            }
+            Event::BodyRemoved { body } => {
+                let body = of_body(body)?;
+                self.removed.write(Removed { body, piece: None });
+            }
+            Event::RigidRemoved { rigid } => {
+                let body = world.entity_of_rigid(rigid)?;
+                self.removed.write(Removed { body, piece: None });
             }
             Event::Quarantined { body, piece } => {
                 let body = of_body(body)?;
@@ -149,4 +177,11 @@ impl Writers<'_> {
         }
         Some(())
     }
+}
+
+fn is_removal(event: &Event) -> bool {
+    matches!(
+        event,
+        Event::PieceRemoved { .. } | Event::BodyRemoved { .. } | Event::RigidRemoved { .. }
+    )
 }

@@ -11,6 +11,8 @@ use fuwafuwa_render::frame::ElementColour;
 
 /// Height of a line of the lesson.
 const LINE: f32 = 34.0;
+/// At a stand in public there is a button in the lower left corner: height of its edge [points].
+pub(super) const STAND: f32 = 92.0;
 /// Radius of the jar.
 const JAR: f32 = 36.0;
 /// This takes far less room than menus do: where the game is shown smaller for their sake, this is
@@ -140,7 +142,10 @@ fn draw_chips(row: &mut Row, theme: &Theme, game: &Game) {
 /// How to play in space, line by line in the lower left corner, until it was tried.
 fn draw_lesson(ui: &Ui, screen: Rect, scale: f32, game: &Game) {
     let (theme, painter) = (game.theme(), ui.painter());
-    let mut bottom = screen.bottom();
+    let mut bottom = match game.public {
+        Some(_) => screen.bottom() - STAND,
+        None => screen.bottom(),
+    };
     for (index, (line, is_missing)) in game.lesson().into_iter().enumerate().rev() {
         let id = egui::Id::unique(("lesson", index));
         let strength = match game.settings.reduced_motion {

@@ -1,12 +1,13 @@
 //! Who enters, who leaves, and when time passes.
 
-use super::{app, at, run, transform, world};
+use super::{app, at, messages, run, transform, world};
 use bevy_app::{App, Update};
 use bevy_ecs::entity::Entity;
 use bevy_ecs::resource::Resource;
 use bevy_ecs::schedule::IntoScheduleConfigs;
 use bevy_ecs::system::ResMut;
 use bevy_fuwafuwa::component::SoftBodyId;
+use bevy_fuwafuwa::fuwafuwa::{Knife, PieceSize, Rigid};
 use bevy_fuwafuwa::prelude::*;
 use bevy_math::Vec3;
 use bevy_mesh::Mesh2d;
@@ -115,4 +116,46 @@ fn rays_find_entities() {
         "{beside:?}"
     );
     assert_eq!(inside.0, ball);
+}
+
+#[test]
+fn what_a_knife_cuts_and_what_is_taken_out_is_told() {
+    let mut app = app::<Dim2>();
+    app.world_mut().spawn(RigidBody2d::floor());
+    let cube = SoftBody2d::cube(16, 1.0);
+    let cube = app.world_mut().spawn((cube, at(0.0, 0.5))).id();
+    app.update();
+    let mut world = app.world_mut().resource_mut::<SoftWorld<Dim2>>();
+    let engine = world.engine_mut();
+    let mut hand = Rigid::hand([0.03, 1.2, 0.0], 0.05);
+    hand.is_sensor = true; // the edge alone touches
+    let hand = engine.add_rigid(hand).unwrap();
+    let knife = Knife::new(hand, [[0.0; 3]; 2], [0.0, -1.0, 0.0]);
+    let knife = engine.add_knife(knife).unwrap();
+    let mut cuts: Vec<Cut> = Vec::new();
+    for tick in 0..120 {
+        let mut world = app.world_mut().resource_mut::<SoftWorld<Dim2>>();
+        let goal = [0.03, 1.2 - 0.01 * tick as f32, 0.0];
+        world.engine_mut().set_goal(hand, goal).unwrap();
+        app.update();
+        cuts.extend(messages::<Cut>(&app));
+    }
+    assert!(
+        cuts.iter()
+            .all(|cut| (cut.knife, cut.body) == (knife, cube))
+    );
+    assert!(cuts.iter().map(|cut| cut.area).sum::<f32>() > 0.8);
+
+    let mut world = app.world_mut().resource_mut::<SoftWorld<Dim2>>();
+    let all = PieceSize::Mass(1e9);
+    world.engine_mut().remove_small_pieces(all).unwrap();
+    app.update();
+    let removed: Vec<Removed> = messages(&app);
+    let gone = Removed {
+        body: cube,
+        piece: None,
+    };
+    assert!(removed.len() > 1 && removed.contains(&gone), "{removed:?}");
+    app.update();
+    assert_eq!(messages::<Removed>(&app), [], "it is told once");
 }

@@ -1,5 +1,6 @@
 //! The button for the other language.
 
+use super::super::hud::STAND;
 use super::super::widgets::{Weight, button};
 use crate::game::Game;
 use crate::words::Language;
@@ -7,14 +8,13 @@ use egui::{Rect, Ui, vec2};
 use tamaire_sound::Menu;
 
 /// A button for the other language: its size, and how far it is from the corner [points].
-const LANGUAGE: egui::Vec2 = vec2(168.0, 56.0);
+const LANGUAGE: egui::Vec2 = vec2(168.0, STAND - 2.0 * EDGE);
 const EDGE: f32 = 18.0;
 
 /// The screen, but on an upright one without the edge where the button for the other language is.
 pub(super) fn above(screen: Rect) -> Rect {
     let is_upright = screen.width() < screen.height();
-    let edge = LANGUAGE.y + 2.0 * EDGE;
-    screen.with_max_y(screen.bottom() - if is_upright { edge } else { 0.0 })
+    screen.with_max_y(screen.bottom() - if is_upright { STAND } else { 0.0 })
 }
 
 /// One big button, in the lower left corner, for whoever cannot read the rest.
