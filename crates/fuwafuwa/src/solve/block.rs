@@ -219,13 +219,18 @@ pub fn evaluate_group<D: Dim, S: Simd>(
         }
         let material = block.home.material() as usize - 1;
         let moduli = &shared.moduli[material];
+        let Some(Some(flow)) = shared.flows.get(material) else {
+            let mut view = block.view::<D>(&shared, all, first);
+            stress::<D, S>(simd, law, moduli, &mut view, scratch);
+            continue;
+        };
         let mut undone = block.undone.take();
         let mut view = block.view::<D>(&shared, all, first);
-        match (&mut undone, shared.flows.get(material)) {
-            (Some(undone), Some(Some(flow))) => {
+        match &mut undone {
+            Some(undone) => {
                 plastic_stress::<D, S>(simd, (moduli, flow), &mut view, undone, scratch);
             }
-            _ => stress::<D, S>(simd, law, moduli, &mut view, scratch),
+            None => stress::<D, S>(simd, law, moduli, &mut view, scratch),
         }
         block.undone = undone;
     }

@@ -51,6 +51,43 @@ impl Press {
     }
 }
 
+/// What passed, by some key. Of neighbours in a list most have the same.
+struct Presses<K> {
+    places: BTreeMap<K, usize>,
+    list: Vec<Press>,
+    last: Option<(K, usize)>,
+}
+
+impl<K> Default for Presses<K> {
+    fn default() -> Self {
+        Self {
+            places: BTreeMap::new(),
+            list: Vec::new(),
+            last: None,
+        }
+    }
+}
+
+impl<K: Copy + Ord> Presses<K> {
+    /// What passed of this key so far.
+    fn of(&mut self, key: K) -> &mut Press {
+        let place = match self.last {
+            Some((last, place)) if last == key => place,
+            _ => *self.places.entry(key).or_insert_with(|| {
+                self.list.push(Press::default());
+                self.list.len() - 1
+            }),
+        };
+        self.last = Some((key, place));
+        &mut self.list[place]
+    }
+
+    fn all(self) -> BTreeMap<K, Press> {
+        let of = |(key, place): (K, usize)| (key, self.list[place]);
+        self.places.into_iter().map(of).collect()
+    }
+}
+
 impl<D: Dim> World<D> {
     /// Tells what pressed on what over the tick, what began and ended, and who came into a sensor and left it.
     pub(super) fn note_touches(&mut self) {
@@ -95,7 +132,7 @@ impl<D: Dim> World<D> {
 
     /// By piece, and by what it pressed on.
     fn soft_presses(&self) -> BTreeMap<(BodyId, PieceId, With), Press> {
-        let mut presses: BTreeMap<_, Press> = BTreeMap::new();
+        let mut presses = Presses::default();
         let pairs = self.nearby.nodes.list.iter();
         for pair in pairs.filter(|pair| pair.impulse.total > 0.0) {
             let id = self.rigids.id(pair.rigid);
@@ -110,7 +147,7 @@ impl<D: Dim> World<D> {
             let piece = body.truth.pieces.of_node(pair.node);
             let at = three(body.state.position[pair.node]);
             let (_, normal) = rigid.shape().distance(at);
-            let press = presses.entry((id, piece, with)).or_default();
+            let press = presses.of((id, piece, with));
             press.add(pair.impulse.total, pair.impulse.speed, at, normal);
         }
         let spheres = &self.nearby.spheres;
@@ -122,11 +159,10 @@ impl<D: Dim> World<D> {
             let [at, other] = pair.spheres.map(|sphere| three(spheres.centres[sphere]));
             let apart = minus(at, other);
             let normal = scaled(apart, 1.0 / length(apart).max(1e-9));
-            let press = presses.entry((self.bodies.id(a.body), a.piece, with));
-            let press = press.or_default();
+            let press = presses.of((self.bodies.id(a.body), a.piece, with));
             press.add(pair.impulse.total, pair.impulse.speed, at, normal);
         }
-        presses
+        presses.all()
     }
 
     /// By both.
@@ -142,9 +178,10 @@ impl<D: Dim> World<D> {
 
     /// Compares who touches whom with the last tick. Two that rest side by side still touch.
     fn note_changes(&mut self, presses: &BTreeMap<[Party; 2], Press>) {
+        // In ascending order.
         let before = std::mem::take(&mut self.touching);
-        let known: BTreeSet<&[Party; 2]> = before.iter().collect();
-        for (both, press) in presses.iter().filter(|(both, _)| !known.contains(both)) {
+        let is_new = |both: &[Party; 2]| before.binary_search(both).is_err();
+        for (both, press) in presses.iter().filter(|(both, _)| is_new(both)) {
             self.events.push(Event::ContactBegan {
                 both: *both,
                 at: press.at,
@@ -152,17 +189,18 @@ impl<D: Dim> World<D> {
                 speed: press.speed,
             });
         }
-        let mut touching: BTreeSet<[Party; 2]> = presses.keys().copied().collect();
+        let mut touching: Vec<[Party; 2]> = presses.keys().copied().collect();
         for both in before {
-            if touching.contains(&both) {
+            if presses.contains_key(&both) {
                 continue;
             }
             match both.iter().all(|&party| self.rests(party)) {
-                true => drop(touching.insert(both)),
+                true => touching.push(both),
                 false => self.events.push(Event::ContactEnded { both }),
             }
         }
-        self.touching = touching.into_iter().collect();
+        touching.sort_unstable();
+        self.touching = touching;
     }
 
     /// Whether somebody is there and does not move.
