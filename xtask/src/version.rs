@@ -171,8 +171,14 @@ fn changed(
 mod tests {
     use super::*;
 
+    /// The files as they are, and a change that was not released: right after a release there is none.
     fn read(path: &str) -> std::io::Result<String> {
-        fs::read_to_string(root().join(path))
+        let text = fs::read_to_string(root().join(path))?;
+        let news = format!("{UNRELEASED}\n### Added\n\n- Something.\n");
+        match path {
+            CHANGELOG => Ok(text.replace(UNRELEASED, &news)),
+            _ => Ok(text),
+        }
     }
 
     fn version(text: &str) -> Version {
