@@ -3,6 +3,7 @@
 use crate::debian;
 use crate::packages::{IfMissing, Lack, apt_get, install_arguments, list_lacks};
 use crate::shell::{CANNOT, FAILED, Failure, cargo, execute, is_on_path, root, target};
+use crate::wine;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -139,12 +140,13 @@ impl System {
         command
     }
 
+    fn is_windows(&self) -> bool {
+        self.runner.0 == "wine"
+    }
+
     fn shield(&self, command: &mut Command) {
-        if self.runner.0 == "wine" {
-            command.env("WINEPREFIX", root().join(target()).join("wine"));
-            command.env("WINEDEBUG", "-all");
-            // It would ask for .NET and for a browser, which nothing here needs.
-            command.env("WINEDLLOVERRIDES", "mscoree,mshtml=");
+        if self.is_windows() {
+            wine::shield(command);
         }
     }
 }
@@ -190,6 +192,9 @@ impl Compiler {
 pub fn check(system: &'static System, if_missing: IfMissing) -> Result<(), Failure> {
     let undone = format!("the golden scenes were NOT run on {}", system.name);
     let compiler = system.compiler(Wanted::Run, if_missing, &undone)?;
+    if system.is_windows() {
+        wine::prepare(system.linker.0)?;
+    }
     execute(
         &mut compiler.cargo(&["test", "--release", "--package", "fuwafuwa_golden"]),
         "a scene ends in other bits there: look for arithmetic beyond + - * / and sqrt, and for lanes that sum in another order",

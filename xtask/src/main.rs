@@ -14,6 +14,7 @@ mod task;
 mod version;
 mod wasm;
 mod web;
+mod wine;
 
 use packages::{IfMissing, Purpose, has_display};
 use shell::{FAILED, Failure, cargo, execute, show};

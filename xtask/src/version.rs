@@ -50,15 +50,15 @@ impl fmt::Display for Version {
 /// Gives all manifests and locks this version, and cuts the changelog.
 pub fn raise(version: &Version) -> Result<(), Failure> {
     let date = output_of("date", &["--utc", "+%Y-%m-%d"]).unwrap_or_default();
-    let files = changed(version, date.trim(), |path| {
-        fs::read_to_string(root().join(path))
-    })
-    .map_err(|message| Failure {
-        message,
-        code: FAILED,
-    })?;
+    let read = |path: &str| fs::read_to_string(root().join(path));
+    let files = manifests()
+        .and_then(|manifests| changed(version, date.trim(), &manifests, read))
+        .map_err(|message| Failure {
+            message,
+            code: FAILED,
+        })?;
     for (path, text) in files {
-        let written = fs::write(root().join(path), text);
+        let written = fs::write(root().join(&path), text);
         written.map_err(|error| Failure {
             message: format!("{path}: {error}"),
             code: FAILED,
@@ -76,7 +76,7 @@ pub fn raise(version: &Version) -> Result<(), Failure> {
         ]);
         execute(
             &mut lock,
-            "its lock file still has the old version: call it again where there is a network",
+            "its lock file still has the old version: run that where there is a network, without `--offline`",
         )?;
     }
     eprintln!(
@@ -85,12 +85,32 @@ pub fn raise(version: &Version) -> Result<(), Failure> {
     Ok(())
 }
 
+/// All manifests, those of other workspaces too.
+fn manifests() -> Result<Vec<String>, String> {
+    let at = root().display().to_string();
+    let listed = output_of("git", &["-C", &at, "ls-files", "--", "*Cargo.toml"]);
+    let listed = listed.ok_or("git is asked which manifests there are, and says nothing")?;
+    Ok(listed.lines().map(str::to_string).collect())
+}
+
+/// Crates of this repository ask for each other by version, so that they can be published.
+fn ask_for(version: &Version, old: &Version, manifest: &str) -> String {
+    let [version, old] = [version, old].map(|version| format!("version = \"{version}\""));
+    let lines = manifest.split_inclusive('\n');
+    let lines = lines.map(|line| match line.contains("path = \"../") {
+        true => line.replace(&old, &version),
+        false => line.to_string(),
+    });
+    lines.collect()
+}
+
 /// The files that change, with what stands in them then; all, or a reason to change none.
 fn changed(
     version: &Version,
     date: &str,
+    manifests: &[String],
     read: impl Fn(&str) -> std::io::Result<String>,
-) -> Result<Vec<(&'static str, String)>, String> {
+) -> Result<Vec<(String, String)>, String> {
     let read = |path: &str| read(path).map_err(|error| format!("{path}: {error}"));
     let main = read(MAIN)?;
     let old = main
@@ -103,16 +123,20 @@ fn changed(
         ));
     }
     let mut files = Vec::new();
-    for path in [MAIN].into_iter().chain(OTHERS) {
+    for path in manifests {
         let line = |version: &Version| format!("\nversion = \"{version}\"\n");
         let text = read(path)?;
-        match text.matches(&line(&old)).count() {
-            1 => files.push((path, text.replace(&line(&old), &line(version)))),
-            count => {
-                return Err(format!(
-                    "{path} names version {old} {count} times, not once"
-                ));
-            }
+        let count = text.matches(&line(&old)).count();
+        let has_one = path == MAIN || OTHERS.contains(&path.as_str());
+        if count != usize::from(has_one) {
+            return Err(format!(
+                "{path} names version {old} {count} times, not {}",
+                usize::from(has_one)
+            ));
+        }
+        let raised = ask_for(version, &old, &text.replace(&line(&old), &line(version)));
+        if raised != text {
+            files.push((path.clone(), raised));
         }
     }
     let text = read(CHANGELOG)?;
@@ -130,13 +154,16 @@ fn changed(
         "{}{UNRELEASED}\n## [{version}] - {date}\n{rest}",
         head.replace(NOT_YET, "")
     );
-    files.push((CHANGELOG, cut));
+    files.push((CHANGELOG.to_string(), cut));
     let text = read("README.md")?;
     let said = |version: &Version| format!("Version {version} ");
     if !text.contains(&said(&old)) {
         return Err(format!("README.md does not say `{}`", said(&old).trim()));
     }
-    files.push(("README.md", text.replace(&said(&old), &said(version))));
+    files.push((
+        "README.md".to_string(),
+        text.replace(&said(&old), &said(version)),
+    ));
     Ok(files)
 }
 
@@ -144,8 +171,14 @@ fn changed(
 mod tests {
     use super::*;
 
+    /// The files as they are, and a change that was not released: right after a release there is none.
     fn read(path: &str) -> std::io::Result<String> {
-        fs::read_to_string(root().join(path))
+        let text = fs::read_to_string(root().join(path))?;
+        let news = format!("{UNRELEASED}\n### Added\n\n- Something.\n");
+        match path {
+            CHANGELOG => Ok(text.replace(UNRELEASED, &news)),
+            _ => Ok(text),
+        }
     }
 
     fn version(text: &str) -> Version {
@@ -167,23 +200,32 @@ mod tests {
     #[test]
     fn all_files_that_name_the_version_take_another() {
         let next = version("1000.0.0");
-        let files = changed(&next, "2030-01-02", read).unwrap();
-        assert_eq!(files.len(), 3 + OTHERS.len());
+        let manifests = manifests().unwrap();
+        let files = changed(&next, "2030-01-02", &manifests, read).unwrap();
+        let of = |path: &str| {
+            let file = files.iter().find(|(found, _)| *found == path);
+            file.map(|(_, text)| text.clone())
+        };
+        for path in [MAIN, CHANGELOG, "README.md"].iter().chain(&OTHERS) {
+            assert!(of(path).is_some(), "{path}");
+        }
         for (path, text) in &files {
             assert!(text.contains("1000.0.0"), "{path}");
+        }
+        // A crate that asks for the older one beside it cannot be built.
+        for path in &manifests {
+            let text = of(path).unwrap_or_else(|| read(path).unwrap());
+            let beside = text.lines().filter(|line| line.contains("path = \"../"));
+            for line in beside.filter(|line| line.contains("version = ")) {
+                assert!(line.contains("version = \"1000.0.0\""), "{path}: {line}");
+            }
         }
         let text = |wanted: &str| &files.iter().find(|(path, _)| *path == wanted).unwrap().1;
         let changelog = text(CHANGELOG);
         assert!(changelog.contains("## [Unreleased]\n\n## [1000.0.0] - 2030-01-02\n\n### "));
         assert!(!changelog.contains(NOT_YET));
-        let of = |path: &str| {
-            files
-                .iter()
-                .find(|(found, _)| *found == path)
-                .map(|(_, text)| text.clone())
-        };
         let again = |version: &str| {
-            changed(&Version::parse(version).unwrap(), "", |path| {
+            changed(&Version::parse(version).unwrap(), "", &manifests, |path| {
                 of(path).map_or_else(|| read(path), Ok)
             })
         };
