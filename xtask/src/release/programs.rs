@@ -59,12 +59,13 @@ pub fn build(kit: &Kit, compiler: Option<&Compiler>) -> Result<PathBuf, Failure>
 }
 
 /// Copies a program to where it belongs, without the names that only a debugger needs: not every linker leaves them out.
-pub fn put_stripped(from: &Path, to: &Path, strip: &str) -> Result<(), Failure> {
+pub fn put_stripped(kit: &Kit, from: &Path, to: &Path, strip: &str) -> Result<(), Failure> {
     put(from, to)?;
-    execute(
-        Command::new(strip).arg("--strip-all").arg(to),
-        "Debian: binutils",
-    )
+    let mut command = Command::new(strip);
+    command.arg("--strip-all").arg(to);
+    // A program for Windows says when it was linked, and would say now.
+    command.env("SOURCE_DATE_EPOCH", &kit.epoch);
+    execute(&mut command, "Debian: binutils")
 }
 
 /// The target that this machine's programs are built for.
