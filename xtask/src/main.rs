@@ -3,6 +3,7 @@
 mod bevy;
 mod cross;
 mod debian;
+mod folders;
 mod fuzz;
 mod kernel;
 mod package;

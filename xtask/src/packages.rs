@@ -31,6 +31,14 @@ pub enum Purpose {
     Serving,
     /// To play at a stand that nobody sees.
     Staging,
+    /// To make a package for Debian.
+    Packing,
+    /// To make an archive for Windows or for a web server.
+    Zipping,
+    /// To tell what is inside programs, and under which licences.
+    Listing,
+    /// To make the page of a browser.
+    Paging,
 }
 
 /// How to see that a package is there.
@@ -70,7 +78,7 @@ const fn package(
 /// this program would not have been linked.
 #[rustfmt::skip]
 const PACKAGES: &[Package] = {
-    use Purpose::{Browsing, Build, Drawing, Fuzzing, Serving, Staging, Window};
+    use Purpose::{Browsing, Build, Drawing, Fuzzing, Listing, Packing, Paging, Serving, Staging, Window, Zipping};
     use Seen::{Installed, Program};
     &[
         package("cmake", Program("cmake"), &[Build], "configures SDL, which reads sticks and pads"),
@@ -86,6 +94,10 @@ const PACKAGES: &[Package] = {
         package("libegl1", Installed, &[Browsing], "what Firefox draws with"),
         package("libgl1-mesa-dri", Installed, &[Browsing], "OpenGL, without a GPU too"),
         package("postgresql", Installed, &[Serving], "a server that a logbook is sent to; tests start one of their own"),
+        package("dpkg-dev", Program("dpkg-shlibdeps"), &[Packing], "finds what a program is linked to"),
+        package("zip", Program("zip"), &[Zipping], "packs for Windows and for web servers"),
+        package("nodejs", Program("node"), &[Listing, Paging], "packs the page, and gathers licences"),
+        package("npm", Program("npm"), &[Paging], "fetches what makes the page small"),
         package("libx11-6", Installed, &[Window], "X11 windows"),
         package("libx11-xcb1", Installed, &[Window], "X11 windows"),
         package("libxcursor1", Installed, &[Window], "the mouse pointer in X11 windows"),
@@ -149,6 +161,17 @@ pub fn provide(purposes: &[Purpose], if_missing: IfMissing) {
             "xtask: going on, but still not installed:\n{}",
             list(&lacks)
         );
+    }
+}
+
+/// The packages for these purposes that are not there, by name, where that can be known.
+pub fn lacking(purposes: &[Purpose]) -> Vec<&'static str> {
+    match answers("dpkg-query") {
+        true => {
+            let lacks = missing_on_debian(purposes);
+            lacks.iter().map(|package| package.name).collect()
+        }
+        false => Vec::new(),
     }
 }
 
@@ -287,6 +310,12 @@ mod tests {
         check(&[Purpose::Build], &["cmake", "make"], &build[2..]);
         check(&[Purpose::Drawing], &[], &["mesa-vulkan-drivers"]);
         check(&[Purpose::Serving], &[], &["postgresql"]);
+        check(
+            &[Purpose::Packing, Purpose::Zipping],
+            &["zip"],
+            &["dpkg-dev"],
+        );
+        check(&[Purpose::Listing], &[], &["nodejs"]);
         check(&[], &[], &[]);
         // Once, though it has both purposes.
         let window = missing(&[Purpose::Window, Purpose::Drawing], |_| false);

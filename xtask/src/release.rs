@@ -8,8 +8,9 @@ mod programs;
 mod trust;
 mod windows;
 
-use crate::packages::IfMissing;
-use crate::shell::{FAILED, Failure, execute};
+use crate::packages::Purpose::{Build, Listing, Packing, Paging, Zipping};
+use crate::packages::{self, IfMissing, Purpose};
+use crate::shell::{CANNOT, FAILED, Failure, execute};
 use crate::web;
 use files::zip;
 use kit::{Kit, size};
@@ -33,19 +34,21 @@ struct Part {
     name: &'static str,
     /// What comes out of it.
     what: &'static str,
+    /// What the packages are for that it needs, beside those of a compiler.
+    needs: &'static [Purpose],
     make: fn(&mut Kit) -> Result<(), Failure>,
 }
 
 #[rustfmt::skip]
 const PARTS: &[Part] = &[
-    Part { name: "linux", what: "the programs for this Linux, their manual pages and completions", make: linux::programs },
-    Part { name: "deb", what: "a package for Debian and Ubuntu", make: linux::deb },
-    Part { name: "tar", what: "an archive for any Linux", make: linux::tar },
-    Part { name: "windows", what: "an archive for Windows", make: windows::archive },
-    Part { name: "web", what: "an archive for a web server", make: web_archive },
-    Part { name: "sbom", what: "bills of materials", make: trust::bills },
-    Part { name: "deny", what: "a look at licences, advisories and doubles", make: trust::deny },
-    Part { name: "sums", what: "SHA-256 sums of all that", make: trust::sums },
+    Part { name: "linux", what: "the programs for this Linux, their manual pages and completions", needs: &[Build, Listing], make: linux::programs },
+    Part { name: "deb", what: "a package for Debian and Ubuntu", needs: &[Packing], make: linux::deb },
+    Part { name: "tar", what: "an archive for any Linux", needs: &[], make: linux::tar },
+    Part { name: "windows", what: "an archive for Windows", needs: &[Listing, Zipping], make: windows::archive },
+    Part { name: "web", what: "an archive for a web server", needs: &[Paging, Zipping], make: web_archive },
+    Part { name: "sbom", what: "bills of materials", needs: &[Listing], make: trust::bills },
+    Part { name: "deny", what: "a look at licences, advisories and doubles", needs: &[], make: trust::deny },
+    Part { name: "sums", what: "SHA-256 sums of all that", needs: &[], make: trust::sums },
 ];
 
 /// The names of all parts.
@@ -118,6 +121,7 @@ fn make(part: &Part, kit: &mut Kit) -> Went {
     if kit.has(part.name) {
         return Went::There;
     }
+    packages::provide(part.needs, kit.if_missing);
     kit.begin(part.name);
     let made = (part.make)(kit)
         .and_then(|()| too_large(kit))
@@ -126,8 +130,23 @@ fn make(part: &Part, kit: &mut Kit) -> Went {
         Ok(()) => Went::Made,
         Err(failure) => {
             kit.discard();
-            Went::Not(failure)
+            Went::Not(for_lack(failure, &packages::lacking(part.needs)))
         }
+    }
+}
+
+/// A failure where packages are missing is theirs, and this machine's.
+fn for_lack(failure: Failure, lacks: &[&str]) -> Failure {
+    match lacks {
+        [] => failure,
+        _ => Failure {
+            message: format!(
+                "{}\n           not installed: {}",
+                failure.message,
+                lacks.join(", ")
+            ),
+            code: CANNOT,
+        },
     }
 }
 
@@ -163,4 +182,22 @@ fn web_archive(kit: &mut Kit) -> Result<(), Failure> {
     copy.arg("-r").arg(&site).arg(stage.join(&name));
     execute(&mut copy, "the page could not be copied")?;
     zip(kit, &stage, &name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_fails_where_packages_are_missing_names_them_and_is_no_fault() {
+        let failure = || Failure {
+            message: "it could not be built".to_string(),
+            code: FAILED,
+        };
+        assert_eq!(for_lack(failure(), &[]).code, FAILED);
+        let named = for_lack(failure(), &["cmake", "zip"]);
+        assert_eq!(named.code, CANNOT);
+        assert!(named.message.contains("could not be built"));
+        assert!(named.message.ends_with("not installed: cmake, zip"));
+    }
 }

@@ -12,6 +12,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 pub const TARGET: &str = "wasm32-unknown-unknown";
+/// Every browser of today has wide lanes, but a module has them or not.
+pub const LANES: &str = "-Ctarget-feature=+simd128";
 
 /// Builds the golden scenes, runs them, and fails where one ends in other bits than it must.
 pub fn run(if_missing: IfMissing) -> Result<(), Failure> {
@@ -155,11 +157,7 @@ pub fn cargo_for_wasm(compiler: &Compiler, words: &[&str]) -> Command {
         // Flags for the native build, such as a target-cpu, make no sense here.
         .env_remove("RUSTFLAGS")
         .env_remove("CARGO_ENCODED_RUSTFLAGS")
-        // Every browser of today has wide lanes, but a module has them or not.
-        .env(
-            "CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS",
-            "-Ctarget-feature=+simd128",
-        );
+        .env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", LANES);
     if let Compiler::Debian { linker } = compiler {
         command
             .arg("-Zbuild-std=std,panic_abort")

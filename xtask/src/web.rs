@@ -3,6 +3,7 @@
 //! cargo compiles the game and its sound for wasm32, `xtask_bindgen` makes the glue between the game and the page
 //! (`game/web`), and `xtask/web/pack.mjs` the folder.
 
+use crate::folders;
 use crate::packages::{self, IfMissing, Purpose};
 use crate::shell::{CANNOT, FAILED, Failure, cargo, execute, is_on_path, root, target};
 use crate::wasm::{self, Compiler, TARGET, cargo_for_wasm};
@@ -88,8 +89,11 @@ fn build(compiler: &Compiler, address: Option<&str>) -> Result<(), Failure> {
 /// Compiles a package, the first of the words, as the game is; where its module is.
 fn compile(compiler: &Compiler, words: &[&str]) -> Result<PathBuf, Failure> {
     let call = [&["rustc", "--profile", "web", "--package"], words].concat();
+    let mut command = cargo_for_wasm(compiler, &call);
+    let flags = folders::encoded([wasm::LANES], &folders::names());
+    command.env("CARGO_ENCODED_RUSTFLAGS", flags);
     execute(
-        &mut cargo_for_wasm(compiler, &call),
+        &mut command,
         "what differs in a browser belongs into game/src/platform and behind features of its crates",
     )?;
     let modules = root().join(wasm::folder()).join(TARGET).join("web");

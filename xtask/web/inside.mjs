@@ -1,8 +1,9 @@
 // Which crates are inside programs that are built for a system: what only builds or tests is not.
 import { execFileSync } from "node:child_process";
-import { join } from "node:path";
+import { fileURLToPath } from "node:url";
 
-export const root = join(import.meta.dirname, "../..");
+/** Debian 12 has Node 18, which knows no `import.meta.dirname`. */
+export const root = fileURLToPath(new URL("../..", import.meta.url));
 
 /**
  * The packages inside, as `cargo metadata` describes them, by name and version; and for each the ids of those that it uses.

@@ -31,7 +31,7 @@ pub fn programs(kit: &mut Kit) -> Result<(), Failure> {
     for program in ["tamaire", "fuwafuwa"] {
         let path = built.join(program);
         check_glibc(&path)?;
-        programs::put_stripped(&path, &tree.join("bin").join(program), "strip")?;
+        programs::put_stripped(kit, &path, &tree.join("bin").join(program), "strip")?;
         let mut manual = Command::new(&path);
         let papers = tree.join("papers");
         manual.arg("manual").arg(&papers);

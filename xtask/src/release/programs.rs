@@ -3,6 +3,7 @@
 use super::files::put;
 use super::kit::Kit;
 use crate::cross::Compiler;
+use crate::folders;
 use crate::shell::{Failure, answers, cargo, execute, root, target, told};
 use std::env;
 use std::fs;
@@ -34,15 +35,11 @@ pub fn build(kit: &Kit, compiler: Option<&Compiler>) -> Result<PathBuf, Failure>
         Some(compiler) => compiler.system.folder().join(PROFILE),
         None => root().join(target()).join(PROFILE),
     };
-    let names = names(compiler);
-    let flags = names
-        .iter()
-        .map(|(from, to)| format!("--remap-path-prefix={from}={to}"));
-    // Between them stands what no path has.
-    command.env(
-        "CARGO_ENCODED_RUSTFLAGS",
-        flags.collect::<Vec<_>>().join("\u{1f}"),
-    );
+    let mut names = folders::names();
+    if let Some(sources) = compiler.and_then(|compiler| compiler.sources.as_deref()) {
+        names.push((sources.display().to_string(), "/rust/library"));
+    }
+    command.env("CARGO_ENCODED_RUSTFLAGS", folders::encoded([], &names));
     let plain = names
         .iter()
         .filter(|(from, _)| !from.contains(char::is_whitespace));
@@ -62,29 +59,13 @@ pub fn build(kit: &Kit, compiler: Option<&Compiler>) -> Result<PathBuf, Failure>
 }
 
 /// Copies a program to where it belongs, without the names that only a debugger needs: not every linker leaves them out.
-pub fn put_stripped(from: &Path, to: &Path, strip: &str) -> Result<(), Failure> {
+pub fn put_stripped(kit: &Kit, from: &Path, to: &Path, strip: &str) -> Result<(), Failure> {
     put(from, to)?;
-    execute(
-        Command::new(strip).arg("--strip-all").arg(to),
-        "Debian: binutils",
-    )
-}
-
-/// What folders of this machine are called in the programs. Where several fit, the last counts.
-fn names(compiler: Option<&Compiler>) -> Vec<(String, &'static str)> {
-    let home = env::var_os("CARGO_HOME").map(PathBuf::from);
-    let home = home.or_else(|| Some(env::home_dir()?.join(".cargo")));
-    let mut names = Vec::new();
-    let mut name = |path: &Path, short| names.push((path.display().to_string(), short));
-    if let Some(home) = home {
-        name(&home, "/cargo");
-    }
-    name(root(), "/tamaire");
-    name(&root().join(target()), "/target");
-    if let Some(sources) = compiler.and_then(|compiler| compiler.sources.as_deref()) {
-        name(sources, "/rust/library");
-    }
-    names
+    let mut command = Command::new(strip);
+    command.arg("--strip-all").arg(to);
+    // A program for Windows says when it was linked, and would say now.
+    command.env("SOURCE_DATE_EPOCH", &kit.epoch);
+    execute(&mut command, "Debian: binutils")
 }
 
 /// The target that this machine's programs are built for.

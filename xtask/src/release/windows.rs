@@ -25,7 +25,12 @@ pub fn archive(kit: &mut Kit) -> Result<(), Failure> {
     for program in ["tamaire.exe", "fuwafuwa.exe"] {
         let path = built.join(program);
         check_imports(&path)?;
-        programs::put_stripped(&path, &folder.join(program), "x86_64-w64-mingw32-strip")?;
+        programs::put_stripped(
+            kit,
+            &path,
+            &folder.join(program),
+            "x86_64-w64-mingw32-strip",
+        )?;
     }
     put(
         &programs::licences(kit, WINDOWS.triple)?,

@@ -1,0 +1,55 @@
+//! Folders of this machine, and what they are called in what is handed out: nobody need know where it was built, and the same bytes
+//! come out elsewhere.
+
+use crate::shell::{root, target};
+use std::env;
+use std::path::{Path, PathBuf};
+
+/// The folders, and what they are called. Where several fit, the last counts.
+pub fn names() -> Vec<(String, &'static str)> {
+    let home = env::var_os("CARGO_HOME").map(PathBuf::from);
+    let home = home.or_else(|| Some(env::home_dir()?.join(".cargo")));
+    let mut names = Vec::new();
+    let mut name = |path: &Path, short| names.push((path.display().to_string(), short));
+    if let Some(home) = home {
+        name(&home, "/cargo");
+    }
+    name(root(), "/tamaire");
+    name(&root().join(target()), "/target");
+    names
+}
+
+/// Flags for rustc as `CARGO_ENCODED_RUSTFLAGS` has them, which cargo takes in place of all others: between them stands what no path has.
+pub fn encoded<'a>(flags: impl IntoIterator<Item = &'a str>, names: &[(String, &str)]) -> String {
+    let flags = flags.into_iter().map(str::to_string);
+    let names = names
+        .iter()
+        .map(|(from, to)| format!("--remap-path-prefix={from}={to}"));
+    flags.chain(names).collect::<Vec<_>>().join("\u{1f}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_with_a_space_stays_one_flag() {
+        let names = [("/my home".to_string(), "/cargo")];
+        let flags = encoded(["-Ctarget-feature=+simd128"], &names);
+        assert_eq!(
+            flags.split('\u{1f}').collect::<Vec<_>>(),
+            [
+                "-Ctarget-feature=+simd128",
+                "--remap-path-prefix=/my home=/cargo"
+            ]
+        );
+    }
+
+    /// The target folder may lie in the root: its own name has to be the later one.
+    #[test]
+    fn what_is_inside_another_folder_comes_after_it() {
+        let names = names();
+        let place = |short| names.iter().position(|(_, name)| *name == short);
+        assert!(place("/tamaire") < place("/target"));
+    }
+}
