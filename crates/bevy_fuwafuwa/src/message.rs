@@ -110,9 +110,9 @@ pub struct Cut {
     pub body: Entity,
     /// Where in the world [m].
     pub at: Vec3,
-    /// How much it cut since it told of that last [m²].
+    /// How much it cut since it told of that last, of all bodies that it was in [m²].
     pub area: f32,
-    /// The work that it did in that time [J].
+    /// The work that it did in that time, in all of them [J].
     pub work: f32,
 }
 

@@ -31,11 +31,9 @@ pub struct Writers<'w> {
 
 /// Lets a tick pass, unless time stands still.
 pub fn step<D: Dimension>(mut world: ResMut<SoftWorld<D>>, mut writers: Writers<'_>) {
-    // What was removed since the last tick; all else that is there was told then.
-    let since = world.engine().events().iter().copied();
-    let removed: Vec<Event> = since.filter(is_removal).collect();
+    let before = world.untold();
     if world.tick() {
-        for event in removed.iter().chain(world.engine().events()) {
+        for event in before.iter().chain(world.engine().events()) {
             writers.tell(&world, *event);
         }
         for (body, is_asleep) in world.follow_sleep() {
@@ -177,11 +175,4 @@ impl Writers<'_> {
         }
         Some(())
     }
-}
-
-fn is_removal(event: &Event) -> bool {
-    matches!(
-        event,
-        Event::PieceRemoved { .. } | Event::BodyRemoved { .. } | Event::RigidRemoved { .. }
-    )
 }

@@ -4,7 +4,7 @@ use crate::dimension::Dimension;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::resource::Resource;
 use fuwafuwa::handle::Gone;
-use fuwafuwa::{BodyId, Rigid, RigidId, Settings, StepReport, World};
+use fuwafuwa::{BodyId, Event, Rigid, RigidId, Settings, StepReport, World};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What holds for all worlds of an app: gravity, drag, substeps. Change it whenever you like; what the engine refuses is
@@ -26,6 +26,8 @@ pub struct SoftWorld<D: Dimension> {
     is_paused: bool,
     single_ticks: u32,
     has_ticked: bool,
+    /// How many events of the last tick were told.
+    told: usize,
     report: StepReport,
 }
 
@@ -70,6 +72,7 @@ impl<D: Dimension> Default for SoftWorld<D> {
             is_paused: false,
             single_ticks: 0,
             has_ticked: false,
+            told: 0,
             report: StepReport::default(),
         }
     }
@@ -137,8 +140,18 @@ impl<D: Dimension> SoftWorld<D> {
         if self.has_ticked {
             self.single_ticks = self.single_ticks.saturating_sub(1);
             self.report = self.engine.step();
+            self.told = self.engine.events().len();
         }
         self.has_ticked
+    }
+
+    /// What happened since the last tick, by what was asked of the engine by hand.
+    pub(crate) fn untold(&self) -> Vec<Event> {
+        self.engine
+            .events()
+            .get(self.told..)
+            .unwrap_or_default()
+            .to_vec()
     }
 
     /// Whether a tick passed the last time.

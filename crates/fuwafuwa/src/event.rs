@@ -90,9 +90,9 @@ pub enum Event {
         body: BodyId,
         /// In the middle of its edge in there [m].
         at: Vector,
-        /// How much it cut since it last told so, of bodies at rest [m²].
+        /// How much it cut since it last told so, of all bodies that it was in, at rest [m²].
         area: f32,
-        /// The work that it did since then [J].
+        /// The work that it did since then, in all of them [J].
         work: f32,
     },
     /// A joint broke, or lost an end, and is gone.

@@ -254,7 +254,7 @@ impl App {
             self.devices.tear(torn);
         }
         self.devices.feel(force, turn, silence);
-        if let Some(verdict) = session.verdict.take_if(|_| true) {
+        if let Some(verdict) = session.verdict.take() {
             session.rests = true;
             self.say(verdict);
         }

@@ -303,6 +303,8 @@ impl Change {
     /// # Errors
     /// What is wrong with the file, and in which line; or why it cannot be so.
     pub fn in_text(&self, text: &str) -> Result<String, String> {
+        // What somebody wrote into it since it was read may be anything.
+        Config::read(text)?;
         let mut file: DocumentMut = text.parse().map_err(|error| format!("{error}"))?;
         match self {
             Self::Language(language) => {
@@ -446,6 +448,9 @@ mod tests {
         assert_eq!(config.hours.unwrap().open.0, nine);
         let comments = |text: &str| text.matches('#').count();
         assert_eq!(comments(&changed), comments(USUAL));
+        let broken = USUAL.replace("[sound]\nvolume = 0.6", "sound = 0.5");
+        assert_ne!(broken, USUAL);
+        assert!(Change::Volume(0.1).in_text(&broken).is_err());
         let always = Change::Hours(None).in_text(&changed).unwrap();
         assert_eq!(Config::read(&always).unwrap().hours, None);
         assert!(

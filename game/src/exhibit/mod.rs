@@ -360,8 +360,11 @@ impl Stand {
         let may = self.config.staff.pin.is_some() && !matches!(self.phase, Phase::Staff(_));
         if self.entrance.pass(may && (is_chord || is_corner), seconds) {
             game.go(Screen::Title);
-            // What was begun by holding it was no round.
-            game.public.get_or_insert_default().ended.clear();
+            match self.since > 2.0 * staff::HELD {
+                true => self.collect(game, End::Left),
+                // What was begun by holding it was no round.
+                false => game.public.get_or_insert_default().ended.clear(),
+            }
             self.presence.begin();
             self.phase = Phase::Door;
         }

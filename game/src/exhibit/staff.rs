@@ -4,7 +4,7 @@ use super::config::Pin;
 use sticks::{Device, PadButton};
 
 /// The entrance opens when it is held for so long [s].
-const HELD: f32 = 3.0;
+pub const HELD: f32 = 3.0;
 /// Who only touched it is shown nothing: it is hidden for such a share of that time.
 const HESITATION: f32 = 0.3;
 /// So many wrong numbers are taken for slips of a finger; then there is a pause, twice as long after each further one.

@@ -7,7 +7,7 @@ use bevy_ecs::resource::Resource;
 use bevy_ecs::schedule::IntoScheduleConfigs;
 use bevy_ecs::system::ResMut;
 use bevy_fuwafuwa::component::SoftBodyId;
-use bevy_fuwafuwa::fuwafuwa::{Knife, PieceSize, Rigid};
+use bevy_fuwafuwa::fuwafuwa::{Blade, Knife, PieceSize, Rigid};
 use bevy_fuwafuwa::prelude::*;
 use bevy_math::Vec3;
 use bevy_mesh::Mesh2d;
@@ -145,6 +145,14 @@ fn what_a_knife_cuts_and_what_is_taken_out_is_told() {
             .all(|cut| (cut.knife, cut.body) == (knife, cube))
     );
     assert!(cuts.iter().map(|cut| cut.area).sum::<f32>() > 0.8);
+
+    // What is done by hand between two ticks is told in the next.
+    let mut world = app.world_mut().resource_mut::<SoftWorld<Dim2>>();
+    let body = world.body_of(cube).unwrap();
+    let across = Blade::segment([-2.0, 0.3], [2.0, 0.3]);
+    world.engine_mut().cut(body, &across).unwrap();
+    app.update();
+    assert!(!messages::<Parted>(&app).is_empty());
 
     let mut world = app.world_mut().resource_mut::<SoftWorld<Dim2>>();
     let all = PieceSize::Mass(1e9);

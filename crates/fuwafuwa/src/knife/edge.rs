@@ -44,8 +44,13 @@ impl Knife {
         }
     }
 
-    /// What its sheet went through since the last time, in each body that it is or was in.
-    pub(crate) fn pass<D: Dim>(&mut self, bodies: &Bodies<D>, holder: &Rigid) -> Vec<Cut> {
+    /// What its sheet went through since the last time, so long ago [s], in each body that it is or was in.
+    pub(crate) fn pass<D: Dim>(
+        &mut self,
+        bodies: &Bodies<D>,
+        holder: &Rigid,
+        since: f32,
+    ) -> Vec<Cut> {
         let stance = self.stance::<D>(holder);
         let spots = self.samples.iter().flat_map(|k| [k.inside, k.passed]);
         let mut ids: Vec<BodyId> = spots.flatten().map(|(body, _)| body).collect();
@@ -54,7 +59,7 @@ impl Knife {
         let known = ids
             .iter()
             .filter_map(|&id| Some((id, bodies.get(id).ok()?)));
-        let cuts = known.map(|(id, body)| self.sheet_in(&stance, holder, id, body));
+        let cuts = known.map(|(id, body)| self.sheet_in(&stance, holder, (id, body), since));
         let mut cuts: Vec<Cut> = cuts.collect();
         self.area += cuts.iter().map(|cut| cut.area).sum::<f64>();
         cuts.retain(|cut| !cut.faces.is_empty());
@@ -202,16 +207,22 @@ impl Knife {
     }
 
     /// The sheet that it swept through a body since the last look.
-    fn sheet_in<D: Dim>(&self, stance: &Stance, holder: &Rigid, id: BodyId, body: &Body<D>) -> Cut {
+    fn sheet_in<D: Dim>(
+        &self,
+        stance: &Stance,
+        holder: &Rigid,
+        (id, body): (BodyId, &Body<D>),
+        since: f32,
+    ) -> Cut {
         let size = body.truth.grid.voxel_size();
         let rows: Vec<Option<[Place; 2]>> = (0..self.samples.len())
-            .map(|place| self.way_in(stance, holder, id, body, place))
+            .map(|place| self.way_in(stance, holder, (id, body), place, since))
             .collect();
         let is_inside = |place: usize| self.samples[place].inside_of(id).is_some();
         let cuts = |place: usize| f64::from(u8::from(self.samples[place].cut && is_inside(place)));
         let (mut faces, mut area) = (Faces::new(), 0.0);
         let mut add = |patch: [Place; 4], share: f64| {
-            sheet::go_through::<D>(patch, &mut faces);
+            sheet::go_through::<D>(patch, body.truth.grid.size(), &mut faces);
             area += share * sheet::area(patch);
         };
         if D::N == 2 {
@@ -248,8 +259,13 @@ impl Knife {
             };
             is_cut(voxel) && is_cut(next)
         });
-        let inside: Vec<usize> = (0..rows.len()).filter(|&place| is_inside(place)).collect();
-        let middle = inside.get(inside.len() / 2).copied().unwrap_or(0);
+        let all = 0..rows.len();
+        let mut within: Vec<usize> = all.clone().filter(|&place| is_inside(place)).collect();
+        if within.is_empty() {
+            // It has just come out.
+            within = all.filter(|&place| rows[place].is_some()).collect();
+        }
+        let middle = within.get(within.len() / 2).copied().unwrap_or(0);
         Cut {
             body: id,
             faces,
@@ -263,9 +279,9 @@ impl Knife {
         &self,
         stance: &Stance,
         holder: &Rigid,
-        id: BodyId,
-        body: &Body<D>,
+        (id, body): (BodyId, &Body<D>),
         place: usize,
+        since: f32,
     ) -> Option<[Place; 2]> {
         let sample = &self.samples[place];
         let beside = [place.checked_sub(1), Some(place + 1)];
@@ -277,7 +293,9 @@ impl Knife {
         let size = body.truth.grid.voxel_size();
         let at = self.place(stance, holder, place);
         let now = inside.map_or_else(|| base.extend(body, at), |spot| Some(spot.at))?;
-        let before = || base.extend(body, sample.before);
+        // What comes to an edge that stands is cut as by one that comes to it.
+        let tissue = scaled(base.velocity(body)?, since);
+        let before = || base.extend(body, plus(sample.before, tissue));
         let before = passed.map_or_else(before, |spot| Some(spot.at))?;
         if sample.is_stuck() {
             let place = before.map(f64::from);
@@ -286,7 +304,8 @@ impl Knife {
         let [toward] = base.directions(body, [stance.toward])?;
         let [now, before, toward] = [now, before, toward].map(|place| place.map(f64::from));
         let way = minus(now, before);
-        let reach = f64::from(length(minus(at, sample.before)) / size);
+        let travel = length(minus(at, sample.before)) + length(tissue);
+        let reach = f64::from(travel / size);
         let is_jump = dot(way, way).sqrt() > MOST_STRETCH * reach + MOST_JUMP;
         // It is drawn back through what it cut.
         let forth = dot(way, toward) / dot(toward, toward).sqrt().max(1e-9);

@@ -5,7 +5,7 @@ use crate::dim::{Dim, Point, voxel_around};
 use crate::ids::NodeId;
 use crate::mesh::Element;
 use crate::shape::Vector;
-use crate::vector::{cross, length, minus};
+use crate::vector::{cross, length, minus, plus, scaled, three};
 
 /// From a voxel to the one that has a place leads a way of so many elements at most.
 const STEPS: usize = 6;
@@ -53,6 +53,15 @@ impl Spot {
     pub fn extend<D: Dim>(&self, body: &Body<D>, at: Vector) -> Option<Vector> {
         let mesh = &body.truth.mesh;
         body.at_rest(mesh.element(mesh.owner(self.voxel)?)?, at)
+    }
+
+    /// How fast the body moves there [m/s].
+    pub fn velocity<D: Dim>(&self, body: &Body<D>) -> Option<Vector> {
+        let mesh = &body.truth.mesh;
+        let element = mesh.element(mesh.owner(self.voxel)?)?;
+        let weights = body.weights(element, self.at).into_iter();
+        let shares = weights.map(|(node, weight)| scaled(body.state.velocity[node], weight));
+        Some(three(shares.fold([0.0; 4], plus)))
     }
 
     /// Where directions of the world point in the body at rest, for the width of a voxel [voxels].

@@ -113,7 +113,8 @@ impl Knife {
             body: id,
             weights: body.weights(element, spot.at),
             lever: self.lever(stance, place),
-            limits: [share * forth, share * material.strength * self.height],
+            // No length of what cannot be torn holds nothing.
+            limits: [forth, material.strength * self.height].map(|k| (share * k).max(0.0)),
             impulse: [0.0; 2],
         }
     }
@@ -149,10 +150,8 @@ fn solve_row<D: Dim>(
         .map(|&(node, weight)| weight * weight * body.state.inverse_mass[node]);
     let gain: f32 = squares.sum();
     for (way, direction) in ways.into_iter().enumerate() {
+        // Where neither side yields, all that may pass does.
         let yields = gain + holder.yields(row.lever, direction);
-        if yields <= 0.0 {
-            continue;
-        }
         let speed = dot(slip(row, body, holder), direction);
         let least = if way == 0 { 0.0 } else { -row.limits[way] };
         let wanted = (row.impulse[way] + speed / yields).clamp(least, row.limits[way]);

@@ -13,11 +13,11 @@ pub type Place = [f64; 3];
 /// Faces, each as the voxel before it and its axis.
 pub type Faces = BTreeSet<(Point, usize)>;
 
-/// Adds the faces that a patch goes through; its corners are in the order of its outline.
-pub fn go_through<D: Dim>([a, b, c, d]: [Place; 4], faces: &mut Faces) {
+/// Adds the faces in a grid of a size [voxels] that a patch goes through; its corners are in the order of its outline.
+pub fn go_through<D: Dim>([a, b, c, d]: [Place; 4], size: Point, faces: &mut Faces) {
     for triangle in [[a, b, c], [a, c, d]] {
         for axis in 0..D::N {
-            go_along(triangle, axis, faces);
+            go_along(triangle, axis, size, faces);
         }
     }
 }
@@ -36,15 +36,15 @@ pub fn area([a, b, c, d]: [Place; 4]) -> f64 {
 }
 
 /// The faces across an axis that a triangle goes through.
-fn go_along(triangle: [Place; 3], axis: usize, faces: &mut Faces) {
+fn go_along(triangle: [Place; 3], axis: usize, size: Point, faces: &mut Faces) {
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
     let seen = triangle.map(|corner| [corner[u], corner[v]]);
     let double = side(seen[0], seen[1], seen[2]);
     if double == 0.0 || !double.is_finite() {
         return;
     }
-    for at_u in middles(triangle.map(|corner| corner[u])) {
-        for at_v in middles(triangle.map(|corner| corner[v])) {
+    for at_u in middles(triangle.map(|corner| corner[u]), size[u]) {
+        for at_v in middles(triangle.map(|corner| corner[v]), size[v]) {
             let middle = [at_u as f64 + 0.5, at_v as f64 + 0.5];
             let shares = [
                 side(seen[1], seen[2], middle),
@@ -59,7 +59,9 @@ fn go_along(triangle: [Place; 3], axis: usize, faces: &mut Faces) {
             let mut voxel = [0; 3];
             (voxel[u], voxel[v]) = (at_u, at_v);
             voxel[axis] = (depth - 0.5).floor() as i32;
-            faces.insert((voxel, axis));
+            if (0..size[axis] - 1).contains(&voxel[axis]) {
+                faces.insert((voxel, axis));
+            }
         }
     }
 }
@@ -72,11 +74,12 @@ fn side(a: [f64; 2], b: [f64; 2], point: [f64; 2]) -> f64 {
     if is_forward { turn } else { -turn }
 }
 
-/// The voxels whose middle is between the least and the greatest of some numbers.
-fn middles(along: [f64; 3]) -> std::ops::RangeInclusive<i32> {
+/// Those of so many voxels whose middle is between the least and the greatest of some numbers.
+fn middles(along: [f64; 3], count: i32) -> std::ops::RangeInclusive<i32> {
     let low = along.into_iter().fold(f64::INFINITY, f64::min);
     let high = along.into_iter().fold(f64::NEG_INFINITY, f64::max);
-    (low - 0.5).ceil() as i32..=(high - 0.5).floor() as i32
+    let (first, last) = ((low - 0.5).ceil() as i32, (high - 0.5).floor() as i32);
+    first.max(0)..=last.min(count - 1)
 }
 
 #[cfg(test)]
@@ -94,7 +97,7 @@ mod tests {
             at(2.9, 4.0, 4.0),
             at(2.9, 0.0, 4.0),
         ];
-        go_through::<Dim3>(corners, &mut faces);
+        go_through::<Dim3>(corners, [4; 3], &mut faces);
         let sixteen: Faces = (0..16).map(|k| ([2, k % 4, k / 4], 0)).collect();
         assert_eq!(faces, sixteen);
         assert!((area(corners) - 16.0).abs() < 1e-12);
@@ -118,7 +121,7 @@ mod tests {
                     place(i + 1, k + 1),
                     place(i, k + 1),
                 ];
-                go_through::<Dim3>(patch, &mut faces);
+                go_through::<Dim3>(patch, [12; 3], &mut faces);
             }
         }
         let mut reached = std::collections::BTreeSet::from([[0, 0, 0]]);
@@ -142,6 +145,21 @@ mod tests {
     }
 
     #[test]
+    fn a_sheet_that_goes_far_out_of_the_grid_takes_no_longer() {
+        let far = 1e12;
+        let corners = [
+            [-far, 1.4, -far],
+            [far, 1.4, -far],
+            [far, 1.4, far],
+            [-far, 1.4, far],
+        ];
+        let mut faces = Faces::new();
+        go_through::<Dim3>(corners, [3; 3], &mut faces);
+        let nine: Faces = (0..9).map(|k| ([k % 3, 0, k / 3], 1)).collect();
+        assert_eq!(faces, nine);
+    }
+
+    #[test]
     fn in_the_plane_the_way_of_a_point_opens_what_it_crosses() {
         let mut faces = Faces::new();
         let (from, to) = ([0.2, 2.3], [4.1, 2.3]);
@@ -151,7 +169,7 @@ mod tests {
             [to[0], to[1], 1.0],
             [to[0], to[1], 0.0],
         ];
-        go_through::<Dim2>(corners, &mut faces);
+        go_through::<Dim2>(corners, [6, 4, 1], &mut faces);
         let four: Faces = (0..4).map(|x| ([x, 1, 0], 1)).collect();
         assert_eq!(faces, four);
     }

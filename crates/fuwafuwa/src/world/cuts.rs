@@ -39,11 +39,12 @@ impl<D: Dim> World<D> {
     /// Opens what edges went through.
     #[inline(never)]
     pub(super) fn cut_along_edges(&mut self, report: &mut StepReport) {
+        let round = self.settings.tick / self.settings.in_tick(ROUNDS) as f32;
         for (id, knife) in self.knives.entries_mut() {
             let Ok(holder) = self.rigids.get(knife.holder) else {
                 continue;
             };
-            for cut in knife.pass(&self.bodies, holder) {
+            for cut in knife.pass(&self.bodies, holder, round) {
                 let body = self.bodies.get_mut(cut.body).expect("it was looked at");
                 let (released, changes) = body
                     .open(&cut.faces)
@@ -73,10 +74,12 @@ impl<D: Dim> World<D> {
         let mut woken = Vec::new();
         let round = self.settings.tick / self.settings.in_tick(ROUNDS) as f32;
         for knife in self.knives.iter_mut() {
-            if let Ok(holder) = self.rigids.get(knife.holder) {
-                knife.follow(&self.bodies, holder, round);
-                woken.extend(knife.solve(&mut self.bodies, &mut self.rigids, duration));
-            }
+            let Ok(holder) = self.rigids.get(knife.holder) else {
+                knife.forget();
+                continue;
+            };
+            knife.follow(&self.bodies, holder, round);
+            woken.extend(knife.solve(&mut self.bodies, &mut self.rigids, duration));
         }
         woken
     }

@@ -57,6 +57,21 @@ impl Hand {
         }
     }
 
+    /// One that is somewhere [m] and holds a tool as it was held last.
+    pub fn holding(goal: Vector, last: &Input) -> Self {
+        let rotation = last.rotation();
+        let [x, y, z] =
+            [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| rotation.apply(axis));
+        let up = (-z[1]).clamp(-1.0, 1.0).asin();
+        let turned = [z[0].atan2(z[2]), up, x[1].atan2(y[1])];
+        Self {
+            dull: last.dull,
+            turned,
+            grips: last.grips,
+            ..Self::at(goal, last.tool)
+        }
+    }
+
     /// Takes up a tool, which comes in from a height [m].
     pub fn take(&mut self, tool: Tool, height: f32) {
         if tool != self.tool {
@@ -157,5 +172,24 @@ mod tests {
         hand.pass(&wishes, ROOM, 0.0, 0.5 * PI / TURN);
         let [x, y, z] = hand.input().rotation().apply([1.0, 0.0, 0.0]);
         assert!(x.abs() < 1e-3 && y.abs() < 1e-3 && (z + 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_hand_that_takes_over_holds_the_tool_as_it_was_held() {
+        let turned = [[0.3, -0.8, 0.5], [-2.9, 1.2, 3.0], [0.0; 3]];
+        for turned in turned {
+            let before = Hand {
+                turned,
+                dull: 7,
+                ..Hand::at([0.0; 3], Tool::default())
+            };
+            let after = Hand::holding(before.goal, &before.input());
+            for axis in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] {
+                let [was, is] = [&before, &after].map(|hand| hand.rotation().apply(axis));
+                let apart = was.iter().zip(is).map(|(a, b)| (a - b).abs());
+                assert!(apart.fold(0.0, f32::max) < 1e-3, "{was:?} {is:?}");
+            }
+            assert_eq!(after.dull, 7);
+        }
     }
 }

@@ -38,8 +38,10 @@ pub struct Session {
     /// The pieces, as of a moment ago.
     pub parts: Vec<Part>,
     looked: usize,
-    /// What is to be said of a recording that was played.
+    /// What is to be said of a recording that was played, or of why it does not go on.
     pub verdict: Option<String>,
+    /// Whether that was the end.
+    has_ended: bool,
     torn: u32,
 }
 
@@ -61,7 +63,10 @@ impl Session {
         };
         let [low, high] = procedure.table().room;
         let start = procedure.tool().position();
-        let hand = Hand::at(start, procedure.held().tool());
+        let hand = match procedure.inputs().last() {
+            Some(last) => Hand::holding(start, last),
+            None => Hand::at(start, procedure.held().tool()),
+        };
         let seen = seen(procedure, low, high);
         Self {
             parts: parts(procedure.organ(), procedure.case().millilitres()),
@@ -73,6 +78,7 @@ impl Session {
             rests: false,
             looked: 0,
             verdict: None,
+            has_ended: false,
             torn: 0,
         }
     }
@@ -158,8 +164,9 @@ impl Session {
     /// Whether there is nothing more to come.
     pub fn is_over(&self) -> bool {
         match &self.course {
+            _ if self.has_ended => true,
             Course::Hand(procedure) => procedure.is_full(),
-            Course::Again(playback) => playback.is_over() || self.verdict.is_some(),
+            Course::Again(playback) => playback.is_over(),
         }
     }
 
@@ -179,6 +186,7 @@ impl Session {
                 Err(error) => self.verdict = Some(error.to_string()),
             },
         }
+        self.has_ended |= self.verdict.is_some();
         self.torn += self.last().released.saturating_sub(before);
     }
 }
