@@ -106,6 +106,12 @@ impl<D: Dim> Body<D> {
         nodes.map(|(place, &node)| (node, weight(place))).collect()
     }
 
+    /// How fast the place moves that nodes count so for [m/s].
+    pub(crate) fn velocity_of(&self, weights: &[(NodeId, f32)]) -> Vector {
+        let share = |&(node, weight): &(NodeId, f32)| scaled(self.state.velocity[node], weight);
+        three(weights.iter().map(share).fold([0.0; 4], plus))
+    }
+
     /// Where a place [m] was at rest, as seen from the centroid of an element [m], in all three coordinates.
     fn offset_at_rest(&self, element: &Element, at: Vector) -> Option<Vector> {
         let (centre, undo) = self.undo(element)?;

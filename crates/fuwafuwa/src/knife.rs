@@ -176,6 +176,7 @@ impl Knife {
         let lean = scaled(along, dot(along, toward));
         let toward = direction(minus(toward, lean));
         Stance {
+            position: holder.position(),
             levers,
             along,
             toward,
@@ -186,6 +187,8 @@ impl Knife {
 
 /// How a knife is held.
 struct Stance {
+    /// Where its holder is [m].
+    position: Vector,
     /// Its ends, seen from the position of the holder [m].
     levers: [Vector; 2],
     along: Vector,

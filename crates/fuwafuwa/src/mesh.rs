@@ -244,6 +244,11 @@ impl<D: Dim> Mesh<D> {
         owner(self.owners[self.places.number(Cell::of(voxel))?])
     }
 
+    /// The element that a solid voxel belongs to; `None` for an empty one.
+    pub(crate) fn element_at(&self, voxel: Point) -> Option<&Element> {
+        self.element(self.owner(voxel)?)
+    }
+
     /// The elements that own the voxels in some octants around a lattice point, in their order.
     pub fn owners_around(
         &self,

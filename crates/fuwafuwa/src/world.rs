@@ -30,8 +30,6 @@ use settings::BadSetting;
 pub use settings::{FEWEST_SUBSTEPS, LONGEST_TICK, SHORTEST_TICK, Settings, TICK, USUAL_SUBSTEPS};
 use std::fmt;
 
-/// Cracks are looked for, and swings are damped, so often in a second.
-const ROUNDS: f64 = 240.0;
 /// A piece of one voxel does not roll on what it touches; its spin dies at this rate [1/s]: in
 /// a tenth of a second but for an eighth. Faster would stop it in the air between two bounces.
 const CRUMB_SPIN_LOSS: f32 = 20.0;
@@ -172,7 +170,7 @@ impl<D: Dim> World<D> {
         self.events.clear();
         let substeps = self.substeps();
         let duration = self.settings.tick / substeps as f32;
-        let rounds = self.settings.in_tick(ROUNDS);
+        let rounds = self.settings.rounds();
         let mut report = StepReport {
             substeps,
             ..StepReport::default()
@@ -229,7 +227,7 @@ impl<D: Dim> World<D> {
 
     /// Releases what is overstrained, and remodels around it.
     fn fracture(&mut self, report: &mut StepReport) {
-        let duration = self.settings.tick / self.settings.in_tick(ROUNDS) as f32;
+        let duration = self.settings.round();
         for (id, body) in self.bodies.entries_mut() {
             let failures = failures(body, duration);
             if failures.is_empty() {
@@ -253,7 +251,7 @@ impl<D: Dim> World<D> {
 
     /// Calms the swings within each piece, and slows what moves through air.
     fn damp(&mut self, substep: f32) {
-        let duration = self.settings.tick / self.settings.in_tick(ROUNDS) as f32;
+        let duration = self.settings.round();
         let touching = self.touching();
         for (slot, body) in self.bodies.by_slot_mut() {
             body.refresh_awake();

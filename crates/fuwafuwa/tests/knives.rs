@@ -29,6 +29,15 @@ fn block<D: Dim>(world: &mut World<D>, size: [usize; 3], voxel: f32, material: M
     world.add_body(body)
 }
 
+/// What cannot be torn.
+fn rubber() -> Material {
+    Material {
+        strength: f32::INFINITY,
+        toughness: f32::INFINITY,
+        ..Material::default()
+    }
+}
+
 /// A hand that does as it is told, and a knife in it.
 fn knife<D: Dim>(world: &mut World<D>, at: Vector, half: f32, radius: f32) -> (RigidId, KnifeId) {
     let mut holder = Rigid::hand(at, 0.01).with_drive(Drive::Kinematic);
@@ -279,12 +288,7 @@ fn the_flat_of_a_blade_pushes_sideways() {
 #[test]
 fn what_cannot_be_torn_cannot_be_cut_and_a_sleeper_wakes() {
     let mut world = World::<Dim3>::new(NO_GRAVITY).unwrap();
-    let rubber = Material {
-        strength: f32::INFINITY,
-        toughness: f32::INFINITY,
-        ..Material::default()
-    };
-    let body = block(&mut world, [12, 10, 6], 0.02, rubber);
+    let body = block(&mut world, [12, 10, 6], 0.02, rubber());
     world.put_to_sleep(body).unwrap();
     let (holder, _) = knife(&mut world, [0.003, 0.22, 0.0], 0.1, 0.0);
     go(&mut world, holder, [0.003, 0.17, 0.0], 0.2, |world| {
@@ -331,12 +335,7 @@ fn what_is_thrown_at_an_edge_that_stands_is_cut() {
 #[test]
 fn a_knife_without_a_flat_in_what_cannot_be_torn_holds_nothing() {
     let mut world = World::<Dim3>::new(NO_GRAVITY).unwrap();
-    let rubber = Material {
-        strength: f32::INFINITY,
-        toughness: f32::INFINITY,
-        ..Material::default()
-    };
-    block(&mut world, [6, 6, 6], 0.02, rubber);
+    block(&mut world, [6, 6, 6], 0.02, rubber());
     let (holder, id) = knife(&mut world, [0.003, 0.14, 0.0], 0.1, 0.0);
     let mut thin = world.remove_knife(id).unwrap();
     thin.height = 0.0;

@@ -190,7 +190,7 @@ fn nodes<'a, D: Dim>(
 ) -> impl Iterator<Item = NodeId> + 'a {
     corners.iter().filter_map(|&(voxel, point)| {
         let mesh = &body.truth.mesh;
-        let element = mesh.element(mesh.owner(voxel)?)?;
+        let element = mesh.element_at(voxel)?;
         let apart = |node: NodeId| {
             let at = mesh.node(node).at;
             // A stranger's file may name any point.

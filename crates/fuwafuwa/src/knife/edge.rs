@@ -34,12 +34,12 @@ impl Knife {
     /// Brings up to date where its samples are. `ahead` is for how long it is not looked around again [s].
     pub(crate) fn follow<D: Dim>(&mut self, bodies: &Bodies<D>, holder: &Rigid, ahead: f32) {
         let stance = self.stance::<D>(holder);
-        self.take_samples(&stance, bodies, holder);
+        self.take_samples(&stance, bodies);
         if self.near.is_none() {
             self.near = Some(self.look_around(&stance, bodies, holder, ahead));
         }
         for place in 0..self.samples.len() {
-            let at = self.place(&stance, holder, place);
+            let at = self.place(&stance, place);
             self.samples[place].inside = self.find(bodies, place, at);
         }
     }
@@ -59,12 +59,12 @@ impl Knife {
         let known = ids
             .iter()
             .filter_map(|&id| Some((id, bodies.get(id).ok()?)));
-        let cuts = known.map(|(id, body)| self.sheet_in(&stance, holder, (id, body), since));
+        let cuts = known.map(|(id, body)| self.sheet_in(&stance, (id, body), since));
         let mut cuts: Vec<Cut> = cuts.collect();
         self.area += cuts.iter().map(|cut| cut.area).sum::<f64>();
         cuts.retain(|cut| !cut.faces.is_empty());
         for place in 0..self.samples.len() {
-            let at = self.place(&stance, holder, place);
+            let at = self.place(&stance, place);
             let sample = &mut self.samples[place];
             if !sample.is_stuck() {
                 (sample.passed, sample.before) = (sample.inside, at);
@@ -99,12 +99,12 @@ impl Knife {
     }
 
     /// Where a sample is [m].
-    fn place(&self, stance: &Stance, holder: &Rigid, place: usize) -> Vector {
-        plus(holder.position(), self.lever(stance, place))
+    fn place(&self, stance: &Stance, place: usize) -> Vector {
+        plus(stance.position, self.lever(stance, place))
     }
 
     /// Sees to it that there are enough samples for the bodies that there are.
-    fn take_samples<D: Dim>(&mut self, stance: &Stance, bodies: &Bodies<D>, holder: &Rigid) {
+    fn take_samples<D: Dim>(&mut self, stance: &Stance, bodies: &Bodies<D>) {
         let sizes = bodies.iter().map(|body| body.truth.grid.voxel_size());
         let least = sizes.fold(f32::INFINITY, f32::min);
         // Not as it is turned: its length would tremble.
@@ -118,7 +118,7 @@ impl Knife {
             self.samples = vec![Sample::default(); count];
             self.near = None;
             for place in 0..count {
-                self.samples[place].before = self.place(stance, holder, place);
+                self.samples[place].before = self.place(stance, place);
             }
         }
     }
@@ -132,7 +132,7 @@ impl Knife {
         ahead: f32,
     ) -> Vec<Vec<Near>> {
         let mut near = vec![Vec::new(); self.samples.len()];
-        let from = plus(holder.position(), stance.levers[0]);
+        let from = plus(stance.position, stance.levers[0]);
         let long = stance.long();
         let spacing = match D::N {
             2 => f32::INFINITY,
@@ -196,10 +196,9 @@ impl Knife {
                 return false;
             };
             let node = three(body.state.position[near.node]);
-            let mesh = &body.truth.mesh;
-            let element = || mesh.element(mesh.owner(near.voxel)?);
             length(minus(node, at)) <= near.reach
-                && element().is_some_and(|element| inside::may_have(body, element, at))
+                && (body.truth.mesh.element_at(near.voxel))
+                    .is_some_and(|element| inside::may_have(body, element, at))
         };
         let near = near.into_iter().flatten().filter(is_in_reach);
         let mut tried = known.chain(near.map(|near| (near.body, near.voxel)));
@@ -207,16 +206,10 @@ impl Knife {
     }
 
     /// The sheet that it swept through a body since the last look.
-    fn sheet_in<D: Dim>(
-        &self,
-        stance: &Stance,
-        holder: &Rigid,
-        (id, body): (BodyId, &Body<D>),
-        since: f32,
-    ) -> Cut {
+    fn sheet_in<D: Dim>(&self, stance: &Stance, (id, body): (BodyId, &Body<D>), since: f32) -> Cut {
         let size = body.truth.grid.voxel_size();
         let rows: Vec<Option<[Place; 2]>> = (0..self.samples.len())
-            .map(|place| self.way_in(stance, holder, (id, body), place, since))
+            .map(|place| self.way_in(stance, (id, body), place, since))
             .collect();
         let is_inside = |place: usize| self.samples[place].inside_of(id).is_some();
         let cuts = |place: usize| f64::from(u8::from(self.samples[place].cut && is_inside(place)));
@@ -270,7 +263,7 @@ impl Knife {
             body: id,
             faces,
             area: area * f64::from(size * size),
-            at: self.place(stance, holder, middle),
+            at: self.place(stance, middle),
         }
     }
 
@@ -278,7 +271,6 @@ impl Knife {
     fn way_in<D: Dim>(
         &self,
         stance: &Stance,
-        holder: &Rigid,
         (id, body): (BodyId, &Body<D>),
         place: usize,
         since: f32,
@@ -291,7 +283,7 @@ impl Knife {
         // One that is outside is where it would be if the tissue went on.
         let base = inside.or(passed).or_else(of_neighbour)?;
         let size = body.truth.grid.voxel_size();
-        let at = self.place(stance, holder, place);
+        let at = self.place(stance, place);
         let now = inside.map_or_else(|| base.extend(body, at), |spot| Some(spot.at))?;
         // What comes to an edge that stands is cut as by one that comes to it.
         let tissue = scaled(base.velocity(body)?, since);

@@ -5,7 +5,7 @@ use crate::dim::{Dim, Point, voxel_around};
 use crate::ids::NodeId;
 use crate::mesh::Element;
 use crate::shape::Vector;
-use crate::vector::{cross, length, minus, plus, scaled, three};
+use crate::vector::{cross, length, minus};
 
 /// From a voxel to the one that has a place leads a way of so many elements at most.
 const STEPS: usize = 6;
@@ -51,17 +51,13 @@ impl Spot {
 
     /// Where a place [m] would be if all moved as here.
     pub fn extend<D: Dim>(&self, body: &Body<D>, at: Vector) -> Option<Vector> {
-        let mesh = &body.truth.mesh;
-        body.at_rest(mesh.element(mesh.owner(self.voxel)?)?, at)
+        body.at_rest(body.truth.mesh.element_at(self.voxel)?, at)
     }
 
     /// How fast the body moves there [m/s].
     pub fn velocity<D: Dim>(&self, body: &Body<D>) -> Option<Vector> {
-        let mesh = &body.truth.mesh;
-        let element = mesh.element(mesh.owner(self.voxel)?)?;
-        let weights = body.weights(element, self.at).into_iter();
-        let shares = weights.map(|(node, weight)| scaled(body.state.velocity[node], weight));
-        Some(three(shares.fold([0.0; 4], plus)))
+        let element = body.truth.mesh.element_at(self.voxel)?;
+        Some(body.velocity_of(&body.weights(element, self.at)))
     }
 
     /// Where directions of the world point in the body at rest, for the width of a voxel [voxels].
@@ -70,15 +66,13 @@ impl Spot {
         body: &Body<D>,
         ways: [Vector; COUNT],
     ) -> Option<[Vector; COUNT]> {
-        let mesh = &body.truth.mesh;
-        let (_, undo) = body.undo(mesh.element(mesh.owner(self.voxel)?)?)?;
+        let (_, undo) = body.undo(body.truth.mesh.element_at(self.voxel)?)?;
         Some(ways.map(undo))
     }
 
     /// Whether it is within half a voxel of a place [m].
     pub fn is_near<D: Dim>(&self, body: &Body<D>, at: Vector) -> bool {
-        let mesh = &body.truth.mesh;
-        let element = mesh.owner(self.voxel).and_then(|owner| mesh.element(owner));
+        let element = body.truth.mesh.element_at(self.voxel);
         let half = 0.5 * body.truth.grid.voxel_size();
         element.is_some_and(|element| length(minus(body.carry(element)(self.at), at)) <= half)
     }

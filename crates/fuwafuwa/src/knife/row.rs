@@ -8,7 +8,7 @@ use crate::ids::{NodeId, PieceId};
 use crate::material::Material;
 use crate::rigid::{Rigid, Rigids};
 use crate::shape::Vector;
-use crate::vector::{as_row, cross, dot, minus, plus, scaled, three};
+use crate::vector::{as_row, cross, dot, minus, plus, scaled};
 
 /// How often all rows are solved in a substep: samples that stand side by side push the same nodes.
 const ROUNDS: usize = 8;
@@ -131,9 +131,10 @@ impl Knife {
 
 /// How much faster than the tissue the edge is [m/s].
 fn slip<D: Dim>(row: &Row, body: &Body<D>, holder: &Rigid) -> Vector {
-    let velocity = |&(node, weight): &(NodeId, f32)| scaled(body.state.velocity[node], weight);
-    let tissue = row.weights.iter().map(velocity).fold([0.0; 4], plus);
-    minus(holder.velocity_at(row.lever), three(tissue))
+    minus(
+        holder.velocity_at(row.lever),
+        body.velocity_of(&row.weights),
+    )
 }
 
 /// Takes away what slip the row can.

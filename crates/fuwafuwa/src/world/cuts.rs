@@ -1,6 +1,6 @@
 //! Knives: put in, taken out, looked at, and their phases of a substep.
 
-use super::{ROUNDS, Refused, World};
+use super::{Refused, World};
 use crate::contact::Hit;
 use crate::dim::Dim;
 use crate::event::{Event, StepReport};
@@ -39,7 +39,7 @@ impl<D: Dim> World<D> {
     /// Opens what edges went through.
     #[inline(never)]
     pub(super) fn cut_along_edges(&mut self, report: &mut StepReport) {
-        let round = self.settings.tick / self.settings.in_tick(ROUNDS) as f32;
+        let round = self.settings.round();
         for (id, knife) in self.knives.entries_mut() {
             let Ok(holder) = self.rigids.get(knife.holder) else {
                 continue;
@@ -72,7 +72,7 @@ impl<D: Dim> World<D> {
     #[inline(never)]
     pub(super) fn hold_edges(&mut self, duration: f32) -> Vec<Hit> {
         let mut woken = Vec::new();
-        let round = self.settings.tick / self.settings.in_tick(ROUNDS) as f32;
+        let round = self.settings.round();
         for knife in self.knives.iter_mut() {
             let Ok(holder) = self.rigids.get(knife.holder) else {
                 knife.forget();

@@ -15,6 +15,8 @@ pub const FEWEST_SUBSTEPS: u32 = 8;
 pub const SHORTEST_TICK: f32 = 1.0 / 240.0;
 /// See [`SHORTEST_TICK`].
 pub const LONGEST_TICK: f32 = 1.0 / 30.0;
+/// Cracks are looked for, and swings are damped, so often in a second.
+const ROUNDS: f64 = 240.0;
 /// What of the settings is out of range: which field, and what was expected.
 pub(super) type BadSetting = (&'static str, &'static str);
 
@@ -52,6 +54,16 @@ impl Settings {
     /// How many of what comes so often in a second come in a tick, and one at the least.
     pub(super) fn in_tick(&self, per_second: f64) -> u32 {
         ((f64::from(self.tick) * per_second + 0.5) as u32).max(1)
+    }
+
+    /// How often in a tick cracks are looked for.
+    pub(super) fn rounds(&self) -> u32 {
+        self.in_tick(ROUNDS)
+    }
+
+    /// From one time that they are looked for to the next [s].
+    pub(super) fn round(&self) -> f32 {
+        self.tick / self.rounds() as f32
     }
 
     /// Substeps in a tick at most.

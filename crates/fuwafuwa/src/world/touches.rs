@@ -82,7 +82,8 @@ impl<K: Copy + Ord> Presses<K> {
         &mut self.list[place]
     }
 
-    fn all(self) -> BTreeMap<K, Press> {
+    /// All of it, in ascending order.
+    fn all(self) -> Vec<(K, Press)> {
         let of = |(key, place): (K, usize)| (key, self.list[place]);
         self.places.into_iter().map(of).collect()
     }
@@ -131,7 +132,7 @@ impl<D: Dim> World<D> {
     }
 
     /// By piece, and by what it pressed on.
-    fn soft_presses(&self) -> BTreeMap<(BodyId, PieceId, With), Press> {
+    fn soft_presses(&self) -> Vec<((BodyId, PieceId, With), Press)> {
         let mut presses = Presses::default();
         let pairs = self.nearby.nodes.list.iter();
         for pair in pairs.filter(|pair| pair.impulse.total > 0.0) {

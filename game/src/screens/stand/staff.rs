@@ -58,7 +58,7 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, shown: Page, ui: &mut Ui)
             wish = Some(Wish::Leave);
         }
         page(ui, "staff", WIDE, |ui| {
-            let (name, deed) = match shown {
+            let (does, deed) = match shown {
                 Page::Today => (said.export, Wish::Export),
                 Page::Health => (said.try_stick, Wish::TryStick),
                 Page::Settings => (said.end, Wish::See(Page::End)),
@@ -79,7 +79,7 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, shown: Page, ui: &mut Ui)
                     }
                 }
                 ui.add_space(GAP);
-                if button(ui, &theme, name, vec2(1.5 * width, 48.0), Weight::Other).clicked() {
+                if button(ui, &theme, does, vec2(1.5 * width, 48.0), Weight::Other).clicked() {
                     wish = Some(deed);
                 }
             });
