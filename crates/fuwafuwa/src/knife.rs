@@ -70,9 +70,11 @@ pub struct Knife {
     /// From the edge to the back [m]: the flat that holds it from going sideways.
     pub height: f32,
     samples: Vec<Sample>,
-    /// What each of them may come into, while that is known.
+    /// What each of them may come into, and whether that holds still.
     #[cfg_attr(feature = "serde", serde(skip))]
-    near: Option<Vec<Vec<Near>>>,
+    near: Vec<Vec<Near>>,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    knows_near: bool,
     /// Of the last substep [N] and [N m], on the knife; the torque about the place of its holder.
     force: Vector,
     torque: Vector,
@@ -94,7 +96,8 @@ impl Knife {
             radius: 0.0,
             height: 0.02,
             samples: Vec::new(),
-            near: None,
+            near: Vec::new(),
+            knows_near: false,
             force: [0.0; 3],
             torque: [0.0; 3],
             area: 0.0,

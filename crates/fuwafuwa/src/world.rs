@@ -12,7 +12,7 @@ mod touches;
 use crate::body::{Bodies, Body};
 use crate::contact::{Contacts, Hit, Hits};
 use crate::damping::{PieceMotion, Slowing, motions, slow_down};
-use crate::dim::{Dim, Point};
+use crate::dim::Dim;
 use crate::event::{Event, Party, StepReport};
 use crate::fracture::{Failure, failures};
 use crate::handle::{BodySlot, Gone, RigidId, RigidSlot};
@@ -21,7 +21,6 @@ use crate::joint::{self, Joints};
 use crate::knife::{Knife, Knives};
 use crate::rigid::{BadRigid, Rigids};
 use crate::sleep::{fall_asleep, fall_asleep_rigid, wake};
-use crate::solve::Row;
 use crate::touch::{Nearby, NodePair};
 use crate::vector::{is_finite, plus, three};
 pub use hooks::{Hooks, Substep, field_around};
@@ -175,8 +174,6 @@ impl<D: Dim> World<D> {
             substeps,
             ..StepReport::default()
         };
-        let before: Vec<Vec<(Point, Row)>> =
-            self.bodies.iter().map(Body::points_and_positions).collect();
         self.start_tick();
         for substep in 0..substeps {
             if is_due(substep, substeps, rounds) {
@@ -194,7 +191,7 @@ impl<D: Dim> World<D> {
             }
         }
         report.inverted = self.bodies.iter().map(Body::inverted_count).sum();
-        self.quarantine(&before, &mut report);
+        self.quarantine(&mut report);
         self.sleep();
         self.end_tick();
         report
@@ -211,6 +208,7 @@ impl<D: Dim> World<D> {
     }
 
     fn start_tick(&mut self) {
+        self.bodies.iter_mut().for_each(Body::note_before);
         for rigid in self.rigids.iter_mut() {
             rigid.start_tick(self.settings.tick);
         }
@@ -325,13 +323,12 @@ impl<D: Dim> World<D> {
     }
 
     /// Stops pieces that went out of hand where they were before the tick, for good.
-    fn quarantine(&mut self, before: &[Vec<(Point, Row)>], report: &mut StepReport) {
-        for ((body_id, body), before) in self.bodies.entries_mut().zip(before) {
+    fn quarantine(&mut self, report: &mut StepReport) {
+        for (id, body) in self.bodies.entries_mut() {
             body.refresh_awake();
-            for piece in body.quarantine(before, TOP_SPEED) {
+            for piece in body.quarantine(TOP_SPEED) {
                 report.quarantined += 1;
-                let body = body_id;
-                self.events.push(Event::Quarantined { body, piece });
+                self.events.push(Event::Quarantined { body: id, piece });
             }
         }
     }

@@ -36,18 +36,20 @@ impl<D: Dim> Body<D> {
         self.cache.awake_is_stale = true;
     }
 
-    /// The lattice point and the position [m] of every node, by id; no position where there is none.
-    pub(crate) fn points_and_positions(&self) -> Vec<(Point, Row)> {
-        let both = |(id, &row): (NodeId, &Row)| match self.truth.mesh.is_alive(id) {
-            true => (self.truth.mesh.node(id).at, row),
+    /// Notes where all nodes are.
+    pub(crate) fn note_before(&mut self) {
+        let (mesh, before) = (&self.truth.mesh, &mut self.cache.before);
+        let both = |(id, &row): (NodeId, &Row)| match mesh.is_alive(id) {
+            true => (mesh.node(id).at, row),
             false => ([0; 3], [f32::NAN; 4]),
         };
-        self.state.position.entries().map(both).collect()
+        before.clear();
+        before.extend(self.state.position.entries().map(both));
     }
 
     /// Puts pieces with a node that is not finite, or faster than `top_speed` [m/s], back to where
-    /// they were and to sleep for good; returns their numbers.
-    pub(crate) fn quarantine(&mut self, before: &[(Point, Row)], top_speed: f32) -> Vec<PieceId> {
+    /// they were when that was noted, and to sleep for good; returns their numbers.
+    pub(crate) fn quarantine(&mut self, top_speed: f32) -> Vec<PieceId> {
         let mut marked: Table<PieceId, _> = vec![false; self.truth.pieces.list.len()].into();
         for &id in &self.cache.awake {
             let velocity = self.state.velocity[id];
@@ -61,7 +63,7 @@ impl<D: Dim> Body<D> {
         let nodes: Vec<(NodeId, Node)> = self.truth.mesh.nodes().collect();
         let nodes = nodes.into_iter();
         for (id, node) in nodes.filter(|&(id, _)| marked[self.truth.pieces.of_node(id)]) {
-            self.state.position[id] = self.position_before(id, node.at, before);
+            self.state.position[id] = self.position_before(id, node.at);
         }
         self.set_asleep(&marked, true);
         let numbers: Vec<PieceId> = marked.ids().filter(|&piece| marked[piece]).collect();
@@ -74,9 +76,9 @@ impl<D: Dim> Body<D> {
     /// Where a node was. One that is new, or whose id was another's, is put beside the nearest of its
     /// elements that was anywhere, and to where it was built when none was: across a crack, what is
     /// near in the lattice may be far away.
-    fn position_before(&self, id: NodeId, at: Point, before: &[(Point, Row)]) -> Row {
+    fn position_before(&self, id: NodeId, at: Point) -> Row {
         let was = |id: NodeId, at: Point| {
-            let known = before.get(id.index());
+            let known = self.cache.before.get(id.index());
             known.filter(|(point, row)| *point == at && is_finite(*row))
         };
         let carriers = self.truth.mesh.carriers_of(id);

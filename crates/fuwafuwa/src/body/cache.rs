@@ -3,8 +3,10 @@
 use super::blend::Blend;
 use crate::breakable::BreakableNodes;
 use crate::changes::History;
+use crate::dim::Point;
 use crate::ids::{ElementId, NodeId, PieceId, Table};
 use crate::momentum::RoughMotion;
+use crate::solve::Row;
 
 /// What is worked out from the truth and the state of a body, and kept so that it need not be again. No
 /// snapshot has it: `Body::rebuild` makes it anew.
@@ -27,4 +29,6 @@ pub struct Cache {
     pub history: History,
     /// The rigid motion of each piece, as of the last round of damping: every tick begins with one.
     pub rigid: Table<PieceId, RoughMotion>,
+    /// The lattice point and the position [m] of every node, by id, as the tick began; no position where there was none.
+    pub before: Vec<(Point, Row)>,
 }

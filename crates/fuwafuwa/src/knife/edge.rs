@@ -35,8 +35,8 @@ impl Knife {
     pub(crate) fn follow<D: Dim>(&mut self, bodies: &Bodies<D>, holder: &Rigid, ahead: f32) {
         let stance = self.stance::<D>(holder);
         self.take_samples(&stance, bodies);
-        if self.near.is_none() {
-            self.near = Some(self.look_around(&stance, bodies, holder, ahead));
+        if !self.knows_near {
+            self.look_around(&stance, bodies, holder, ahead);
         }
         for place in 0..self.samples.len() {
             let at = self.place(&stance, place);
@@ -71,7 +71,7 @@ impl Knife {
             }
             (sample.slid, sample.cut) = (false, false);
         }
-        self.near = None;
+        self.knows_near = false;
         cuts
     }
 
@@ -116,22 +116,24 @@ impl Knife {
         };
         if count != self.samples.len() {
             self.samples = vec![Sample::default(); count];
-            self.near = None;
+            self.knows_near = false;
             for place in 0..count {
                 self.samples[place].before = self.place(stance, place);
             }
         }
     }
 
-    /// The elements that each sample may come into soon.
+    /// Notes the elements that each sample may come into soon.
     fn look_around<D: Dim>(
-        &self,
+        &mut self,
         stance: &Stance,
         bodies: &Bodies<D>,
         holder: &Rigid,
         ahead: f32,
-    ) -> Vec<Vec<Near>> {
-        let mut near = vec![Vec::new(); self.samples.len()];
+    ) {
+        self.knows_near = true;
+        self.near.resize(self.samples.len(), Vec::new());
+        self.near.iter_mut().for_each(Vec::clear);
         let from = plus(stance.position, stance.levers[0]);
         let long = stance.long();
         let spacing = match D::N {
@@ -161,7 +163,7 @@ impl Knife {
                 let first = ((along - reach) / spacing).ceil().max(0.0) as usize;
                 let last = ((along + reach) / spacing).floor().max(0.0) as usize;
                 let count = last.saturating_add(1).saturating_sub(first);
-                let places = near.iter_mut().skip(first).take(count);
+                let places = self.near.iter_mut().skip(first).take(count);
                 places.for_each(|near| {
                     near.push(Near {
                         body: id,
@@ -172,7 +174,6 @@ impl Knife {
                 });
             }
         }
-        near
     }
 
     /// In whom a sample is: where it was, where its neighbours are, or in what is around.
@@ -190,7 +191,6 @@ impl Knife {
         let others = beside.into_iter().flatten();
         let known = others.filter_map(|place| self.samples.get(place)?.inside);
         let known = known.map(|(body, spot)| (body, spot.voxel));
-        let near = self.near.as_ref().map(|near| near[place].iter());
         let is_in_reach = |near: &&Near| {
             let Ok(body) = bodies.get(near.body) else {
                 return false;
@@ -200,7 +200,7 @@ impl Knife {
                 && (body.truth.mesh.element_at(near.voxel))
                     .is_some_and(|element| inside::may_have(body, element, at))
         };
-        let near = near.into_iter().flatten().filter(is_in_reach);
+        let near = self.near[place].iter().filter(is_in_reach);
         let mut tried = known.chain(near.map(|near| (near.body, near.voxel)));
         tried.find_map(|(id, voxel)| Some((id, Spot::find(bodies.get(id).ok()?, at, voxel)?)))
     }

@@ -21,6 +21,8 @@ struct Row {
     body: BodyId,
     /// Nodes, and by how much each counts.
     weights: Vec<(NodeId, f32)>,
+    /// How fast a unit of impulse makes them there [1/kg].
+    gain: f32,
     /// From the position of the holder [m].
     lever: Vector,
     /// The most that passes forth and sideways in the substep [N s], and what did.
@@ -109,9 +111,14 @@ impl Knife {
             false => 0.0,
         };
         let share = self.share::<D>(stance, place) * duration;
+        let weights = body.weights(element, spot.at);
+        let gains = weights
+            .iter()
+            .map(|&(node, weight)| weight * weight * body.state.inverse_mass[node]);
         Row {
             body: id,
-            weights: body.weights(element, spot.at),
+            gain: gains.sum(),
+            weights,
             lever: self.lever(stance, place),
             // No length of what cannot be torn holds nothing.
             limits: [forth, material.strength * self.height].map(|k| (share * k).max(0.0)),
@@ -145,14 +152,9 @@ fn solve_row<D: Dim>(
     ways: [Vector; 2],
     duration: f32,
 ) {
-    let squares = row
-        .weights
-        .iter()
-        .map(|&(node, weight)| weight * weight * body.state.inverse_mass[node]);
-    let gain: f32 = squares.sum();
     for (way, direction) in ways.into_iter().enumerate() {
         // Where neither side yields, all that may pass does.
-        let yields = gain + holder.yields(row.lever, direction);
+        let yields = row.gain + holder.yields(row.lever, direction);
         let speed = dot(slip(row, body, holder), direction);
         let least = if way == 0 { 0.0 } else { -row.limits[way] };
         let wanted = (row.impulse[way] + speed / yields).clamp(least, row.limits[way]);
