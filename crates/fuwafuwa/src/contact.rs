@@ -95,21 +95,24 @@ impl Contacts {
             for (pair, index) in pairs.iter_mut().zip(first..) {
                 let body = bodies.at(pair.body);
                 let rigid = rigids.at(pair.rigid);
-                let node = pair.node;
+                let (node, moves) = (pair.node, rigid.moves());
                 // What sleeps is touched by what moves alone.
-                if body.state.inverse_mass[node] == 0.0 && !rigid.moves() {
+                if body.state.inverse_mass[node] == 0.0 && !moves {
                     pair.impulse.release();
                     continue;
                 }
                 let (at, velocity) = (body.state.position[node], body.state.velocity[node]);
                 // Most are so far from a wall that they could not come to it at any direction.
                 let reachable = (pair.clear - travel).max(0.0) / (AHEAD * duration);
-                if !rigid.moves() && inner::<D>(velocity, velocity) < reachable * reachable {
+                if !moves && inner::<D>(velocity, velocity) < reachable * reachable {
                     continue;
                 }
                 let (gap, normal) = rigid.shape().distance(three(at));
                 let normal = as_row(normal);
-                let own = as_row(rigid.velocity_near(three(at)));
+                let own = match moves {
+                    true => as_row(rigid.velocity_near(three(at))),
+                    false => [0.0; 4],
+                };
                 let relative = minus(velocity, own);
                 let size = body.truth.grid.voxel_size();
                 let approach = inner::<D>(relative, normal);
@@ -121,10 +124,10 @@ impl Contacts {
                 }
                 pair.clear = 0.0;
                 pair.impulse.speed = pair.impulse.speed.max(-approach);
-                let may_wake = rigid.moves() || rigid.is_asleep();
+                let may_wake = moves || rigid.is_asleep();
                 if may_wake && gap < 0.1 * size {
                     let is_fast = |speed: Row| inner::<D>(speed, speed) > WAKE_SPEED * WAKE_SPEED;
-                    let wakes = rigid.is_driven() || rigid.moves() && is_fast(own);
+                    let wakes = rigid.is_driven() || moves && is_fast(own);
                     if wakes && body.truth.pieces.sleeps(pair.node) {
                         let piece = body.truth.pieces.of_node(pair.node);
                         hits.pieces.push((pair.body, piece));

@@ -3,9 +3,10 @@
 use super::sides::{Grip, NodeContact, NodeRow};
 use crate::body::Bodies;
 use crate::dim::Dim;
-use crate::handle::BodySlot;
+use crate::handle::{BodySlot, RigidSlot};
 use crate::ids::{Id, NodeId, Table};
 use crate::rigid::Rigids;
+use crate::shape::Vector;
 use crate::solve::Row;
 use crate::touch::{ContactSphere, mean};
 use crate::vector::{as_row, minus, plus, scaled, three};
@@ -117,9 +118,7 @@ impl Motion {
     #[inline(always)]
     pub fn of_node(&self, row: &NodeContact, rigids: &Rigids) -> Row {
         let own = self.rows[row.node];
-        let other = row.mover.map_or([0.0; 4], |(mover, lever)| {
-            as_row(rigids.at(mover).velocity_at(lever))
-        });
+        let other = row.mover.map_or([0.0; 4], |mover| velocity(mover, rigids));
         with_fourth(minus(own, other), 0.0)
     }
 
@@ -134,11 +133,24 @@ impl Motion {
     ) {
         let own = &mut self.rows[row.node];
         *own = plus(*own, scaled(impulse, own[3]));
-        if let Some((mover, lever)) = row.mover {
-            let mover = rigids.at_mut(mover);
-            mover.push_at(three(scaled(impulse, -1.0)), lever, duration);
+        if let Some(mover) = row.mover {
+            push(mover, rigids, scaled(impulse, -1.0), duration);
         }
     }
+}
+
+/// How fast something rigid moves so far from its position. Few contacts ask: in line it would slow down all others.
+#[inline(never)]
+fn velocity((mover, lever): (RigidSlot, Vector), rigids: &Rigids) -> Row {
+    as_row(rigids.at(mover).velocity_at(lever))
+}
+
+/// Pushes it there.
+#[inline(never)]
+fn push((mover, lever): (RigidSlot, Vector), rigids: &mut Rigids, impulse: Row, duration: f32) {
+    rigids
+        .at_mut(mover)
+        .push_at(three(impulse), lever, duration);
 }
 
 /// The row of a node of the body that has this first one.

@@ -21,6 +21,17 @@ pub struct SpherePair {
     pub met_in_front: bool,
 }
 
+impl SpherePair {
+    /// Two that have not touched yet.
+    fn new(spheres: [SphereId; 2]) -> Self {
+        Self {
+            spheres,
+            impulse: Impulse::default(),
+            met_in_front: false,
+        }
+    }
+}
+
 /// Makes the new list of pairs from those just found and the old ones of which neither has changed, or
 /// which touched in this tick: that is to be told. Pairs that were known keep their impulses.
 pub fn merge(
@@ -45,12 +56,10 @@ pub fn merge(
                     pairs.push(*pair);
                 }
             }
-            let known = old.next_if(|pair| pair.spheres == spheres);
-            pairs.push(SpherePair {
-                spheres,
-                impulse: known.map_or(Impulse::default(), |pair| pair.impulse),
-                met_in_front: known.is_some_and(|pair| pair.met_in_front),
-            });
+            match old.next_if(|pair| pair.spheres == spheres) {
+                Some(known) => pairs.push(*known),
+                None => pairs.push(SpherePair::new(spheres)),
+            }
         }
         pairs.extend(old.filter(|pair| stays(pair)));
         pairs

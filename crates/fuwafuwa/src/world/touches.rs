@@ -25,16 +25,16 @@ struct Press {
 }
 
 impl Press {
-    fn add(&mut self, impulse: f32, speed: f32, at: Vector, normal: Vector) {
+    /// One more contact; only where it is the strongest so far it is asked for its place and its normal.
+    fn add(&mut self, impulse: f32, speed: f32, place: impl FnOnce() -> [Vector; 2]) {
         self.impulse += impulse;
         self.speed = self.speed.max(speed);
         if impulse > self.strongest {
-            (self.strongest, self.at, self.normal) = (impulse, at, normal);
+            self.strongest = impulse;
+            [self.at, self.normal] = place();
         }
     }
-}
 
-impl Press {
     /// The same as seen from the other side.
     fn turned(mut self) -> Self {
         self.normal = scaled(self.normal, -1.0);
@@ -94,10 +94,9 @@ impl<D: Dim> World<D> {
     pub(super) fn note_touches(&mut self) {
         let soft = self.soft_presses();
         let rigid = self.rigid_presses();
-        let mut presses: BTreeMap<[Party; 2], Press> = rigid
-            .iter()
-            .map(|(&both, press)| (both.map(Party::Rigid), *press))
-            .collect();
+        let known = rigid.iter();
+        let known = known.map(|(&both, press)| (both.map(Party::Rigid), *press));
+        let mut presses: Vec<([Party; 2], Press)> = known.collect();
         for ((body, piece, with), press) in soft {
             self.events.push(Event::Touched {
                 body,
@@ -112,12 +111,19 @@ impl<D: Dim> World<D> {
             match (first, second) {
                 _ if first == second => {}
                 (_, Party::Piece { .. }) if second < first => {
-                    let seen = presses.entry([second, first]).or_default();
-                    seen.join(press.turned());
+                    presses.push(([second, first], press.turned()));
                 }
-                _ => presses.entry([first, second]).or_default().join(press),
+                _ => presses.push(([first, second], press)),
             }
         }
+        presses.sort_by_key(|&(both, _)| both);
+        presses.dedup_by(|(both, press), (known, sum)| {
+            let is_same = both == known;
+            if is_same {
+                sum.join(*press);
+            }
+            is_same
+        });
         for ([rigid, with], press) in rigid {
             self.events.push(Event::RigidTouched {
                 rigid,
@@ -146,10 +152,11 @@ impl<D: Dim> World<D> {
             let id = self.bodies.id(pair.body);
             let body = &self.bodies[id];
             let piece = body.truth.pieces.of_node(pair.node);
-            let at = three(body.state.position[pair.node]);
-            let (_, normal) = rigid.shape().distance(at);
             let press = presses.of((id, piece, with));
-            press.add(pair.impulse.total, pair.impulse.speed, at, normal);
+            press.add(pair.impulse.total, pair.impulse.speed, || {
+                let at = three(body.state.position[pair.node]);
+                [at, rigid.shape().distance(at).1]
+            });
         }
         let spheres = &self.nearby.spheres;
         let pairs = self.nearby.pairs.list.iter();
@@ -157,11 +164,12 @@ impl<D: Dim> World<D> {
             let [a, b] = pair.both(&spheres.list);
             let (body, piece) = (self.bodies.id(b.body), b.piece);
             let with = With::Piece { body, piece };
-            let [at, other] = pair.spheres.map(|sphere| three(spheres.centres[sphere]));
-            let apart = minus(at, other);
-            let normal = scaled(apart, 1.0 / length(apart).max(1e-9));
             let press = presses.of((self.bodies.id(a.body), a.piece, with));
-            press.add(pair.impulse.total, pair.impulse.speed, at, normal);
+            press.add(pair.impulse.total, pair.impulse.speed, || {
+                let [at, other] = pair.spheres.map(|sphere| three(spheres.centres[sphere]));
+                let apart = minus(at, other);
+                [at, scaled(apart, 1.0 / length(apart).max(1e-9))]
+            });
         }
         presses.all()
     }
@@ -172,39 +180,44 @@ impl<D: Dim> World<D> {
         for touch in &self.nearby.rigids.passed {
             let both = touch.both.map(|slot| self.rigids.id(slot));
             let press = presses.entry(both).or_default();
-            press.add(touch.impulse, touch.speed, touch.at, touch.normal);
+            press.add(touch.impulse, touch.speed, || [touch.at, touch.normal]);
         }
         presses
     }
 
-    /// Compares who touches whom with the last tick. Two that rest side by side still touch.
-    fn note_changes(&mut self, presses: &BTreeMap<[Party; 2], Press>) {
-        // In ascending order.
-        let before = std::mem::take(&mut self.touching);
-        let is_new = |both: &[Party; 2]| before.binary_search(both).is_err();
-        for (both, press) in presses.iter().filter(|(both, _)| is_new(both)) {
-            self.events.push(Event::ContactBegan {
-                both: *both,
-                at: press.at,
-                normal: press.normal,
-                speed: press.speed,
-            });
-        }
-        let mut touching: Vec<[Party; 2]> = presses.keys().copied().collect();
-        for both in before {
-            if presses.contains_key(&both) {
-                continue;
+    /// Compares who touches whom, ascending, with the last tick. Two that rest side by side still touch.
+    fn note_changes(&mut self, presses: &[([Party; 2], Press)]) {
+        let mut before = std::mem::take(&mut self.touching).into_iter().peekable();
+        let (mut touching, mut ended) = (Vec::with_capacity(presses.len()), Vec::new());
+        let mut leave = |both: [Party; 2], touching: &mut Vec<_>| match self.rest(both) {
+            true => touching.push(both),
+            false => ended.push(Event::ContactEnded { both }),
+        };
+        let mut began = Vec::new();
+        for (both, press) in presses {
+            while let Some(old) = before.next_if(|old| old < both) {
+                leave(old, &mut touching);
             }
-            match both.iter().all(|&party| self.rests(party)) {
-                true => touching.push(both),
-                false => self.events.push(Event::ContactEnded { both }),
+            touching.push(*both);
+            if before.next_if_eq(both).is_none() {
+                began.push(Event::ContactBegan {
+                    both: *both,
+                    at: press.at,
+                    normal: press.normal,
+                    speed: press.speed,
+                });
             }
         }
-        touching.sort_unstable();
+        before.for_each(|old| leave(old, &mut touching));
         self.touching = touching;
+        self.events.extend(began.into_iter().chain(ended));
     }
 
-    /// Whether somebody is there and does not move.
+    /// Whether both are there, and neither moves.
+    fn rest(&self, both: [Party; 2]) -> bool {
+        both.into_iter().all(|party| self.rests(party))
+    }
+
     fn rests(&self, party: Party) -> bool {
         match party {
             Party::Rigid(id) => self.rigids.get(id).is_ok_and(|rigid| !rigid.moves()),
