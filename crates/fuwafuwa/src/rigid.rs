@@ -64,7 +64,8 @@ impl Default for Drive {
     }
 }
 
-/// Something rigid: an obstacle, which stands still, a hand, which follows its goal, or what is free.
+/// Something rigid: an obstacle, which stands still, a hand, which follows its goal, or what is free. Of a soft body it meets
+/// the nodes: what is thinner than three of its voxels may slip in between them.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rigid {

@@ -160,8 +160,8 @@ impl App {
 
     fn take(&mut self, tool: Tool) {
         if let Some(session) = &mut self.session {
-            let top = session.procedure().table().room[1][1];
-            session.hand.take(tool, top);
+            let height = session.procedure().entry();
+            session.hand.take(tool, height);
         }
     }
 
@@ -345,7 +345,7 @@ impl App {
                 if let (Some(slices), Some(session)) = (&mut self.slices, &self.session) {
                     let procedure = session.procedure();
                     slices.refresh(procedure);
-                    slices.show(ui, procedure, session.seen, &self.colours);
+                    slices.show(ui, procedure, session.sliced, &self.colours);
                 }
             });
         CentralPanel::default().frame(plain).show(ui, |ui| {

@@ -15,6 +15,8 @@ const STEP: f32 = 1e-5;
 const PARTS: f32 = 32767.0;
 /// A tool goes no faster than this [m/s], however fast a mouse jumps.
 const FASTEST: f32 = 0.25;
+/// So much of the height of the organ above it tools come in.
+const ENTRY: f32 = 0.2;
 /// It turns no faster than this [rad/s].
 const SPIN: f32 = 5.0;
 /// The most ticks of a procedure: an hour.
@@ -93,9 +95,19 @@ impl Procedure {
     pub fn new(case: Arc<Case>) -> Result<Self, CaseError> {
         let mut table = case.lay()?;
         let [low, high] = table.room;
-        let goal = [0.5 * (low[0] + high[0]), high[1], 0.5 * (low[2] + high[2])];
+        let goal = [
+            0.5 * (low[0] + high[0]),
+            entry(&table),
+            0.5 * (low[2] + high[2]),
+        ];
         let rotation = Rotation::NONE;
-        let held = Held::new(&mut table.world, Tool::default(), goal, rotation)?;
+        let held = Held::new(
+            &mut table.world,
+            table.organ,
+            Tool::default(),
+            goal,
+            rotation,
+        )?;
         Ok(Self {
             case,
             table,
@@ -178,6 +190,16 @@ impl Procedure {
         &self.samples
     }
 
+    /// The low and the high corner of what is left of the organ [m].
+    pub fn span(&self) -> [Vector; 2] {
+        span(self.organ())
+    }
+
+    /// The height at which a tool comes in [m]: above the organ, and in sight.
+    pub fn entry(&self) -> f32 {
+        entry(&self.table)
+    }
+
     /// The world's hash after every sixtieth tick.
     pub fn hashes(&self) -> &[u64] {
         &self.hashes
@@ -188,9 +210,9 @@ impl Procedure {
         if tool == self.held.tool() {
             return Ok(());
         }
-        self.goal[1] = self.table.room[1][1];
-        let world = &mut self.table.world;
-        let next = Held::new(world, tool, self.goal, self.rotation)?;
+        self.goal[1] = self.entry();
+        let Table { world, organ, .. } = &mut self.table;
+        let next = Held::new(world, *organ, tool, self.goal, self.rotation)?;
         std::mem::replace(&mut self.held, next).put_away(world)
     }
 
@@ -254,4 +276,20 @@ impl Procedure {
             grips: self.held.grips(),
         }
     }
+}
+
+fn entry(table: &Table) -> f32 {
+    let [low, high] = span(&table.world.bodies()[table.organ]);
+    (high[1] + ENTRY * (high[1] - low[1])).clamp(table.room[0][1], table.room[1][1])
+}
+
+fn span(organ: &Body<Dim3>) -> [Vector; 2] {
+    let mut span = [[f32::MAX; 3], [f32::MIN; 3]];
+    for view in organ.piece_views() {
+        for axis in 0..3 {
+            span[0][axis] = span[0][axis].min(view.low[axis]);
+            span[1][axis] = span[1][axis].max(view.high[axis]);
+        }
+    }
+    span
 }

@@ -20,7 +20,7 @@ use std::io::{Read, Write};
 use std::sync::Arc;
 
 /// Number of the format. It changes when an older recording would be misread or go another way.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 /// Most bytes of a recording.
 pub const MOST_BYTES: usize = 1 << 26;
 /// Most bytes of what is in it: the voxels of the finest organ and an hour of inputs.

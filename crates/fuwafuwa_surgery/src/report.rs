@@ -19,6 +19,8 @@ pub const NO_DEVICE: &str =
 const SIZE: (u32, u32) = (900, 760);
 /// Most points of a line: more than there are pixels show nothing.
 const POINTS: usize = 1500;
+/// Labels along an axis, at the most.
+const LABELS: usize = 10;
 const INK: RGBColor = RGBColor(0x4A, 0x36, 0x34);
 const LINE: RGBColor = RGBColor(0xE6, 0xD8, 0xC8);
 const RED: RGBColor = RGBColor(0xC8, 0x3A, 0x3A);
@@ -110,6 +112,9 @@ fn draw(area: &Area<'_>, title: &str, lines: &[Line<'_>]) -> Result<(), Box<dyn 
     let long = points().map(|point| point.0).fold(1.0, f64::max);
     let high = points().map(|point| point.1).fold(0.0, f64::max);
     let high = if high > 0.0 { 1.1 * high } else { 1.0 };
+    // There is no half of what is counted.
+    let is_count = points().all(|point| point.1.fract() == 0.0);
+    let labels = if is_count { high as usize + 1 } else { LABELS };
     let mut chart = ChartBuilder::on(area)
         .margin(12)
         .x_label_area_size(34)
@@ -122,6 +127,9 @@ fn draw(area: &Area<'_>, title: &str, lines: &[Line<'_>]) -> Result<(), Box<dyn 
         .axis_style(INK)
         .x_desc("seconds")
         .y_desc(title)
+        .y_labels(labels.min(LABELS))
+        .y_label_formatter(&|value| ((1e4 * value).round() / 1e4).to_string())
+        .x_label_formatter(&|value| ((1e4 * value).round() / 1e4).to_string())
         .label_style(("sans-serif", 14).into_font().color(&INK))
         .draw()?;
     // The last of them lies lowest.

@@ -10,7 +10,7 @@
 //!
 //! The place of a tool is where it works: the middle of the edge, the tip, the middle of the bar.
 
-use fuwafuwa::vector::{length, minus, plus};
+use fuwafuwa::vector::plus;
 use fuwafuwa::{
     BodyId, Dim3, Drive, End, Joint, JointId, Knife, KnifeId, Refused, Rigid, RigidId, Rotation,
     Shape, Vector, World,
@@ -31,8 +31,11 @@ const FRICTION: f32 = 0.15;
 const BLADE: [f32; 3] = [0.015, 0.01, 0.0006];
 /// Radius of the tip of the forceps [m].
 const TIP: f32 = 0.002;
-/// What is so near to the tip can be gripped [m].
-const REACH: f32 = 0.006;
+/// Tips and bars have a radius of so many voxels at the least: with 1.25, a tip slips in between nodes where it is pressed
+/// in deeply.
+const THINNEST: f32 = 1.5;
+/// What is so near to the surface of the tip can be gripped [m].
+const REACH: f32 = 0.004;
 /// Nodes so near to the place that is gripped are held together [m].
 const JAW: f32 = 0.004;
 /// The forceps slip off at this force [N].
@@ -81,17 +84,19 @@ pub struct Held {
 }
 
 impl Held {
-    /// Puts a tool into a world, at rest at a place [m].
+    /// Puts a tool for an organ into its world, at rest at a place [m].
     ///
     /// # Errors
     /// [`Refused`] when the place is out of reach.
     pub fn new(
         world: &mut World<Dim3>,
+        organ: BodyId,
         tool: Tool,
         at: Vector,
         rotation: Rotation,
     ) -> Result<Self, Refused> {
-        let mut rigid = Rigid::driven(form(tool), at, DRIVE).rotated(rotation);
+        let thinnest = THINNEST * world.bodies().get(organ)?.grid().voxel_size();
+        let mut rigid = Rigid::driven(form(tool, thinnest), at, DRIVE).rotated(rotation);
         rigid.friction = FRICTION;
         // Of a knife the edge alone touches, and its flat.
         rigid.is_sensor = tool == Tool::Knife;
@@ -193,7 +198,7 @@ impl Held {
             self.open(world);
         } else if begins
             && self.tool == Tool::Forceps
-            && let Some(at) = nearest(world, organ, self.rigid(world).position())
+            && let Some(at) = nearest(world, organ, self.rigid(world))
         {
             let soft = End::Soft {
                 body: organ,
@@ -268,8 +273,8 @@ impl Held {
     }
 }
 
-/// What of a tool touches, with its place at the origin.
-fn form(tool: Tool) -> Shape {
+/// What of a tool touches, with its place at the origin; what is round is not thinner than this [m].
+fn form(tool: Tool, thinnest: f32) -> Shape {
     match tool {
         Tool::Knife => {
             let [half, height, thin] = BLADE;
@@ -280,24 +285,24 @@ fn form(tool: Tool) -> Shape {
         }
         Tool::Forceps => Shape::Ball {
             centre: [0.0; 3],
-            radius: TIP,
+            radius: TIP.max(thinnest),
         },
         Tool::Hook => {
             let [half, radius] = BAR;
             Shape::Capsule {
                 from: [-half, 0.0, 0.0],
                 to: [half, 0.0, 0.0],
-                radius,
+                radius: radius.max(thinnest),
             }
         }
     }
 }
 
-/// The node of an organ that is nearest to a place [m], if one is within reach.
-fn nearest(world: &World<Dim3>, organ: BodyId, at: Vector) -> Option<Vector> {
+/// The node of an organ that is nearest to a place [m], if one is within reach of a tip there.
+fn nearest(world: &World<Dim3>, organ: BodyId, tip: &Rigid) -> Option<Vector> {
     let body = world.bodies().get(organ).ok()?;
     let places = body.mesh().nodes().map(|(id, _)| body.node_state(id).0);
-    let away = |place: &Vector| length(minus(*place, at));
+    let away = |place: &Vector| tip.shape().distance(*place).0;
     let nearest = places.min_by(|a, b| away(a).total_cmp(&away(b)))?;
     (away(&nearest) <= REACH).then_some(nearest)
 }

@@ -36,7 +36,7 @@ struct Plan {
 impl Trainee {
     /// Who does what the seed says to the organ of a procedure that begins.
     pub fn new(procedure: &Procedure, seed: u64) -> Self {
-        let [low, high] = span(procedure);
+        let [low, high] = procedure.span();
         let middle = scaled(plus(low, high), 0.5);
         let size = minus(high, low);
         let above = high[1] + 0.15 * size[1];
@@ -144,18 +144,6 @@ impl Plan {
         self.go(Tool::Forceps, [aside, up, z], none, true, 0.04);
         self.go(Tool::Forceps, [x, above, z], none, false, 0.15);
     }
-}
-
-/// The low and the high corner of the organ [m].
-fn span(procedure: &Procedure) -> [Vector; 2] {
-    let mut span = [[f32::MAX; 3], [f32::MIN; 3]];
-    for view in procedure.organ().piece_views() {
-        for axis in 0..3 {
-            span[0][axis] = span[0][axis].min(view.low[axis]);
-            span[1][axis] = span[1][axis].max(view.high[axis]);
-        }
-    }
-    span
 }
 
 /// How high the organ is near a place, seen from above [m].

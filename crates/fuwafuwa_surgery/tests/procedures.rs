@@ -209,6 +209,29 @@ fn a_hook_feels_what_it_pushes() {
 }
 
 #[test]
+fn what_is_blunt_does_not_slip_in_between_the_nodes_of_a_coarse_organ() {
+    for resolution in [20, 28, 36] {
+        for tool in [Tool::Forceps, Tool::Hook] {
+            let mut procedure = procedure(resolution);
+            let top = procedure.organ().piece_views()[0].high[1];
+            let way = [[0.021, top + 0.01, 0.003], [0.021, top - 0.012, 0.003]];
+            go(&mut procedure, with(tool, 0), &way, 0.03);
+            let tip = procedure.tool();
+            let organ = procedure.organ();
+            let places = organ.mesh().nodes().map(|(id, _)| organ.node_state(id).0);
+            let over = places.filter(|&place| {
+                let away = fuwafuwa::vector::minus(place, tip.position());
+                away[1] > 0.002 && away[0].hypot(away[2]) < 0.002
+            });
+            let force = procedure.samples().last().unwrap().force;
+            let what = format!("{tool:?} at {resolution} voxels");
+            assert_eq!(over.count(), 0, "{what}: what it presses is over it");
+            assert!(force[1] > 0.08, "{what}: {force:?} N");
+        }
+    }
+}
+
+#[test]
 fn tables_and_plots_hold_what_was_measured() {
     let mut procedure = procedure(12);
     for tick in 0..50 {

@@ -5,7 +5,7 @@ use crate::measures::{Part, Sample, parts};
 use crate::procedure::Procedure;
 use crate::record::{Playback, Recording};
 use fuwafuwa::Vector;
-use fuwafuwa::vector::{minus, plus, scaled};
+use fuwafuwa::vector::{minus, plus};
 use std::sync::Arc;
 use tamaire::look::CameraRig;
 use tamaire::pace::Pace;
@@ -13,9 +13,9 @@ use tamaire::platform::Clock;
 
 /// Ticks between two looks at how large the pieces are.
 const LOOKS: usize = 20;
-/// Around the organ so much of its size is seen to the sides and above.
-const SIDES: f32 = 0.12;
-const ABOVE: f32 = 0.5;
+/// Around the organ so much of its size is seen to the sides, below and above; and in slices.
+const SEEN: [f32; 3] = [0.12, 0.0, 0.5];
+const SLICED: [f32; 3] = [0.1, 0.05, 0.25];
 
 /// Who moves the tool.
 enum Course {
@@ -33,6 +33,8 @@ pub struct Session {
     pub camera: CameraRig,
     /// What is seen: from corner to corner [m].
     pub seen: [Vector; 2],
+    /// What slices show.
+    pub sliced: [Vector; 2],
     /// Whether it rests.
     pub rests: bool,
     /// The pieces, as of a moment ago.
@@ -61,20 +63,20 @@ impl Session {
             Course::Hand(procedure) => procedure,
             Course::Again(playback) => playback.procedure(),
         };
-        let [low, high] = procedure.table().room;
         let start = procedure.tool().position();
         let hand = match procedure.inputs().last() {
             Some(last) => Hand::holding(start, last),
             None => Hand::at(start, procedure.held().tool()),
         };
-        let seen = seen(procedure, low, high);
+        let organ = procedure.span();
         Self {
             parts: parts(procedure.organ(), procedure.case().millilitres()),
             course,
             pace: Pace::default(),
             hand,
             camera: CameraRig::default(),
-            seen,
+            seen: around(organ, SEEN),
+            sliced: around(organ, SLICED),
             rests: false,
             looked: 0,
             verdict: None,
@@ -191,18 +193,9 @@ impl Session {
     }
 }
 
-/// What of the room is worth seeing: the organ and some of what is around it.
-fn seen(procedure: &Procedure, low: Vector, high: Vector) -> [Vector; 2] {
-    let views = procedure.organ().piece_views();
-    let (mut least, mut most) = (high, low);
-    for view in &views {
-        for axis in 0..3 {
-            least[axis] = least[axis].min(view.low[axis]);
-            most[axis] = most[axis].max(view.high[axis]);
-        }
-    }
-    let size = minus(most, least);
-    let around = scaled([size[0], 0.0, size[2]], SIDES);
-    let above = [0.0, ABOVE * size[1], 0.0];
-    [minus(least, around), plus(plus(most, around), above)]
+/// A box and so much of its size around it: to the sides, below and above.
+fn around([low, high]: [Vector; 2], [sides, below, above]: [f32; 3]) -> [Vector; 2] {
+    let share = |k: [f32; 3]| [0, 1, 2].map(|axis: usize| k[axis] * (high[axis] - low[axis]));
+    let least = minus(low, share([sides, below, sides]));
+    [least, plus(high, share([sides, above, sides]))]
 }
