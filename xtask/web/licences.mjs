@@ -32,8 +32,8 @@ for (const { name, version, license, manifest_path, source } of all) {
   texts.forEach((text) => note(text, `${name} ${version}`));
   if (!texts.length) without.push(`${name} ${version}: ${license}`);
 }
-// What the project says by itself comes first, as text: no links into the repository.
-const known = readFileSync(join(root, "THIRD-PARTY.md"), "utf8").replace(/\[([^\]]*)\]\([^)]*\)/g, "$1");
+// What the project says by itself comes first.
+const known = readFileSync(join(root, "THIRD-PARTY.md"), "utf8");
 const line = "=".repeat(78);
 const parts = [...owners].map(([text, who]) => `${line}\n${[...new Set(who)].sort().join(", ")}\n\n${text}\n`);
 if (without.length) {
