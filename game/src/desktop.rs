@@ -126,7 +126,7 @@ pub fn main() -> ExitCode {
         Opened::Closed => ExitCode::SUCCESS,
         Opened::LostGpu => {
             eprintln!("tamaire: the GPU was lost; the game begins anew");
-            eprintln!("tamaire: {}", begin_anew());
+            eprintln!("tamaire: {}", begin_anew(&[]));
             ExitCode::FAILURE
         }
         Opened::Failed(error) => {
@@ -134,27 +134,40 @@ pub fn main() -> ExitCode {
             ExitCode::FAILURE
         }
         Opened::Broken(panic) => resume_unwind(panic),
-        Opened::Never(reason) => play_instead(&reason, &options),
+        // What is drawn with first may be broken where the next is not.
+        Opened::NoGpu(reason) if std::env::var_os(BACKENDS).is_none() => {
+            eprintln!("tamaire: {reason}; it begins anew with {BACKENDS}={OTHERS}");
+            eprintln!("tamaire: {}", begin_anew(&[(BACKENDS, OTHERS)]));
+            ExitCode::FAILURE
+        }
+        Opened::NoGpu(reason) | Opened::Never(reason) => play_instead(&reason, &options),
     }
 }
 
-/// Puts the same program with the same arguments in the place of this one; returns why that cannot be.
+/// What wgpu reads to know what to draw with, and all but what it takes first.
+const BACKENDS: &str = "WGPU_BACKEND";
+const OTHERS: &str = if cfg!(windows) { "vulkan,gl" } else { "gl" };
+
+/// Puts the same program with the same arguments in the place of this one, with more variables around it; returns why that
+/// cannot be.
 #[cfg(unix)]
-fn begin_anew() -> std::io::Error {
+fn begin_anew(around: &[(&str, &str)]) -> std::io::Error {
     use std::os::unix::process::CommandExt;
-    std::env::current_exe().map_or_else(|error| error, |program| again(&program).exec())
+    let program = std::env::current_exe();
+    program.map_or_else(|error| error, |program| again(&program, around).exec())
 }
 
 /// The same elsewhere: this one ends, another one begins.
 #[cfg(not(unix))]
-fn begin_anew() -> std::io::Error {
-    let begun = std::env::current_exe().and_then(|program| again(&program).spawn());
+fn begin_anew(around: &[(&str, &str)]) -> std::io::Error {
+    let begun = std::env::current_exe().and_then(|program| again(&program, around).spawn());
     begun.map_or_else(|error| error, |_| std::process::exit(0))
 }
 
-fn again(program: &Path) -> Command {
+fn again(program: &Path, around: &[(&str, &str)]) -> Command {
     let mut command = Command::new(program);
     command.args(std::env::args_os().skip(1));
+    command.envs(around.iter().copied());
     command
 }
 

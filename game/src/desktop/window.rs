@@ -28,6 +28,8 @@ pub enum Opened {
     Broken(Box<dyn Any + Send>),
     /// It never opened, for this reason.
     Never(String),
+    /// It never opened, as there is nothing to draw with: why.
+    NoGpu(String),
 }
 
 /// What a window shows, and an eye on what it is drawn with; or why there is nothing.
@@ -76,6 +78,9 @@ pub fn open(
         Ok(Ok(())) if is_lost => Opened::Failed("the GPU was lost".into()),
         Ok(Ok(())) => Opened::Closed,
         Ok(Err(error)) if is_open => Opened::Failed(error.to_string()),
+        Ok(Err(eframe::Error::Wgpu(error))) => Opened::NoGpu(format!(
+            "there is nothing to draw with, neither Vulkan nor OpenGL, not even in software ({error})"
+        )),
         Ok(Err(error)) => Opened::Never(trouble(&error)),
         Err(panic) if is_open => Opened::Broken(panic),
         Err(_) => Opened::Never("no window opens".into()),
@@ -114,9 +119,6 @@ fn icon() -> egui::IconData {
 fn trouble(error: &eframe::Error) -> String {
     let text = error.to_string();
     match error {
-        eframe::Error::Wgpu(_) => format!(
-            "there is nothing to draw with, neither Vulkan nor OpenGL, not even in software ({text})"
-        ),
         // Before its reason it names a line of its source.
         eframe::Error::WinitEventLoop(_) | eframe::Error::Winit(_) => {
             let reason = text.rsplit(": ").next().unwrap_or(&text);
