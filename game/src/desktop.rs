@@ -126,7 +126,7 @@ pub fn main() -> ExitCode {
         Opened::Closed => ExitCode::SUCCESS,
         Opened::LostGpu => {
             eprintln!("tamaire: the GPU was lost; the game begins anew");
-            eprintln!("tamaire: {}", begin_anew(&[]));
+            eprintln!("tamaire: {}", begin_anew());
             ExitCode::FAILURE
         }
         Opened::Failed(error) => {
@@ -134,40 +134,27 @@ pub fn main() -> ExitCode {
             ExitCode::FAILURE
         }
         Opened::Broken(panic) => resume_unwind(panic),
-        // What is drawn with first may be broken where the next is not.
-        Opened::NoGpu(reason) if std::env::var_os(BACKENDS).is_none() => {
-            eprintln!("tamaire: {reason}; it begins anew with {BACKENDS}={OTHERS}");
-            eprintln!("tamaire: {}", begin_anew(&[(BACKENDS, OTHERS)]));
-            ExitCode::FAILURE
-        }
-        Opened::NoGpu(reason) | Opened::Never(reason) => play_instead(&reason, &options),
+        Opened::Never(reason) => play_instead(&reason, &options),
     }
 }
 
-/// What wgpu reads to know what to draw with, and all but what it takes first.
-const BACKENDS: &str = "WGPU_BACKEND";
-const OTHERS: &str = if cfg!(windows) { "vulkan,gl" } else { "gl" };
-
-/// Puts the same program with the same arguments in the place of this one, with more variables around it; returns why that
-/// cannot be.
+/// Puts the same program with the same arguments in the place of this one; returns why that cannot be.
 #[cfg(unix)]
-fn begin_anew(around: &[(&str, &str)]) -> std::io::Error {
+fn begin_anew() -> std::io::Error {
     use std::os::unix::process::CommandExt;
-    let program = std::env::current_exe();
-    program.map_or_else(|error| error, |program| again(&program, around).exec())
+    std::env::current_exe().map_or_else(|error| error, |program| again(&program).exec())
 }
 
 /// The same elsewhere: this one ends, another one begins.
 #[cfg(not(unix))]
-fn begin_anew(around: &[(&str, &str)]) -> std::io::Error {
-    let begun = std::env::current_exe().and_then(|program| again(&program, around).spawn());
+fn begin_anew() -> std::io::Error {
+    let begun = std::env::current_exe().and_then(|program| again(&program).spawn());
     begun.map_or_else(|error| error, |_| std::process::exit(0))
 }
 
-fn again(program: &Path, around: &[(&str, &str)]) -> Command {
+fn again(program: &Path) -> Command {
     let mut command = Command::new(program);
     command.args(std::env::args_os().skip(1));
-    command.envs(around.iter().copied());
     command
 }
 

@@ -250,7 +250,7 @@ pub fn tissues(count: usize) -> Vec<Material> {
 }
 
 /// The least and the greatest coordinates of a body's nodes [m].
-fn bounds(body: &Body<Dim3>) -> [[f32; 3]; 2] {
+pub(crate) fn bounds(body: &Body<Dim3>) -> [[f32; 3]; 2] {
     let mut bounds = [[f32::MAX; 3], [f32::MIN; 3]];
     for (id, _) in body.mesh().nodes() {
         let (at, ..) = body.node_state(id);

@@ -92,7 +92,7 @@ fn main() -> ExitCode {
     match opened {
         Opened::Closed => ExitCode::SUCCESS,
         Opened::LostGpu => failed("the GPU was lost"),
-        Opened::Failed(reason) | Opened::Never(reason) | Opened::NoGpu(reason) => failed(&reason),
+        Opened::Failed(reason) | Opened::Never(reason) => failed(&reason),
         Opened::Broken(panic) => std::panic::resume_unwind(panic),
     }
 }

@@ -1,8 +1,8 @@
 //! A procedure, tick by tick: what the hand wants goes in, and everything else follows from it.
 
-use crate::case::{Case, CaseError, Table};
+use crate::case::{Case, CaseError, Table, bounds};
 use crate::measures::{self, Sample};
-use crate::tools::{Held, Tool};
+use crate::tools::{Held, Tool, clearance};
 use fuwafuwa::vector::{length, minus, plus, scaled};
 use fuwafuwa::world::TICK;
 use fuwafuwa::{Body, Dim3, Event, Refused, Rigid, Rotation, StepReport, Vector, World};
@@ -15,10 +15,10 @@ const STEP: f32 = 1e-5;
 const PARTS: f32 = 32767.0;
 /// A tool goes no faster than this [m/s], however fast a mouse jumps.
 const FASTEST: f32 = 0.25;
-/// So much of the height of the organ above it tools come in.
-const ENTRY: f32 = 0.2;
 /// It turns no faster than this [rad/s].
 const SPIN: f32 = 5.0;
+/// Tools come in so much of the height of the organ above it, or higher where they are large.
+const ENTRY: f32 = 0.2;
 /// The most ticks of a procedure: an hour.
 pub const MOST_TICKS: usize = 60 * 60 * 60;
 /// The bluntest knife [µm].
@@ -192,7 +192,7 @@ impl Procedure {
 
     /// The low and the high corner of what is left of the organ [m].
     pub fn span(&self) -> [Vector; 2] {
-        span(self.organ())
+        bounds(self.organ())
     }
 
     /// The height at which a tool comes in [m]: above the organ, and in sight.
@@ -279,17 +279,8 @@ impl Procedure {
 }
 
 fn entry(table: &Table) -> f32 {
-    let [low, high] = span(&table.world.bodies()[table.organ]);
-    (high[1] + ENTRY * (high[1] - low[1])).clamp(table.room[0][1], table.room[1][1])
-}
-
-fn span(organ: &Body<Dim3>) -> [Vector; 2] {
-    let mut span = [[f32::MAX; 3], [f32::MIN; 3]];
-    for view in organ.piece_views() {
-        for axis in 0..3 {
-            span[0][axis] = span[0][axis].min(view.low[axis]);
-            span[1][axis] = span[1][axis].max(view.high[axis]);
-        }
-    }
-    span
+    let organ = &table.world.bodies()[table.organ];
+    let [low, high] = bounds(organ);
+    let above = (ENTRY * (high[1] - low[1])).max(clearance(organ));
+    (high[1] + above).clamp(table.room[0][1], table.room[1][1])
 }

@@ -74,7 +74,7 @@ pub fn svg(samples: &[Sample]) -> Result<String, Box<dyn Error>> {
             ),
             ("strongest", LINE, of(|sample| f64::from(sample.peak))),
         ];
-        draw(&parts[0], "force on the tool [N]", &force)?;
+        draw(&parts[0], "force on the tool [N]", &force, false)?;
         let cut = [
             ("area [mm²]", RED, of(|sample| 1e6 * sample.area)),
             (
@@ -83,9 +83,9 @@ pub fn svg(samples: &[Sample]) -> Result<String, Box<dyn Error>> {
                 of(|sample| 1e3 * sample.path),
             ),
         ];
-        draw(&parts[1], "what was cut", &cut)?;
+        draw(&parts[1], "what was cut", &cut, false)?;
         let pieces = [("pieces", BLUE, of(|sample| f64::from(sample.pieces)))];
-        draw(&parts[2], "pieces", &pieces)?;
+        draw(&parts[2], "pieces", &pieces, true)?;
         area.present()?;
     }
     Ok(text)
@@ -107,14 +107,21 @@ type Line<'a> = (&'a str, RGBColor, Vec<(f64, f64)>);
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 
-fn draw(area: &Area<'_>, title: &str, lines: &[Line<'_>]) -> Result<(), Box<dyn Error>> {
+fn draw(
+    area: &Area<'_>,
+    title: &str,
+    lines: &[Line<'_>],
+    is_count: bool,
+) -> Result<(), Box<dyn Error>> {
     let points = || lines.iter().flat_map(|(.., points)| points);
     let long = points().map(|point| point.0).fold(1.0, f64::max);
     let high = points().map(|point| point.1).fold(0.0, f64::max);
     let high = if high > 0.0 { 1.1 * high } else { 1.0 };
     // There is no half of what is counted.
-    let is_count = points().all(|point| point.1.fract() == 0.0);
-    let labels = if is_count { high as usize + 1 } else { LABELS };
+    let labels = match is_count {
+        true => (high as usize).min(LABELS - 1) + 1,
+        false => LABELS,
+    };
     let mut chart = ChartBuilder::on(area)
         .margin(12)
         .x_label_area_size(34)
@@ -127,9 +134,9 @@ fn draw(area: &Area<'_>, title: &str, lines: &[Line<'_>]) -> Result<(), Box<dyn 
         .axis_style(INK)
         .x_desc("seconds")
         .y_desc(title)
-        .y_labels(labels.min(LABELS))
-        .y_label_formatter(&|value| ((1e4 * value).round() / 1e4).to_string())
-        .x_label_formatter(&|value| ((1e4 * value).round() / 1e4).to_string())
+        .y_labels(labels)
+        .y_label_formatter(&label)
+        .x_label_formatter(&label)
         .label_style(("sans-serif", 14).into_font().color(&INK))
         .draw()?;
     // The last of them lies lowest.
@@ -150,6 +157,11 @@ fn draw(area: &Area<'_>, title: &str, lines: &[Line<'_>]) -> Result<(), Box<dyn 
             .draw()?;
     }
     Ok(())
+}
+
+/// A number without what is zero of its end.
+fn label(value: &f64) -> String {
+    ((1e4 * value).round() / 1e4).to_string()
 }
 
 /// The time at the end of a tick that is so many after the first [s].

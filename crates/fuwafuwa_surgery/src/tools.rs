@@ -12,8 +12,8 @@
 
 use fuwafuwa::vector::plus;
 use fuwafuwa::{
-    BodyId, Dim3, Drive, End, Joint, JointId, Knife, KnifeId, Refused, Rigid, RigidId, Rotation,
-    Shape, Vector, World,
+    Body, BodyId, Dim3, Drive, End, Joint, JointId, Knife, KnifeId, Refused, Rigid, RigidId,
+    Rotation, Shape, Vector, World,
 };
 use serde::{Deserialize, Serialize};
 
@@ -29,7 +29,7 @@ const DRIVE: Drive = Drive::Coupled {
 const FRICTION: f32 = 0.15;
 /// Half of the length of the knife's edge, how high its blade is and half of how thick that is [m].
 const BLADE: [f32; 3] = [0.015, 0.01, 0.0006];
-/// Radius of the tip of the forceps [m].
+/// Radius of the tip of the forceps for a fine organ [m].
 const TIP: f32 = 0.002;
 /// Tips and bars have a radius of so many voxels at the least: with 1.25, a tip slips in between nodes where it is pressed
 /// in deeply.
@@ -40,7 +40,7 @@ const REACH: f32 = 0.004;
 const JAW: f32 = 0.004;
 /// The forceps slip off at this force [N].
 const SLIPS: f32 = 8.0;
-/// Half of the length of the hook's bar, and its radius [m].
+/// Half of the length of the hook's bar, and its radius for a fine organ [m].
 const BAR: [f32; 2] = [0.014, 0.0025];
 /// How long the handles are that are drawn [m].
 const HANDLE: f32 = 0.11;
@@ -95,7 +95,7 @@ impl Held {
         at: Vector,
         rotation: Rotation,
     ) -> Result<Self, Refused> {
-        let thinnest = THINNEST * world.bodies().get(organ)?.grid().voxel_size();
+        let thinnest = thinnest(world.bodies().get(organ)?);
         let mut rigid = Rigid::driven(form(tool, thinnest), at, DRIVE).rotated(rotation);
         rigid.friction = FRICTION;
         // Of a knife the edge alone touches, and its flat.
@@ -273,6 +273,17 @@ impl Held {
     }
 }
 
+/// What is round is no thinner than this [m].
+fn thinnest(organ: &Body<Dim3>) -> f32 {
+    THINNEST * organ.grid().voxel_size()
+}
+
+/// So far from an organ no tool touches it, however it is turned [m].
+pub(crate) fn clearance(organ: &Body<Dim3>) -> f32 {
+    let [half, radius] = BAR;
+    half + radius.max(thinnest(organ)) + organ.grid().voxel_size()
+}
+
 /// What of a tool touches, with its place at the origin; what is round is not thinner than this [m].
 fn form(tool: Tool, thinnest: f32) -> Shape {
     match tool {
@@ -298,7 +309,7 @@ fn form(tool: Tool, thinnest: f32) -> Shape {
     }
 }
 
-/// The node of an organ that is nearest to a place [m], if one is within reach of a tip there.
+/// The node of an organ that is nearest to the surface of a tip, if one is within reach: where it is [m].
 fn nearest(world: &World<Dim3>, organ: BodyId, tip: &Rigid) -> Option<Vector> {
     let body = world.bodies().get(organ).ok()?;
     let places = body.mesh().nodes().map(|(id, _)| body.node_state(id).0);

@@ -232,6 +232,29 @@ fn what_is_blunt_does_not_slip_in_between_the_nodes_of_a_coarse_organ() {
 }
 
 #[test]
+fn a_tool_comes_in_above_even_the_coarsest_organ() {
+    for resolution in [8, 12, 48] {
+        for tool in Tool::ALL {
+            let mut procedure = procedure(resolution);
+            let height = procedure.entry();
+            let upright = Rotation::about([0.0, 0.0, 1.0], 1.57);
+            let input = Input::default().at(tool, [0.0, height, 0.0], upright);
+            for _ in 0..40 {
+                procedure.step(input).unwrap();
+            }
+            let (organ, shape) = (procedure.organ(), procedure.tool().shape());
+            let places = organ.mesh().nodes().map(|(id, _)| organ.node_state(id).0);
+            let nearest = places.map(|place| shape.distance(place).0);
+            let nearest = nearest.fold(f32::MAX, f32::min);
+            assert!(
+                nearest > 0.0,
+                "{tool:?} at {resolution} voxels: {nearest} m"
+            );
+        }
+    }
+}
+
+#[test]
 fn tables_and_plots_hold_what_was_measured() {
     let mut procedure = procedure(12);
     for tick in 0..50 {

@@ -110,9 +110,7 @@ fn show(make: impl FnOnce() -> (Game, Box<dyn Attendant>) + 'static) -> ExitCode
     match opened {
         Opened::Closed => ExitCode::SUCCESS,
         Opened::LostGpu => ExitCode::from(LOST_GRAPHICS),
-        Opened::Failed(reason) | Opened::Never(reason) | Opened::NoGpu(reason) => {
-            refused(&reason, LOST_GRAPHICS)
-        }
+        Opened::Failed(reason) | Opened::Never(reason) => refused(&reason, LOST_GRAPHICS),
         Opened::Broken(panic) => resume_unwind(panic),
     }
 }

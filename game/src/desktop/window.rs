@@ -4,10 +4,13 @@ use crate::app::{App, NoGpu};
 use crate::game::Game;
 use crate::platform::{GpuWatch, in_small_blocks};
 use crate::screens::Attendant;
+use eframe::egui_wgpu::WgpuSetup;
+use pollster::block_on;
 use std::any::Any;
 use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::rc::Rc;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Whose GPU is lost so soon does not begin anew: it would be lost again and again.
@@ -28,8 +31,6 @@ pub enum Opened {
     Broken(Box<dyn Any + Send>),
     /// It never opened, for this reason.
     Never(String),
-    /// It never opened, as there is nothing to draw with: why.
-    NoGpu(String),
 }
 
 /// What a window shows, and an eye on what it is drawn with; or why there is nothing.
@@ -78,9 +79,6 @@ pub fn open(
         Ok(Ok(())) if is_lost => Opened::Failed("the GPU was lost".into()),
         Ok(Ok(())) => Opened::Closed,
         Ok(Err(error)) if is_open => Opened::Failed(error.to_string()),
-        Ok(Err(eframe::Error::Wgpu(error))) => Opened::NoGpu(format!(
-            "there is nothing to draw with, neither Vulkan nor OpenGL, not even in software ({error})"
-        )),
         Ok(Err(error)) => Opened::Never(trouble(&error)),
         Err(panic) if is_open => Opened::Broken(panic),
         Err(_) => Opened::Never("no window opens".into()),
@@ -99,14 +97,49 @@ fn run_window(
             .with_min_inner_size([640.0, 400.0]),
         ..Default::default()
     };
-    let setup = options.wgpu_options.wgpu_setup;
-    options.wgpu_options.wgpu_setup = in_small_blocks(setup);
+    let setup = in_small_blocks(options.wgpu_options.wgpu_setup);
+    options.wgpu_options.wgpu_setup = on_what_lives(setup);
     let create = move |context: &eframe::CreationContext<'_>| {
         let (app, watch) = make(context)?;
         gpu.replace(Some(watch));
         Ok(app)
     };
     eframe::run_native(name, options, Box::new(create))
+}
+
+/// The same, on the strongest adapter whose device lives: one driver may be broken where the next is not, as that of
+/// Direct3D 12 beside Vulkan under Wine.
+fn on_what_lives(mut setup: WgpuSetup) -> WgpuSetup {
+    let WgpuSetup::CreateNew(new) = &mut setup else {
+        return setup;
+    };
+    let described = new.device_descriptor.clone();
+    new.native_adapter_selector = Some(Arc::new(move |adapters, surface| {
+        let fits = |adapter: &&wgpu::Adapter| {
+            surface.is_none_or(|surface| adapter.is_surface_supported(surface))
+        };
+        let mut fitting: Vec<&wgpu::Adapter> = adapters.iter().filter(fits).collect();
+        fitting.sort_by_key(|adapter| weakness(adapter.get_info().device_type));
+        let lives = |adapter: &&&wgpu::Adapter| {
+            block_on(adapter.request_device(&described(adapter))).is_ok()
+        };
+        // Where none lives the first says why.
+        let chosen = fitting.iter().find(lives).or(fitting.first());
+        let chosen = chosen.map(|&adapter| adapter.clone());
+        chosen.ok_or_else(|| "no graphics adapter was found".into())
+    }));
+    setup
+}
+
+/// How far behind the strongest a kind of adapter is, as wgpu ranks them.
+fn weakness(kind: wgpu::DeviceType) -> u8 {
+    match kind {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::Other => 2,
+        wgpu::DeviceType::VirtualGpu => 3,
+        wgpu::DeviceType::Cpu => 4,
+    }
 }
 
 /// What stands for the game in lists of windows.
@@ -119,6 +152,9 @@ fn icon() -> egui::IconData {
 fn trouble(error: &eframe::Error) -> String {
     let text = error.to_string();
     match error {
+        eframe::Error::Wgpu(_) => format!(
+            "there is nothing to draw with, neither Vulkan nor OpenGL, not even in software ({text})"
+        ),
         // Before its reason it names a line of its source.
         eframe::Error::WinitEventLoop(_) | eframe::Error::Winit(_) => {
             let reason = text.rsplit(": ").next().unwrap_or(&text);

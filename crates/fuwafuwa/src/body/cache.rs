@@ -9,7 +9,7 @@ use crate::momentum::RoughMotion;
 use crate::solve::Row;
 
 /// What is worked out from the truth and the state of a body, and kept so that it need not be again. No
-/// snapshot has it: `Body::rebuild` makes it anew.
+/// snapshot has it: `Body::rebuild` makes it anew, and each tick begins by noting what was `before`.
 #[derive(Clone, Debug, Default)]
 pub struct Cache {
     /// What its materials come to as a whole.

@@ -25,13 +25,13 @@ struct Press {
 }
 
 impl Press {
-    /// One more contact; only where it is the strongest so far it is asked for its place and its normal.
-    fn add(&mut self, impulse: f32, speed: f32, place: impl FnOnce() -> [Vector; 2]) {
+    /// One more contact; only where it is the strongest so far it is asked where it is, and for its normal.
+    fn add(&mut self, impulse: f32, speed: f32, at_and_normal: impl FnOnce() -> [Vector; 2]) {
         self.impulse += impulse;
         self.speed = self.speed.max(speed);
         if impulse > self.strongest {
             self.strongest = impulse;
-            [self.at, self.normal] = place();
+            [self.at, self.normal] = at_and_normal();
         }
     }
 
