@@ -424,6 +424,9 @@ pub fn page(ui: &mut Ui, name: &str, width: f32, contents: impl FnOnce(&mut Ui))
     }
 }
 
+/// Around a column [points].
+const AROUND: f32 = 12.0;
+
 /// A [`column`] that hides little of the world: `across` from 0 = at the left to 1 = at the right, but in a window that is
 /// held upright, where the world lies across the middle, above or below that.
 pub fn column_beside<R>(
@@ -436,20 +439,30 @@ pub fn column_beside<R>(
     if part.width() > part.height() {
         return column(ui, width, across, contents);
     }
+    // Rather over the world than cut.
+    let wanted = ui.data(|data| data.get_temp::<f32>(column_id(width)));
+    let least = wanted.map_or(0.0, |height| height + 2.0 * AROUND);
+    let share = if is_above { 0.4 } else { 0.47 };
+    let height = (share * part.height()).max(least).min(part.height());
     match is_above {
-        true => part.max.y -= 0.6 * part.height(),
-        false => part.min.y += 0.53 * part.height(),
+        true => part.max.y = part.min.y + height,
+        false => part.min.y = part.max.y - height,
     }
     let part = egui::UiBuilder::new().max_rect(part);
     ui.scope_builder(part, |ui| column(ui, width, 0.5, contents))
         .inner
 }
 
+/// Under what the height of a column of so many points is known.
+fn column_id(width: f32) -> Id {
+    Id::unique(("column", width as u32))
+}
+
 /// A column of so many points, upright in the middle of the screen, and what is in it; `across` from
 /// 0 = at the left to 1 = at the right. Where there is not room enough it scrolls.
 pub fn column<R>(ui: &mut Ui, width: f32, across: f32, contents: impl FnOnce(&mut Ui) -> R) -> R {
-    let screen = ui.max_rect().shrink(12.0);
-    let id = Id::unique(("column", width as u32));
+    let screen = ui.max_rect().shrink(AROUND);
+    let id = column_id(width);
     let known = ui.data(|data| data.get_temp::<f32>(id));
     let size = vec2(
         width.min(screen.width()),
