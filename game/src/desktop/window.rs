@@ -107,35 +107,37 @@ fn run_window(
     eframe::run_native(name, options, Box::new(create))
 }
 
-/// The same, on the strongest adapter whose device lives: one driver may be broken where the next is not, as that of
+/// The same, on the best adapter whose device lives: one driver may be broken where the next is not, as that of
 /// Direct3D 12 beside Vulkan under Wine.
 fn on_what_lives(mut setup: WgpuSetup) -> WgpuSetup {
     let WgpuSetup::CreateNew(new) = &mut setup else {
         return setup;
     };
     let described = new.device_descriptor.clone();
+    let saves_power = new.power_preference == wgpu::PowerPreference::LowPower;
     new.native_adapter_selector = Some(Arc::new(move |adapters, surface| {
         let fits = |adapter: &&wgpu::Adapter| {
             surface.is_none_or(|surface| adapter.is_surface_supported(surface))
         };
         let mut fitting: Vec<&wgpu::Adapter> = adapters.iter().filter(fits).collect();
-        fitting.sort_by_key(|adapter| weakness(adapter.get_info().device_type));
+        fitting.sort_by_key(|adapter| rank(adapter.get_info().device_type, saves_power));
         let lives = |adapter: &&&wgpu::Adapter| {
             block_on(adapter.request_device(&described(adapter))).is_ok()
         };
-        // Where none lives the first says why.
-        let chosen = fitting.iter().find(lives).or(fitting.first());
-        let chosen = chosen.map(|&adapter| adapter.clone());
-        chosen.ok_or_else(|| "no graphics adapter was found".into())
+        // The last needs no trial: where it does not live either, it says why.
+        let (last, others) = fitting
+            .split_last()
+            .ok_or("no graphics adapter was found")?;
+        Ok((*others.iter().find(lives).unwrap_or(last)).clone())
     }));
     setup
 }
 
-/// How far behind the strongest a kind of adapter is, as wgpu ranks them.
-fn weakness(kind: wgpu::DeviceType) -> u8 {
+/// How far behind the best a kind of adapter is, as wgpu ranks them.
+fn rank(kind: wgpu::DeviceType, saves_power: bool) -> u8 {
     match kind {
-        wgpu::DeviceType::DiscreteGpu => 0,
-        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::DiscreteGpu => u8::from(saves_power),
+        wgpu::DeviceType::IntegratedGpu => u8::from(!saves_power),
         wgpu::DeviceType::Other => 2,
         wgpu::DeviceType::VirtualGpu => 3,
         wgpu::DeviceType::Cpu => 4,

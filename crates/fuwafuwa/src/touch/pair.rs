@@ -21,17 +21,6 @@ pub struct SpherePair {
     pub met_in_front: bool,
 }
 
-impl SpherePair {
-    /// Two that have not touched yet.
-    fn new(spheres: [SphereId; 2]) -> Self {
-        Self {
-            spheres,
-            impulse: Impulse::default(),
-            met_in_front: false,
-        }
-    }
-}
-
 /// Makes the new list of pairs from those just found and the old ones of which neither has changed, or
 /// which touched in this tick: that is to be told. Pairs that were known keep their impulses.
 pub fn merge(
@@ -105,6 +94,15 @@ fn shares<'a>(
 }
 
 impl SpherePair {
+    /// Two that have not touched yet.
+    fn new(spheres: [SphereId; 2]) -> Self {
+        Self {
+            spheres,
+            impulse: Impulse::default(),
+            met_in_front: false,
+        }
+    }
+
     /// Its spheres among all of them.
     pub fn both<'a>(&self, spheres: &'a Table<SphereId, ContactSphere>) -> [&'a ContactSphere; 2] {
         self.spheres.map(|sphere| &spheres[sphere])
