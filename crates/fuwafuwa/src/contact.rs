@@ -21,11 +21,11 @@ use crate::rigid::Rigids;
 use crate::solve::Row;
 use crate::threads;
 use crate::touch::{ContactSphere, MARGIN, Nearby, NodePairs, WAKE_SPEED};
-use crate::vector::{as_row, cross, minus, scaled, three};
+use crate::vector::{as_row, cross, inner, minus, scaled, three};
 use exit::Exit;
 use motion::Motion;
 use rigid_rows::{find_free, find_hands};
-use row::{AHEAD, CLOSE, Contact, inner, is_close};
+use row::{AHEAD, CLOSE, Contact, is_close};
 use sides::{FreeContact, HandContact, NodeContact, SphereContact};
 use std::collections::BTreeSet;
 

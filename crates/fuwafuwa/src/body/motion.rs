@@ -8,7 +8,7 @@ use crate::momentum::RoughMotion;
 use crate::shape::Vector;
 use crate::solve::Kick;
 use crate::threads;
-use crate::vector::{as_row, dot, is_finite, minus, plus, scaled, three};
+use crate::vector::{as_row, inner, is_finite, minus, plus, scaled, three};
 
 impl<D: Dim> Body<D> {
     /// Moves a free body on by `duration` seconds under `gravity` [m/s²], without contact or
@@ -93,25 +93,30 @@ impl<D: Dim> Body<D> {
             &mut self.state.ahead,
         ];
         let rows = threads::rows(&self.cache.awake, lists.map(|rows| rows.as_mut_slice()));
-        let fastest = threads::map(rows, |rows| {
-            let [positions, velocities, ahead] = rows.lists;
+        let fastest = threads::map(rows, move |rows| {
+            // Of one length, so that one check of a node's place is enough for all three.
+            let count = rows.lists[0].len();
+            let [positions, velocities, ahead] = rows.lists.map(|list| &mut list[..count]);
             let mut fastest = 0.0f32;
-            for &id in rows.nodes {
-                let node = id.index() - rows.first;
-                let mut velocity = velocities[node];
-                let squared = dot(velocity, velocity);
-                // Not `max`, which would have every node wait for the one before.
-                if squared > fastest {
-                    fastest = squared;
+            for (piece, nodes) in pieces.runs(rows.nodes) {
+                let whole = rigid[piece];
+                for &id in nodes {
+                    let node = id.index() - rows.first;
+                    let mut velocity = velocities[node];
+                    let squared = inner::<D>(velocity, velocity);
+                    // Not `max`, which would have every node wait for the one before.
+                    if squared > fastest {
+                        fastest = squared;
+                    }
+                    if squared > top_speed * top_speed {
+                        velocity = scaled(velocity, top_speed / squared.sqrt());
+                        velocities[node] = velocity;
+                    }
+                    let position = plus(positions[node], scaled(velocity, duration));
+                    positions[node] = position;
+                    let own = minus(velocity, whole.at::<D>(position));
+                    ahead[node] = plus(position, scaled(own, lead));
                 }
-                if squared > top_speed * top_speed {
-                    velocity = scaled(velocity, top_speed / squared.sqrt());
-                    velocities[node] = velocity;
-                }
-                let position = plus(positions[node], scaled(velocity, duration));
-                positions[node] = position;
-                let whole = rigid[pieces.of_node(id)].at::<D>(position);
-                ahead[node] = plus(position, scaled(minus(velocity, whole), lead));
             }
             fastest
         });

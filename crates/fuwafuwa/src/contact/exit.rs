@@ -1,13 +1,13 @@
 //! The way out for who is inside another piece: along with it, and towards the exit.
 
 use super::motion::Motion;
-use super::row::{PUSH_OUT_SPEED, inner};
+use super::row::PUSH_OUT_SPEED;
 use super::sides::Grip;
 use crate::body::Bodies;
 use crate::dim::Dim;
 use crate::solve::Row;
 use crate::touch::{Captive, Spheres};
-use crate::vector::{minus, plus, scaled};
+use crate::vector::{inner, minus, plus, scaled};
 
 /// A captive and its exit, in one substep.
 #[derive(Copy, Clone, Debug)]

@@ -1,6 +1,6 @@
 //! Contacts between rigid things: hands against walls and each other at one place, what is free at as many as it lies on.
 
-use super::row::{AHEAD, CLOSE, Contact, inner, is_close};
+use super::row::{AHEAD, CLOSE, Contact, is_close};
 use super::sides::{FreeContact, HandContact};
 use crate::dim::Dim;
 use crate::handle::RigidSlot;
@@ -8,7 +8,7 @@ use crate::rigid::{Drive, Rigid, Rigids};
 use crate::shape::Vector;
 use crate::solve::Row;
 use crate::touch::{Impulse, Passed, RigidTouch, RigidTouches, WAKE_SPEED};
-use crate::vector::{across, as_row, length, minus, plus, scaled, three};
+use crate::vector::{across, as_row, inner, length, minus, plus, scaled, three};
 
 /// What comes slower than this [m/s] does not bounce: else nothing would come to rest.
 const BOUNCE_SPEED: f32 = 0.5;

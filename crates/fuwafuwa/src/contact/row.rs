@@ -3,7 +3,7 @@
 use crate::dim::Dim;
 use crate::solve::Row;
 use crate::touch::Impulse;
-use crate::vector::{minus, plus, scaled};
+use crate::vector::{inner, minus, plus, scaled};
 
 /// How much of the last substep's impulse a row starts from: 1 is unstable, 0 never comes to rest.
 const WARM_START: f32 = 0.9;
@@ -133,16 +133,6 @@ impl Impulse {
         self.dragged = contact.dragged;
         self.total += contact.pressed;
     }
-}
-
-/// a · b of the components that a dimension has; the others are 0.
-#[inline(always)]
-pub fn inner<D: Dim>(a: Row, b: Row) -> f32 {
-    let mut sum = a[0] * b[0];
-    for axis in 1..D::N {
-        sum += a[axis] * b[axis];
-    }
-    sum
 }
 
 /// Whether a contact may matter in this substep: it overlaps, or will if nothing is done. What is not
