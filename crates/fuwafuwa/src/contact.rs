@@ -90,7 +90,7 @@ impl Contacts {
         self.nodes.clear();
         let travel = pairs.travel;
         let shares = threads::shares(&mut pairs.list);
-        let found = threads::map(shares, |(first, pairs)| {
+        let found = threads::map(shares, move |(first, pairs)| {
             let (mut contacts, mut hits) = (Vec::new(), Hits::default());
             for (pair, index) in pairs.iter_mut().zip(first..) {
                 let body = bodies.at(pair.body);
@@ -173,21 +173,22 @@ impl Contacts {
         self.spheres.clear();
         let waking = WAKE_SPEED * duration;
         let friction = |body: Option<&Body<D>>| body.map_or(0.0, Body::friction);
-        let frictions: Table<BodySlot, f32> = bodies.slots().map(friction).collect();
+        let frictions: &Table<BodySlot, f32> = &bodies.slots().map(friction).collect();
         let has_layers = bodies
             .iter()
             .any(|body| body.state.layers != Layers::default());
         let layers = |sphere: &ContactSphere| bodies.at(sphere.body).state.layers;
         let meet = |both: [&ContactSphere; 2]| layers(both[0]).meet(layers(both[1]));
         let (all, captives) = (&nearby.spheres, &nearby.captives);
+        let centres = all.centres.as_slice();
         let widths = bodies.iter().map(|body| body.truth.grid.voxel_size());
         let widest = widths.fold(0.0, f32::max);
         let shares = threads::shares(&mut nearby.pairs.list);
-        let found = threads::map(shares, |(first, pairs)| {
+        let found = threads::map(shares, move |(first, pairs)| {
             let (mut contacts, mut hits) = (Vec::new(), Vec::new());
             for (pair, index) in pairs.iter_mut().zip(first..) {
                 let [a, b] = pair.spheres;
-                let apart = minus(all.centres[a], all.centres[b]);
+                let apart = minus(centres[a.index()], centres[b.index()]);
                 let squared = inner::<D>(apart, apart);
                 let is_beyond = |touching: f32| {
                     let furthest = (1.0 + MARGIN) * touching;

@@ -71,8 +71,11 @@ impl PieceMotion {
         self.centre = plus(origin, from);
     }
 
-    /// The rigid motion with the same momentum.
+    /// The rigid motion with the same momentum. What sleeps has none.
     fn rigid(&self) -> RigidMotion {
+        if self.nodes == 0 {
+            return RigidMotion::default();
+        }
         let squared = self.spread[0][0] + self.spread[1][1] + self.spread[2][2];
         let mut inertia = self.spread.map(|row| scaled(row, -1.0));
         (0..3).for_each(|k| inertia[k][k] += squared);
@@ -160,11 +163,11 @@ pub fn slow_down<D: Dim>(body: &mut Body<D>, motions: &[PieceMotion], slowing: &
     threads::map(rows, |rows| {
         let [velocities] = rows.lists;
         for (piece, nodes) in pieces.runs(rows.nodes) {
-            let (kept, pace) = paces[piece.index()];
+            let (kept, pace) = &paces[piece.index()];
             for &id in nodes {
                 if inverse_mass[id] != 0.0 {
                     let velocity = &mut velocities[id.index() - rows.first];
-                    *velocity = plus(scaled(*velocity, kept), pace.at::<D>(position[id]));
+                    *velocity = plus(scaled(*velocity, *kept), pace.at::<D>(position[id]));
                 }
             }
         }
