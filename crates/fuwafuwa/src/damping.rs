@@ -89,8 +89,10 @@ pub fn motions<D: Dim>(body: &Body<D>) -> Table<PieceId, PieceMotion> {
     let mut motions: Table<PieceId, _> = vec![PieceMotion::default(); count].into();
     // A node of the piece itself: far from the world's origin the sums would lose digits.
     let mut origins: Table<PieceId, _> = vec![[0.0; 3]; count].into();
-    // The sums of a piece stay at hand for as long as its nodes follow one another.
-    for (piece, nodes) in body.truth.pieces.runs(&body.cache.awake) {
+    let of_node = |id| body.truth.pieces.of_node(id);
+    // Nodes that follow one another are mostly of one piece: its sums stay at hand for as long.
+    for nodes in body.cache.awake.chunk_by(|&a, &b| of_node(a) == of_node(b)) {
+        let piece = of_node(nodes[0]);
         let (mut motion, origin) = (motions[piece], &mut origins[piece]);
         if motion.nodes == 0 {
             *origin = wide(body.state.position[nodes[0]]);
@@ -162,13 +164,11 @@ pub fn slow_down<D: Dim>(body: &mut Body<D>, motions: &[PieceMotion], slowing: &
     let rows = threads::rows(&body.cache.awake, [&mut body.state.velocity]);
     threads::map(rows, |rows| {
         let [velocities] = rows.lists;
-        for (piece, nodes) in pieces.runs(rows.nodes) {
-            let (kept, pace) = &paces[piece.index()];
-            for &id in nodes {
-                if inverse_mass[id] != 0.0 {
-                    let velocity = &mut velocities[id.index() - rows.first];
-                    *velocity = plus(scaled(*velocity, *kept), pace.at::<D>(position[id]));
-                }
+        for &id in rows.nodes {
+            if inverse_mass[id] != 0.0 {
+                let (kept, pace) = &paces[pieces.of_node(id).index()];
+                let velocity = &mut velocities[id.index() - rows.first];
+                *velocity = plus(scaled(*velocity, *kept), pace.at::<D>(position[id]));
             }
         }
     });

@@ -120,21 +120,6 @@ impl Pieces {
         self.of_node[id]
     }
 
-    /// Nodes, parted into those that follow one another and are of one piece: mostly all of them.
-    pub fn runs<'a>(
-        &'a self,
-        mut nodes: &'a [NodeId],
-    ) -> impl Iterator<Item = (PieceId, &'a [NodeId])> {
-        std::iter::from_fn(move || {
-            let piece = self.of_node(*nodes.first()?);
-            let is_other = |&id: &NodeId| self.of_node(id) != piece;
-            let end = nodes.iter().position(is_other).unwrap_or(nodes.len());
-            let (run, others) = nodes.split_at(end);
-            nodes = others;
-            Some((piece, run))
-        })
-    }
-
     /// Whether the piece of a node is asleep.
     #[inline]
     pub fn sleeps(&self, node: NodeId) -> bool {

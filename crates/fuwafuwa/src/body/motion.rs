@@ -86,7 +86,7 @@ impl<D: Dim> Body<D> {
         self.cache
             .rigid
             .resize(self.truth.pieces.list.len(), RoughMotion::default());
-        let (rigid, pieces) = (&self.cache.rigid, &self.truth.pieces);
+        let (rigid, pieces) = (self.cache.rigid.as_slice(), &self.truth.pieces);
         let lists = [
             &mut self.state.position,
             &mut self.state.velocity,
@@ -98,25 +98,22 @@ impl<D: Dim> Body<D> {
             let count = rows.lists[0].len();
             let [positions, velocities, ahead] = rows.lists.map(|list| &mut list[..count]);
             let mut fastest = 0.0f32;
-            for (piece, nodes) in pieces.runs(rows.nodes) {
-                let whole = rigid[piece];
-                for &id in nodes {
-                    let node = id.index() - rows.first;
-                    let mut velocity = velocities[node];
-                    let squared = inner::<D>(velocity, velocity);
-                    // Not `max`, which would have every node wait for the one before.
-                    if squared > fastest {
-                        fastest = squared;
-                    }
-                    if squared > top_speed * top_speed {
-                        velocity = scaled(velocity, top_speed / squared.sqrt());
-                        velocities[node] = velocity;
-                    }
-                    let position = plus(positions[node], scaled(velocity, duration));
-                    positions[node] = position;
-                    let own = minus(velocity, whole.at::<D>(position));
-                    ahead[node] = plus(position, scaled(own, lead));
+            for &id in rows.nodes {
+                let node = id.index() - rows.first;
+                let mut velocity = velocities[node];
+                let squared = inner::<D>(velocity, velocity);
+                // Not `max`, which would have every node wait for the one before.
+                if squared > fastest {
+                    fastest = squared;
                 }
+                if squared > top_speed * top_speed {
+                    velocity = scaled(velocity, top_speed / squared.sqrt());
+                    velocities[node] = velocity;
+                }
+                let position = plus(positions[node], scaled(velocity, duration));
+                positions[node] = position;
+                let whole = rigid[pieces.of_node(id).index()].at::<D>(position);
+                ahead[node] = plus(position, scaled(minus(velocity, whole), lead));
             }
             fastest
         });
