@@ -13,7 +13,7 @@ mod row;
 mod sides;
 
 use crate::body::{Bodies, Body};
-use crate::dim::Dim;
+use crate::dim::{Dim, inner};
 use crate::handle::{BodySlot, RigidSlot};
 use crate::ids::{PieceId, Table};
 use crate::layers::Layers;
@@ -21,7 +21,7 @@ use crate::rigid::Rigids;
 use crate::solve::Row;
 use crate::threads;
 use crate::touch::{ContactSphere, MARGIN, Nearby, NodePairs, WAKE_SPEED};
-use crate::vector::{as_row, cross, inner, minus, scaled, three};
+use crate::vector::{as_row, cross, minus, scaled, three};
 use exit::Exit;
 use motion::Motion;
 use rigid_rows::{find_free, find_hands};

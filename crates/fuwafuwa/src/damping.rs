@@ -41,8 +41,8 @@ impl PieceMotion {
         self.mass += mass;
         self.nodes += 1;
         self.speed_squared += dot(impulse, velocity);
-        // In the plane the rest is 0.
         match D::N {
+            // In the plane the other two are 0.
             2 => self.angular[2] += x[0] * impulse[1] - x[1] * impulse[0],
             _ => self.angular = plus(self.angular, cross(x, impulse)),
         }
@@ -71,7 +71,7 @@ impl PieceMotion {
         self.centre = plus(origin, from);
     }
 
-    /// The rigid motion with the same momentum. What sleeps has none.
+    /// The rigid motion with the same momentum; of a piece that sleeps none.
     fn rigid(&self) -> RigidMotion {
         if self.nodes == 0 {
             return RigidMotion::default();

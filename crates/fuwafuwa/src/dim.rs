@@ -90,6 +90,16 @@ pub fn scale(a: Point, k: i32) -> Point {
     [a[0] * k, a[1] * k, a[2] * k]
 }
 
+/// a · b of the components that a dimension has; the others are 0.
+#[inline(always)]
+pub fn inner<D: Dim>(a: [f32; 4], b: [f32; 4]) -> f32 {
+    let mut sum = a[0] * b[0];
+    for axis in 1..D::N {
+        sum += a[axis] * b[axis];
+    }
+    sum
+}
+
 /// The voxel on side `octant` of the lattice point `at`.
 #[inline]
 pub fn voxel_around<D: Dim>(at: Point, octant: usize) -> Point {

@@ -1,6 +1,5 @@
 //! The little vector arithmetic that the rest needs, in single and double precision.
 
-use crate::dim::Dim;
 use std::ops::{Add, Mul, Sub};
 
 /// A vector or a place in space; the third coordinate is 0 in 2D.
@@ -48,16 +47,6 @@ pub fn dot<T: Number, const K: usize>(a: [T; K], b: [T; K]) -> T {
     let mut sum = a[0] * b[0];
     for axis in 1..K {
         sum = sum + a[axis] * b[axis];
-    }
-    sum
-}
-
-/// a · b of the components that a dimension has; the others are 0.
-#[inline(always)]
-pub fn inner<D: Dim>(a: [f32; 4], b: [f32; 4]) -> f32 {
-    let mut sum = a[0] * b[0];
-    for axis in 1..D::N {
-        sum += a[axis] * b[axis];
     }
     sum
 }

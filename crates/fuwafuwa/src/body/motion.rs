@@ -1,14 +1,14 @@
 //! How the nodes of a body move in a substep.
 
 use super::Body;
-use crate::dim::Dim;
+use crate::dim::{Dim, inner};
 use crate::ids::ElementId;
 use crate::law::turn_far_from;
 use crate::momentum::RoughMotion;
 use crate::shape::Vector;
 use crate::solve::Kick;
 use crate::threads;
-use crate::vector::{as_row, inner, is_finite, minus, plus, scaled, three};
+use crate::vector::{as_row, is_finite, minus, plus, scaled, three};
 
 impl<D: Dim> Body<D> {
     /// Moves a free body on by `duration` seconds under `gravity` [m/s²], without contact or
@@ -94,7 +94,8 @@ impl<D: Dim> Body<D> {
         ];
         let rows = threads::rows(&self.cache.awake, lists.map(|rows| rows.as_mut_slice()));
         let fastest = threads::map(rows, move |rows| {
-            // Of one length, so that one check of a node's place is enough for all three.
+            // Of one length, so that one check of a node's place is enough for all three. A tenth of the time of small bodies is
+            // spent here: what is in slices and by value is not read anew for each node.
             let count = rows.lists[0].len();
             let [positions, velocities, ahead] = rows.lists.map(|list| &mut list[..count]);
             let mut fastest = 0.0f32;

@@ -4,10 +4,10 @@ use super::motion::Motion;
 use super::row::PUSH_OUT_SPEED;
 use super::sides::Grip;
 use crate::body::Bodies;
-use crate::dim::Dim;
+use crate::dim::{Dim, inner};
 use crate::solve::Row;
 use crate::touch::{Captive, Spheres};
-use crate::vector::{inner, minus, plus, scaled};
+use crate::vector::{minus, plus, scaled};
 
 /// A captive and its exit, in one substep.
 #[derive(Copy, Clone, Debug)]

@@ -2,13 +2,13 @@
 
 use super::row::{AHEAD, CLOSE, Contact, is_close};
 use super::sides::{FreeContact, HandContact};
-use crate::dim::Dim;
+use crate::dim::{Dim, inner};
 use crate::handle::RigidSlot;
 use crate::rigid::{Drive, Rigid, Rigids};
 use crate::shape::Vector;
 use crate::solve::Row;
 use crate::touch::{Impulse, Passed, RigidTouch, RigidTouches, WAKE_SPEED};
-use crate::vector::{across, as_row, inner, length, minus, plus, scaled, three};
+use crate::vector::{across, as_row, length, minus, plus, scaled, three};
 
 /// What comes slower than this [m/s] does not bounce: else nothing would come to rest.
 const BOUNCE_SPEED: f32 = 0.5;

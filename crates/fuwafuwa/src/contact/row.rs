@@ -1,9 +1,9 @@
 //! One contact: what it may do to the velocities of its two sides.
 
-use crate::dim::Dim;
+use crate::dim::{Dim, inner};
 use crate::solve::Row;
 use crate::touch::Impulse;
-use crate::vector::{inner, minus, plus, scaled};
+use crate::vector::{minus, plus, scaled};
 
 /// How much of the last substep's impulse a row starts from: 1 is unstable, 0 never comes to rest.
 const WARM_START: f32 = 0.9;
