@@ -30,6 +30,27 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut numbers = std::env::args().skip(1);
     let voxels: usize = numbers.next().map_or(Ok(64), |word| word.parse())?;
     let most_substeps: u32 = numbers.next().map_or(Ok(8), |word| word.parse())?;
+    // It goes the same every time: the least of three times of a tick is what it costs, the rest is the machine.
+    let (mut times, told) = cut(voxels, most_substeps)?;
+    for _ in 1..3 {
+        let again = cut(voxels, most_substeps)?.0;
+        for (time, other) in times.iter_mut().zip(again) {
+            *time = time.min(other);
+        }
+    }
+    let first = times.remove(0);
+    times.sort_by(f64::total_cmp);
+    println!("{told}");
+    println!(
+        "the first tick {first:.1} ms, the others {:.1} ms in the middle, {:.1} ms at the worst",
+        times[times.len() / 2],
+        times[times.len() - 1]
+    );
+    Ok(())
+}
+
+/// What each tick takes [ms], and what was cut, in words.
+fn cut(voxels: usize, most_substeps: u32) -> Result<(Vec<f64>, String), Box<dyn Error>> {
     let settings = Settings {
         // As in a bath, where such an organ weighs little.
         gravity: [0.0, -1.0, 0.0],
@@ -69,19 +90,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         most = most.max(world.knives().get(knife)?.force()[1]);
     }
-    let first = times.remove(0);
-    times.sort_by(f64::total_cmp);
-    println!(
+    let told = format!(
         "{solid} voxels, {} elements, {} pieces; cut {:.2} cm² with {:.3} J, {most:.2} N at most",
         world.bodies()[organ].mesh().element_count(),
         world.bodies()[organ].piece_views().len(),
         1e4 * sums[0],
         sums[1],
     );
-    println!(
-        "the first tick {first:.1} ms, the others {:.1} ms in the middle, {:.1} ms at the worst",
-        times[times.len() / 2],
-        times[times.len() - 1]
-    );
-    Ok(())
+    Ok((times, told))
 }
