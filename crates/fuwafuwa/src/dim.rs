@@ -92,7 +92,7 @@ pub fn scale(a: Point, k: i32) -> Point {
 
 /// a · b of the components that a dimension has; the others are 0.
 #[inline(always)]
-pub fn inner<D: Dim>(a: [f32; 4], b: [f32; 4]) -> f32 {
+pub(crate) fn inner<D: Dim>(a: [f32; 4], b: [f32; 4]) -> f32 {
     let mut sum = a[0] * b[0];
     for axis in 1..D::N {
         sum += a[axis] * b[axis];
