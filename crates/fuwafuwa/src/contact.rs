@@ -180,6 +180,7 @@ impl Contacts {
         let layers = |sphere: &ContactSphere| bodies.at(sphere.body).state.layers;
         let meet = |both: [&ContactSphere; 2]| layers(both[0]).meet(layers(both[1]));
         let (all, captives) = (&nearby.spheres, &nearby.captives);
+        // Asked for by each pair: of a table it would be read anew where they lie.
         let centres = all.centres.as_slice();
         let widths = bodies.iter().map(|body| body.truth.grid.voxel_size());
         let widest = widths.fold(0.0, f32::max);
