@@ -13,10 +13,13 @@ for (let scene = 0; scene < golden_count(); scene++) {
   // Before the run, so that a trap can be told by its scene.
   process.stdout.write(`wasm32: ${name}: `);
   const [found, golden] = [hex(golden_run(scene)), hex(golden_hash(scene))];
-  // Once more for the clock: in the first run Node is still compiling.
-  const start = performance.now();
-  golden_run(scene);
-  const took = performance.now() - start;
+  // The least of some more: Node goes on compiling while the first of them run.
+  const times = Array.from({ length: 5 }, () => {
+    const start = performance.now();
+    golden_run(scene);
+    return performance.now() - start;
+  });
+  const took = Math.min(...times);
   const time = `${took.toFixed()} ms, natively ${native[scene]}: ${(took / native[scene]).toFixed(1)} ×`;
   console.log(found === golden ? `${found}, as it must; ${time}` : `DIFFERENT, ${found} instead of ${golden}`);
   if (found !== golden) process.exitCode = 1;

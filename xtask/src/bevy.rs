@@ -24,25 +24,21 @@ pub fn run(bevy: Bevy, if_missing: IfMissing) -> Result<(), Failure> {
 }
 
 fn check() -> Result<(), Failure> {
-    let steps: [(&[&str], &str); 5] = [
+    let steps: [(&[&str], &str); 4] = [
         (
             &["fmt", "--all", "--check"],
             "run `cargo fmt --all` in crates/bevy_fuwafuwa",
         ),
         (
-            &["clippy", "--all-targets", "--", "-D", "warnings"],
-            "mend the warnings above",
-        ),
-        (
             &[
                 "clippy",
-                "--package",
-                "bevy_fuwafuwa_examples",
+                "--workspace",
+                "--all-targets",
                 "--",
                 "-D",
                 "warnings",
             ],
-            "the examples do not follow the plugin or Bevy any more, see above",
+            "mend the warnings above: perhaps the examples do not follow the plugin or Bevy any more",
         ),
         (
             &["test"],

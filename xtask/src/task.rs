@@ -14,8 +14,7 @@ tasks:
   play [-- WORDS]  builds and opens the game, and hands it the words
   test             all tests in debug, then the engine's in release and on one to eight threads
   check            what a change must pass: formatting, lints, documentation, then all of `test`
-  wasm             the golden scenes on wasm32 under Node: the same bits as natively? And does the
-                   game compile for a browser?
+  wasm             the golden scenes on wasm32 under Node: the same bits as natively, and how slow?
   wasm --install   the same; what is missing comes from Debian's packages
   web              the game for a browser: a folder that any web server can hand out; where it will
                    stand, --address https://…/ says for those who show a preview of the page

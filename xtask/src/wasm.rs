@@ -1,11 +1,12 @@
 //! The golden scenes on wasm32, run under Node: do they end in the same bits as natively, and how much
-//! longer do they take? And does the game compile for a browser?
+//! longer do they take?
 //!
 //! rustup's toolchain can build for wasm32 after `rustup target add wasm32-unknown-unknown`. Where
 //! it has not been told to, or cannot reach its server, Debian's packages do: a compiler, the
 //! sources of its standard library, which cargo then builds too, and a linker.
 
 use crate::debian;
+use crate::folders;
 use crate::packages::{IfMissing, Lack, apt_get, install_arguments, list_lacks};
 use crate::shell::{CANNOT, FAILED, Failure, answers, cargo, execute, root, target};
 use std::path::{Path, PathBuf};
@@ -13,12 +14,12 @@ use std::process::{Command, Stdio};
 
 pub const TARGET: &str = "wasm32-unknown-unknown";
 /// Every browser of today has wide lanes, but a module has them or not.
-pub const LANES: &str = "-Ctarget-feature=+simd128";
+const LANES: &str = "-Ctarget-feature=+simd128";
 
 /// Builds the golden scenes, runs them, and fails where one ends in other bits than it must.
 pub fn run(if_missing: IfMissing) -> Result<(), Failure> {
     let compiler = compiler(if_missing, "the golden scenes were NOT run on wasm32")?;
-    let module = build(&compiler)?;
+    let module = compile_checks(&compiler)?;
     let native_times = native_times()?;
     execute(
         Command::new("node")
@@ -27,10 +28,6 @@ pub fn run(if_missing: IfMissing) -> Result<(), Failure> {
             .args(native_times),
         "a scene ends in other bits on wasm32: look for arithmetic beyond + - * / and sqrt, for \
          usize, which has 32 bits there, and for lanes that sum in another order",
-    )?;
-    execute(
-        &mut cargo_for_wasm(&compiler, &["check", "--package", "tamaire"]),
-        "what differs in a browser belongs into game/src/platform and behind features of its crates",
     )
 }
 
@@ -108,13 +105,37 @@ fn install(lacks: &[Lack]) -> bool {
     apt_get(&install_arguments(names))
 }
 
-/// Builds the scenes. Returns where the module is.
-fn build(compiler: &Compiler) -> Result<PathBuf, Failure> {
-    let words = ["rustc", "--release", "--package", "fuwafuwa_golden"];
-    let mut command = cargo_for_wasm(compiler, &words);
-    command.args(["--crate-type", "cdylib"]);
-    execute(&mut command, "the scenes could not be built for wasm32")?;
-    Ok(folder().join(TARGET).join("release/fuwafuwa_golden.wasm"))
+/// Compiles a package, the first of the words, as the game for a browser is; where its module is.
+pub fn compile(compiler: &Compiler, words: &[&str]) -> Result<PathBuf, Failure> {
+    let mut command = cargo();
+    command
+        .args(["rustc", "--profile", "web", "--target", TARGET, "--package"])
+        .args(words)
+        .env("CARGO_TARGET_DIR", root().join(folder()))
+        // Takes the place of flags for the native build, such as a target-cpu, which make no sense here.
+        .env(
+            "CARGO_ENCODED_RUSTFLAGS",
+            folders::encoded([LANES], &folders::names()),
+        );
+    if let Compiler::Debian { linker } = compiler {
+        command
+            .arg("-Zbuild-std=std,panic_abort")
+            // None: the crates behind backtraces are among the largest, and Node shows its own.
+            .arg("-Zbuild-std-features=")
+            .envs(debian::ENVIRONMENT)
+            .env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker);
+    }
+    execute(
+        &mut command,
+        "what differs in a browser belongs into game/src/platform and behind features of its crates",
+    )?;
+    let modules = root().join(folder()).join(TARGET).join("web");
+    Ok(modules.join(words[0]).with_extension("wasm"))
+}
+
+/// Compiles the golden scenes, and what else a browser has to get right; where their module is.
+pub fn compile_checks(compiler: &Compiler) -> Result<PathBuf, Failure> {
+    compile(compiler, &["browser_checks", "--crate-type", "cdylib"])
 }
 
 /// How long each scene takes natively on one thread \[ms\], in their order.
@@ -145,28 +166,6 @@ fn native_times() -> Result<Vec<String>, Failure> {
 /// Where wasm32 is built: beside the native build.
 pub fn folder() -> PathBuf {
     target().join("wasm")
-}
-
-/// A call of cargo that builds for wasm32 with this compiler.
-pub fn cargo_for_wasm(compiler: &Compiler, words: &[&str]) -> Command {
-    let mut command = cargo();
-    command
-        .args(words)
-        .args(["--target", TARGET])
-        .env("CARGO_TARGET_DIR", root().join(folder()))
-        // Flags for the native build, such as a target-cpu, make no sense here.
-        .env_remove("RUSTFLAGS")
-        .env_remove("CARGO_ENCODED_RUSTFLAGS")
-        .env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", LANES);
-    if let Compiler::Debian { linker } = compiler {
-        command
-            .arg("-Zbuild-std=std,panic_abort")
-            // None: the crates behind backtraces are among the largest, and Node shows its own.
-            .arg("-Zbuild-std-features=")
-            .envs(debian::ENVIRONMENT)
-            .env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker);
-    }
-    command
 }
 
 fn cannot(undone: &str, lacks: &[Lack], if_missing: IfMissing) -> Failure {

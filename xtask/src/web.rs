@@ -3,10 +3,9 @@
 //! cargo compiles the game and its sound for wasm32, `xtask_bindgen` makes the glue between the game and the page
 //! (`game/web`), and `xtask/web/pack.mjs` the folder.
 
-use crate::folders;
 use crate::packages::{self, IfMissing, Purpose};
 use crate::shell::{CANNOT, FAILED, Failure, cargo, execute, is_on_path, root, target};
-use crate::wasm::{self, Compiler, TARGET, cargo_for_wasm};
+use crate::wasm::{self, Compiler, TARGET};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -38,7 +37,7 @@ pub fn run(web: Web, if_missing: IfMissing) -> Result<(), Failure> {
         Web::Build(_) => Ok(()),
         Web::Serve => node("serve.mjs", &[&site], "the server ended"),
         Web::Test => {
-            let checks = compile(&compiler, &["browser_checks", "--crate-type", "cdylib"])?;
+            let checks = wasm::compile_checks(&compiler)?;
             // Firefox draws in software only where there is a display.
             let mut play = Command::new("xvfb-run");
             play.args(["--auto-servernum", "node", "xtask/web/test/all.mjs"])
@@ -55,8 +54,8 @@ pub fn folder() -> PathBuf {
 
 fn build(compiler: &Compiler, address: Option<&str>) -> Result<(), Failure> {
     let stage = folder().join("stage");
-    let game = compile(compiler, &["tamaire", "--bin", "tamaire"])?;
-    let sound = compile(compiler, &["tamaire_worklet", "--crate-type", "cdylib"])?;
+    let game = wasm::compile(compiler, &["tamaire", "--bin", "tamaire"])?;
+    let sound = wasm::compile(compiler, &["tamaire_worklet", "--crate-type", "cdylib"])?;
     let mut bind = cargo();
     bind.args(["run", "--release", "--package", "xtask_bindgen", "--"])
         .args([&game, &stage]);
@@ -84,20 +83,6 @@ fn build(compiler: &Compiler, address: Option<&str>) -> Result<(), Failure> {
     let mut words: Vec<&Path> = vec![&stage, &page, &licences, &site];
     words.extend(address.map(Path::new));
     node("pack.mjs", &words, "the folder could not be packed")
-}
-
-/// Compiles a package, the first of the words, as the game is; where its module is.
-fn compile(compiler: &Compiler, words: &[&str]) -> Result<PathBuf, Failure> {
-    let call = [&["rustc", "--profile", "web", "--package"], words].concat();
-    let mut command = cargo_for_wasm(compiler, &call);
-    let flags = folders::encoded([wasm::LANES], &folders::names());
-    command.env("CARGO_ENCODED_RUSTFLAGS", flags);
-    execute(
-        &mut command,
-        "what differs in a browser belongs into game/src/platform and behind features of its crates",
-    )?;
-    let modules = root().join(wasm::folder()).join(TARGET).join("web");
-    Ok(modules.join(words[0]).with_extension("wasm"))
 }
 
 /// npm's packages, as the lock file names them.

@@ -1,4 +1,4 @@
-//! How fast a logbook is, and how large: `speed [ROUNDS]`, a million unless told.
+//! How fast a logbook is, and how large: `capacity [ROUNDS]`, a million unless told.
 
 use std::env;
 use std::error::Error;
