@@ -10,8 +10,9 @@ use crate::{Drop, Result, WIDTH};
 /// What the settings of a world allow.
 const MOST_SUBSTEPS: u32 = 1024;
 
-/// A body without damping and strong enough for anything, above a half-space.
-pub fn world<D: Dim>(scene: &Drop) -> Result<World<D>> {
+/// A body without damping and strong enough for anything, above a half-space. It gets so many substeps, or as few as leave it
+/// unsoftened, see [`Body::stiffness_scale`].
+pub fn world<D: Dim>(scene: &Drop, substeps: Option<usize>) -> Result<World<D>> {
     let material = Material {
         elasticity: Elasticity {
             young: scene.young.into(),
@@ -24,14 +25,14 @@ pub fn world<D: Dim>(scene: &Drop) -> Result<World<D>> {
         ..Material::default()
     };
     let body = Body::new(VoxelGrid::<D>::ball(scene.n, WIDTH)?, &[material])?;
-    // As few as leave it unsoftened, see [`Body::stiffness_scale`].
     let asked = (f64::from(TICK) / body.longest_substep()).ceil() as u32;
+    let most = substeps.map_or(asked, |substeps| substeps as u32);
     let mut world = World::<D>::new(Settings {
         gravity: [0.0, -scene.gravity, 0.0],
         drag: 0.0,
-        most_substeps: asked.clamp(FEWEST_SUBSTEPS, MOST_SUBSTEPS),
-            ..Settings::default()
-        })?;
+        most_substeps: most.clamp(FEWEST_SUBSTEPS, MOST_SUBSTEPS),
+        ..Settings::default()
+    })?;
     let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
     world.add_rigid(Rigid::fixed(floor, scene.friction))?;
     let lowest = span(&body).lowest;
@@ -50,7 +51,12 @@ fn span<D: Dim>(body: &Body<D>) -> Span {
 
 impl<D: Dim> Falling for World<D> {
     fn engine(&self) -> String {
-        let elements = self.bodies().first().expect("it has a body").mesh().element_count();
+        let elements = self
+            .bodies()
+            .first()
+            .expect("it has a body")
+            .mesh()
+            .element_count();
         format!("fuwafuwa, {elements} elements")
     }
 
@@ -67,11 +73,19 @@ impl<D: Dim> Falling for World<D> {
     }
 
     fn stiffness_scale(&self) -> f64 {
-        self.bodies().first().expect("it has a body").stiffness_scale()
+        self.bodies()
+            .first()
+            .expect("it has a body")
+            .stiffness_scale()
     }
 
     fn pieces(&self) -> usize {
-        self.bodies().first().expect("it has a body").pieces().list.len()
+        self.bodies()
+            .first()
+            .expect("it has a body")
+            .pieces()
+            .list
+            .len()
     }
 
     fn asleep(&self) -> f64 {
