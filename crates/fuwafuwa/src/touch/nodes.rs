@@ -54,11 +54,9 @@ pub struct NodePairs {
     /// from there, by body and node [m].
     #[cfg_attr(feature = "serde", serde(skip))]
     anchors: Table<BodySlot, Table<NodeId, Row>>,
-    /// How far nodes may still come before one may have come too far, and how far any may at the least [m].
+    /// How far nodes may still come before one may have come too far [m].
     #[cfg_attr(feature = "serde", serde(skip))]
     spare: f32,
-    #[cfg_attr(feature = "serde", serde(skip))]
-    least_slack: f32,
     /// How far each rigid thing may come from where it was, and how far it has come [m]; nothing while all
     /// must be looked for.
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -176,7 +174,6 @@ impl NodePairs {
             let is_changed = changed.binary_search(&(pair.body, pair.node)).is_ok();
             !is_changed || pair.has_touched(bodies)
         });
-        self.spare = self.spare.min(self.least_slack);
     }
 
     /// Looks for all nodes that may come to something rigid in what is `left` of the tick [s]. Those that
@@ -184,9 +181,8 @@ impl NodePairs {
     fn find_all<D: Dim>(&mut self, bodies: &Bodies<D>, rigids: &Rigids, left: f32) {
         self.changed.clear();
         self.travel = 0.0;
+        self.spare = f32::INFINITY;
         let sizes = bodies.iter().map(|body| body.truth.grid.voxel_size());
-        self.least_slack = SLACK * sizes.clone().fold(f32::MAX, f32::min);
-        self.spare = self.least_slack;
         let size = sizes.fold(0.0, f32::max);
         let leeway = |rigid: &Rigid| {
             let slack = if rigid.moves() {
@@ -270,7 +266,9 @@ impl NodePairs {
         anchors.resize(body.state.position.len(), [0.0; 4]);
         let [x, y, z, _] = body.state.position[node];
         let speed = length(body.state.velocity[node]);
-        anchors[node] = [x, y, z, SLACK * body.truth.grid.voxel_size() + speed * left];
+        let most = SLACK * body.truth.grid.voxel_size() + speed * left;
+        anchors[node] = [x, y, z, most];
+        self.spare = if most < self.spare { most } else { self.spare };
     }
 
     /// How close to a wall a node is listed [m]; `size` [m] is that of its voxels.
