@@ -140,17 +140,17 @@ pub fn compile_checks(compiler: &Compiler) -> Result<PathBuf, Failure> {
 
 /// How long each scene takes natively on one thread \[ms\], in their order.
 fn native_times() -> Result<Vec<String>, Failure> {
-    let mut command = cargo();
-    command.args([
-        "run",
-        "--quiet",
-        "--release",
-        "--package",
-        "fuwafuwa_golden",
-    ]);
-    command.args(["--example", "times"]);
-    let output = command
-        .current_dir(root())
+    // Of the packages whose tests are run in release, so that what they were built of is used again.
+    let mut build = cargo();
+    build.args(["build", "--release", "--all-features"]);
+    build.args(["--package", "fuwafuwa", "--package", "fuwafuwa_golden"]);
+    build.args(["--example", "times"]);
+    execute(
+        &mut build,
+        "the golden scenes could not be built natively, see above",
+    )?;
+    let output = Command::new(root().join(target()).join("release/examples/times"))
+        .env("RAYON_NUM_THREADS", "1")
         .stderr(Stdio::inherit())
         .output();
     let Some(output) = output.ok().filter(|output| output.status.success()) else {

@@ -57,7 +57,7 @@ fn build(compiler: &Compiler, address: Option<&str>) -> Result<(), Failure> {
     let game = wasm::compile(compiler, &["tamaire", "--bin", "tamaire"])?;
     let sound = wasm::compile(compiler, &["tamaire_worklet", "--crate-type", "cdylib"])?;
     let mut bind = cargo();
-    bind.args(["run", "--release", "--package", "xtask_bindgen", "--"])
+    bind.args(["run", "--package", "xtask_bindgen", "--"])
         .args([&game, &stage]);
     execute(
         &mut bind,

@@ -5,7 +5,7 @@ import { mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSyn
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { fileURLToPath } from "node:url";
-import { natively, open } from "./checks.mjs";
+import { inDebug, open } from "./checks.mjs";
 import { launch } from "./visit.mjs";
 
 /**
@@ -17,7 +17,7 @@ export async function checkBits(browsers, module) {
   const folder = mkdtempSync(join(tmpdir(), "tamaire-bits-"));
   try {
     const recorded = join(folder, "natively");
-    natively("utf8", "browser_checks", "replays", "record", recorded);
+    inDebug("replays", "record", recorded);
     for (const [index, [name, browser]] of Object.entries(browsers).entries()) {
       const checks = await open(browser, module);
       await checkGolden(name, checks);
@@ -29,7 +29,7 @@ export async function checkBits(browsers, module) {
         writeFileSync(join(written, `${game}.tamaire`), await checks.call("record", game));
       }
       await checks.close();
-      process.stdout.write(`${name}, then ${natively("utf8", "browser_checks", "replays", "verify", written)}`);
+      process.stdout.write(`${name}, then ${inDebug("replays", "verify", written)}`);
     }
   } finally {
     rmSync(folder, { recursive: true });

@@ -2,9 +2,10 @@
 import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { createServer } from "node:http";
-import { join } from "node:path";
+import { join, resolve } from "node:path";
 
 const ROOT = join(import.meta.dirname, "../../..");
+const CARGO = process.env.CARGO ?? "cargo";
 
 /** Alone in its process, a page may look at a clock of 5 µs instead of 100. */
 const ALONE = { "Cross-Origin-Opener-Policy": "same-origin", "Cross-Origin-Embedder-Policy": "require-corp" };
@@ -50,5 +51,13 @@ export async function open(browser, module) {
 export function natively(encoding, crate, name, ...words) {
   const cargo = ["run", "--quiet", "--release", "--package", crate, "--example", name, "--", ...words];
   const stdio = /** @type {["ignore", "pipe", "inherit"]} */ (["ignore", "pipe", "inherit"]);
-  return execFileSync(process.env.CARGO ?? "cargo", cargo, { cwd: ROOT, stdio, encoding, maxBuffer: 1 << 26 });
+  return execFileSync(CARGO, cargo, { cwd: ROOT, stdio, encoding, maxBuffer: 1 << 26 });
+}
+
+/** Runs an example that is built as the tests are, of what they were built of; what it printed. @param {string} name @param {...string} words */
+export function inDebug(name, ...words) {
+  const build = ["build", "--quiet", "--workspace", "--all-features", "--example", name];
+  execFileSync(CARGO, build, { cwd: ROOT, stdio: ["ignore", "ignore", "inherit"] });
+  const program = join(process.env.CARGO_TARGET_DIR ?? "target", "debug/examples", name);
+  return execFileSync(resolve(ROOT, program), words, { cwd: ROOT, stdio: ["ignore", "pipe", "inherit"], encoding: "utf8" });
 }

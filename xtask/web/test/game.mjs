@@ -143,12 +143,18 @@ export async function links(browser, site) {
   // The same tab, another link.
   await other.page.evaluate((link) => void (location.hash = link), level.split("#")[1]);
   await other.until((report) => report.screen === "Play" && report.ticks < 20, "the level of the link");
-  for (const broken of [round.split("#")[1].slice(0, -9), "r1AAAA", "x", "%00%ff", "r9" + round.slice(-40)]) {
-    await other.until((report) => report.notices.length === 0, "silence");
-    await other.page.evaluate((link) => void (location.hash = link), broken);
-    await other.hears("link");
-  }
+  // A broken one, in this tab and in others.
+  const cut = round.split("#")[1].slice(0, -9);
+  await other.until((report) => report.notices.length === 0, "silence");
+  await other.page.evaluate((link) => void (location.hash = link), cut);
+  await other.hears("link");
   other.isQuiet();
+  for (const broken of [cut, "r1AAAA", "x", "%00%ff", "r9" + round.slice(-40)]) {
+    const lost = await Visit.begin(browser, `${site.address}#${broken}`);
+    await lost.hears("link");
+    lost.isQuiet();
+    await lost.page.close();
+  }
   await visit.page.close();
   await other.page.close();
 }
