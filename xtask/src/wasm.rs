@@ -120,7 +120,7 @@ pub fn compile(compiler: &Compiler, words: &[&str]) -> Result<PathBuf, Failure> 
     if let Compiler::Debian { linker } = compiler {
         command
             .arg("-Zbuild-std=std,panic_abort")
-            // None: the crates behind backtraces are among the largest, and Node shows its own.
+            // None: the crates behind backtraces are among the largest, and a browser shows its own.
             .arg("-Zbuild-std-features=")
             .envs(debian::ENVIRONMENT)
             .env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker);
@@ -164,7 +164,7 @@ fn native_times() -> Result<Vec<String>, Failure> {
 }
 
 /// Where wasm32 is built: beside the native build.
-pub fn folder() -> PathBuf {
+fn folder() -> PathBuf {
     target().join("wasm")
 }
 

@@ -1,9 +1,9 @@
 //! What a browser has to get right and be fast enough at, without the game around it: the golden scenes, and rounds
 //! that bots play, recorded here and verified there.
 //!
-//! `cargo xtask web --test` builds it as a WebAssembly module with the profile of the game. `xtask/web/test/bits.mjs`
-//! and `xtask/web/test/speed.mjs` load it into browsers through the [`exports`]; natively the example `replays` does
-//! the same.
+//! `cargo xtask wasm` and `web --test` build it as a WebAssembly module with the profile of the game. `xtask/golden.mjs` runs it
+//! under Node, `xtask/web/test/bits.mjs` and `xtask/web/test/speed.mjs` load it into browsers through the [`exports`];
+//! natively the example `replays` does the same.
 #![deny(unsafe_code)]
 #![warn(missing_docs)]
 

@@ -9,7 +9,6 @@ fn check_all(how: &str) {
     }
 }
 
-#[cfg(not(feature = "parallel"))]
 #[test]
 fn every_scene_comes_out_as_it_always_did() {
     check_all("natively");
