@@ -7,8 +7,16 @@ use anyhow::{Result, ensure};
 use fuwafuwa::shape::Vector;
 use fuwafuwa::{Body, Dim2, Drive, Material, NodeId, Rigid, Settings, VoxelGrid, World};
 
-/// Voxels across, and how fast each hand comes [m/s].
-const CASES: [(usize, f32); 4] = [(24, 0.25), (24, 2.0), (48, 0.25), (48, 2.0)];
+/// Voxels across, and how fast each hand comes [m/s]: at the fastest one side of the hole comes to the other by ten widths of the
+/// ring a second.
+const CASES: [(usize, f32); 6] = [
+    (24, 0.25),
+    (24, 2.0),
+    (24, 5.0),
+    (48, 0.25),
+    (48, 2.0),
+    (48, 5.0),
+];
 /// Radius of the hands [m].
 const HAND: f32 = 0.4;
 /// How far apart the hands stay [m]; both sides of the ring together are 0.5 m thick, so the hole is shut
