@@ -30,8 +30,8 @@ use sides::{FreeContact, HandContact, NodeContact, SphereContact};
 use std::collections::BTreeSet;
 
 /// A crumb is behind a sphere when the way to it goes this far inwards (cosine). Less would take one that lies on a body for one
-/// behind it: beside a corner, in the hollow between four spheres, the way from the one at the corner goes inwards by
-/// 0.17, and by 0.3 where the crumb is pressed in by a sixth of a voxel.
+/// behind it: beside a corner of a block in space, in the hollow between four spheres, the way from the one at the corner goes
+/// inwards by 0.17, and by 0.3 where the crumb is pressed straight in by a sixth of a voxel.
 const BEHIND: f32 = 0.3;
 
 /// The contacts of one substep.

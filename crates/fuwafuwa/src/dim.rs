@@ -100,6 +100,14 @@ pub(crate) fn inner<D: Dim>(a: [f32; 4], b: [f32; 4]) -> f32 {
     sum
 }
 
+/// Of numbers about three axes those about which things turn: in the plane it is the third alone.
+pub(crate) fn turning<D: Dim>(mut about: [f32; 3]) -> [f32; 3] {
+    if D::N == 2 {
+        about[..2].fill(0.0);
+    }
+    about
+}
+
 /// The voxel on side `octant` of the lattice point `at`.
 #[inline]
 pub fn voxel_around<D: Dim>(at: Point, octant: usize) -> Point {

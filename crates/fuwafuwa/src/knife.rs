@@ -143,6 +143,7 @@ impl Knife {
         let are_near = self.edge.iter().all(is_near);
         require(are_near, "edge", "within 1e6 m of its holder")?;
         let along = minus(to, from);
+        // In the plane an edge is a point, and leads nowhere.
         let has_length = D::N == 2 || length(along) > 0.0;
         require(has_length, "edge", "of a length that is not 0")?;
         let toward = flat::<D>(self.toward);
@@ -171,6 +172,7 @@ impl Knife {
     fn stance<D: Dim>(&self, holder: &Rigid) -> Stance {
         let turn = |vector: Vector| holder.rotation().apply(vector);
         let levers = self.edge.map(|end| flat::<D>(turn(end)));
+        // In the plane it is a point, and stands for an edge across the body.
         let along = match D::N {
             2 => [0.0, 0.0, 1.0],
             _ => direction(minus(levers[1], levers[0])),

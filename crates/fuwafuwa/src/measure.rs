@@ -8,7 +8,7 @@ use crate::law::{
     Elasticity, IDENTITY, Law, Matrix, SQUASH_LIMIT, cofactor, deformation_of, endo_offsets,
     hourglass, rotation_of, volume_of,
 };
-use crate::plasticity::{elastic_part, softening, stress_after};
+use crate::plasticity::{elastic_part, kneaded_stiffness, stress_after};
 use crate::shape::Vector;
 use crate::stencil::{Stencil, Vector64};
 use crate::vector::{dot, three};
@@ -101,7 +101,7 @@ pub fn strained_after<D: Dim>(
     let (stiffness, hourglass) = hourglass(elasticity, stencil, size, positions, &whole, centre);
     let weights = stencil.volumes.iter().zip(&hourglass);
     let swings = weights.map(|(&weight, &h)| dot(h, h) / weight);
-    let density = softening::<D>(undone) * density;
+    let density = kneaded_stiffness::<D>(undone) * density;
     let energy = density * volume_of(stencil, half) + 0.5 * stiffness * swings.sum::<f64>();
     Strained {
         deformation: whole,
@@ -158,7 +158,7 @@ impl<D: Dim> Body<D> {
     /// its width along some axis, or drawn out as far in the plane. Of materials that keep no dents, 0.
     pub fn plastic_strain(&self, id: ElementId) -> Option<f32> {
         self.truth.mesh.element(id)?;
-        let most = 1.0 / softening::<D>(&self.undone(id));
+        let most = 1.0 / kneaded_stiffness::<D>(&self.undone(id));
         Some((most.sqrt() - 1.0).max(0.0) as f32)
     }
 

@@ -2,7 +2,7 @@
 //!
 //! The deformation is of two parts, F = Fₑ Fₚ: what was kneaded into the element for good, and what springs back from there
 //! [Bargteil 2007]. Kept is G = Fₚ⁻¹, of determinant 1: clay is pressed aside, not together. With R the rotation of Fₑ,
-//! S = sym RᵀFₑ, d its deviator and y what is borne,
+//! S = sym RᵀFₑ, d its deviator and y the yield strain,
 //!
 //! ```text
 //! Fₑ = F G       P = s Pₑ(Fₑ) Gᵀ        s = 1 / λ_max(GᵀG)
@@ -47,6 +47,7 @@ impl Plasticity {
     /// |G|² of what was pressed to the limit along one axis, and gave way evenly along the others.
     pub(crate) fn most_flown<D: Dim>(self) -> f64 {
         let squared = self.limit * self.limit;
+        // In the plane there is one other axis, in space two.
         match D::N {
             2 => squared + 1.0 / squared,
             _ => squared + 2.0 / self.limit,
@@ -66,7 +67,7 @@ pub fn stress_after<D: Dim>(
     undone: &Matrix,
 ) -> Matrix {
     let own = stress(elasticity, &elastic_part(deformation, undone));
-    let soft = softening::<D>(undone);
+    let soft = kneaded_stiffness::<D>(undone);
     let mut total = [[0.0; 3]; 3];
     for i in 0..3 {
         for j in 0..3 {
@@ -134,6 +135,7 @@ pub fn flow<D: Dim>(
     }
     let next = product(undone, &step);
     let volume = determinant(&next);
+    // The third axis of the plane is not scaled.
     let scale = 1.0
         / if D::N == 2 {
             volume.sqrt()
@@ -158,8 +160,8 @@ pub fn flow<D: Dim>(
             }
         })
     });
-    let before = softening::<D>(undone) * density(elasticity, &stretch, whole);
-    let after = softening::<D>(&next) * density(elasticity, &eased, whole);
+    let before = kneaded_stiffness::<D>(undone) * density(elasticity, &stretch, whole);
+    let after = kneaded_stiffness::<D>(&next) * density(elasticity, &eased, whole);
     if after >= before {
         return *undone;
     }
@@ -180,7 +182,7 @@ fn density(elasticity: Elasticity, stretch: &Matrix, volume: f64) -> f64 {
 
 /// By how much less what was kneaded resists in terms of what it was built as: 1 / λ_max(GᵀG), bounded from the trace and the
 /// norm; exact in the plane and for what was pressed flat.
-pub fn softening<D: Dim>(undone: &Matrix) -> f64 {
+pub fn kneaded_stiffness<D: Dim>(undone: &Matrix) -> f64 {
     let axes = D::N as f64;
     let mut squares = [[0.0; 3]; 3];
     for i in 0..D::N {
@@ -243,7 +245,7 @@ mod tests {
         // What is left is what it bears, and it has flowed by the rest.
         let left = elastic_part(&drawn(1.3), &undone)[0][0];
         assert!((left - 1.05).abs() < 2e-3, "{left}");
-        assert!(softening::<D>(&undone) <= 1.0);
+        assert!(kneaded_stiffness::<D>(&undone) <= 1.0);
         // It can be pressed to half its width and no further; there and back is as it was.
         let mut flat = IDENTITY;
         for step in 0..400 {
@@ -252,7 +254,7 @@ mod tests {
         }
         let pressed = 1.0 / flat[0][0];
         assert!((pressed - 0.5).abs() < 0.02, "{pressed}");
-        assert!((softening::<D>(&flat) - 0.25).abs() < 0.03);
+        assert!((kneaded_stiffness::<D>(&flat) - 0.25).abs() < 0.03);
         // All at once it would give way by more than it has to: a step is right to first order.
         for step in 0..400 {
             let by = 0.3 + 0.7 * f64::from(step.min(300)) / 300.0;

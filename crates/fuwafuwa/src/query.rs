@@ -19,7 +19,7 @@ use std::cell::OnceCell;
 use std::collections::BTreeSet;
 use tree::{Bounds, Tree, around_all, distance_from, entry};
 
-/// The distance of a face from a shape is narrowed down so many times.
+/// The place on an edge where it is closest to a shape is narrowed down so many times, by a third of what is left: to 6·10⁻⁵ of the edge.
 const NARROWINGS: usize = 24;
 
 /// Whether a thing counts.
@@ -346,7 +346,7 @@ fn triangles([a, b, c, d]: [Vector; 4]) -> [[Vector; 3]; 2] {
     [[a, b, c], [a, c, d]]
 }
 
-/// How far along a ray, whose direction is of length 1, a bare face is [m].
+/// How far along a ray, whose direction is of length 1, a bare face is [m]. In the plane a face is a segment, in space two triangles.
 fn distance_to<D: Dim>(facet: &Facet, from: Vector, direction: Vector) -> Option<f32> {
     let [a, b, ..] = facet.corners;
     if D::N == 2 {

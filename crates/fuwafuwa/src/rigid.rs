@@ -10,7 +10,7 @@ mod check;
 mod free;
 mod inertia;
 
-use crate::dim::Dim;
+use crate::dim::{Dim, turning};
 use crate::handle::{Arena, RigidId};
 use crate::layers::Layers;
 use crate::rotation::Rotation;
@@ -231,9 +231,7 @@ impl Rigid {
         for rotation in rotations.into_iter().chain([&mut self.rotation]) {
             *rotation = rotation.seen_in::<D>();
         }
-        if D::N == 2 {
-            self.spin[..2].fill(0.0);
-        }
+        self.spin = turning::<D>(self.spin);
         if self.drive == Drive::Fixed {
             // It may have been a hand.
             (self.velocity, self.goal_velocity) = ([0.0; 3], [0.0; 3]);

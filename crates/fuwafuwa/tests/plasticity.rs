@@ -172,7 +172,7 @@ fn check_reference<D: Dim>(seed: u32) -> f32 {
             }
         }
         let strain = body.plastic_strain(id).unwrap();
-        let other = fuwafuwa::plasticity::softening::<D>(&undone);
+        let other = fuwafuwa::plasticity::kneaded_stiffness::<D>(&undone);
         let expected = (1.0 / other).sqrt() - 1.0;
         assert!(
             (f64::from(strain) - expected).abs() < 2e-3,

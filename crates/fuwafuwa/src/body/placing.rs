@@ -2,7 +2,7 @@
 
 use super::Body;
 use super::state::State;
-use crate::dim::Dim;
+use crate::dim::{Dim, turning};
 use crate::ids::NodeId;
 use crate::layers::Layers;
 use crate::momentum::centre_of;
@@ -105,10 +105,7 @@ impl<D: Dim> Body<D> {
     /// neither held nor asleep.
     pub(crate) fn add_velocity(&mut self, linear: Vector, angular: Vector) {
         let centre = self.centre_of_mass();
-        let angular = match D::N {
-            2 => [0.0, 0.0, angular[2]],
-            _ => angular,
-        };
+        let angular = turning::<D>(angular);
         for (id, _) in self.truth.mesh.nodes() {
             if self.state.inverse_mass[id] > 0.0 {
                 let lever = minus(three(self.state.position[id]), centre);

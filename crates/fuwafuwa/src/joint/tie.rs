@@ -193,6 +193,7 @@ fn along(yields: &[Vector; 3], way: Vector) -> f32 {
 /// The impulse that gives a velocity; none where nothing yields.
 fn solved<D: Dim>(yields: &[Vector; 3], velocity: Vector) -> Vector {
     let [x, y, mut z] = *yields;
+    // Nothing yields along the third axis of the plane, and nothing comes along it.
     if D::N == 2 {
         z = [0.0, 0.0, 1.0];
     }

@@ -78,6 +78,7 @@ impl Knife {
     /// How much of the edge a sample stands for [m].
     pub(super) fn share<D: Dim>(&self, stance: &Stance, place: usize) -> f32 {
         let last = self.samples.len() - 1;
+        // In the plane an edge is a point, and what it cuts 1 m thick.
         if D::N == 2 {
             return 1.0;
         }
@@ -110,6 +111,7 @@ impl Knife {
         // Not as it is turned: its length would tremble.
         let long = length(minus(self.edge[1], self.edge[0]));
         let asked = (SAMPLES_PER_VOXEL * long / least).ceil() as usize;
+        // In the plane an edge is a point.
         let count = match D::N {
             2 => 1,
             _ => asked.clamp(1, MOST_SAMPLES) + 1,
@@ -136,6 +138,7 @@ impl Knife {
         self.near.iter_mut().for_each(Vec::clear);
         let from = plus(stance.position, stance.levers[0]);
         let long = stance.long();
+        // In the plane there is one sample, which all of them are near.
         let spacing = match D::N {
             2 => f32::INFINITY,
             _ => long / (self.samples.len() - 1) as f32,
@@ -218,6 +221,7 @@ impl Knife {
             sheet::go_through::<D>(patch, body.truth.grid.size(), &mut faces);
             area += share * sheet::area(patch);
         };
+        // In the plane a sample sweeps a line, which stands for a sheet across the body.
         if D::N == 2 {
             if let Some([from, to]) = rows[0] {
                 let deep = |[x, y, _]: Place, z: f64| [x, y, z];

@@ -100,6 +100,7 @@ fn in_block<D: Dim>(shares: Vector, corners: &[Vector]) -> (Vector, [Vector; 3])
             0 => 1.0 - shares[axis],
             _ => shares[axis],
         };
+        // In the plane corners differ along two axes.
         let weights = [0, 1, 2].map(|axis| if axis < D::N { weight(axis) } else { 1.0 });
         place = plus(place, scaled(at, weights.iter().product()));
         for axis in 0..D::N {

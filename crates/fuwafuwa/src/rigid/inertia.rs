@@ -1,6 +1,6 @@
 //! How hard it is to turn what is rigid: its principal moments of inertia, of an even density.
 
-use crate::dim::Dim;
+use crate::dim::{Dim, turning};
 use crate::rotation::Rotation;
 use crate::shape::{Shape, Vector};
 use crate::vector::{across, dot, length, minus, plus, scaled};
@@ -33,10 +33,7 @@ impl Inertia {
                 bar::<D>(length(minus(to, from)), radius),
             ),
         };
-        let mut moments = scaled(shares, mass);
-        if D::N == 2 {
-            moments = [0.0, 0.0, moments[2]];
-        }
+        let moments = turning::<D>(scaled(shares, mass));
         let inverse = moments.map(|moment| if moment > 0.0 { 1.0 / moment } else { 0.0 });
         // In the plane all turn about the third axis, wherever a bar leads.
         let axes = if D::N == 2 {
@@ -98,12 +95,14 @@ fn cuboid([x, y, z]: Vector) -> Vector {
     [about(y, z), about(z, x), about(x, y)]
 }
 
+/// In the plane a disc.
 fn ball<D: Dim>(radius: f32) -> Vector {
     let share = if D::N == 2 { 0.5 } else { 0.4 };
     [share * radius * radius; 3]
 }
 
-/// A bar with round ends, whose first axis is its own: what is between the ends, and both halves of a ball.
+/// A bar with round ends, whose first axis is its own: what is between the ends, and both halves of a ball. In the plane
+/// a rectangle and both halves of a disc.
 fn bar<D: Dim>(long: f32, radius: f32) -> Vector {
     let squared = radius * radius;
     // How far the middle of half a ball is from its flat side.

@@ -87,7 +87,7 @@ fn flow_on<D: Dim, S: Simd>(
     let elastic = product::<D, S>(zero, &f, &g);
     let rotation = turn::<D, S>(simd, &elastic, view.rotation);
     let own = stress_of::<D, S>(simd, moduli, &elastic, &rotation, view.inverted);
-    let soft = softening::<D, S>(simd, &g);
+    let soft = kneaded_stiffness::<D, S>(simd, &g);
     for i in 0..D::N {
         for j in 0..D::N {
             let mut sum = zero;
@@ -176,8 +176,10 @@ fn flown<D: Dim, S: Simd>(
     }
     // What was kneaded back is stiffer: it must not store more than before.
     let whole = determinant::<D, S>(elastic);
-    let before = softening::<D, S>(simd, g) * density::<D, S>(simd, moduli, &stretch, whole);
-    let after = softening::<D, S>(simd, &next) * density::<D, S>(simd, moduli, &eased, whole);
+    let before =
+        kneaded_stiffness::<D, S>(simd, g) * density::<D, S>(simd, moduli, &stretch, whole);
+    let after =
+        kneaded_stiffness::<D, S>(simd, &next) * density::<D, S>(simd, moduli, &eased, whole);
     // Four things must hold, and numbers that are none hold nothing.
     let (now, then) = (squared::<D, S>(zero, g), squared::<D, S>(zero, &next));
     let room = splat(simd, flow.most_flown) - then;
@@ -216,7 +218,7 @@ fn density<D: Dim, S: Simd>(
 
 /// 1 / λ_max(GᵀG), bounded from the trace and the norm.
 #[inline(always)]
-fn softening<D: Dim, S: Simd>(simd: S, g: &Matrix<S>) -> Lanes<S> {
+fn kneaded_stiffness<D: Dim, S: Simd>(simd: S, g: &Matrix<S>) -> Lanes<S> {
     let zero = splat(simd, 0.0);
     let (mut trace, mut norm) = (zero, zero);
     for i in 0..D::N {
@@ -269,6 +271,7 @@ fn product<D: Dim, S: Simd>(zero: Lanes<S>, a: &Matrix<S>, b: &Matrix<S>) -> Mat
 
 #[inline(always)]
 fn determinant<D: Dim, S: Simd>(m: &Matrix<S>) -> Lanes<S> {
+    // The third axis of the plane stays as it is.
     if D::N == 2 {
         return m[0][0] * m[1][1] - m[0][1] * m[1][0];
     }

@@ -6,7 +6,7 @@ use fearless_simd::prelude::*;
 
 pub type Matrix<S> = [[Lanes<S>; 3]; 3];
 
-/// The rotation of a deformation; see [`crate::law::rotation_of`].
+/// The rotation of a deformation; see [`crate::law::rotation_of`]. In the plane it is found at once, in space step by step.
 #[inline(always)]
 pub fn turn<D: Dim, S: Simd>(simd: S, f: &Matrix<S>, rotation: &mut [Eight; 4]) -> Matrix<S> {
     if D::N == 2 {

@@ -400,7 +400,7 @@ mod tests {
     use crate::material::Material;
     use std::collections::BTreeSet;
 
-    /// A body is torn at random between two walls; the list against all nodes there are.
+    /// A body is torn, and its nodes move, at random between two walls; the list against all nodes there are.
     fn check<D: Dim>(n: usize) {
         let grid = VoxelGrid::<D>::ball(n, 1.0).expect("a ball is not empty");
         let body = Body::new(grid, &[Material::default()]).expect("the material is good");
@@ -451,6 +451,13 @@ mod tests {
             assert!(body.truth.mesh.node_count() == before || !changes.nodes.is_empty());
             body.refresh_awake();
             pairs.tear(ball, &changes.nodes);
+            let step = 0.1 * size;
+            for &node in &body.cache.awake {
+                for along in &mut body.state.position[node][..D::N] {
+                    *along += step * (random(3) as f32 - 1.0);
+                }
+            }
+            pairs.pass(1.001 * step * (D::N as f32).sqrt());
         }
         assert!(
             new > 50 && (gone > 0 || D::N == 2),
@@ -459,7 +466,7 @@ mod tests {
     }
 
     #[test]
-    fn nodes_near_a_wall_are_known_after_every_tear() {
+    fn nodes_near_a_wall_are_known_however_they_move_and_tear() {
         check::<Dim2>(16);
         check::<Dim3>(10);
     }

@@ -3,7 +3,7 @@
 use super::{Refused, Settings, World};
 use crate::body::{Body, MOST_GRAVITY};
 use crate::contact::Hit;
-use crate::dim::Dim;
+use crate::dim::{Dim, turning};
 use crate::event::Event;
 use crate::handle::{BodyId, RigidId};
 use crate::ids::{PieceId, Table};
@@ -313,14 +313,6 @@ impl<D: Dim> World<D> {
             let pieces = body.truth.pieces.list.iter_mut();
             pieces.for_each(|piece| piece.still = 0.0);
         }
-    }
-}
-
-/// An angular velocity as a world of `D` sees it.
-fn turning<D: Dim>(angular: Vector) -> Vector {
-    match D::N {
-        2 => [0.0, 0.0, angular[2]],
-        _ => angular,
     }
 }
 
