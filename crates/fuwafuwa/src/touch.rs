@@ -26,6 +26,7 @@ use crate::ids::{ElementId, PieceId};
 use crate::rigid::Rigids;
 pub use captives::{Captive, Captives};
 pub use impulse::Impulse;
+pub use leaning::{Bounds, bounds_of, sleeping_in};
 pub use leaning::{leaning_on_body, leaning_on_pieces, leaning_on_rigid};
 pub use nodes::{NodePair, NodePairs};
 pub use pair::MARGIN;

@@ -6,17 +6,44 @@ use super::pair::MARGIN;
 use super::sphere::ContactSphere;
 use crate::body::{Bodies, Body};
 use crate::dim::Dim;
-use crate::handle::BodySlot;
+use crate::handle::{BodySlot, RigidSlot};
 use crate::ids::{NodeId, PieceId};
 use crate::lanes::on_widest_lanes;
-use crate::rigid::Rigid;
+use crate::rigid::{Rigid, Rigids};
+use crate::shape::Vector;
 use crate::solve::Row;
-use crate::vector::three;
+use crate::vector::{minus, plus, three};
 use std::collections::{BTreeMap, BTreeSet};
 use std::marker::PhantomData;
 
 /// A piece: its body and number.
 pub type Sleeper = (BodySlot, PieceId);
+
+/// The low and the high corner of a box [m].
+pub type Bounds = [Vector; 2];
+
+/// The boxes around pieces of a body, so much wider that who leans on them touches them [m].
+pub fn bounds_of<D: Dim>(body: &Body<D>, is_one: impl Fn(PieceId) -> bool) -> Vec<Bounds> {
+    let margin = [MARGIN * body.truth.grid.voxel_size(); 3];
+    let pieces = body.piece_views().into_iter();
+    let pieces = pieces.filter(|piece| !piece.removed && is_one(piece.number));
+    let bounds = pieces.map(|piece| [minus(piece.low, margin), plus(piece.high, margin)]);
+    bounds.collect()
+}
+
+/// What is free and sleeps in some boxes: it may lean on what is there, or was.
+pub fn sleeping_in<D: Dim>(places: &[Bounds], rigids: &Rigids) -> Vec<RigidSlot> {
+    let is_there = |rigid: &Rigid| {
+        let [low, high] = rigid.shape().bounds();
+        let margin = MARGIN * rigid.shape().inradius().min(1.0);
+        places.iter().any(|[from, to]| {
+            (0..D::N)
+                .all(|axis| low[axis] - margin <= to[axis] && from[axis] <= high[axis] + margin)
+        })
+    };
+    let sleepers = { rigids.by_slot() }.filter(|(_, rigid)| rigid.is_asleep() && is_there(rigid));
+    sleepers.map(|(slot, _)| slot).collect()
+}
 
 /// The sleepers that lean on something rigid, by body and number in ascending order.
 pub fn leaning_on_rigid<D: Dim>(rigid: &Rigid, bodies: &Bodies<D>) -> Vec<Sleeper> {

@@ -11,7 +11,7 @@ use crate::layers::Layers;
 use crate::rigid::{FARTHEST, Rigid};
 use crate::rotation::Rotation;
 use crate::shape::{Vector, flat};
-use crate::touch::{leaning_on_body, leaning_on_rigid};
+use crate::touch::{Bounds, bounds_of, leaning_on_body, leaning_on_rigid};
 use crate::vector::minus;
 
 impl<D: Dim> World<D> {
@@ -106,10 +106,11 @@ impl<D: Dim> World<D> {
         position: Vector,
         rotation: Rotation,
     ) -> Result<(), Refused> {
+        let was = self.rigids.get(rigid)?.shape().bounds();
         let leaning = leaning_on_rigid(self.rigids.get(rigid)?, &self.bodies);
         self.rigids.get_mut(rigid)?.place::<D>(position, rotation)?;
         self.wake(&leaning);
-        self.forget_rigid(rigid)
+        self.forget_rigid(rigid, was)
     }
 
     /// Sets the velocity [m/s] and the angular velocity [rad/s] of something that is free; in the plane the third component
@@ -184,8 +185,9 @@ impl<D: Dim> World<D> {
         let mut changed = changed.seen_in::<D>();
         changed.check()?;
         changed.wake();
+        let was = self.rigids.get(rigid)?.shape().bounds();
         *self.rigids.get_mut(rigid)? = changed;
-        self.forget_rigid(rigid)
+        self.forget_rigid(rigid, was)
     }
 
     /// Says which layers a body is in and which it meets. It and what leant on it wake.
@@ -280,19 +282,23 @@ impl<D: Dim> World<D> {
         let own = id.slot();
         let leaning = leaning_on_body(body, &self.bodies);
         let leaning: Vec<Hit> = leaning.into_iter().filter(|hit| hit.0 != own).collect();
+        let mut places = bounds_of(body, |_| true);
         self.nearby.remove_body(own);
         change(self.bodies.get_mut(id)?);
         self.wake_up(id)?;
-        self.wake_leaning(&leaning);
+        places.extend(bounds_of(self.bodies.get(id)?, |_| true));
+        self.wake_leaning(leaning, places);
         Ok(())
     }
 
     /// Something rigid is not what or where it was: nothing of what pressed on it counts, and who leans on it wakes.
-    fn forget_rigid(&mut self, id: RigidId) -> Result<(), Refused> {
-        let leaning = leaning_on_rigid(self.rigids.get(id)?, &self.bodies);
+    fn forget_rigid(&mut self, id: RigidId, was: Bounds) -> Result<(), Refused> {
+        let rigid = self.rigids.get(id)?;
+        let is = rigid.shape().bounds();
+        let leaning = leaning_on_rigid(rigid, &self.bodies);
         self.nearby.remove_rigid(id.slot());
         self.nearby.nodes.look_again();
-        self.wake_leaning(&leaning);
+        self.wake_leaning(leaning, vec![was, is]);
         Ok(())
     }
 

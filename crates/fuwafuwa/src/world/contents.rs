@@ -16,7 +16,7 @@ use crate::knife::Knife;
 use crate::rigid::{Drive, Rigid, Rigids};
 use crate::rotation::Rotation;
 use crate::shape::Vector;
-use crate::touch::{leaning_on_body, leaning_on_rigid};
+use crate::touch::{Bounds, bounds_of, leaning_on_body, leaning_on_rigid, sleeping_in};
 
 /// A world that was saved is no older than this: none lives for a thousand million years.
 #[cfg(feature = "serde")]
@@ -107,7 +107,7 @@ impl<D: Dim> World<D> {
         let removed = self.bodies.remove(body)?;
         self.nearby.remove_body(body.slot());
         let leaning = leaning_on_body(&removed, &self.bodies);
-        self.wake_leaning(&leaning);
+        self.wake_leaning(leaning, bounds_of(&removed, |_| true));
         Ok(removed)
     }
 
@@ -120,7 +120,7 @@ impl<D: Dim> World<D> {
         let removed = self.rigids.remove(rigid)?;
         self.nearby.remove_rigid(rigid.slot());
         let leaning = leaning_on_rigid(&removed, &self.bodies);
-        self.wake_leaning(&leaning);
+        self.wake_leaning(leaning, vec![removed.shape().bounds()]);
         Ok(removed)
     }
 
@@ -243,13 +243,32 @@ impl<D: Dim> World<D> {
         self.inside.dedup();
     }
 
-    /// Wakes those that leant on something, and all that is free.
-    pub(super) fn wake_leaning(&mut self, leaning: &[Hit]) {
-        self.wake(leaning);
-        self.wake_all_rigids();
+    /// Wakes pieces that leant on something, given in ascending order, and what is free and rigid where it was or where they
+    /// are, and so on: of those the boxes tell, so that some may wake who only were near.
+    pub(super) fn wake_leaning(&mut self, leaning: Vec<Hit>, was: Vec<Bounds>) {
+        let (mut pieces, mut places) = (leaning, was);
+        loop {
+            for (slot, body) in self.bodies.by_slot() {
+                let is_one = |piece| pieces.binary_search(&(slot, piece)).is_ok();
+                if pieces.iter().any(|&(own, _)| own == slot) {
+                    places.extend(bounds_of(body, is_one));
+                }
+            }
+            self.wake(&pieces);
+            let woken = sleeping_in::<D>(&places, &self.rigids);
+            if woken.is_empty() {
+                return;
+            }
+            self.wake_rigids(&woken);
+            let woken = woken.iter().map(|&slot| self.rigids.at(slot));
+            places = woken.clone().map(|rigid| rigid.shape().bounds()).collect();
+            let leaning = woken.map(|rigid| leaning_on_rigid(rigid, &self.bodies));
+            pieces = leaning.flatten().collect();
+            pieces.sort_unstable();
+        }
     }
 
-    /// Wakes whatever is free: who of them leant on something that is gone shows within a moment.
+    /// Wakes whatever is free.
     pub(super) fn wake_all_rigids(&mut self) {
         let sleepers = self.rigids.by_slot().filter(|(_, rigid)| rigid.is_asleep());
         let sleepers: Vec<RigidSlot> = sleepers.map(|(slot, _)| slot).collect();

@@ -8,7 +8,7 @@ use crate::event::Event;
 use crate::handle::{BodyId, Gone, RigidId};
 use crate::ids::PieceId;
 use crate::shape::Shape;
-use crate::touch::leaning_on_pieces;
+use crate::touch::{bounds_of, leaning_on_pieces};
 use crate::vector::three;
 
 /// How large a piece is, to be compared with others.
@@ -173,12 +173,15 @@ impl<D: Dim> World<D> {
         }
         let hits = pieces.iter().map(|&(body, piece)| (body.slot(), piece));
         let leaning = leaning_on_pieces(&hits.collect::<Vec<Hit>>(), &self.bodies);
+        let mut was = Vec::new();
         for own in pieces.chunk_by(|a, b| a.0 == b.0) {
             let id = own[0].0;
+            let is_one = |piece| own.binary_search(&(id, piece)).is_ok();
+            was.extend(bounds_of(&self.bodies[id], is_one));
             let of_it = own.iter().map(|&(_, piece)| piece);
             self.take_out_of(id, &of_it.collect::<Vec<PieceId>>(), &mut removed);
         }
-        self.wake_leaning(&leaning);
+        self.wake_leaning(leaning, was);
         removed
     }
 
