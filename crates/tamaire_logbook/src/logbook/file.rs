@@ -181,7 +181,8 @@ fn create(path: &Path) -> Result<(), Error> {
             &new,
             OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_CREATE,
         )?;
-        schema::migrate(&mut connection).map_err(|error| told(path, error))?;
+        // As all will write it: whoever first had to change how, while others wait for the same, might wait in vain.
+        begin(&mut connection).map_err(|error| told(path, error))?;
         drop(connection);
         match fs::hard_link(&new, path) {
             // Others may have been faster: then it is theirs.
