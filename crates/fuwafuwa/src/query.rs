@@ -8,7 +8,7 @@ use crate::dim::Dim;
 use crate::handle::{BodyId, RigidId};
 use crate::ids::{ElementId, PieceId};
 use crate::rigid::Rigid;
-use crate::shape::{Shape, Vector, flat};
+use crate::shape::{Bounds, Shape, Vector, flat};
 use crate::vector::{dot, is_finite, length, minus, plus, scaled};
 use crate::view::Facet;
 use crate::world::World;
@@ -17,7 +17,7 @@ use figure::{
 };
 use std::cell::OnceCell;
 use std::collections::BTreeSet;
-use tree::{Bounds, Tree, around_all, distance_from, entry};
+use tree::{Tree, around_all, distance_from, entry};
 
 /// The place on an edge where it is closest to a shape is narrowed down so many times, by a third of what is left: to 6·10⁻⁵ of the edge.
 const NARROWINGS: usize = 24;

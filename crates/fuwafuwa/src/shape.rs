@@ -14,6 +14,9 @@ pub use crate::vector::Vector;
 use crate::vector::{dot, length, minus, plus, scaled};
 use std::fmt;
 
+/// The low and the high corner of a box [m].
+pub type Bounds = [Vector; 2];
+
 /// A rigid shape.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -160,7 +163,7 @@ impl Shape {
     }
 
     /// The corners of the box around it [m]; of a half-space, everything. Axes that do not count are 0.
-    pub fn bounds(&self) -> [Vector; 2] {
+    pub fn bounds(&self) -> Bounds {
         let around = |from: Vector, to: Vector, half: Vector| {
             let low = [0, 1, 2].map(|axis: usize| from[axis].min(to[axis]) - half[axis]);
             let high = [0, 1, 2].map(|axis: usize| from[axis].max(to[axis]) + half[axis]);

@@ -1,11 +1,8 @@
 //! Boxes in boxes, so that what is near a place or on a ray is found without looking at all.
 
-use crate::shape::Vector;
+use crate::shape::{Bounds, Vector};
 use crate::vector::length;
 use std::ops::Range;
-
-/// The low and the high corner of a box [m].
-pub type Bounds = [Vector; 2];
 
 /// Most boxes that are not parted further.
 const LEAF: usize = 4;

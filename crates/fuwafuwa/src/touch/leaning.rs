@@ -10,7 +10,7 @@ use crate::handle::{BodySlot, RigidSlot};
 use crate::ids::{NodeId, PieceId};
 use crate::lanes::on_widest_lanes;
 use crate::rigid::{Rigid, Rigids};
-use crate::shape::Vector;
+use crate::shape::Bounds;
 use crate::solve::Row;
 use crate::vector::{minus, plus, three};
 use std::collections::{BTreeMap, BTreeSet};
@@ -18,9 +18,6 @@ use std::marker::PhantomData;
 
 /// A piece: its body and number.
 pub type Sleeper = (BodySlot, PieceId);
-
-/// The low and the high corner of a box [m].
-pub type Bounds = [Vector; 2];
 
 /// The boxes around pieces of a body, so much wider that who leans on them touches them [m].
 pub fn bounds_of<D: Dim>(body: &Body<D>, is_one: impl Fn(PieceId) -> bool) -> Vec<Bounds> {

@@ -10,8 +10,8 @@ use crate::ids::{PieceId, Table};
 use crate::layers::Layers;
 use crate::rigid::{FARTHEST, Rigid};
 use crate::rotation::Rotation;
-use crate::shape::{Vector, flat};
-use crate::touch::{Bounds, bounds_of, leaning_on_body, leaning_on_rigid};
+use crate::shape::{Bounds, Vector, flat};
+use crate::touch::{bounds_of, leaning_on_body, leaning_on_rigid};
 use crate::vector::minus;
 
 impl<D: Dim> World<D> {
@@ -106,8 +106,9 @@ impl<D: Dim> World<D> {
         position: Vector,
         rotation: Rotation,
     ) -> Result<(), Refused> {
-        let was = self.rigids.get(rigid)?.shape().bounds();
-        let leaning = leaning_on_rigid(self.rigids.get(rigid)?, &self.bodies);
+        let before = self.rigids.get(rigid)?;
+        let was = before.shape().bounds();
+        let leaning = leaning_on_rigid(before, &self.bodies);
         self.rigids.get_mut(rigid)?.place::<D>(position, rotation)?;
         self.wake(&leaning);
         self.forget_rigid(rigid, was)
@@ -177,7 +178,7 @@ impl<D: Dim> World<D> {
         change: impl FnOnce(&mut Rigid),
     ) -> Result<(), Refused> {
         let mut changed = self.rigids.get(rigid)?.clone();
-        let drive = changed.drive;
+        let (drive, was) = (changed.drive, changed.shape().bounds());
         change(&mut changed);
         if changed.drive != drive {
             changed.stay();
@@ -185,7 +186,6 @@ impl<D: Dim> World<D> {
         let mut changed = changed.seen_in::<D>();
         changed.check()?;
         changed.wake();
-        let was = self.rigids.get(rigid)?.shape().bounds();
         *self.rigids.get_mut(rigid)? = changed;
         self.forget_rigid(rigid, was)
     }

@@ -15,8 +15,8 @@ use crate::joint::Joint;
 use crate::knife::Knife;
 use crate::rigid::{Drive, Rigid, Rigids};
 use crate::rotation::Rotation;
-use crate::shape::Vector;
-use crate::touch::{Bounds, bounds_of, leaning_on_body, leaning_on_rigid, sleeping_in};
+use crate::shape::{Bounds, Vector};
+use crate::touch::{bounds_of, leaning_on_body, leaning_on_rigid, sleeping_in};
 
 /// A world that was saved is no older than this: none lives for a thousand million years.
 #[cfg(feature = "serde")]
