@@ -17,9 +17,11 @@ use crate::body::cooldowns::is_near;
 use crate::breakable::{BreakableNode, Cut};
 use crate::dim::{Dim, Point};
 use crate::ids::NodeId;
+use crate::lanes::on_widest_lanes;
 use crate::solve::Row;
 use crate::threads;
 use crate::vector::{dot, length, minus, plus, scaled};
+use fearless_simd::Simd;
 
 /// A node that gives way.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -63,7 +65,8 @@ pub fn failures<D: Dim>(body: &mut Body<D>, duration: f32) -> Vec<Failure> {
     let mut damage = std::mem::take(&mut body.state.damage);
     let found = threads::map(threads::shares(&mut damage), |(first, damage)| {
         let mut found: Vec<Failure> = Vec::new();
-        for (id, node) in body.cache.breakable.among(first..first + damage.len()) {
+        let nodes = body.cache.breakable.among(first..first + damage.len());
+        on_widest_lanes!(simd => for (id, node) in nodes {
             let damage = &mut damage[id.index() - first];
             // What is not damaged yet is looked at in every other round.
             if body.truth.pieces.sleeps(id)
@@ -71,7 +74,12 @@ pub fn failures<D: Dim>(body: &mut Body<D>, duration: f32) -> Vec<Failure> {
             {
                 continue;
             }
-            let Some(failure) = worst_cut(body, id, node) else {
+            // Most nodes are far from giving way.
+            let failure = match holds(simd, body, id, node) {
+                true => None,
+                false => worst_cut(body, id, node),
+            };
+            let Some(failure) = failure else {
                 let healed = *damage - duration / HEALING_TIME;
                 *damage = healed.max(0.0);
                 continue;
@@ -81,7 +89,7 @@ pub fn failures<D: Dim>(body: &mut Body<D>, duration: f32) -> Vec<Failure> {
             if *damage >= 1.0 && !body.state.cooldowns.covers(failure.at) {
                 found.push(failure);
             }
-        }
+        });
         found
     });
     body.state.damage = damage;
@@ -111,20 +119,22 @@ fn undisturbed(found: Vec<Failure>) -> Vec<Failure> {
     chosen
 }
 
+/// Whether no cut through a breakable node can be overstrained: no pull is greater than half of all forces together,
+/// (Σ|f|)² ≤ n Σ|f|², with a little for rounding; and no cut opens less than a face.
+#[inline(always)]
+fn holds<D: Dim, S: Simd>(simd: S, body: &Body<D>, id: NodeId, node: &BreakableNode) -> bool {
+    let threshold = face_area::<D>(body.truth.grid.voxel_size()) * node.threshold;
+    let squares = body.state.blocks.squares_on(simd, id);
+    0.2501 * node.group.count_ones() as f32 * squares <= threshold * threshold
+}
+
 /// The cut through a breakable node that is overstrained most, if one is.
+#[inline(never)]
 fn worst_cut<D: Dim>(body: &Body<D>, id: NodeId, node: &BreakableNode) -> Option<Failure> {
     let size = body.truth.grid.voxel_size();
     let mut forces = [[0.0; 4]; 8];
-    let mut squared = 0.0;
     for (octant, force) in octants(node.group).zip(body.state.blocks.parts_on(id)) {
         forces[octant] = force;
-        squared += dot(force, force);
-    }
-    // No pull is greater than half of all forces together, (Σ|f|)² ≤ n Σ|f|², with a little for
-    // rounding; and no cut opens less than a face. Most nodes are far from giving way.
-    let threshold = face_area::<D>(size) * node.threshold;
-    if 0.2501 * node.group.count_ones() as f32 * squared <= threshold * threshold {
-        return None;
     }
     let total = forces.into_iter().fold([0.0; 4], plus);
     // What its voxels have turned by together: found when it is asked for.

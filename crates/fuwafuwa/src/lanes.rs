@@ -207,6 +207,17 @@ pub fn sum<S: Simd>(simd: S, numbers: &[f32], places: &[u32]) -> Row {
     sum.to_array()
 }
 
+/// The squares of the four numbers that begin at each place, added up.
+#[inline(always)]
+pub fn sum_of_squares<S: Simd>(simd: S, numbers: &[f32], places: &[u32]) -> Row {
+    let mut sum = f32x4::splat(simd, 0.0);
+    for &place in places {
+        let row = row_at(simd, numbers, place);
+        sum += row * row;
+    }
+    sum.to_array()
+}
+
 #[inline(always)]
 fn row_at<S: Simd>(simd: S, numbers: &[f32], place: u32) -> f32x4<S> {
     let first = place as usize;

@@ -23,7 +23,7 @@ pub use crate::lanes::Row;
 
 use crate::dim::Dim;
 use crate::ids::{ElementId, NodeId, Table};
-use crate::lanes::{Eight, LANES, on_widest_lanes, splat, sum};
+use crate::lanes::{Eight, LANES, on_widest_lanes, splat, sum, sum_of_squares};
 use crate::law::{Elasticity, Law};
 use crate::plasticity::Plasticity;
 use crate::rotation::Rotation;
@@ -234,6 +234,14 @@ impl<D: Dim> Blocks<D> {
             force[..D::N].copy_from_slice(&self.forces[place as usize..][..D::N]);
             force
         })
+    }
+
+    /// The squares of the forces of the elements on a node, added up [N²], as of the last evaluation.
+    #[inline(always)]
+    pub fn squares_on<S: Simd>(&self, simd: S, node: NodeId) -> f32 {
+        let slots = &self.slots[node][..D::CORNERS];
+        let squares = sum_of_squares(simd, &self.forces, slots);
+        squares[..D::N].iter().sum()
     }
 
     #[inline(always)]
