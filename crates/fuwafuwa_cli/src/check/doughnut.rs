@@ -5,17 +5,25 @@ use super::parallel;
 use crate::report::{Outcome, Progress};
 use anyhow::{Result, ensure};
 use fuwafuwa::shape::Vector;
-use fuwafuwa::{Body, Dim2, Drive, Material, NodeId, Rigid, Settings, VoxelGrid, World};
+use fuwafuwa::{
+    Body, Dim, Dim2, Dim3, Drive, Material, NodeId, Rigid, Settings, VoxelGrid, World,
+};
 
-/// Voxels across, and how fast each hand comes [m/s]: at the fastest one side of the hole comes to the other by ten widths of the
-/// ring a second.
-const CASES: [(usize, f32); 6] = [
-    (24, 0.25),
-    (24, 2.0),
-    (24, 5.0),
-    (48, 0.25),
-    (48, 2.0),
-    (48, 5.0),
+/// Dimensions, voxels across, and how fast each hand comes [m/s]: at the fastest one side of the hole comes to the other by ten
+/// widths of the ring a second.
+const CASES: [(usize, usize, f32); 12] = [
+    (2, 24, 0.25),
+    (2, 24, 2.0),
+    (2, 24, 5.0),
+    (2, 48, 0.25),
+    (2, 48, 2.0),
+    (2, 48, 5.0),
+    (3, 24, 0.25),
+    (3, 24, 2.0),
+    (3, 24, 5.0),
+    (3, 32, 0.25),
+    (3, 32, 2.0),
+    (3, 32, 5.0),
 ];
 /// Radius of the hands [m].
 const HAND: f32 = 0.4;
@@ -33,17 +41,20 @@ const SHUT: f64 = 2.0;
 
 /// Rings of several sizes, squeezed slowly and fast.
 pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
-    let depths = parallel::each(&CASES, progress, |&(n, speed)| squeeze(n, speed))?;
-    let outcome = |(&(n, speed), depth): (&(usize, f32), f64)| {
-        let case = format!("doughnut n = {n}, {speed} m/s, voxels into itself");
+    let depths = parallel::each(&CASES, progress, |&(dim, n, speed)| match dim {
+        2 => squeeze::<Dim2>(n, speed),
+        _ => squeeze::<Dim3>(n, speed),
+    })?;
+    let outcome = |(&(dim, n, speed), depth): (&(usize, usize, f32), f64)| {
+        let case = format!("doughnut {dim}D n = {n}, {speed} m/s, voxels into itself");
         Outcome::within(case, depth, -SHUT..=DEPTH)
     };
     Ok(CASES.iter().zip(depths).map(outcome).collect())
 }
 
 /// How far the upper side of the hole goes into the lower one at most, in voxels.
-fn squeeze(n: usize, speed: f32) -> Result<f64> {
-    let mut world = World::<Dim2>::new(Settings {
+fn squeeze<D: Dim>(n: usize, speed: f32) -> Result<f64> {
+    let mut world = World::<D>::new(Settings {
         gravity: [0.0; 3],
         ..Settings::default()
     })?;
@@ -51,11 +62,11 @@ fn squeeze(n: usize, speed: f32) -> Result<f64> {
         damping: Material::default().damping,
         ..material()
     };
-    let grid = VoxelGrid::<Dim2>::ring(n, 1.0)?;
-    let voxel = grid.voxel_size();
+    let grid = VoxelGrid::<D>::ring(n, 1.0)?;
+    let (voxel, plane) = (grid.voxel_size(), plane_of(&grid));
     let ring = world.add_body(Body::new(grid, &[material])?);
     let sides = [-1.0, 1.0];
-    let middle_of = |side: f32, apart: f32| [0.5, 0.5 + side * (HAND + 0.5 * apart), 0.0];
+    let middle_of = |side: f32, apart: f32| [0.5, 0.5 + side * (HAND + 0.5 * apart), plane];
     let mut hands = Vec::new();
     for side in sides {
         let hand = Rigid::hand(middle_of(side, 1.0), HAND);
@@ -76,24 +87,39 @@ fn squeeze(n: usize, speed: f32) -> Result<f64> {
         let [low, high] = holes
             .each_ref()
             .map(|nodes| places(&world.bodies()[ring], nodes));
+        let slips = |at: &Vector| (at[2] - plane).abs() > voxel;
+        ensure!(
+            !low.iter().chain(&high).any(slips),
+            "one side of the ring slips past the other"
+        );
         deepest = deepest.max(overlap(&low, &high));
     }
     Ok(f64::from(deepest / voxel))
 }
 
-/// The nodes below or above the middle of the hole that stand on its side.
-fn hole_side(body: &Body<Dim2>, side: f32) -> Vec<NodeId> {
+/// Where the middle of a ring is along the third axis [m].
+fn plane_of<D: Dim>(grid: &VoxelGrid<D>) -> f32 {
+    match D::N {
+        2 => 0.0,
+        _ => 0.5 * grid.size()[2] as f32 * grid.voxel_size(),
+    }
+}
+
+/// The nodes below or above the middle of the hole that stand on its side, in space in its plane.
+fn hole_side<D: Dim>(body: &Body<D>, side: f32) -> Vec<NodeId> {
+    let (voxel, plane) = (body.grid().voxel_size(), plane_of(body.grid()));
     let nodes = body.mesh().nodes().filter(|(id, node)| {
-        let [x, y, _] = body.node_state(*id).0.map(|k| k - 0.5);
-        let is_inner = x * x + y * y < 0.36 * 0.36;
-        let is_bare = node.group.count_ones() < 4;
+        let [x, y, z] = body.node_state(*id).0;
+        let (x, y) = (x - 0.5, y - 0.5);
+        let is_inner = x * x + y * y < 0.36 * 0.36 && (z - plane).abs() < 0.1 * voxel;
+        let is_bare = (node.group.count_ones() as usize) < D::CORNERS;
         is_inner && is_bare && y * side > 0.0
     });
     nodes.map(|(id, _)| id).collect()
 }
 
 /// Where nodes are, from left to right.
-fn places(body: &Body<Dim2>, nodes: &[NodeId]) -> Vec<Vector> {
+fn places<D: Dim>(body: &Body<D>, nodes: &[NodeId]) -> Vec<Vector> {
     let mut places: Vec<Vector> = nodes.iter().map(|&id| body.node_state(id).0).collect();
     places.sort_by(|a, b| a[0].total_cmp(&b[0]));
     places
@@ -127,14 +153,19 @@ mod tests {
         assert!((overlap(&high, &low) - 0.2).abs() < 1e-6);
     }
 
-    #[test]
-    fn a_ring_at_rest_has_a_hole() {
-        let body = Body::new(VoxelGrid::<Dim2>::ring(24, 1.0).unwrap(), &[material()]).unwrap();
+    fn check_rest<D: Dim>() {
+        let body = Body::new(VoxelGrid::<D>::ring(24, 1.0).unwrap(), &[material()]).unwrap();
         let [low, high] = [-1.0, 1.0].map(|side| places(&body, &hole_side(&body, side)));
         assert!(
             (overlap(&low, &high) + 0.5).abs() < 0.1,
             "{}",
             overlap(&low, &high)
         );
+    }
+
+    #[test]
+    fn a_ring_at_rest_has_a_hole() {
+        check_rest::<Dim2>();
+        check_rest::<Dim3>();
     }
 }
