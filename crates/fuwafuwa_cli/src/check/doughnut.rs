@@ -5,9 +5,7 @@ use super::parallel;
 use crate::report::{Outcome, Progress};
 use anyhow::{Result, ensure};
 use fuwafuwa::shape::Vector;
-use fuwafuwa::{
-    Body, Dim, Dim2, Dim3, Drive, Material, NodeId, Rigid, Settings, VoxelGrid, World,
-};
+use fuwafuwa::{Body, Dim, Dim2, Dim3, Drive, Material, NodeId, Rigid, Settings, VoxelGrid, World};
 
 /// Dimensions, voxels across, and how fast each hand comes [m/s]: at the fastest one side of the hole comes to the other by ten
 /// widths of the ring a second.
