@@ -110,7 +110,9 @@ impl<D: Dim> Body<D> {
         let elements: Vec<ElementId> = body.truth.mesh.elements().map(|(id, _)| id).collect();
         body.state
             .blocks
-            .update(&body.truth.mesh, &body.truth.grid, &[], &elements);
+            .update(&body.truth.mesh, &body.truth.grid, &[], &elements, |_| {
+                false
+            });
         let all: Vec<NodeId> = body.truth.mesh.nodes().map(|(id, _)| id).collect();
         body.weigh(&all);
         body.rebuild();

@@ -133,17 +133,14 @@ impl<D: Dim> Body<D> {
             self.cache.bare[id] = 0;
         }
         let dents = self.dents_of(remodelled, &new);
-        let blocks = &mut self.state.blocks;
-        blocks.update(&self.truth.mesh, &self.truth.grid, removed, seated);
+        let (blocks, pieces) = (&mut self.state.blocks, &self.truth.pieces);
+        let asleep = |id: ElementId| pieces.list[pieces.of_element(id)].asleep;
+        let (mesh, grid) = (&self.truth.mesh, &self.truth.grid);
+        blocks.update(mesh, grid, removed, seated, asleep);
         for (id, dent) in dents {
             blocks.set_undone(id, dent);
         }
         self.settle(&new);
-        for &id in seated {
-            let piece = self.truth.pieces.of_element(id);
-            let asleep = self.truth.pieces.list[piece].asleep;
-            self.state.blocks.set_asleep(id, asleep);
-        }
         let seated = seated.iter().filter_map(|&id| self.truth.mesh.element(id));
         let fresh = seated.filter(|element| element.cell.level == 0);
         let fresh: Vec<Point> = fresh.map(|element| element.cell.at).collect();

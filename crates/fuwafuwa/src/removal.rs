@@ -36,7 +36,7 @@ impl<D: Dim> Body<D> {
             (piece.removed, piece.asleep) = (true, true);
         }
         let blocks = &mut self.state.blocks;
-        blocks.update(&truth.mesh, &truth.grid, &elements, &[]);
+        blocks.update(&truth.mesh, &truth.grid, &elements, &[], |_| false);
         self.find_breakable(&nodes);
         self.cache.awake_is_stale = true;
         self.refresh_awake();

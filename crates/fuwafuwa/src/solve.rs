@@ -307,16 +307,9 @@ impl<D: Dim> Blocks<D> {
     /// How many elements that are awake were inside out in the last evaluation; under
     /// [`Law::Endo2004`], which does not look, none.
     pub fn inverted_count(&self) -> u32 {
-        let inverted = |block: &Block| (block.inverted & !block.asleep).count_ones();
-        self.blocks.iter().map(inverted).sum()
-    }
-
-    /// Lets an element sleep, or wakes it: while it sleeps it keeps the rotation and the forces it had, and a block
-    /// whose elements all sleep is not evaluated.
-    pub fn set_asleep(&mut self, id: ElementId, asleep: bool) {
-        let (block, lane) = self.assigned[id];
-        let sleepers = &mut self.blocks[block as usize].asleep;
-        *sleepers = *sleepers & !(1 << lane) | u8::from(asleep) << lane;
+        let awake = self.blocks.iter().filter(|block| !block.is_idle());
+        let inverted = |block: &Block| (block.inverted & !block.vacant).count_ones();
+        awake.map(inverted).sum()
     }
 
     /// Adds a substep's worth of elastic force and of gravity to velocities [m/s].
@@ -377,7 +370,7 @@ mod tests {
         let elasticity = Elasticity::new(5000.0, 0.3).unwrap();
         let mut wide = Blocks::new(law, &[elasticity], grid.voxel_size());
         let all: Vec<ElementId> = mesh.elements().map(|(id, _)| id).collect();
-        wide.update(&mesh, &grid, &[], &all);
+        wide.update(&mesh, &grid, &[], &all, |_| false);
         let mut other = wide.clone();
         let mut position = vec![[0.0; 4]; mesh.node_capacity()];
         for (id, node) in mesh.nodes() {
@@ -433,7 +426,7 @@ mod tests {
         let elasticity = Elasticity::new(5000.0, 0.3).unwrap();
         let mut blocks = Blocks::<D>::new(Law::PatchExact, &[elasticity], grid.voxel_size());
         let all: Vec<ElementId> = mesh.elements().map(|(id, _)| id).collect();
-        blocks.update(&mesh, &grid, &[], &all);
+        blocks.update(&mesh, &grid, &[], &all, |_| false);
         let mut position = vec![[0.0; 4]; mesh.node_capacity()];
         let mut evaluate = |blocks: &mut Blocks<D>, bend: f32| {
             for (id, node) in mesh.nodes() {
@@ -451,15 +444,28 @@ mod tests {
             let forces = forces.flat_map(|place| &blocks.forces[place..][..D::N]);
             (blocks.rotation(id), forces.copied().collect::<Vec<f32>>())
         };
-        for &id in &all {
-            blocks.set_asleep(id, sleeps(&id));
-        }
+        let evaluated = |blocks: &Blocks<D>| {
+            blocks
+                .blocks
+                .iter()
+                .filter(|block| !block.is_idle())
+                .count()
+        };
+        let when_awake = evaluated(&blocks);
+        let sleepers: Vec<ElementId> = all.iter().copied().filter(sleeps).collect();
+        blocks.set_asleep(&mesh, &sleepers, true);
+        assert!(2 * evaluated(&blocks) < when_awake, "a quarter is awake");
         let before: Vec<_> = all.iter().map(|&id| state(&blocks, id)).collect();
         evaluate(&mut blocks, 0.2);
         for (id, before) in all.iter().zip(before) {
             assert_eq!(state(&blocks, *id) == before, sleeps(id), "{id}");
         }
-        blocks.update(&mesh, &grid, &[], &all);
+        let before: Vec<_> = all.iter().map(|&id| state(&blocks, id)).collect();
+        blocks.set_asleep(&mesh, &sleepers, false);
+        assert!(evaluated(&blocks) >= when_awake);
+        let woken = all.iter().map(|&id| state(&blocks, id));
+        assert!(woken.eq(before));
+        blocks.update(&mesh, &grid, &[], &all, |id| sleeps(&id));
         for &id in &all {
             assert!(state(&blocks, id).1.iter().all(|&force| force == 0.0));
         }

@@ -10,11 +10,12 @@ use crate::vector::{dot, is_finite, plus};
 impl<D: Dim> Body<D> {
     /// Wakes or puts to sleep all pieces whose number is marked.
     pub(crate) fn set_asleep(&mut self, marked: &Table<PieceId, bool>, asleep: bool) {
+        let mut elements = Vec::new();
         for (id, element) in self.truth.mesh.elements() {
             if !marked[self.truth.pieces.of_element(id)] {
                 continue;
             }
-            self.state.blocks.set_asleep(id, asleep);
+            elements.push(id);
             for &node in &element.nodes {
                 if asleep {
                     self.state.velocity[node] = [0.0; 4];
@@ -28,6 +29,8 @@ impl<D: Dim> Body<D> {
                 };
             }
         }
+        let blocks = &mut self.state.blocks;
+        blocks.set_asleep(&self.truth.mesh, &elements, asleep);
         let pieces = self.truth.pieces.list.iter_mut().zip(marked.iter());
         for (piece, _) in pieces.filter(|(_, marked)| **marked) {
             piece.asleep = asleep;

@@ -6,7 +6,7 @@ use super::blend::plasticities;
 use super::state::{MOST_GRAVITY, State};
 use super::truth::Truth;
 use crate::dim::Dim;
-use crate::ids::{NodeId, PieceId, Table};
+use crate::ids::{ElementId, NodeId, PieceId, Table};
 use crate::mesh::{Defect, Mesh};
 use crate::piece::Pieces;
 use crate::pyramid::Pyramid;
@@ -51,15 +51,12 @@ impl<D: Dim> Body<D> {
             mesh,
             grid,
             materials,
+            pieces,
             ..
         } = &self.truth;
-        let plasticities = plasticities(materials);
-        self.state.blocks.restore(mesh, grid, &plasticities);
-        for (id, _) in mesh.elements() {
-            let piece = self.truth.pieces.of_element(id);
-            let asleep = self.truth.pieces.list[piece].asleep;
-            self.state.blocks.set_asleep(id, asleep);
-        }
+        let asleep = |id: ElementId| pieces.list[pieces.of_element(id)].asleep;
+        let (blocks, plasticities) = (&mut self.state.blocks, plasticities(materials));
+        blocks.restore(mesh, grid, &plasticities, asleep);
         self.rebuild();
     }
 

@@ -1,6 +1,6 @@
 //! Which block and lane an element is in: how blocks follow a remodelling.
 
-use super::block::{ALL_LANES, Block, Home, VACANT};
+use super::block::{ALL_LANES, Block, Home, Kind, VACANT};
 use super::kernel::{numbers, numbers_a_node, symmetric};
 use super::plastic::{Dent, NO_DENT, Undone};
 use super::{Blocks, PAD};
@@ -13,48 +13,142 @@ use crate::law::Law;
 use crate::mesh::{Element, Mesh};
 use crate::stencil::Stencil;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 impl<D: Dim> Blocks<D> {
     /// Follows a remodelling: takes out `removed` elements and puts in, or in other blocks, those
-    /// that were `seated`. Costs by what changed.
+    /// that were `seated`, of which some are `asleep`. Costs by what changed.
     pub fn update(
         &mut self,
         mesh: &Mesh<D>,
         grid: &VoxelGrid<D>,
         removed: &[ElementId],
         seated: &[ElementId],
+        asleep: impl Fn(ElementId) -> bool,
     ) {
-        let state = |&id: &ElementId| (self.rotation_of(id), self.undone(id).unwrap_or(NO_DENT));
-        let states: Vec<([f32; 4], Dent)> = seated.iter().map(state).collect();
+        let newcomer = |&id: &ElementId| {
+            let element = mesh.element(id).expect("seated elements are alive");
+            let material = grid.material(mesh.first_voxel(element));
+            self.newcomer(id, element, material, asleep(id))
+        };
+        let newcomers: Vec<Newcomer> = seated.iter().map(newcomer).collect();
         for &id in removed.iter().chain(seated) {
             self.take_out(id);
         }
-        let mut classes: BTreeMap<(u8, u32), Vec<Newcomer>> = BTreeMap::new();
-        for (&id, (rotation, undone)) in seated.iter().zip(states) {
-            let element = mesh.element(id).expect("seated elements are alive");
-            let material = grid.material(mesh.first_voxel(element));
-            let class = classes.entry((material, element.stencil)).or_default();
-            class.push(Newcomer {
-                id,
-                element,
-                rotation,
-                undone,
-            });
+        self.take_in(mesh, newcomers);
+    }
+
+    /// Lets elements sleep, or wakes them. Those of a block that all do so stay together; the others go to other blocks, for
+    /// a block is evaluated as a whole.
+    pub fn set_asleep(&mut self, mesh: &Mesh<D>, elements: &[ElementId], asleep: bool) {
+        let mut changing: BTreeMap<u32, u8> = BTreeMap::new();
+        for &id in elements {
+            let (index, lane) = self.assigned[id];
+            if self.blocks[index as usize].home.asleep != asleep {
+                *changing.entry(index).or_default() |= 1 << lane;
+            }
         }
-        for (&(material, class), newcomers) in &classes {
-            let stencil = mesh.stencil(newcomers[0].element);
-            self.put_in(material, class, stencil, newcomers);
+        let mut movers = Vec::new();
+        for (index, lanes) in changing {
+            let block = &mut self.blocks[index as usize];
+            if lanes | block.vacant != ALL_LANES {
+                let lanes = (0..LANES).filter(|lane| lanes >> lane & 1 == 1);
+                movers.extend(lanes.map(|lane| ElementId(block.elements[lane])));
+                continue;
+            }
+            let home = Home {
+                asleep,
+                ..block.home
+            };
+            let before = std::mem::replace(&mut block.home, home);
+            let open = self.open.get_mut(&before);
+            if open.is_some_and(|open| open.remove(&index)) {
+                self.open.entry(home).or_default().insert(index);
+            }
+        }
+        let state = |&id: &ElementId| {
+            let element = mesh.element(id).expect("who sleeps or wakes is alive");
+            let (index, lane) = self.assigned[id];
+            let block = &self.blocks[index as usize];
+            let newcomer = self.newcomer(id, element, block.home.material, asleep);
+            let forces = (0..element.nodes.len()).map(|node| self.place(index, lane, node));
+            let forces: Vec<f32> = forces
+                .flat_map(|place| &self.forces[place])
+                .copied()
+                .collect();
+            (newcomer, block.inverted >> lane & 1, forces)
+        };
+        let states: Vec<(Newcomer, u8, Vec<f32>)> = movers.iter().map(state).collect();
+        movers.iter().for_each(|&id| self.take_out(id));
+        self.take_in(
+            mesh,
+            states.iter().map(|(newcomer, ..)| *newcomer).collect(),
+        );
+        for (Newcomer { id, .. }, inverted, forces) in states {
+            let (index, lane) = self.assigned[id];
+            self.blocks[index as usize].inverted |= inverted << lane;
+            for (node, force) in forces.chunks_exact(D::N).enumerate() {
+                let place = self.place(index, lane, node);
+                self.forces[place].copy_from_slice(force);
+            }
+        }
+    }
+
+    /// An element as it is, on its way into a block.
+    fn newcomer<'a>(
+        &self,
+        id: ElementId,
+        element: &'a Element,
+        material: u8,
+        asleep: bool,
+    ) -> Newcomer<'a> {
+        Newcomer {
+            id,
+            element,
+            material,
+            asleep,
+            rotation: self.rotation_of(id),
+            undone: self.undone(id).unwrap_or(NO_DENT),
+        }
+    }
+
+    /// Puts elements that are in no block into some, and finds out where the forces on their nodes stand.
+    fn take_in(&mut self, mesh: &Mesh<D>, newcomers: Vec<Newcomer>) {
+        let nodes = newcomers
+            .iter()
+            .flat_map(|newcomer| newcomer.element.nodes.iter().copied());
+        let nodes = ascending(nodes, mesh.node_capacity());
+        let mut classes: BTreeMap<(bool, u8, u32), Vec<Newcomer>> = BTreeMap::new();
+        for newcomer in newcomers {
+            let Newcomer {
+                asleep,
+                material,
+                element,
+                ..
+            } = newcomer;
+            let class = classes
+                .entry((asleep, material, element.stencil))
+                .or_default();
+            class.push(newcomer);
+        }
+        for newcomers in classes.values() {
+            self.put_in(mesh.stencil(newcomers[0].element), newcomers);
         }
         self.slots.resize(mesh.node_capacity(), [0; 8]);
-        let elements = seated.iter().filter_map(|&id| mesh.element(id));
-        let nodes = elements.flat_map(|element| element.nodes.iter().copied());
-        for node in ascending(nodes, mesh.node_capacity()) {
+        for node in nodes {
             let mut slots = [0; 8];
             for (place, id) in slots.iter_mut().zip(mesh.carrier_ids(node)) {
                 *place = self.slot(id, node);
             }
             self.slots[node] = slots;
         }
+    }
+
+    /// Where the force on a node of the element in a lane of a block stands; nodes count in the order of the element.
+    pub(super) fn place(&self, index: u32, lane: u8, node: usize) -> Range<usize> {
+        let first = self.blocks[index as usize].first as usize;
+        let place = (first + node * LANES + lane as usize) * D::N;
+        place..place + D::N
     }
 
     /// The place of an element's force on a node.
@@ -79,9 +173,9 @@ impl<D: Dim> Blocks<D> {
         self.assigned[id] = (VACANT, 0);
         let block = &mut self.blocks[index as usize];
         block.elements[lane as usize] = VACANT;
-        block.asleep |= 1 << lane;
+        block.vacant |= 1 << lane;
         let open = self.open.entry(block.home).or_default();
-        if block.elements == [VACANT; LANES] {
+        if block.vacant == ALL_LANES {
             open.remove(&index);
             let kind = (block.node_count, block.home.is_pool());
             self.empty.entry(kind).or_default().push(index);
@@ -90,34 +184,39 @@ impl<D: Dim> Blocks<D> {
         }
     }
 
-    /// Puts elements of one class and material into blocks: into vacant lanes of the class, eight
+    /// Puts elements of one class and material, all asleep or all awake, into blocks: into vacant lanes of the class, eight
     /// at a time into blocks of their own, and what is left into the pool.
-    fn put_in(
-        &mut self,
-        material: u8,
-        class: u32,
-        stencil: &Stencil<D>,
-        mut newcomers: &[Newcomer],
-    ) {
+    fn put_in(&mut self, stencil: &Stencil<D>, mut newcomers: &[Newcomer]) {
+        let Newcomer {
+            element,
+            material,
+            asleep,
+            ..
+        } = newcomers[0];
+        let class = element.stencil;
         let is_plain = stencil.is_plain() && self.law == Law::PatchExact;
-        let home = if is_plain {
-            Home::Plain(material)
-        } else {
-            Home::Class(material, class)
+        let home = |kind: Kind| Home {
+            kind,
+            material,
+            asleep,
         };
+        let own = home(match is_plain {
+            true => Kind::Plain,
+            false => Kind::Class(class),
+        });
         let count = stencil.slots.len() as u32;
         let numbers = numbers_of(self.law, stencil);
         while let Some((newcomer, others)) = newcomers.split_first() {
-            let open = self.open.get(&home).and_then(|open| open.first().copied());
+            let open = self.open.get(&own).and_then(|open| open.first().copied());
             let index = match open {
                 Some(index) => index,
                 None if is_plain || newcomers.len() >= LANES => {
-                    let index = self.empty_block(home, count);
+                    let index = self.empty_block(own, count);
                     self.blocks[index as usize].stencil = self.stencil_of(class, &numbers);
                     index
                 }
                 None => {
-                    let pool = Home::Pool(material, count);
+                    let pool = home(Kind::Pool(count));
                     let open = self.open.get(&pool).and_then(|open| open.first().copied());
                     open.unwrap_or_else(|| self.empty_block(pool, count))
                 }
@@ -150,7 +249,7 @@ impl<D: Dim> Blocks<D> {
             home,
             undone,
             elements: [VACANT; LANES],
-            asleep: ALL_LANES,
+            vacant: ALL_LANES,
             inverted: 0,
             half_size: [self.voxel_size; LANES],
             rotation: [[0.0; LANES]; 4],
@@ -164,7 +263,7 @@ impl<D: Dim> Blocks<D> {
 
     /// What the elements of a block start with, where their material keeps dents.
     fn undone_in(&self, home: Home) -> Option<Box<Undone>> {
-        let flow = self.flows.get(home.material() as usize - 1);
+        let flow = self.flows.get(home.material as usize - 1);
         flow.copied().flatten().map(|_| Undone::none())
     }
 
@@ -180,10 +279,11 @@ impl<D: Dim> Blocks<D> {
     /// Puts an element into a vacant lane of a block.
     fn assign(&mut self, index: u32, newcomer: &Newcomer, numbers: &[f32]) {
         let block = &mut self.blocks[index as usize];
-        let is_first = block.elements == [VACANT; LANES];
-        let mut vacant = (0..LANES).filter(|&lane| block.elements[lane] == VACANT);
-        let lane = vacant.next().expect("open blocks have a vacancy");
-        let is_last = vacant.next().is_none();
+        let is_first = block.vacant == ALL_LANES;
+        assert_ne!(block.vacant, 0, "open blocks have a vacancy");
+        let lane = block.vacant.trailing_zeros() as usize;
+        block.vacant &= !(1 << lane);
+        let is_last = block.vacant == 0;
         // The first in a block lends the vacant lanes its numbers: they compute something sane.
         let lanes = if is_first { 0..LANES } else { lane..lane + 1 };
         let half_size = 0.5 * self.voxel_size * newcomer.element.cell.width() as f32;
@@ -212,7 +312,6 @@ impl<D: Dim> Blocks<D> {
             self.forces[force..][..D::N].fill(0.0);
         }
         block.elements[lane] = newcomer.id.0;
-        block.asleep &= !(1 << lane);
         block.inverted &= !(1 << lane);
         let open = self.open.entry(block.home).or_default();
         if is_last {
@@ -228,9 +327,12 @@ impl<D: Dim> Blocks<D> {
 }
 
 /// An element on its way into a block.
+#[derive(Copy, Clone)]
 struct Newcomer<'a> {
     id: ElementId,
     element: &'a Element,
+    material: u8,
+    asleep: bool,
     rotation: [f32; 4],
     undone: Dent,
 }

@@ -22,8 +22,8 @@ pub const ALL_LANES: u8 = u8::MAX;
 pub struct Block {
     pub home: Home,
     pub elements: [u32; LANES],
-    /// The lanes that sleep or are vacant, as a mask.
-    pub asleep: u8,
+    /// The lanes without an element, as a mask.
+    pub vacant: u8,
     /// The lanes that are inside out, as of the last evaluation.
     pub inverted: u8,
     pub half_size: Eight,
@@ -39,27 +39,30 @@ pub struct Block {
     pub numbers: u32,
 }
 
-/// What the elements of a block have in common; each with the number of its material.
+/// What the elements of a block have in common.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Home {
+pub struct Home {
+    pub kind: Kind,
+    /// The number of their material.
+    pub material: u8,
+    /// Whether they sleep: then they keep the rotation and the forces that they have.
+    pub asleep: bool,
+}
+
+/// Of which classes the elements of a block are.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
     /// Whole cells with nodes in their corners only.
-    Plain(u8),
+    Plain,
     /// One class.
-    Class(u8, u32),
-    /// A number of nodes.
-    Pool(u8, u32),
+    Class(u32),
+    /// Any with this number of nodes.
+    Pool(u32),
 }
 
 impl Home {
-    pub fn material(self) -> u8 {
-        match self {
-            Self::Plain(material) | Self::Class(material, _) | Self::Pool(material, _) => material,
-        }
-    }
-
     pub fn is_pool(self) -> bool {
-        matches!(self, Self::Pool(..))
+        matches!(self.kind, Kind::Pool(_))
     }
 }
 
@@ -88,16 +91,10 @@ impl Block {
         self.first as usize + self.node_count as usize * LANES
     }
 
-    /// The lanes whose elements sleep while others are awake, as a mask.
+    /// Whether nobody in it is awake.
     #[inline(always)]
-    fn sleepers(&self) -> u8 {
-        if matches!(self.asleep, 0 | ALL_LANES) {
-            return 0;
-        }
-        let elements = self.elements.iter().enumerate();
-        elements.fold(self.asleep, |sleepers, (lane, &element)| {
-            sleepers & !(u8::from(element == VACANT) << lane)
-        })
+    pub fn is_idle(&self) -> bool {
+        self.home.asleep || self.vacant == ALL_LANES
     }
 
     /// Where its forces stand among those of a group, the first of which has the number `first`.
@@ -110,10 +107,10 @@ impl Block {
     #[inline(always)]
     fn stencil<'a>(&self, shared: &Shared<'a>) -> (&'a [f32], &'a [Eight]) {
         let places = self.stencil as usize..(self.stencil + self.numbers) as usize;
-        match self.home {
-            Home::Plain(_) => (&[], &[]),
-            Home::Class(..) => (&shared.numbers[places], &[]),
-            Home::Pool(..) => (&[], &shared.pooled[places]),
+        match self.home.kind {
+            Kind::Plain => (&[], &[]),
+            Kind::Class(_) => (&shared.numbers[places], &[]),
+            Kind::Pool(_) => (&[], &shared.pooled[places]),
         }
     }
 
@@ -137,51 +134,6 @@ impl Block {
     }
 }
 
-/// What a block has whose elements do not all sleep: the sleepers among them stay as they are, so that it changes
-/// no bit who shares a block.
-struct Kept {
-    /// Its place in the group, and the lanes that sleep, as a mask.
-    place: usize,
-    sleepers: u8,
-    inverted: u8,
-    rotation: [Eight; 4],
-    undone: Option<Box<Undone>>,
-    forces: Vec<f32>,
-}
-
-impl Kept {
-    fn of<D: Dim>(place: usize, block: &Block, all: &[f32], first: usize) -> Option<Self> {
-        let sleepers = block.sleepers();
-        (sleepers != 0).then(|| Self {
-            place,
-            sleepers,
-            inverted: block.inverted,
-            rotation: block.rotation,
-            undone: block.undone.clone(),
-            forces: all[block.forces::<D>(first)].to_vec(),
-        })
-    }
-
-    fn put_back<D: Dim>(&self, blocks: &mut [Block], all: &mut [f32], first: usize) {
-        let block = &mut blocks[self.place];
-        block.inverted = block.inverted & !self.sleepers | self.inverted & self.sleepers;
-        let forces = all[block.forces::<D>(first)].chunks_exact_mut(D::N);
-        let forces = forces.zip(self.forces.chunks_exact(D::N)).enumerate();
-        for (_, (force, kept)) in forces.filter(|(at, _)| self.sleepers >> (at % LANES) & 1 == 1) {
-            force.copy_from_slice(kept);
-        }
-        if let (Some(undone), Some(kept)) = (&mut block.undone, &self.undone) {
-            let sleepers = (0..LANES).filter(|lane| self.sleepers >> lane & 1 == 1);
-            sleepers.for_each(|lane| undone.set(lane, kept.get(lane)));
-        }
-        for (parts, kept) in block.rotation.iter_mut().zip(&self.rotation) {
-            for lane in (0..LANES).filter(|lane| self.sleepers >> lane & 1 == 1) {
-                parts[lane] = kept[lane];
-            }
-        }
-    }
-}
-
 /// The forces of the blocks of a group that are awake.
 #[inline(always)]
 pub fn evaluate_group<D: Dim, S: Simd>(
@@ -197,27 +149,23 @@ pub fn evaluate_group<D: Dim, S: Simd>(
         shared,
     } = group;
     let law = shared.law;
-    let with_sleepers = blocks.iter().enumerate();
-    let kept: Vec<Kept> = with_sleepers
-        .filter_map(|(place, block)| Kept::of::<D>(place, block, all, first))
-        .collect();
     for (block, scratch) in blocks.iter_mut().zip(&mut *scratch) {
-        if block.asleep == ALL_LANES {
+        if block.is_idle() {
             continue;
         }
         let (home, stencil) = (block.home, block.stencil(&shared));
         let view = block.view::<D>(&shared, all, first);
-        match (home, stencil) {
-            (Home::Plain(_), _) => plain_gradient::<D, S>(simd, position, &view, scratch),
+        match (home.kind, stencil) {
+            (Kind::Plain, _) => plain_gradient::<D, S>(simd, position, &view, scratch),
             (_, (one, [])) => gradient::<D, S>(simd, &Uniform(one), position, &view, scratch),
             (_, (_, each)) => gradient::<D, S>(simd, &PerLane(each), position, &view, scratch),
         }
     }
     for (block, scratch) in blocks.iter_mut().zip(&mut *scratch) {
-        if block.asleep == ALL_LANES {
+        if block.is_idle() {
             continue;
         }
-        let material = block.home.material() as usize - 1;
+        let material = block.home.material as usize - 1;
         let moduli = &shared.moduli[material];
         let Some(Some(flow)) = shared.flows.get(material) else {
             let mut view = block.view::<D>(&shared, all, first);
@@ -235,14 +183,14 @@ pub fn evaluate_group<D: Dim, S: Simd>(
         block.undone = undone;
     }
     for (block, scratch) in blocks.iter_mut().zip(&*scratch) {
-        if block.asleep == ALL_LANES {
+        if block.is_idle() {
             continue;
         }
         let (home, stencil) = (block.home, block.stencil(&shared));
-        let moduli = &shared.moduli[home.material() as usize - 1];
+        let moduli = &shared.moduli[home.material as usize - 1];
         let view = &mut block.view::<D>(&shared, all, first);
-        match (home, stencil) {
-            (Home::Plain(_), _) => plain_forces::<D, S>(simd, moduli, view, scratch),
+        match (home.kind, stencil) {
+            (Kind::Plain, _) => plain_forces::<D, S>(simd, moduli, view, scratch),
             (_, (one, [])) => {
                 forces::<D, S>(simd, law, moduli, &Uniform(one), view, scratch);
             }
@@ -250,9 +198,6 @@ pub fn evaluate_group<D: Dim, S: Simd>(
                 forces::<D, S>(simd, law, moduli, &PerLane(each), view, scratch);
             }
         }
-    }
-    for kept in kept {
-        kept.put_back::<D>(blocks, all, first);
     }
 }
 

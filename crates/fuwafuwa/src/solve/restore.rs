@@ -8,12 +8,10 @@ use super::saved::Saved;
 use crate::dim::Dim;
 use crate::grid::VoxelGrid;
 use crate::ids::ElementId;
-use crate::lanes::LANES;
 use crate::mesh::{Element, Mesh};
 use crate::plasticity::Plasticity;
 use crate::vector::{cross, dot};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use std::ops::Range;
 
 impl<D: Dim> Blocks<D> {
     /// Whether blocks that were read from a file have a state for each element of a mesh. Its numbers may be any:
@@ -33,13 +31,14 @@ impl<D: Dim> Blocks<D> {
         self.saved.as_ref().is_some_and(fits)
     }
 
-    /// Puts the elements of a mesh into blocks and gives them the state that was read from a file. Sleepers are
-    /// still to be told, and stiffnesses to be set.
+    /// Puts the elements of a mesh, some of which are `asleep`, into blocks and gives them the state that was read from a file.
+    /// Stiffnesses are still to be set.
     pub fn restore(
         &mut self,
         mesh: &Mesh<D>,
         grid: &VoxelGrid<D>,
         plasticities: &[Option<Plasticity>],
+        asleep: impl Fn(ElementId) -> bool,
     ) {
         let Some(Saved {
             law,
@@ -53,7 +52,7 @@ impl<D: Dim> Blocks<D> {
         *self = Self::new(law, &[], grid.voxel_size());
         self.set_plasticities(plasticities);
         let all: Vec<ElementId> = mesh.elements().map(|(id, _)| id).collect();
-        self.update(mesh, grid, &[], &all);
+        self.update(mesh, grid, &[], &all, asleep);
         for (id, dent) in undone {
             self.set_undone(id, dent);
         }
@@ -98,13 +97,6 @@ impl<D: Dim> Blocks<D> {
             saved.inverted.push(block.inverted >> lane & 1 == 1);
         }
         saved
-    }
-
-    /// Where the force on a node of the element in a lane of a block stands; nodes count in the order of the element.
-    fn place(&self, index: u32, lane: u8, node: usize) -> Range<usize> {
-        let first = self.blocks[index as usize].first as usize;
-        let place = (first + node * LANES + lane as usize) * D::N;
-        place..place + D::N
     }
 }
 
