@@ -90,13 +90,14 @@ impl Bins {
     /// Calls `visit` once with the places of any two points that are no further apart than `reach`
     /// [m], which may be no more than a bin is wide, and of which one lies in these `bins`: all shares
     /// together make all pairs. Of a point and eight from the other place on, `is_out` tells as a mask
-    /// which are left out.
+    /// which are left out; points from one place to another are `idle` when none of them makes a pair with another that is.
     #[inline(always)]
     pub fn pairs<D: Dim, S: Simd>(
         &self,
         simd: S,
         bins: Range<usize>,
         reach: f32,
+        is_idle: impl Fn(&Range<usize>) -> bool,
         is_out: impl Fn(usize, usize) -> u64,
         mut visit: impl FnMut(usize, usize),
     ) {
@@ -120,11 +121,15 @@ impl Bins {
             for [dy, dz] in ahead {
                 others.extend(self.row([x - 1, y + dy, z + dz], 3));
             }
-            others.retain(|range| !range.is_empty());
+            let own_is_idle = is_idle(&own);
+            others.retain(|range| !(range.is_empty() || own_is_idle && is_idle(range)));
+            if own_is_idle && others.is_empty() {
+                continue;
+            }
             for place in own.clone() {
                 let at = self.point(place);
                 near.clear();
-                let later = std::iter::once(place + 1..own.end);
+                let later = std::iter::once(place + 1..own.end).filter(|_| !own_is_idle);
                 for range in later.chain(others.iter().cloned()) {
                     self.look(
                         simd,
@@ -279,6 +284,7 @@ mod tests {
                 simd,
                 share,
                 reach,
+                |_| false,
                 |_, _| 0,
                 |a, b| {
                     let [a, b] = [a, b].map(|place| bins.numbers()[place] as usize);

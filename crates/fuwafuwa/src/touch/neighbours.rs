@@ -1,5 +1,5 @@
 //! Who is so close to whom in their piece that a search for all pairs may leave the two out: either their body
-//! holds them at their distance, or they are lips of a crack, which are known without a search.
+//! holds them at their distance, or they are lips of a crack, which are known without a search. And who sleeps beside sleepers.
 
 use super::path::Traveller;
 use super::sphere::{NEAR, SphereId};
@@ -10,6 +10,7 @@ use crate::handle::BodySlot;
 use crate::ids::Table;
 use crate::lanes::LANES;
 use fearless_simd::{prelude::*, u16x8, u32x8};
+use std::ops::Range;
 
 /// Where in which piece contact spheres are, in columns, so that eight can be asked at once.
 #[derive(Clone, Debug, Default)]
@@ -20,6 +21,8 @@ pub struct Neighbours {
     pieces: Vec<u32>,
     /// The voxels, axis by axis.
     voxels: [Vec<u16>; 3],
+    /// How many of those before each are awake.
+    awake: Vec<u32>,
 }
 
 /// The piece and the voxel of one sphere.
@@ -38,6 +41,7 @@ impl Neighbours {
             neighbours.first.push(count);
             count += body.map_or(0, |body| body.truth.pieces.list.len()) as u32;
         }
+        neighbours.awake.push(0);
         // Eight can be read from the last on.
         neighbours.pieces.resize(travellers.len() + LANES, u32::MAX);
         for column in &mut neighbours.voxels {
@@ -47,6 +51,8 @@ impl Neighbours {
             let PieceSite { piece, voxel } = neighbours.site(traveller.sphere, spheres);
             neighbours.pieces[at] = piece;
             (0..3).for_each(|axis| neighbours.voxels[axis][at] = voxel[axis]);
+            let awake = neighbours.awake[at] + u32::from(!traveller.asleep);
+            neighbours.awake.push(awake);
         }
         neighbours
     }
@@ -67,6 +73,12 @@ impl Neighbours {
             piece: self.pieces[at],
             voxel: self.voxels.each_ref().map(|column| column[at]),
         }
+    }
+
+    /// Whether all at some places sleep: of a heap that does, only what somebody comes near to is looked at.
+    #[inline(always)]
+    pub fn are_asleep(&self, places: &Range<usize>) -> bool {
+        self.awake[places.start] == self.awake[places.end]
     }
 
     /// Which of the eight from the `first` on are neighbours of a sphere, as a mask.

@@ -292,6 +292,7 @@ impl SpherePairs {
                 simd,
                 share,
                 reach,
+                |places| neighbours.are_asleep(places),
                 #[inline(always)]
                 |own, first| neighbours.of_eight(simd, neighbours.at(own), first),
                 |a, b| {
