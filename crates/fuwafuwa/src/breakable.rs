@@ -21,6 +21,7 @@ use std::ops::Range;
 
 /// The most that chance adds to what a smooth surface bears; scatter keeps a row of equally
 /// strained nodes from bursting at once. The tip of a crack is one node: there is none to spare.
+/// Without it `core` bursts into 283 pieces in place of 89; from 0.2 to 0.8 into 60 to 91.
 const SCATTER: f32 = 0.4;
 
 /// A breakable node.

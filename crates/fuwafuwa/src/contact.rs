@@ -33,6 +33,13 @@ use std::collections::BTreeSet;
 /// behind it: beside a corner of a block in space, in the hollow between four spheres, the way from the one at the corner goes
 /// inwards by 0.17, and by 0.3 where the crumb is pressed straight in by a sixth of a voxel.
 const BEHIND: f32 = 0.3;
+/// Shorter than this share of the radius the way out of a sphere says no direction: out of a flat face it is as long as the
+/// radius, so this is an element pressed to a fifth. From 0.1 to 0.4 dust comes out of a body as well; with 0.8 some stays.
+const SHORTEST_WAY_OUT: f32 = 0.2;
+/// What wakes a sleeper is no further from it than this, in widths: of a node and something rigid twice [`CLOSE`], of two
+/// spheres as much as that. With half and twice as much of either the same tests pass.
+const WAKING_NODE: f32 = 0.1;
+const WAKING_SPHERE: f32 = 0.05;
 
 /// The contacts of one substep.
 #[derive(Clone, Debug, Default)]
@@ -127,7 +134,7 @@ impl Contacts {
                 pair.clear = 0.0;
                 pair.impulse.speed = pair.impulse.speed.max(-approach);
                 let may_wake = moves || rigid.is_asleep();
-                if may_wake && gap < 0.1 * size {
+                if may_wake && gap < WAKING_NODE * size {
                     let is_fast = |speed: Row| inner::<D>(speed, speed) > WAKE_SPEED * WAKE_SPEED;
                     let wakes = rigid.is_driven() || moves && is_fast(own);
                     if wakes && body.truth.pieces.sleeps(pair.node) {
@@ -233,7 +240,7 @@ impl Contacts {
                 }
                 pair.impulse.speed = pair.impulse.speed.max(-approach);
                 let moved = all.moved[a].max(all.moved[b]);
-                if gap < 0.05 * touching && moved > waking * waking {
+                if gap < WAKING_SPHERE * touching && moved > waking * waking {
                     let sleepers = both.into_iter().filter(|sphere| sphere.asleep);
                     hits.extend(sleepers.map(|sphere| (sphere.body, sphere.piece)));
                 }
@@ -397,7 +404,7 @@ fn behind_surface<D: Dim>(
     let normal = scaled(out, sign / length.max(1e-9));
     let ahead = inner::<D>(apart, normal);
     let is_behind = ahead < -BEHIND * inner::<D>(apart, apart).sqrt();
-    (is_behind && length > 0.2 * wall.radius).then_some((normal, ahead))
+    (is_behind && length > SHORTEST_WAY_OUT * wall.radius).then_some((normal, ahead))
 }
 
 fn for_each<T>(rows: &mut [T], backwards: bool, mut solve: impl FnMut(&mut T)) {

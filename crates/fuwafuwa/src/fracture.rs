@@ -41,17 +41,21 @@ pub struct Failure {
 }
 
 /// How long a node has to be overstrained by half before it gives way [s]. Shorter: knocks shatter
-/// the surface. Longer: fast hands push through without cutting.
+/// the surface. Longer: fast hands push through without cutting. Half and twice as much change the load of a bar by 0.6 %, and
+/// the releases in `tear-3d` by +16 and −12 %.
 const DAMAGE_TIME: f32 = 0.004;
 /// How long one heals that was about to give way and is strained no more [s]: longer than it takes to fail, so that
 /// what swings to and fro can fail too.
 const HEALING_TIME: f32 = 4.0 * DAMAGE_TIME;
 /// What is overstrained by more than this counts as that much: a knock of a moment is no pull.
+/// With twice as much all scenes tear alike, to the release; with half `tear-3d` has 6 % fewer.
 const MOST_OVER: f32 = 3.0;
-/// How much more it takes to set a single voxel free: else a crack leaves a trail of crumbs.
+/// How much more it takes to set a single voxel free: else a crack leaves a trail of crumbs. With 1, 1.3, 1.6 and 2 there are
+/// 53, 26, 19 and 9 in `tear`, and 503, 446, 419 and 389 releases.
 const CRUMB_FACTOR: f32 = 1.3;
 /// How many voxels a wave travels before the surroundings of a release are judged again: across
-/// them and back.
+/// them and back. With half `tear-3d` has three times as many releases, and `tear` three times as many crumbs; with twice
+/// they have about as many.
 const COOLDOWN_VOXELS: f64 = 4.0;
 
 /// Looks at all breakable nodes after a time of `duration` [s]: adds up their damage, and picks those

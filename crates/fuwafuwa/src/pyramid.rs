@@ -92,7 +92,8 @@ pub struct Places {
 /// large by H²/6 per mass: however fine the voxels, a disc that is graded up to H = D/4 rings 3 %
 /// too slowly. With D/8 it is 1 %, for a dozen elements more.
 const WIDEST: i32 = 8;
-/// Up to this level cells may be wider than that, for a small body would not be graded at all.
+/// Up to this level cells may be wider than that, for a small body would not be graded at all: level 1 would have to wait for
+/// 16 voxels across, and level 2 for 32.
 const SMALL_LEVEL: usize = 2;
 
 impl Places {

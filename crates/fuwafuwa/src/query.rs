@@ -19,7 +19,8 @@ use std::cell::OnceCell;
 use std::collections::BTreeSet;
 use tree::{Tree, around_all, distance_from, entry};
 
-/// The place on an edge where it is closest to a shape is narrowed down so many times, by a third of what is left: to 6·10⁻⁵ of the edge.
+/// The place on an edge where it is closest to a shape is narrowed down so many times, by a third of what is left: to
+/// 6·10⁻⁵ of the edge, less than a figure may reach beyond its ends.
 const NARROWINGS: usize = 24;
 
 /// Whether a thing counts.

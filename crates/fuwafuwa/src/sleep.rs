@@ -14,9 +14,11 @@ use crate::rigid::Rigids;
 use std::collections::BTreeSet;
 
 /// Pieces slower than this [m/s], on the average over their nodes, are on their way to sleep: what falls is
-/// faster after 3 ms.
+/// faster after 3 ms. With half of it towers of ten boxes lean by a fifth of a box and `pile` sleeps after 6.8 s in place of
+/// 4.9; with twice as much a nail on which a ball hangs tells 11 % more than its weight.
 const SLOW: f64 = 0.03;
 /// How long they must have been [s]: what turns back at the top of its flight, or of a swing, is not for so long.
+/// With half of it a box whose foot was pulled away does not get to lie flat; with twice as much `pile` takes 7.6 s to sleep.
 const STILL_TIME: f32 = 0.5;
 
 /// Counts for how long each piece has been slow, and puts to sleep those that have been long

@@ -37,7 +37,8 @@ pub use spheres::Spheres;
 
 /// A sleeper wakes when what touches it moves at this speed [m/s]: what it did move, since deep in
 /// a heap the forces of a substep alone would give as much to what rests. Five times as fast as what falls
-/// asleep: less, and a heap would keep itself awake.
+/// asleep: less, and a heap would keep itself awake. With twice as much a box whose foot was pulled
+/// away does not get to lie flat.
 pub const WAKE_SPEED: f32 = 0.15;
 
 /// What may touch what. Between ticks nothing of it counts but the impulses, who met in front, and the order of the

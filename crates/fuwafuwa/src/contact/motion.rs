@@ -11,7 +11,8 @@ use crate::solve::Row;
 use crate::touch::{ContactSphere, mean};
 use crate::vector::{as_row, minus, plus, scaled, three};
 
-/// Nodes whose velocities are copied together: more copies more in vain, less asks more often.
+/// Nodes whose velocities are copied together: more copies more in vain, less asks more often. From 4 to 64
+/// `diced`, `pile` and `tear-3d` take the same.
 const STRETCH: usize = 16;
 
 /// The velocities of the nodes that contacts push on [m/s], one over their mass as the fourth

@@ -5,15 +5,17 @@ use crate::solve::Row;
 use crate::touch::Impulse;
 use crate::vector::{minus, plus, scaled};
 
-/// How much of the last substep's impulse a row starts from: 1 is unstable, 0 never comes to rest.
+/// How much of the last substep's impulse a row starts from: 1 is unstable, 0 never comes to rest. With 0.8 and 0.95 the scene
+/// `pile` sleeps after 5.9 and 8.2 s in place of 4.9, with 0.5 and 1 not within 10, and towers of ten boxes lean in all of them.
 const WARM_START: f32 = 0.9;
 /// How much of an overlap is pushed out in a substep, and how fast at most [m/s] [Catto 2023]. More throws apart what
-/// was forced together; less lets heaps sink into each other.
+/// was forced together; less lets heaps sink into each other. Half of the share lets stacks lean twice as far, twice as much
+/// lets towers of ten boxes lean by a fifth of a box; twice the speed throws dust that began inside a body out at 1.7 m/s.
 const PUSH_OUT: f32 = 0.2;
 pub const PUSH_OUT_SPEED: f32 = 0.5;
 
 /// A contact matters when the gap closes to so many voxels within so many substeps: one, and half of another, for
-/// other contacts may make it close faster.
+/// other contacts may make it close faster. Half and twice the voxels stack, heap and squeeze alike.
 pub const CLOSE: f32 = 0.05;
 pub const AHEAD: f32 = 1.5;
 

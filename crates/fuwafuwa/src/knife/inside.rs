@@ -7,9 +7,10 @@ use crate::mesh::Element;
 use crate::shape::Vector;
 use crate::vector::{cross, length, minus};
 
-/// From a voxel to the one that has a place leads a way of so many elements at most.
+/// From a voxel to the one that has a place leads a way of so many elements at most. A choice: from 2 to 12 all is cut as well.
 const STEPS: usize = 6;
 /// So far out of both of two elements [voxels] a place is still in one of them: neighbours differ by their bending.
+/// A choice: from 0 to 0.5 all is cut as well.
 const LITTLE: f32 = 0.25;
 
 /// A place in a body.

@@ -11,9 +11,11 @@ use crate::shape::Vector;
 use crate::vector::{as_row, cross, dot, minus, plus, scaled};
 
 /// How often all rows are solved in a substep: samples that stand side by side push the same nodes.
+/// With 2 what was cut is not in two; with 4 and 16 it is.
 const ROUNDS: usize = 8;
 
-/// From this share of the most that can hold it on a sample goes on: below, what it moves is rounding.
+/// From this share of the most that can hold it on a sample goes on: below, what it moves is rounding. A choice:
+/// from 0.5 to 1 the same tests pass.
 const AT_LIMIT: f32 = 0.98;
 
 /// What one sample holds.

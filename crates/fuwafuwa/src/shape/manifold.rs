@@ -5,8 +5,10 @@ use super::{Shape, Vector};
 use crate::vector::{dot, length, minus, plus, scaled};
 
 /// An end of a bar counts when what is nearest to it lies in the direction of the whole bar (cosine).
+/// A choice, 26°: on a face all directions are one, and from 0.8 to 0.97 bars lie as well.
 const ALONG: f32 = 0.9;
-/// Where a bar is nearest counts when it is further than this share of its radius from its ends.
+/// Where a bar is nearest counts when it is further than this share of its radius from its ends: closer, it would be the same
+/// place twice. A choice: with half and twice as much bars lie as well.
 const APART: f32 = 0.5;
 
 /// Where two shapes touch.

@@ -19,7 +19,8 @@ use crate::solve::Row;
 use crate::vector::{dot, minus, plus, scaled, three};
 use std::collections::BTreeMap;
 
-/// Exits are looked for so many voxels around first: few captives are deeper, and for those all are looked at.
+/// Exits are looked for so many voxels around first: few captives are deeper, and for those all are looked at. From 0.5 to 8
+/// `diced`, `pile` and `tear-3d` take the same.
 const EXIT_REACH: f32 = 2.0;
 
 /// A sphere whose middle is inside another piece.

@@ -15,12 +15,13 @@ use crate::vector::{dot, length, minus, plus, scaled, three};
 use std::ops::Range;
 
 /// How far a node and how far a hand may come beyond what their speed says, in voxels, before they are
-/// looked for again: larger means longer lists, smaller more looks. What pulls a hand is stronger.
+/// looked for again: larger means longer lists, smaller more looks. What pulls a hand is stronger. Neither is critical: with
+/// a quarter and twice of the first, and half and twice of the second, `diced` and `tear-3d` take the same.
 const SLACK: f32 = 0.4;
 const HAND_SLACK: f32 = 1.0;
 
 /// Nodes in a square of so many voxels are tested against a rigid shape together, before each is on
-/// its own.
+/// its own. From 2 to 8 `diced` and `tear-3d` take the same.
 const SQUARE: f32 = 4.0;
 
 /// A node that may touch a rigid shape.

@@ -6,10 +6,13 @@ use crate::solve::Row;
 use crate::vector::{dot, minus, plus, scaled};
 
 /// How far a sphere may stray from its path, in voxels: more makes longer lists, less more looks.
+/// With half of it `diced` takes some 5 % less and `tear-3d` some 4 % longer; with twice as much both take some 10 % longer
+/// once they tear.
 pub const STRAY: f32 = 0.35;
 
 /// A path goes on by this share as its sphere went on since its last one began, and else as it goes now: what swings
-/// comes back, and strays less so.
+/// comes back, and strays less so. With half of it `tear-3d` takes 8 % longer until it tears, with 1 most ticks of `diced` as
+/// much until it does.
 const AS_BEFORE: f32 = 0.8;
 
 /// The way of a sphere while its pairs hold: a straight line.

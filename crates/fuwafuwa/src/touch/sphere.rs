@@ -7,7 +7,8 @@ use crate::ids::{ElementId, Id, NodeId, PieceId, Table, id};
 use crate::solve::Row;
 use crate::vector::{plus, scaled};
 
-/// Neighbours are of one piece, and no more than so many voxels apart on any axis as it was built.
+/// Neighbours are of one piece, and no more than so many voxels apart on any axis as it was built: as far as paths are looked
+/// for at rest, 1 + MARGIN + 2 STRAY widths of a voxel. With fewer a skin would be listed as close to itself all the time.
 pub const NEAR: u16 = 2;
 
 id! {
