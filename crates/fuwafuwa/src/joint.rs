@@ -36,7 +36,7 @@ pub type Joints = Arena<JointId, Joint>;
 /// let ball = world.add_body(ball);
 /// let top = [0.5, 1.0, 0.0];
 /// let end = End::Soft { body: ball, at: top, radius: 0.2 };
-/// let nail = world.add_joint(Joint::pin(end, End::Place(top)))?;
+/// let nail = world.add_joint(Joint::pin(end, End::Position(top)))?;
 /// for _ in 0..60 {
 ///     world.step();
 /// }
@@ -70,7 +70,7 @@ impl Joint {
             ends,
             tie,
             breaking_force: f32::INFINITY,
-            anchors: [Anchor::Place([0.0; 3]), Anchor::Place([0.0; 3])],
+            anchors: [Anchor::Position([0.0; 3]), Anchor::Position([0.0; 3])],
             impulse: [0.0; 3],
             force: 0.0,
         }
@@ -134,7 +134,7 @@ impl Joint {
     pub(crate) fn check(&self) -> Result<(), BadJoint> {
         for end in &self.ends {
             let (at, radius) = match *end {
-                End::Place(at) | End::Rigid { at, .. } => (at, 0.0),
+                End::Position(at) | End::Rigid { at, .. } => (at, 0.0),
                 End::Soft { at, radius, .. } => (at, radius),
             };
             let is_near = at.iter().all(|k| k.abs() <= FARTHEST);
@@ -146,7 +146,7 @@ impl Joint {
             )?;
         }
         let is_of_two = match self.ends {
-            [End::Place(_), End::Place(_)] => false,
+            [End::Position(_), End::Position(_)] => false,
             [End::Rigid { rigid, .. }, End::Rigid { rigid: other, .. }] => rigid != other,
             _ => true,
         };

@@ -2,7 +2,7 @@
 //!
 //! Along an edge stand *samples*. Each knows where in the body at rest it is, and a row of the solver holds the material
 //! there, as dry friction does: below a force the material goes along with the edge and is pressed; at that force the edge
-//! goes on, and the faces between voxels are opened that the samples, joined to a sheet, went across.
+//! goes on, and the faces between voxels are opened that the samples, joined to a swath, went across.
 //!
 //! ```text
 //!     force per metre of edge = G + 2 r σ      G = toughness² / Y   [Irwin 1957]
@@ -16,7 +16,7 @@ mod edge;
 mod inside;
 mod row;
 mod sample;
-mod sheet;
+mod swath;
 
 use crate::dim::Dim;
 use crate::handle::{Arena, KnifeId, RigidId};

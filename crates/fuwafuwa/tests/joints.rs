@@ -70,7 +70,7 @@ fn no_energy_comes_from<D: Dim>(tie: Tie) {
         Tie::Rope { .. } => [1.0, 0.0, 0.0],
         _ => [0.0; 3],
     };
-    let joint = Joint::new([on(bob, at), End::Place([0.0; 3])], tie);
+    let joint = Joint::new([on(bob, at), End::Position([0.0; 3])], tie);
     world.add_joint(joint).unwrap();
     let (mut lowest, mut most) = (0.0f32, f32::MIN);
     for tick in 0..3600 {
@@ -107,7 +107,9 @@ fn it_hangs_on_a_nail<D: Dim>() {
         at: top,
         radius: 0.25,
     };
-    let nail = world.add_joint(Joint::pin(end, End::Place(top))).unwrap();
+    let nail = world
+        .add_joint(Joint::pin(end, End::Position(top)))
+        .unwrap();
     for _ in 0..600 {
         world.step();
     }
@@ -211,7 +213,7 @@ fn a_spring_swings_as_fast_as_it_must() {
         damping: 0.0,
         length: 1.0,
     };
-    let ends = [on(bob, [1.5, 0.0, 0.0]), End::Place([0.0; 3])];
+    let ends = [on(bob, [1.5, 0.0, 0.0]), End::Position([0.0; 3])];
     world.add_joint(Joint::new(ends, tie)).unwrap();
     let mut crossings = Vec::new();
     let mut before = 0.5;
@@ -241,7 +243,7 @@ fn very_stiff_springs_hold_still() {
         damping: 0.0,
         length: 1.0,
     };
-    let ends = [on(bob, [0.0, -1.0, 0.0]), End::Place([0.0; 3])];
+    let ends = [on(bob, [0.0, -1.0, 0.0]), End::Position([0.0; 3])];
     world.add_joint(Joint::new(ends, tie)).unwrap();
     for _ in 0..300 {
         world.step();
@@ -252,7 +254,7 @@ fn very_stiff_springs_hold_still() {
 #[test]
 fn a_chain_of_ten_hangs() {
     let mut world = world::<Dim3>(-9.81);
-    let mut above = End::Place([0.0; 3]);
+    let mut above = End::Position([0.0; 3]);
     let mut links = Vec::new();
     for k in 0..10 {
         let at = [0.25 * (k + 1) as f32, 0.0, 0.0];
@@ -282,7 +284,7 @@ fn a_chain_of_ten_hangs() {
 fn what_hangs_still_on_a_chain_of_pins_stays_still() {
     for heavy in [1.0, 10.0, 20.0] {
         let mut world = world::<Dim3>(-9.81);
-        let mut above = End::Place([0.0; 3]);
+        let mut above = End::Position([0.0; 3]);
         let mut links = Vec::new();
         for k in 0..10 {
             let at = [0.0, -0.25 * (k + 1) as f32, 0.0];
@@ -310,7 +312,7 @@ fn joints_break_at_their_force_and_tell() {
         let mut world = world::<Dim3>(-9.81);
         // 39.2 N when it hangs.
         let bob = ball(&mut world, [0.0, -1.0, 0.0], 4.0);
-        let ends = [on(bob, [0.0, -1.0, 0.0]), End::Place([0.0, -1.0, 0.0])];
+        let ends = [on(bob, [0.0, -1.0, 0.0]), End::Position([0.0, -1.0, 0.0])];
         let joint = Joint::new(ends, Tie::Pin).breaking_at(bears);
         let id = world.add_joint(joint).unwrap();
         let mut told = 0;
@@ -333,7 +335,7 @@ fn a_joint_goes_with_what_it_held() {
         at: UP,
         radius: 0.1,
     };
-    let joint = world.add_joint(Joint::pin(end, End::Place(UP))).unwrap();
+    let joint = world.add_joint(Joint::pin(end, End::Position(UP))).unwrap();
     world.step();
     world.remove_body(id).unwrap();
     assert_eq!(world.joint_places(joint).unwrap(), None);
@@ -354,7 +356,7 @@ fn a_pin_holds_on_while_the_body_crumbles() {
         at,
         radius: 0.0,
     };
-    let pin = world.add_joint(Joint::pin(end, End::Place(at))).unwrap();
+    let pin = world.add_joint(Joint::pin(end, End::Position(at))).unwrap();
     for _ in 0..30 {
         world.step();
     }
@@ -371,7 +373,7 @@ fn a_pin_holds_on_while_the_body_crumbles() {
 fn bad_joints_are_refused_by_field() {
     let mut world = world::<Dim2>(-9.81);
     let bob = ball(&mut world, [0.0; 3], 1.0);
-    let good = [on(bob, [0.0; 3]), End::Place([0.0; 3])];
+    let good = [on(bob, [0.0; 3]), End::Position([0.0; 3])];
     let spring = |stiffness, damping, length| Tie::Spring {
         stiffness,
         damping,
@@ -383,7 +385,7 @@ fn bad_joints_are_refused_by_field() {
         (Joint::new(good, spring(1.0, 1.0, f32::INFINITY)), "length"),
         (Joint::new(good, Tie::Rope { length: 0.0 }), "length"),
         (Joint::new(good, Tie::Pin).breaking_at(f32::NAN), "force"),
-        (Joint::pin(good[0], End::Place([f32::NAN; 3])), "place"),
+        (Joint::pin(good[0], End::Position([f32::NAN; 3])), "place"),
         (Joint::pin(good[1], good[1]), "ends"),
         (Joint::pin(good[0], good[0]), "ends"),
     ];

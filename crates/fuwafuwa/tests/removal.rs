@@ -312,7 +312,7 @@ fn check_ties<D: Dim>() {
             at,
             radius: 0.1,
         };
-        world.add_joint(Joint::pin(end, End::Place(at))).unwrap()
+        world.add_joint(Joint::pin(end, End::Position(at))).unwrap()
     });
     world.step();
     let views = world.bodies()[cube].piece_views();

@@ -86,7 +86,7 @@ fn tied_world<D: Dim>() -> World<D> {
         damping: 0.5,
         length: 0.3,
     };
-    let place = End::Place([0.4, 4.0, depth]);
+    let place = End::Position([0.4, 4.0, depth]);
     let ties = [
         (on(0, 1.4), ball, Tie::Pin),
         (on(1, 1.7), on(2, 2.0), spring),

@@ -371,7 +371,7 @@ fn a_joint_that_holds_what_moved_is_refused_or_held_where_it_is() {
         at,
         radius: 0.1,
     };
-    world.add_joint(Joint::pin(end, End::Place(at))).unwrap();
+    world.add_joint(Joint::pin(end, End::Position(at))).unwrap();
     (0..30).for_each(|_| _ = world.step());
     assert!(
         !world

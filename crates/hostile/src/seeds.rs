@@ -180,7 +180,7 @@ fn tied<D: Dim>() -> Vec<u8> {
             rigid,
             at: [0.5, 1.1, 0.5],
         },
-        End::Place([0.5, 2.0, 0.5]),
+        End::Position([0.5, 2.0, 0.5]),
     ];
     let spring = Tie::Spring {
         stiffness: 100.0,

@@ -1,4 +1,4 @@
-//! Contacts between rigid things: hands against walls and each other at one place, what is free at as many as it lies on.
+//! Contacts between rigid things: hands against walls and each other at one point, what is free at as many as it lies on.
 
 use super::row::{AHEAD, CLOSE, Contact, is_close};
 use super::sides::{FreeContact, HandContact};
@@ -119,16 +119,16 @@ fn touch<D: Dim>(
     };
     let restitution = both[0].restitution.max(both[1].restitution);
     let normal = as_row(manifold.normal);
-    for place in &manifold.places {
-        let levers = both.map(|rigid| minus(place.at, rigid.position()));
+    for point in &manifold.points {
+        let levers = both.map(|rigid| minus(point.at, rigid.position()));
         let [own, other] = [0, 1].map(|k: usize| both[k].velocity_at(levers[k]));
         let relative = minus(as_row(own), as_row(other));
         let approach = inner::<D>(relative, normal);
-        if !is_close(place.gap, approach, size, duration) {
+        if !is_close(point.gap, approach, size, duration) {
             continue;
         }
         let speed = length(own).max(length(other));
-        if place.gap < CLOSE * size && (speed > WAKE_SPEED || both[1].pushes()) {
+        if point.gap < CLOSE * size && (speed > WAKE_SPEED || both[1].pushes()) {
             let sleepers = [0, 1].into_iter().filter(|&k: &usize| both[k].is_asleep());
             hits.extend(sleepers.map(|k| slots[k]));
         }
@@ -142,8 +142,8 @@ fn touch<D: Dim>(
         }
         let tangents = tangents::<D>(manifold.normal);
         let across: f32 = tangents[..D::N - 1].iter().copied().map(yields).sum();
-        let impulse = known.known(slots, place.key);
-        let mut contact = Contact::new(normal, place.gap, duration, 1.0 / along, friction);
+        let impulse = known.known(slots, point.key);
+        let mut contact = Contact::new(normal, point.gap, duration, 1.0 / along, friction);
         contact = contact.known_as::<D>(0, &impulse);
         let is_new = impulse.pressed == 0.0 && approach < -BOUNCE_SPEED;
         let bounce = if is_new { -restitution * approach } else { 0.0 };
@@ -155,10 +155,10 @@ fn touch<D: Dim>(
             both: slots,
             levers,
             across: 1.0 / across,
-            at: place.at,
+            at: point.at,
             speed: -approach,
             bounce,
-            key: place.key,
+            key: point.key,
         });
     }
 }
@@ -172,7 +172,7 @@ fn tangents<D: Dim>(normal: Vector) -> [Vector; 2] {
 }
 
 impl FreeContact {
-    /// What passed at its place.
+    /// What passed at its point.
     pub fn touch(&self) -> RigidTouch {
         let mut impulse = Impulse::default();
         impulse.note(&self.contact);

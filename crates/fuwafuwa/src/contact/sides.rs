@@ -29,13 +29,13 @@ pub struct SphereContact {
 /// The corner nodes of a sphere; the first four in 2D.
 pub type Grip = [NodeRow; 8];
 
-/// What is free against something else that is rigid, at one place.
+/// What is free against something else that is rigid, at one point.
 #[derive(Copy, Clone, Debug)]
 pub struct FreeContact {
     pub contact: Contact,
     /// The one that is free, and the other.
     pub both: [RigidSlot; 2],
-    /// How far the place is from the position of each [m].
+    /// How far the point is from the position of each [m].
     pub levers: [Vector; 2],
     /// One over the speed across the normal that a unit of impulse gives at the most [kg].
     pub across: f32,

@@ -16,7 +16,7 @@ use crate::vector::{as_row, dot, minus, plus, scaled, three};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Anchor {
     /// A place [m].
-    Place(Vector),
+    Position(Vector),
     /// A place of something rigid, as it would be at the origin and not turned [m].
     Rigid(RigidId, Vector),
     /// Corners of a body: a voxel, and the lattice point of its node. Whatever is torn around it, the voxel keeps it.
@@ -39,7 +39,7 @@ impl Anchor {
     /// Takes hold of an end.
     pub fn of<D: Dim>(end: &End, bodies: &Bodies<D>, rigids: &Rigids) -> Result<Self, Gone> {
         Ok(match *end {
-            End::Place(at) => Self::Place(flat::<D>(at)),
+            End::Position(at) => Self::Position(flat::<D>(at)),
             End::Rigid { rigid: id, at } => {
                 let rigid = rigids.get(id)?;
                 let apart = minus(flat::<D>(at), rigid.position());
@@ -64,7 +64,7 @@ impl Anchor {
     /// Puts what is not soft elsewhere [m].
     pub fn stand_at(&mut self, at: Vector, rigids: &Rigids) {
         match self {
-            Self::Place(place) => *place = at,
+            Self::Position(place) => *place = at,
             Self::Rigid(id, own) => {
                 if let Ok(rigid) = rigids.get(*id) {
                     *own = rigid
@@ -80,7 +80,7 @@ impl Anchor {
     /// How it is now; nothing when what it holds is gone.
     pub fn grip<D: Dim>(&self, bodies: &Bodies<D>, rigids: &Rigids) -> Option<Grip> {
         match self {
-            Self::Place(at) => Some(Grip {
+            Self::Position(at) => Some(Grip {
                 at: *at,
                 velocity: [0.0; 3],
                 yields: [[0.0; 3]; 3],
@@ -127,7 +127,7 @@ impl Anchor {
     /// Gives it an impulse [N s].
     pub fn push<D: Dim>(&self, bodies: &mut Bodies<D>, rigids: &mut Rigids, impulse: Vector) {
         match self {
-            Self::Place(_) => {}
+            Self::Position(_) => {}
             Self::Rigid(id, own) => {
                 if let Ok(rigid) = rigids.get_mut(*id) {
                     let lever = rigid.rotation().apply(*own);
@@ -151,7 +151,7 @@ impl Anchor {
     /// Notes who of it sleeps.
     pub fn wake<D: Dim>(&self, bodies: &Bodies<D>, woken: &mut Woken) {
         match self {
-            Self::Place(_) => {}
+            Self::Position(_) => {}
             Self::Rigid(id, _) => woken.rigids.push(id.slot()),
             Self::Soft(id, corners) => {
                 let Ok(body) = bodies.get(*id) else {
@@ -167,13 +167,13 @@ impl Anchor {
     #[cfg(feature = "serde")]
     pub fn is_sound<D: Dim>(&self, end: &End) -> bool {
         let is_of_it = match (self, end) {
-            (Self::Place(_), End::Place(_)) => true,
+            (Self::Position(_), End::Position(_)) => true,
             (Self::Rigid(own, _), End::Rigid { rigid, .. }) => own == rigid,
             (Self::Soft(own, _), End::Soft { body, .. }) => own == body,
             _ => false,
         };
         let is_somewhere = match self {
-            Self::Place(at) | Self::Rigid(_, at) => {
+            Self::Position(at) | Self::Rigid(_, at) => {
                 let is_near = at.iter().all(|k| k.abs() <= 4.0 * FARTHEST);
                 is_near && at[D::N..].iter().all(|k| *k == 0.0)
             }

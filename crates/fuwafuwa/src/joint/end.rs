@@ -8,8 +8,8 @@ use crate::shape::Vector;
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum End {
-    /// A place of the world [m].
-    Place(Vector),
+    /// A position in the world [m].
+    Position(Vector),
     /// A place of something rigid, on it or not.
     Rigid {
         /// The rigid thing.

@@ -1,8 +1,8 @@
-//! Follows an edge through bodies: where each of its samples is, and what their sheet went through.
+//! Follows an edge through bodies: where each of its samples is, and what their swath went through.
 
 use super::inside::{self, Spot};
 use super::sample::{MOST_SAMPLES, Near, Sample};
-use super::sheet::{self, Faces, Place};
+use super::swath::{self, Faces, RestPosition};
 use super::{Knife, Stance};
 use crate::body::{Bodies, Body};
 use crate::dim::{Dim, Point};
@@ -16,7 +16,7 @@ use crate::vector::{dot, length, minus, plus, scaled, three};
 const SAMPLES_PER_VOXEL: f32 = 2.0;
 /// An element may be stretched by so much, and is still found. A choice: from 1 to 3 all is cut as well, and more is looked at.
 const STRETCH: f32 = 1.5;
-/// Between two looks at its sheet no sample goes further in the body at rest than so many times as far as in the world,
+/// Between two looks at its swath no sample goes further in the body at rest than so many times as far as in the world,
 /// and so many voxels: what seems to did not go there, but came into other tissue.
 /// A choice, twice [`STRETCH`] and two voxels of play: with half and twice as much of either all is cut as well.
 const MOST_STRETCH: f64 = 3.0;
@@ -26,7 +26,7 @@ const MOST_JUMP: f64 = 2.0;
 pub struct Cut {
     pub body: BodyId,
     pub faces: Faces,
-    /// Of the sheet where it was whole, at rest [m²].
+    /// Of the swath where it was whole, at rest [m²].
     pub area: f64,
     /// In the middle of what is in the body [m].
     pub at: Vector,
@@ -46,7 +46,7 @@ impl Knife {
         }
     }
 
-    /// What its sheet went through since the last time, so long ago [s], in each body that it is or was in.
+    /// What its swath went through since the last time, so long ago [s], in each body that it is or was in.
     pub(crate) fn pass<D: Dim>(
         &mut self,
         bodies: &Bodies<D>,
@@ -210,23 +210,23 @@ impl Knife {
         tried.find_map(|(id, voxel)| Some((id, Spot::find(bodies.get(id).ok()?, at, voxel)?)))
     }
 
-    /// The sheet that it swept through a body since the last look.
+    /// The swath that it swept through a body since the last look.
     fn sheet_in<D: Dim>(&self, stance: &Stance, (id, body): (BodyId, &Body<D>), since: f32) -> Cut {
         let size = body.truth.grid.voxel_size();
-        let rows: Vec<Option<[Place; 2]>> = (0..self.samples.len())
+        let rows: Vec<Option<[RestPosition; 2]>> = (0..self.samples.len())
             .map(|place| self.way_in(stance, (id, body), place, since))
             .collect();
         let is_inside = |place: usize| self.samples[place].inside_of(id).is_some();
         let cuts = |place: usize| f64::from(u8::from(self.samples[place].cut && is_inside(place)));
         let (mut faces, mut area) = (Faces::new(), 0.0);
-        let mut add = |patch: [Place; 4], share: f64| {
-            sheet::go_through::<D>(patch, body.truth.grid.size(), &mut faces);
-            area += share * sheet::area(patch);
+        let mut add = |patch: [RestPosition; 4], share: f64| {
+            swath::go_through::<D>(patch, body.truth.grid.size(), &mut faces);
+            area += share * swath::area(patch);
         };
-        // In the plane a sample sweeps a line, which stands for a sheet across the body.
+        // In the plane a sample sweeps a line, which stands for a swath across the body.
         if D::N == 2 {
             if let Some([from, to]) = rows[0] {
-                let deep = |[x, y, _]: Place, z: f64| [x, y, z];
+                let deep = |[x, y, _]: RestPosition, z: f64| [x, y, z];
                 let patch = [
                     deep(from, 0.0),
                     deep(from, 1.0),
@@ -280,7 +280,7 @@ impl Knife {
         (id, body): (BodyId, &Body<D>),
         place: usize,
         since: f32,
-    ) -> Option<[Place; 2]> {
+    ) -> Option<[RestPosition; 2]> {
         let sample = &self.samples[place];
         let beside = [place.checked_sub(1), Some(place + 1)];
         let mut others = beside.into_iter().flatten();
@@ -315,7 +315,7 @@ impl Knife {
     }
 }
 
-fn far(a: Place, b: Place) -> f64 {
+fn far(a: RestPosition, b: RestPosition) -> f64 {
     let apart = minus(a, b);
     dot(apart, apart).sqrt()
 }

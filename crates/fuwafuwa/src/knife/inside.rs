@@ -88,7 +88,7 @@ impl Spot {
         let normal = cross(along, toward);
         let steepest = |a: &usize, b: &usize| normal[*a].abs().total_cmp(&normal[*b].abs());
         let axis = (0..D::N).max_by(steepest).unwrap_or(0);
-        // Where the sheet crosses the line along the axis through the middle of the voxel, seen from there.
+        // Where the swath crosses the line along the axis through the middle of the voxel, seen from there.
         let apart: f32 = (0..D::N)
             .map(|k| normal[k] * (ahead[k] - voxel[k] as f32 - 0.5))
             .sum();

@@ -27,7 +27,7 @@ pub struct Near {
 pub struct Sample {
     /// In whom it is, and where.
     pub inside: Option<(BodyId, Spot)>,
-    /// Where it was in whom when its sheet was last looked at: the sheet ends there.
+    /// Where it was in whom when its swath was last looked at: the swath ends there.
     pub passed: Option<(BodyId, Spot)>,
     /// Where it was then [m].
     pub before: Vector,
@@ -37,7 +37,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// Where it was in a body at rest when its sheet was last looked at.
+    /// Where it was in a body at rest when its swath was last looked at.
     pub fn passed_in(&self, body: BodyId) -> Option<Spot> {
         let passed = self.passed.filter(|(own, _)| *own == body);
         passed.map(|(_, spot)| spot)
@@ -49,7 +49,7 @@ impl Sample {
         inside.map(|(_, spot)| spot)
     }
 
-    /// Whether tissue held it since its sheet was last looked at.
+    /// Whether tissue held it since its swath was last looked at.
     pub fn is_stuck(&self) -> bool {
         self.inside.is_some() && !self.slid
     }

@@ -5,7 +5,7 @@ use crate::rotation::Rotation;
 use crate::vector::{cross, dot, minus, plus, scaled};
 
 /// An axis of the second box is taken only when it parts two boxes by so much of their size more than one of the first, and
-/// one across two edges only when by as much more than both: what lies still keeps its places, and faces have more of them.
+/// one across two edges only when by as much more than both: what lies still keeps its points, and faces have more of them.
 /// With none towers of ten boxes lean by a quarter of a box; with a thousandth and with a tenth they stand.
 const BEHIND: f32 = 0.01;
 

@@ -1,4 +1,4 @@
-//! Where two shapes touch: one direction, and the places that hold them apart along it.
+//! Where two shapes touch: one direction, and the points that hold them apart along it.
 
 use super::brick::{Brick, Separation, Side};
 use super::{Shape, Vector};
@@ -8,7 +8,7 @@ use crate::vector::{dot, length, minus, plus, scaled};
 /// A choice, 26°: on a face all directions are one, and from 0.8 to 0.97 bars lie as well.
 const ALONG: f32 = 0.9;
 /// Where a bar is nearest counts when it is further than this share of its radius from its ends: closer, it would be the same
-/// place twice. A choice: with half and twice as much bars lie as well.
+/// point twice. A choice: with half and twice as much bars lie as well.
 const APART: f32 = 0.5;
 
 /// Where two shapes touch.
@@ -16,12 +16,12 @@ const APART: f32 = 0.5;
 pub struct Manifold {
     /// The direction in which the first gets away from the second, of length 1.
     pub normal: Vector,
-    pub places: Vec<Place>,
+    pub points: Vec<ManifoldPoint>,
 }
 
-/// A place at which two shapes touch.
+/// A point at which two shapes touch.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Place {
+pub struct ManifoldPoint {
     /// In the middle between the two surfaces [m].
     pub at: Vector,
     /// How far they are apart there [m], negative where they overlap.
@@ -31,14 +31,14 @@ pub struct Place {
 }
 
 impl Shape {
-    /// Where it touches another shape, or comes closer to it than `margin` [m]: nowhere or at up to eight places.
+    /// Where it touches another shape, or comes closer to it than `margin` [m]: nowhere or at up to eight points.
     pub fn manifold(&self, other: &Self, margin: f32) -> Manifold {
         let found = match (*self, *other) {
             (Self::Ball { centre, radius }, _) => {
                 let (distance, normal) = other.distance(centre);
-                let place = beneath(centre, normal, radius, distance - radius, 0);
-                let places = vec![place];
-                Manifold { normal, places }
+                let point = beneath(centre, normal, radius, distance - radius, 0);
+                let points = vec![point];
+                Manifold { normal, points }
             }
             (Self::Capsule { .. }, _) if !matches!(other, Self::Ball { .. }) => bar(self, other),
             (_, Self::Ball { .. } | Self::Capsule { .. }) => other.manifold(self, margin).turned(),
@@ -63,15 +63,15 @@ impl Manifold {
     }
 
     fn within(mut self, margin: f32) -> Self {
-        self.places.retain(|place| place.gap < margin);
+        self.points.retain(|point| point.gap < margin);
         self
     }
 }
 
-/// The place between a surface and what lies below something round.
-fn beneath(centre: Vector, normal: Vector, radius: f32, gap: f32, key: u32) -> Place {
+/// The point between a surface and what lies below something round.
+fn beneath(centre: Vector, normal: Vector, radius: f32, gap: f32, key: u32) -> ManifoldPoint {
     let at = minus(centre, scaled(normal, radius + 0.5 * gap));
-    Place { at, gap, key }
+    ManifoldPoint { at, gap, key }
 }
 
 /// A bar on anything but a ball: where it is nearest, and its ends.
@@ -81,11 +81,11 @@ fn bar(own: &Shape, other: &Shape) -> Manifold {
     };
     let (distance, normal, share) = other.nearest_of_segment(from, to);
     let nearest = plus(from, scaled(minus(to, from), share));
-    let mut places = Vec::new();
+    let mut points = Vec::new();
     for (key, end) in [(1, from), (2, to)] {
         let (far, way) = other.distance(end);
         if dot(way, normal) > ALONG {
-            places.push(beneath(end, normal, radius, far - radius, key));
+            points.push(beneath(end, normal, radius, far - radius, key));
         }
     }
     if let Shape::Capsule {
@@ -97,28 +97,28 @@ fn bar(own: &Shape, other: &Shape) -> Manifold {
         for (key, end) in [(3, from), (4, to)] {
             let (far, way) = own.distance(end);
             if dot(way, normal) < -ALONG {
-                let place = beneath(end, scaled(normal, -1.0), thickness, far - thickness, key);
-                places.push(place);
+                let point = beneath(end, scaled(normal, -1.0), thickness, far - thickness, key);
+                points.push(point);
             }
         }
     }
     let middle = beneath(nearest, normal, radius, distance - radius, 0);
-    let is_apart = |place: &Place| length(minus(place.at, middle.at)) > APART * radius;
-    if places.iter().all(is_apart) {
-        places.push(middle);
+    let is_apart = |point: &ManifoldPoint| length(minus(point.at, middle.at)) > APART * radius;
+    if points.iter().all(is_apart) {
+        points.push(middle);
     }
-    Manifold { normal, places }
+    Manifold { normal, points }
 }
 
 fn on_plane(brick: &Brick, normal: Vector, offset: f32) -> Manifold {
     let corners = (0..brick.corner_count()).map(|number| (number as u32, brick.corner(number)));
-    let places = corners.map(|(key, corner)| {
+    let points = corners.map(|(key, corner)| {
         let gap = dot(normal, corner) - offset;
         beneath(corner, normal, 0.0, gap, key)
     });
     Manifold {
         normal,
-        places: places.collect(),
+        points: points.collect(),
     }
 }
 
@@ -128,7 +128,7 @@ fn bricks(own: &Brick, other: &Brick, margin: f32) -> Manifold {
         return Manifold::default();
     }
     let Separation { gap, normal, side } = separation;
-    let places = match side {
+    let points = match side {
         Side::First(axis) => on_face(own, axis, scaled(normal, -1.0), other),
         Side::Second(axis) => on_face(other, axis, normal, own),
         Side::Edges(first, second) => {
@@ -138,14 +138,14 @@ fn bricks(own: &Brick, other: &Brick, margin: f32) -> Manifold {
             ];
             let at = between(a, own.axes[first], b, other.axes[second]);
             let key = 1000 + 3 * first as u32 + second as u32;
-            vec![Place { at, gap, key }]
+            vec![ManifoldPoint { at, gap, key }]
         }
     };
-    Manifold { normal, places }
+    Manifold { normal, points }
 }
 
 /// Where a box lies on a face of another, which is across this axis of that one and looks `out`.
-fn on_face(ground: &Brick, axis: usize, out: Vector, brick: &Brick) -> Vec<Place> {
+fn on_face(ground: &Brick, axis: usize, out: Vector, brick: &Brick) -> Vec<ManifoldPoint> {
     let others: Vec<usize> = (0..brick.axis_count).filter(|&k| k != axis).collect();
     let level = dot(out, ground.centre) + ground.half[axis];
     // The face that looks most towards the ground.
@@ -161,12 +161,12 @@ fn on_face(ground: &Brick, axis: usize, out: Vector, brick: &Brick) -> Vec<Place
             polygon = clipped(&polygon, way, most, plane as u32);
         }
     }
-    let place = |&(corner, key): &(Vector, u32)| {
+    let point = |&(corner, key): &(Vector, u32)| {
         let gap = dot(out, corner) - level;
         let at = minus(corner, scaled(out, 0.5 * gap));
-        Place { at, gap, key }
+        ManifoldPoint { at, gap, key }
     };
-    polygon.iter().map(place).collect()
+    polygon.iter().map(point).collect()
 }
 
 /// The corners of a face, one after the other around it.
@@ -209,7 +209,7 @@ fn clipped(polygon: &[(Vector, u32)], way: Vector, most: f32, plane: u32) -> Vec
     kept
 }
 
-/// A place on the edge along an axis that is furthest in a direction.
+/// A point on the edge along an axis that is furthest in a direction.
 fn edge(brick: &Brick, along: usize, way: Vector) -> Vector {
     let others = (0..brick.axis_count).filter(|&axis| axis != along);
     others.fold(brick.centre, |at, axis| {
@@ -222,7 +222,7 @@ fn edge(brick: &Brick, along: usize, way: Vector) -> Vector {
     })
 }
 
-/// The middle between the nearest places of two lines that are not parallel.
+/// The middle between the nearest points of two lines that are not parallel.
 fn between(a: Vector, along: Vector, b: Vector, across: Vector) -> Vector {
     let (apart, cosine) = (minus(b, a), dot(along, across));
     let under = (1.0 - cosine * cosine).max(1e-6);
@@ -241,22 +241,22 @@ mod tests {
         Shape::Box { centre, half }
     }
 
-    /// Both ways round: how many places, the lowest gap, and the direction.
+    /// Both ways round: how many points, the lowest gap, and the direction.
     fn check(a: Shape, b: Shape, count: usize, gap: f32, normal: Vector) {
         for (first, second, sign) in [(a, b, 1.0), (b, a, -1.0)] {
             let found = first.manifold(&second, 0.1);
-            assert_eq!(found.places.len(), count, "{first:?} {second:?} {found:?}");
-            let gaps = found.places.iter().map(|place| place.gap);
+            assert_eq!(found.points.len(), count, "{first:?} {second:?} {found:?}");
+            let gaps = found.points.iter().map(|point| point.gap);
             let least = gaps.fold(f32::INFINITY, f32::min);
             assert!((least - gap).abs() < 1e-4, "{found:?}");
             let off = minus(found.normal, scaled(normal, sign));
             assert!(dot(off, off) < 1e-5, "{found:?}");
-            for place in &found.places {
-                let [one, two] = [first, second].map(|shape| shape.distance(place.at).0);
-                assert!((one - 0.5 * place.gap).abs() < 6e-3, "{place:?} {one}");
-                assert!((two - 0.5 * place.gap).abs() < 6e-3, "{place:?} {two}");
+            for point in &found.points {
+                let [one, two] = [first, second].map(|shape| shape.distance(point.at).0);
+                assert!((one - 0.5 * point.gap).abs() < 6e-3, "{point:?} {one}");
+                assert!((two - 0.5 * point.gap).abs() < 6e-3, "{point:?} {two}");
             }
-            let mut keys: Vec<u32> = found.places.iter().map(|place| place.key).collect();
+            let mut keys: Vec<u32> = found.points.iter().map(|point| point.key).collect();
             keys.sort_unstable();
             keys.dedup();
             assert_eq!(keys.len(), count, "{found:?}");
@@ -314,11 +314,11 @@ mod tests {
         let beam = |axis| cube([0.0; 3], [1.0; 3]).rotated(Rotation::about(axis, quarter));
         let high = beam([1.0, 0.0, 0.0]).moved([0.0, 2.0 * 2.0f32.sqrt() - 0.01, 0.0]);
         check(high, beam([0.0, 0.0, 1.0]), 1, -0.01, up);
-        assert!(floor.manifold(&floor, 1.0).places.is_empty());
+        assert!(floor.manifold(&floor, 1.0).points.is_empty());
         assert!(
             brick
                 .manifold(&brick.moved([0.0, 3.0, 0.0]), 0.1)
-                .places
+                .points
                 .is_empty()
         );
     }

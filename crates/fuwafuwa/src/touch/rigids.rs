@@ -9,7 +9,7 @@ use crate::handle::RigidSlot;
 use crate::rigid::Rigids;
 use crate::shape::Vector;
 
-/// A place at which two rigid things touch.
+/// A point at which two rigid things touch.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RigidTouch {
@@ -21,7 +21,7 @@ pub struct RigidTouch {
     pub impulse: Impulse,
 }
 
-/// What passed at a place in one substep.
+/// What passed at a point in one substep.
 #[derive(Copy, Clone, Debug)]
 pub struct Passed {
     /// The one that is free, and the other.
@@ -36,7 +36,7 @@ pub struct Passed {
     pub normal: Vector,
 }
 
-/// All of those places, in ascending order.
+/// All of those points, in ascending order.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RigidTouches {
@@ -59,7 +59,7 @@ impl RigidTouches {
         self.passed.clear();
     }
 
-    /// What passed at a place so far.
+    /// What passed at a point so far.
     pub fn known(&self, both: [RigidSlot; 2], key: u32) -> Impulse {
         let found = self
             .list
@@ -80,7 +80,7 @@ impl RigidTouches {
         self.passed.retain(|passed| !passed.both.contains(&slot));
     }
 
-    /// Forgets what is of nothing that is there; leaves each place once, in order.
+    /// Forgets what is of nothing that is there; leaves each point once, in order.
     #[cfg(feature = "serde")]
     pub fn keep_known<D: Dim>(&mut self, rigids: &Rigids) {
         let is_known =

@@ -60,7 +60,7 @@ impl<D: Dim> World<D> {
     fn wake_ends(&mut self, joint: &Joint) {
         for end in &joint.ends {
             match *end {
-                End::Place(_) => {}
+                End::Position(_) => {}
                 End::Rigid { rigid, .. } => {
                     if self.rigids.get(rigid).is_ok_and(|rigid| rigid.is_asleep()) {
                         self.wake_rigids(&[rigid.slot()]);

@@ -165,7 +165,7 @@ impl EndText {
                 return Ok(End::Rigid { rigid, at });
             }
         }
-        Ok(End::Place(at))
+        Ok(End::Position(at))
     }
 }
 

@@ -302,7 +302,7 @@ fn end_text<D: Dim>(world: &World<D>, end: &End, other: Option<[f32; 3]>) -> Opt
         at
     };
     Some(match *end {
-        End::Place(at) => EndText {
+        End::Position(at) => EndText {
             at: flat(other.unwrap_or(at)),
             ..EndText::default()
         },

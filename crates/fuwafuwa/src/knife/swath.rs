@@ -1,20 +1,20 @@
-//! The sheet that an edge sweeps through the lattice of a body at rest, and the faces between voxels that it goes through.
+//! The swath that an edge sweeps through the lattice of a body at rest, and the faces between voxels that it goes through.
 //!
 //! A face between two voxels is gone through when the line between their middles is. All lines along an axis are looked at
-//! as points in a picture of the sheet seen along it, as a rasteriser does: neighbouring triangles leave no gap, and
-//! so the sheet leaves none.
+//! as points in a picture of the swath seen along it, as a rasteriser does: neighbouring triangles leave no gap, and
+//! so the swath leaves none.
 
 use crate::dim::{Dim, Point};
 use std::collections::BTreeSet;
 
-/// A place in the lattice [voxels].
-pub type Place = [f64; 3];
+/// A position in the lattice of a body as it was built [voxels].
+pub type RestPosition = [f64; 3];
 
 /// Faces, each as the voxel before it and its axis.
 pub type Faces = BTreeSet<(Point, usize)>;
 
 /// Adds the faces in a grid of a size [voxels] that a patch goes through; its corners are in the order of its outline.
-pub fn go_through<D: Dim>([a, b, c, d]: [Place; 4], size: Point, faces: &mut Faces) {
+pub fn go_through<D: Dim>([a, b, c, d]: [RestPosition; 4], size: Point, faces: &mut Faces) {
     for triangle in [[a, b, c], [a, c, d]] {
         for axis in 0..D::N {
             go_along(triangle, axis, size, faces);
@@ -23,20 +23,20 @@ pub fn go_through<D: Dim>([a, b, c, d]: [Place; 4], size: Point, faces: &mut Fac
 }
 
 /// The area of a patch [voxel²].
-pub fn area([a, b, c, d]: [Place; 4]) -> f64 {
-    let half = |u: Place, v: Place| {
+pub fn area([a, b, c, d]: [RestPosition; 4]) -> f64 {
+    let half = |u: RestPosition, v: RestPosition| {
         let square = |i: usize, j: usize| {
             let k = u[i] * v[j] - u[j] * v[i];
             k * k
         };
         0.5 * (square(0, 1) + square(1, 2) + square(2, 0)).sqrt()
     };
-    let from = |place: Place| [0, 1, 2].map(|k: usize| place[k] - a[k]);
+    let from = |place: RestPosition| [0, 1, 2].map(|k: usize| place[k] - a[k]);
     half(from(b), from(c)) + half(from(c), from(d))
 }
 
 /// The faces across an axis that a triangle goes through.
-fn go_along(triangle: [Place; 3], axis: usize, size: Point, faces: &mut Faces) {
+fn go_along(triangle: [RestPosition; 3], axis: usize, size: Point, faces: &mut Faces) {
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
     let seen = triangle.map(|corner| [corner[u], corner[v]]);
     let double = side(seen[0], seen[1], seen[2]);
@@ -105,7 +105,7 @@ mod tests {
 
     #[test]
     fn a_sheet_in_many_small_steps_parts_the_lattice_without_a_gap() {
-        // A wavy sheet over 12 by 12 voxels: what is above it and what is below are not joined by a closed face.
+        // A wavy swath over 12 by 12 voxels: what is above it and what is below are not joined by a closed face.
         let height =
             |x: f64, z: f64| 6.0 + 2.3 * libm::sin(0.7 * x) + 1.9 * libm::cos(0.55 * z + 0.3 * x);
         let place = |i: i32, k: i32| {
