@@ -87,9 +87,7 @@ impl Captives {
         }
         // Inner elements hold whoever is deeper inside; few pieces have anybody in their box.
         for (sphere, &centre) in spheres.list.iter().zip(&spheres.centres) {
-            let piece = &mut pieces[sphere.body][sphere.piece];
-            piece.low = [0, 1, 2, 3].map(|axis: usize| piece.low[axis].min(centre[axis]));
-            piece.high = [0, 1, 2, 3].map(|axis: usize| piece.high[axis].max(centre[axis]));
+            pieces[sphere.body][sphere.piece].extend(&centre);
         }
         let placed = |&sphere: &SphereId| (sphere, own(&pieces, sphere), spheres.centres[sphere]);
         let mut placed: Vec<(SphereId, u32, Row)> = small.iter().map(placed).collect();
@@ -112,7 +110,8 @@ impl Captives {
         near.dedup();
         let centres = near.iter().map(|&sphere| spheres.centres[sphere]);
         let centres: Vec<Row> = centres.collect();
-        for same in inner_elements(bodies, &pieces).chunk_by(|a, b| a.level == b.level) {
+        let inner = inner_elements(bodies, &pieces, &Extent::around(&centres));
+        for same in inner.chunk_by(|a, b| a.level == b.level) {
             let bins = Bins::new::<D>(&centres, usual_radius(same));
             let mut inside = Vec::new();
             for inner in same {
@@ -223,8 +222,8 @@ struct Inner {
     radius: f32,
 }
 
-/// The elements without a bare face of the pieces that count as having any, by level.
-fn inner_elements<D: Dim>(bodies: &Bodies<D>, pieces: &Extents) -> Vec<Inner> {
+/// The elements without a bare face of the pieces that count as having any, by level, as far as they reach into a box.
+fn inner_elements<D: Dim>(bodies: &Bodies<D>, pieces: &Extents, within: &Extent) -> Vec<Inner> {
     let mut found = Vec::new();
     for (slot, body) in bodies.by_slot() {
         for (id, element) in body.truth.mesh.elements() {
@@ -239,14 +238,17 @@ fn inner_elements<D: Dim>(bodies: &Bodies<D>, pieces: &Extents) -> Vec<Inner> {
             let sum = places.clone().fold([0.0; 4], plus);
             let centre = scaled(sum, 1.0 / element.nodes.len() as f32);
             let furthest = places.map(|at| minus(at, centre)).map(|way| dot(way, way));
-            found.push(Inner {
-                level,
-                element: id,
-                captor: (slot, piece),
-                count: extent.count,
-                centre,
-                radius: furthest.fold(0.0, f32::max).sqrt(),
-            });
+            let radius = furthest.fold(0.0, f32::max).sqrt();
+            if within.reaches(centre, radius) {
+                found.push(Inner {
+                    level,
+                    element: id,
+                    captor: (slot, piece),
+                    count: extent.count,
+                    centre,
+                    radius,
+                });
+            }
         }
     }
     found.sort_by_key(|inner| inner.level);
@@ -276,8 +278,32 @@ struct Extent {
 }
 
 impl Extent {
+    const NONE: Self = Self {
+        count: 0,
+        has_inner: false,
+        low: [f32::MAX; 4],
+        high: [f32::MIN; 4],
+    };
+
+    /// The box around some places.
+    fn around(places: &[Row]) -> Self {
+        let mut extent = Self::NONE;
+        places.iter().for_each(|at| extent.extend(at));
+        extent
+    }
+
+    fn extend(&mut self, at: &Row) {
+        self.low = [0, 1, 2, 3].map(|axis: usize| self.low[axis].min(at[axis]));
+        self.high = [0, 1, 2, 3].map(|axis: usize| self.high[axis].max(at[axis]));
+    }
+
+    /// Whether a ball may reach into the box.
+    fn reaches(&self, at: Row, radius: f32) -> bool {
+        (0..3).all(|axis| (self.low[axis] - radius..=self.high[axis] + radius).contains(&at[axis]))
+    }
+
     fn encloses(&self, at: Row) -> bool {
-        (0..3).all(|axis| (self.low[axis]..=self.high[axis]).contains(&at[axis]))
+        self.reaches(at, 0.0)
     }
 }
 
@@ -286,13 +312,8 @@ fn extents<D: Dim>(body: Option<&Body<D>>) -> Table<PieceId, Extent> {
     let Some(body) = body else {
         return Table::default();
     };
-    let none = Extent {
-        count: 0,
-        has_inner: false,
-        low: [f32::MAX; 4],
-        high: [f32::MIN; 4],
-    };
-    let mut extents: Table<PieceId, Extent> = vec![none; body.truth.pieces.list.len()].into();
+    let count = body.truth.pieces.list.len();
+    let mut extents: Table<PieceId, Extent> = vec![Extent::NONE; count].into();
     for (id, element) in body.truth.mesh.elements() {
         let extent = &mut extents[body.truth.pieces.of_element(id)];
         extent.count += 1;
