@@ -66,6 +66,11 @@ impl<D: Dim> Blocks<D> {
                 self.open.entry(home).or_default().insert(index);
             }
         }
+        self.relocate(mesh, &movers, asleep);
+    }
+
+    /// Puts elements into other blocks, of those that sleep or of those that are awake, with all that they had.
+    fn relocate(&mut self, mesh: &Mesh<D>, movers: &[ElementId], asleep: bool) {
         let state = |&id: &ElementId| {
             let element = mesh.element(id).expect("who sleeps or wakes is alive");
             let (index, lane) = self.assigned[id];
@@ -80,10 +85,8 @@ impl<D: Dim> Blocks<D> {
         };
         let states: Vec<(Newcomer, u8, Vec<f32>)> = movers.iter().map(state).collect();
         movers.iter().for_each(|&id| self.take_out(id));
-        self.take_in(
-            mesh,
-            states.iter().map(|(newcomer, ..)| *newcomer).collect(),
-        );
+        let newcomers = states.iter().map(|(newcomer, ..)| *newcomer);
+        self.take_in(mesh, newcomers.collect());
         for (Newcomer { id, .. }, inverted, forces) in states {
             let (index, lane) = self.assigned[id];
             self.blocks[index as usize].inverted |= inverted << lane;
