@@ -36,10 +36,10 @@ const BEHIND: f32 = 0.3;
 /// Shorter than this share of the radius the way out of a sphere says no direction: out of a flat face it is as long as the
 /// radius, so this is an element pressed to a fifth. From 0.1 to 0.4 dust comes out of a body as well; with 0.8 some stays.
 const SHORTEST_WAY_OUT: f32 = 0.2;
-/// What wakes a sleeper is no further from it than this, in widths: of a node and something rigid twice [`CLOSE`], of two
-/// spheres as much as that. With half and twice as much of either the same tests pass.
-const WAKING_NODE: f32 = 0.1;
-const WAKING_SPHERE: f32 = 0.05;
+/// A sleeper wakes when something rigid is no further from a node of it than this, in voxels, or a sphere no further from one of
+/// it, in widths of the two. With half and twice as much of either the same tests pass.
+const WAKING_NODE: f32 = 2.0 * CLOSE;
+const WAKING_SPHERE: f32 = CLOSE;
 
 /// The contacts of one substep.
 #[derive(Clone, Debug, Default)]

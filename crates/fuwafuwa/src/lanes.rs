@@ -207,7 +207,8 @@ pub fn sum<S: Simd>(simd: S, numbers: &[f32], places: &[u32]) -> Row {
     sum.to_array()
 }
 
-/// The squares of the four numbers that begin at each place, added up.
+/// The squares of the four numbers that begin at each place, added up column by column; 0, where zeros stand, for those that
+/// are fewer.
 #[inline(always)]
 pub fn sum_of_squares<S: Simd>(simd: S, numbers: &[f32], places: &[u32]) -> Row {
     let mut sum = f32x4::splat(simd, 0.0);

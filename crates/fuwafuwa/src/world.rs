@@ -39,7 +39,7 @@ const CRUMB_SPIN_LOSS: f32 = 20.0;
 const SETTLING: f32 = 2.0;
 const SETTLING_SPEED: f64 = 0.1;
 /// A piece with a node faster than this [m/s] has gone out of hand. Small voxels cannot: no node
-/// moves by more than a voxel in a substep, and this is one of 1 m in each of the usual 960 a second.
+/// moves by more than a voxel in a substep, and this speed is a voxel of 1 m in each of the usual 960 a second.
 const TOP_SPEED: f32 = 1000.0;
 
 /// Why something was not let into the world, or could not be done with what is in it.

@@ -2,7 +2,7 @@
 
 use crate::dim::Point;
 
-/// Lattice steps around a release that cool down after it: half of what a wave goes until then. With 1 `tear-3d` has 2.5 times
+/// Lattice steps around a release that cool down after it: half as far as a wave goes while they do. With 1 `tear-3d` has 2.5 times
 /// as many releases, with 4 a fifth fewer.
 const REACH: i32 = 2;
 

@@ -11,7 +11,7 @@ use crate::rigid::Rigid;
 use crate::shape::Vector;
 use crate::vector::{dot, length, minus, plus, scaled, three};
 
-/// Samples on the width of the smallest voxel: none slips between two samples, of an edge that lies askew either. With one for
+/// Samples on the width of the smallest voxel: none slips between two samples, not even of an edge that lies askew. With one for
 /// two voxels area and work of a cut are wrong by more than a tenth; with 1 and 4 it cuts as well.
 const SAMPLES_PER_VOXEL: f32 = 2.0;
 /// An element may be stretched by so much, and is still found. A choice: from 1 to 3 all is cut as well, and more is looked at.
@@ -61,7 +61,7 @@ impl Knife {
         let known = ids
             .iter()
             .filter_map(|&id| Some((id, bodies.get(id).ok()?)));
-        let cuts = known.map(|(id, body)| self.sheet_in(&stance, (id, body), since));
+        let cuts = known.map(|(id, body)| self.swath_in(&stance, (id, body), since));
         let mut cuts: Vec<Cut> = cuts.collect();
         self.area += cuts.iter().map(|cut| cut.area).sum::<f64>();
         cuts.retain(|cut| !cut.faces.is_empty());
@@ -211,7 +211,7 @@ impl Knife {
     }
 
     /// The swath that it swept through a body since the last look.
-    fn sheet_in<D: Dim>(&self, stance: &Stance, (id, body): (BodyId, &Body<D>), since: f32) -> Cut {
+    fn swath_in<D: Dim>(&self, stance: &Stance, (id, body): (BodyId, &Body<D>), since: f32) -> Cut {
         let size = body.truth.grid.voxel_size();
         let rows: Vec<Option<[RestPosition; 2]>> = (0..self.samples.len())
             .map(|place| self.way_in(stance, (id, body), place, since))

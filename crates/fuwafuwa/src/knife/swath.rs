@@ -88,7 +88,7 @@ mod tests {
     use crate::dim::{Dim2, Dim3};
 
     #[test]
-    fn a_flat_sheet_opens_the_faces_that_it_goes_through_and_no_others() {
+    fn a_flat_swath_opens_the_faces_that_it_goes_through_and_no_others() {
         let mut faces = Faces::new();
         let at = |x: f64, y: f64, z: f64| [x, y, z];
         let corners = [
@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sheet_in_many_small_steps_parts_the_lattice_without_a_gap() {
+    fn a_swath_in_many_small_steps_parts_the_lattice_without_a_gap() {
         // A wavy swath over 12 by 12 voxels: what is above it and what is below are not joined by a closed face.
         let height =
             |x: f64, z: f64| 6.0 + 2.3 * libm::sin(0.7 * x) + 1.9 * libm::cos(0.55 * z + 0.3 * x);
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sheet_that_goes_far_out_of_the_grid_takes_no_longer() {
+    fn a_swath_that_goes_far_out_of_the_grid_takes_no_longer() {
         let far = 1e12;
         let corners = [
             [-far, 1.4, -far],

@@ -38,8 +38,8 @@ impl<D: Dim> Blocks<D> {
         self.take_in(mesh, newcomers);
     }
 
-    /// Lets elements sleep, or wakes them. Those of a block that all do so stay together; the others go to other blocks, for
-    /// a block is evaluated as a whole.
+    /// Lets elements sleep, or wakes them. A block is evaluated as a whole: those of a block that all do so stay together, and
+    /// where it falls in two, who is left with no more than half of it goes to other blocks.
     pub fn set_asleep(&mut self, mesh: &Mesh<D>, elements: &[ElementId], asleep: bool) {
         let mut changing: BTreeMap<u32, u8> = BTreeMap::new();
         for &id in elements {
@@ -48,30 +48,41 @@ impl<D: Dim> Blocks<D> {
                 *changing.entry(index).or_default() |= 1 << lane;
             }
         }
+        let is_few = |lanes: u8| lanes.count_ones() as usize <= LANES / 2;
         let mut movers = Vec::new();
         for (index, lanes) in changing {
-            let block = &mut self.blocks[index as usize];
-            if lanes | block.vacant != ALL_LANES {
-                let lanes = (0..LANES).filter(|lane| lanes >> lane & 1 == 1);
-                movers.extend(lanes.map(|lane| ElementId(block.elements[lane])));
+            let block = &self.blocks[index as usize];
+            let rest = !(lanes | block.vacant);
+            if rest == 0 && !is_few(lanes) {
+                self.rehome(index, asleep);
                 continue;
             }
-            let home = Home {
-                asleep,
-                ..block.home
-            };
-            let before = std::mem::replace(&mut block.home, home);
-            let open = self.open.get_mut(&before);
-            if open.is_some_and(|open| open.remove(&index)) {
-                self.open.entry(home).or_default().insert(index);
+            let rest = if is_few(rest) { rest } else { 0 };
+            for (lanes, asleep) in [(lanes, asleep), (rest, !asleep)] {
+                let lanes = (0..LANES).filter(|lane| lanes >> lane & 1 == 1);
+                movers.extend(lanes.map(|lane| (ElementId(block.elements[lane]), asleep)));
             }
         }
-        self.relocate(mesh, &movers, asleep);
+        self.relocate(mesh, &movers);
     }
 
-    /// Puts elements into other blocks, of those that sleep or of those that are awake, with all that they had.
-    fn relocate(&mut self, mesh: &Mesh<D>, movers: &[ElementId], asleep: bool) {
-        let state = |&id: &ElementId| {
+    /// All in a block fall asleep or wake.
+    fn rehome(&mut self, index: u32, asleep: bool) {
+        let block = &mut self.blocks[index as usize];
+        let home = Home {
+            asleep,
+            ..block.home
+        };
+        let before = std::mem::replace(&mut block.home, home);
+        let open = self.open.get_mut(&before);
+        if open.is_some_and(|open| open.remove(&index)) {
+            self.open.entry(home).or_default().insert(index);
+        }
+    }
+
+    /// Puts elements into other blocks, with all that they had; of each it is told whether it sleeps there.
+    fn relocate(&mut self, mesh: &Mesh<D>, movers: &[(ElementId, bool)]) {
+        let state = |&(id, asleep): &(ElementId, bool)| {
             let element = mesh.element(id).expect("who sleeps or wakes is alive");
             let (index, lane) = self.assigned[id];
             let block = &self.blocks[index as usize];
@@ -84,7 +95,7 @@ impl<D: Dim> Blocks<D> {
             (newcomer, block.inverted >> lane & 1, forces)
         };
         let states: Vec<(Newcomer, u8, Vec<f32>)> = movers.iter().map(state).collect();
-        movers.iter().for_each(|&id| self.take_out(id));
+        movers.iter().for_each(|&(id, _)| self.take_out(id));
         let newcomers = states.iter().map(|(newcomer, ..)| *newcomer);
         self.take_in(mesh, newcomers.collect());
         for (Newcomer { id, .. }, inverted, forces) in states {

@@ -90,7 +90,8 @@ impl Bins {
     /// Calls `visit` once with the places of any two points that are no further apart than `reach`
     /// [m], which may be no more than a bin is wide, and of which one lies in these `bins`: all shares
     /// together make all pairs. Of a point and eight from the other place on, `is_out` tells as a mask
-    /// which are left out; points from one place to another are `idle` when none of them makes a pair with another that is.
+    /// which are left out; where `is_idle` says of two stretches of places that no two of theirs
+    /// make a pair, they are not looked at together.
     #[inline(always)]
     pub fn pairs<D: Dim, S: Simd>(
         &self,

@@ -11,8 +11,8 @@ use crate::vector::{dot, minus, plus, scaled};
 pub const STRAY: f32 = 0.35;
 
 /// A path goes on by this share as its sphere went on since its last one began, and else as it goes now: what swings
-/// comes back, and strays less so. With half of it `tear-3d` takes 8 % longer until it tears, with 1 most ticks of `diced` as
-/// much until it does.
+/// comes back, and strays less so. With half of it `tear-3d` takes 8 % longer until it tears, with 1 most ticks of `diced`
+/// take as much longer before it tears.
 const AS_BEFORE: f32 = 0.8;
 
 /// The way of a sphere while its pairs hold: a straight line.
