@@ -18,7 +18,7 @@ for triple in aarch64-apple-darwin x86_64-apple-darwin; do
     if command -v node > /dev/null; then
         TAMAIRE_LICENCES="$PWD/$stage/licences.txt"
         case "$stage" in /*) TAMAIRE_LICENCES="$stage/licences.txt" ;; esac
-        node xtask/web/licences.mjs "$TAMAIRE_LICENCES" "$triple" tamaire fuwafuwa_cli
+        node tools/xtask/web/licences.mjs "$TAMAIRE_LICENCES" "$triple" tamaire fuwafuwa_cli
     fi
     export TAMAIRE_LICENCES
     RUSTFLAGS="--remap-path-prefix=$HOME/.cargo=/cargo --remap-path-prefix=$PWD=/tamaire" \
@@ -38,10 +38,10 @@ printf 'APPL????' > "$app/PkgInfo"
 icons="$stage/tamaire.iconset"
 mkdir "$icons"
 for size in 16 32 128 256 512; do
-    sips -z $size $size game/web/icon-512.png --out "$icons/icon_${size}x$size.png" > /dev/null
+    sips -z $size $size game/tamaire/web/icon-512.png --out "$icons/icon_${size}x$size.png" > /dev/null
     # Of 1024 there is no picture: none is better than a blurred one.
     double=$((2 * size))
-    [ $double -gt 512 ] || sips -z $double $double game/web/icon-512.png --out "$icons/icon_${size}x$size@2x.png" > /dev/null
+    [ $double -gt 512 ] || sips -z $double $double game/tamaire/web/icon-512.png --out "$icons/icon_${size}x$size@2x.png" > /dev/null
 done
 iconutil --convert icns --output "$app/Resources/tamaire.icns" "$icons"
 for file in LICENSE-MIT LICENSE-APACHE; do cp "$file" "$app/Resources/"; done

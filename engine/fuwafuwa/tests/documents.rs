@@ -1,0 +1,86 @@
+//! What the documents say about the code.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// The source files of a folder and of those in it, but for what was built there.
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() && !path.ends_with("target") {
+            found.extend(sources(&path));
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+#[test]
+fn what_the_documents_name_is_there() {
+    for document in [
+        "ARCHITECTURE.md",
+        "README.md",
+        "CONTRIBUTING.md",
+        "GLOSSARY.md",
+    ] {
+        let text = fs::read_to_string(root().join(document)).unwrap();
+        let quoted = text.split('`').skip(1).step_by(2);
+        let paths = quoted.filter(|word| {
+            let is_plain = !word.contains([' ', '*', ':', '<', '(']);
+            let is_ours = [
+                "engine/", "game/", "devices/", "apps/", "plugins/", "tools/", "docs/",
+            ]
+            .iter()
+            .any(|folder| word.starts_with(folder));
+            is_plain && (is_ours || word.ends_with(".md"))
+        });
+        for path in paths {
+            assert!(
+                root().join(path).exists(),
+                "{document} names `{path}`, which is not there"
+            );
+        }
+    }
+}
+
+/// A browser has neither paths nor files: what the game keeps and opens goes through `platform`, by kind and name, and
+/// what the libraries below it read are bytes.
+#[test]
+fn files_are_opened_in_the_platform_and_for_the_command_line_alone() {
+    let edges = [
+        (
+            "game/tamaire/src",
+            &["platform", "headless", "desktop", "main"][..],
+        ),
+        ("game/tamaire_play/src", &[]),
+        ("engine/fuwafuwa_scenes/src", &["disk"]),
+    ];
+    let inside = edges.into_iter().flat_map(|(folder, edges)| {
+        let folder = root().join(folder);
+        let files = sources(&folder);
+        let is_inside = move |path: &PathBuf| {
+            let inner = path.strip_prefix(&folder).unwrap();
+            let first = inner.iter().next().unwrap().to_str().unwrap();
+            !edges.contains(&first.trim_end_matches(".rs"))
+        };
+        files.into_iter().filter(is_inside)
+    });
+    let mut seen = 0;
+    for path in inside {
+        seen += 1;
+        let text = fs::read_to_string(&path).unwrap();
+        let tests = text.find("#[cfg(test)]").unwrap_or(text.len());
+        for word in ["std::fs", "std::path", "PathBuf", "Path::", "File::"] {
+            let is_named = text[..tests].contains(word);
+            assert!(!is_named, "{} names {word}", path.display());
+        }
+    }
+    assert!(seen > 60, "only {seen} files were seen");
+}

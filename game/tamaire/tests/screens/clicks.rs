@@ -1,0 +1,430 @@
+//! With a mouse and keys.
+
+use crate::window::*;
+use egui::Key;
+use egui_kittest::kittest::{NodeT, Queryable};
+use std::fs;
+use tamaire::game::{Game, Notice, Screen};
+use tamaire::input::{Action, Seat};
+use tamaire::platform::{Files, Pads, Sound};
+use tamaire::settings::Settings;
+use tamaire::words::Language;
+use tamaire_play::Route;
+use tamaire_play::replay::VERSION;
+
+#[test]
+fn from_the_title_to_a_round_and_back() {
+    let mut window = window(Files::nowhere());
+    click(&mut window, "Play");
+    assert_eq!(screen(&window), Screen::Levels);
+    click(&mut window, "Classic");
+    assert_eq!(screen(&window), Screen::Play);
+    frames(&mut window, 10);
+    assert!(ticks(&window) >= 10);
+    press(&mut window, Key::Escape);
+    assert_eq!(screen(&window), Screen::Paused);
+    let before = ticks(&window);
+    frames(&mut window, 10);
+    assert_eq!(ticks(&window), before, "time stands still");
+    press(&mut window, Key::Escape);
+    assert_eq!(screen(&window), Screen::Play);
+    press(&mut window, Key::P);
+    click(&mut window, "Again");
+    assert_eq!(screen(&window), Screen::Play);
+    assert!(ticks(&window) < before);
+    press(&mut window, Key::Escape);
+    click(&mut window, "Levels");
+    assert_eq!(screen(&window), Screen::Levels);
+    click(&mut window, "Back");
+    assert_eq!(screen(&window), Screen::Title);
+}
+
+#[test]
+fn one_key_begins_the_round_again_at_once() {
+    let mut window = window(Files::nowhere());
+    game(&mut window).start(0);
+    frames(&mut window, 30);
+    assert!(ticks(&window) >= 29);
+    window.key_press(Key::R);
+    window.step();
+    // The key goes down in the first frame and up in the second.
+    assert!(ticks(&window) <= 2, "{} ticks", ticks(&window));
+    frames(&mut window, 5);
+    assert!(ticks(&window) >= 5, "and it goes on");
+}
+
+#[test]
+fn a_round_is_won_kept_watched_raced_and_deleted() {
+    let folder = folder("win");
+    let files = Files::in_folder(&folder);
+    let mut window = window(Files::in_folder(&folder));
+    game(&mut window).start(0);
+    win(&mut window);
+    let (outcome, is_best) = game(&mut window).bout.won.unwrap();
+    assert!(is_best && outcome.route == Route::Squeeze, "{outcome:?}");
+    window.get_by_label("Squeezed in!");
+    click(&mut window, "Save replay");
+    game(&mut window).finish_writing();
+    assert!(notices(&window).contains("classic-1.tamaire"));
+    let path = files.location(&files.replays()[0].name);
+    let saved = fs::read_to_string(&path).unwrap();
+
+    click(&mut window, "Race it");
+    assert_eq!(screen(&window), Screen::Play);
+    frames(&mut window, 5);
+    let ghost = |window: &Window| {
+        let ghost = window.state().game.bout.session.ghost();
+        ghost.map(|round| round.frames().len())
+    };
+    assert!(ghost(&window).unwrap() >= 5);
+    press(&mut window, Key::R);
+    assert!(ghost(&window).unwrap() <= 4, "the ghost begins again too");
+    win(&mut window);
+    assert!(
+        !game(&mut window).bout.won.unwrap().1,
+        "as fast is no faster"
+    );
+    click(&mut window, "Again");
+    assert_eq!(screen(&window), Screen::Play);
+    win(&mut window);
+    press(&mut window, Key::Escape);
+    assert_eq!(screen(&window), Screen::Levels);
+    press(&mut window, Key::Escape);
+
+    click(&mut window, "Replays");
+    click(&mut window, "Watch");
+    assert_eq!(screen(&window), Screen::Play);
+    assert!(!game(&mut window).bout.session.is_played());
+    while screen(&window) == Screen::Play {
+        let game = game(&mut window);
+        let goes_on = |game: &Game| !game.bout.session.is_over();
+        drive(game, tamaire_play::BotKind::Idle, goes_on);
+        assert_eq!(game.bout.round().progress().outcome, Some(outcome));
+        frames(&mut window, 2);
+    }
+    assert_eq!(
+        (screen(&window), notices(&window).as_str()),
+        (Screen::Replays, "")
+    );
+    frames(&mut window, 1);
+    click(&mut window, "Race it");
+    assert!(game(&mut window).bout.session.is_played() && ghost(&window).is_some());
+    game(&mut window).go(Screen::Title);
+    game(&mut window).go(Screen::Replays);
+
+    // Somebody else's, or none at all.
+    fs::write(
+        &path,
+        saved.replacen(&format!("version = {VERSION}"), "version = 999", 1),
+    )
+    .unwrap();
+    frames(&mut window, 2);
+    click(&mut window, "Watch");
+    assert!(
+        notices(&window).contains("version 999"),
+        "{}",
+        notices(&window)
+    );
+    assert_eq!(screen(&window), Screen::Replays);
+    // The first hash is a lie, which comes out after a second.
+    let start = saved.find("hashes = [").unwrap();
+    let digit = start + saved[start..].find('"').unwrap() + 1;
+    let mut lie = saved.clone();
+    let other = if &saved[digit..=digit] == "0" {
+        "1"
+    } else {
+        "0"
+    };
+    lie.replace_range(digit..=digit, other);
+    fs::write(&path, lie).unwrap();
+    for way in ["Watch", "Race it"] {
+        game(&mut window).notices.clear();
+        click(&mut window, way);
+        assert_eq!(screen(&window), Screen::Play);
+        frames(&mut window, 65);
+        assert!(
+            notices(&window).contains("was changed"),
+            "{way}: {}",
+            notices(&window)
+        );
+        game(&mut window).go(Screen::Replays);
+        frames(&mut window, 2);
+    }
+    click(&mut window, "Delete");
+    assert!(!files.replays().is_empty(), "not at the first word");
+    click(&mut window, "Really?");
+    assert!(files.replays().is_empty());
+    window.get_by_label_contains("No replays yet");
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn settings_are_kept_and_the_language_changes_at_once() {
+    let folder = folder("settings");
+    let files = Files::in_folder(&folder);
+    let mut window = window(Files::in_folder(&folder));
+    click(&mut window, "Settings");
+    let slider = egui::accesskit::Role::Slider;
+    let before = game(&mut window).settings.volume;
+    window
+        .get_by_role_and_label(slider, "Volume")
+        .decrement_accesskit();
+    frames(&mut window, 2);
+    let after = game(&mut window).settings.volume;
+    assert!((before - after - 0.05).abs() < 1e-3, "{before} {after}");
+    let option = |window: &Window, name: &str| {
+        let option = window.get_by_role_and_label(egui::accesskit::Role::RadioButton, name);
+        option.accesskit_node().toggled()
+    };
+    use egui::accesskit::Toggled::{False, True};
+    assert_eq!(option(&window, "Less motion: Off"), Some(True));
+    assert_eq!(option(&window, "Safe colours: Off"), Some(True));
+    assert_eq!(option(&window, "Safe colours: On"), Some(False));
+    window.get_by_label("Language: 日本語").click();
+    frames(&mut window, 2);
+    let said = Language::Japanese.words();
+    window.get_by_label(said.volume);
+    click(&mut window, said.back);
+    window.get_by_label(said.play);
+    game(&mut window).finish_writing();
+    let again = Game::new(files, Sound::none(), Pads::none());
+    assert_eq!(again.settings.language, Language::Japanese);
+    assert_eq!(again.settings.volume, after);
+    fs::write(folder.join("settings.toml"), "volume = [").unwrap();
+    let again = Game::new(Files::in_folder(&folder), Sound::none(), Pads::none());
+    // Nobody knows how strong forces were to be.
+    let usual = Settings {
+        haptics: 0.0,
+        ..Settings::default()
+    };
+    assert_eq!(again.settings, usual);
+    let aside = |notice: &Notice| notice.text.contains("settings.broken-1.toml");
+    assert!(again.notices.iter().any(aside));
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn how_far_the_levels_are_scrolled_is_nothing_to_the_settings() {
+    let mut window = window(Files::nowhere());
+    let language = |window: &Window| window.get_by_label("Language: English").rect();
+    click(&mut window, "Settings");
+    let before = language(&window);
+    click(&mut window, "Back");
+    click(&mut window, "Play");
+    button(&window, "Playground 3D").scroll_to_me();
+    frames(&mut window, 30);
+    click(&mut window, "Back");
+    click(&mut window, "Settings");
+    assert_eq!(language(&window), before);
+}
+
+#[test]
+fn what_is_inside_can_be_read_with_keys_too() {
+    let mut window = window(Files::nowhere());
+    click(&mut window, "Settings");
+    click(&mut window, "Licences");
+    assert_eq!(screen(&window), Screen::Licences);
+    window.get_by_label("What others made");
+    // Past the button back, the text itself, down to its end, however long it is.
+    let lines = tamaire::licences::lines();
+    let last = lines.iter().rfind(|line| !line.is_empty()).unwrap();
+    let room = window.ctx.content_rect();
+    let is_seen = |window: &Window| {
+        let mut found = window.query_all_by_label(last);
+        found.any(|line| room.contains_rect(line.rect()))
+    };
+    for _ in lines {
+        if !is_seen(&window) {
+            press(&mut window, Key::ArrowDown);
+            frames(&mut window, 30);
+        }
+    }
+    assert!(is_seen(&window));
+    press(&mut window, Key::Escape);
+    assert_eq!(screen(&window), Screen::Settings);
+}
+
+#[test]
+fn any_key_can_mean_anything() {
+    let mut window = window(Files::nowhere());
+    click(&mut window, "Settings");
+    let row = |window: &Window| {
+        let row = window.get_by_label_contains("Try again:");
+        let label = row.accesskit_node().label();
+        label.expect("it was found by it")
+    };
+    for key in [Key::Q, Key::Enter, Key::ArrowDown, Key::Tab] {
+        let row = row(&window);
+        click(&mut window, &row);
+        assert_eq!(game(&mut window).controls.rebinding, Some(Action::Retry));
+        window.get_by_label("Press a key or button…");
+        press(&mut window, key);
+        let game = game(&mut window);
+        assert_eq!(
+            game.settings.bindings.of_key(key),
+            Some(Action::Retry),
+            "{key:?}"
+        );
+        assert_eq!(game.controls.rebinding, None, "{key:?}");
+    }
+    // Escape leaves it as it is, and the screen too.
+    let row = row(&window);
+    click(&mut window, &row);
+    press(&mut window, Key::Escape);
+    assert!(matches!(screen(&window), Screen::Settings));
+    let game = game(&mut window);
+    assert_eq!(game.settings.bindings.of_key(Key::Tab), Some(Action::Retry));
+    assert_eq!(game.controls.rebinding, None);
+    game.settings = Settings::default();
+    game.go(Screen::Title);
+}
+
+#[test]
+fn mouse_and_keys_are_two_players() {
+    let mut window = window(Files::nowhere());
+    game(&mut window).start(0);
+    frames(&mut window, 2);
+    press(&mut window, Key::J);
+    assert_eq!(
+        game(&mut window).controls.players.second(),
+        Some(Seat::Keys)
+    );
+    frames(&mut window, 2);
+    let hands = |window: &Window| {
+        let hands = window.state().game.bout.round().hands();
+        hands.iter().map(|hand| hand.goal()).collect::<Vec<_>>()
+    };
+    let before = hands(&window);
+    let start = window.state().game.bout.round().level().scene().goals(0);
+    for (at, start) in before.iter().zip(&start) {
+        let is_near = (0..2).all(|axis| (at[axis] - start[axis]).abs() < 1e-3);
+        assert!(
+            is_near,
+            "who comes in is where the level says: {at:?} {start:?}"
+        );
+    }
+    window.key_down(Key::D);
+    window.hover_at(egui::pos2(480.0, 100.0));
+    frames(&mut window, 20);
+    let after = hands(&window);
+    assert!(after[0][1] > before[0][1] + 0.3, "{before:?} {after:?}");
+    assert!(after[1][0] > before[1][0] + 0.3, "{before:?} {after:?}");
+    assert!(
+        (after[1][1] - before[1][1]).abs() < 1e-3,
+        "{before:?} {after:?}"
+    );
+    window.key_up(Key::D);
+    press(&mut window, Key::J);
+    assert_eq!(game(&mut window).controls.players.second(), None);
+}
+
+#[test]
+fn the_font_has_every_letter_of_the_game() {
+    let window = window(Files::nowhere());
+    let mut texts = vec![
+        include_str!("../../src/words/en.rs"),
+        include_str!("../../src/words/ja.rs"),
+        include_str!("../../src/words/stand.rs"),
+    ];
+    texts.extend(tamaire_play::level::NAMED.map(|(_, text)| text));
+    let font = egui::FontId::proportional(20.0);
+    for letter in texts.join("").chars().filter(|k| !k.is_control()) {
+        let is_there = window.ctx.fonts_mut(|fonts| fonts.has_glyph(&font, letter));
+        assert!(is_there, "{letter}: run game/tamaire/fonts/make.py");
+    }
+}
+
+#[test]
+fn a_key_fills_the_screen_and_the_choice_is_kept() {
+    let folder = folder("full-screen");
+    let mut window = window(Files::in_folder(&folder));
+    for wanted in [true, false, true] {
+        window.key_press(Key::F11);
+        // The window is asked in the frame after.
+        let asked = (0..2).any(|_| {
+            frames(&mut window, 1);
+            let root = &window.output().viewport_output[&egui::ViewportId::ROOT];
+            let command = egui::ViewportCommand::Fullscreen(wanted);
+            root.commands.contains(&command)
+        });
+        assert!(asked && game(&mut window).settings.full_screen == wanted);
+    }
+    drop(window);
+    let again = Game::new(Files::in_folder(&folder), Sound::none(), Pads::none());
+    assert!(again.settings.full_screen);
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn the_game_speaks_as_the_system_does_until_somebody_chooses() {
+    let folder = folder("language");
+    let files = |locale: &str| Files::in_folder(&folder).speaking(locale);
+    for (locale, language) in [
+        ("ja_JP.UTF-8", Language::Japanese),
+        ("ja", Language::Japanese),
+        ("fr-FR", Language::English),
+        ("", Language::English),
+    ] {
+        let game = Game::new(files(locale), Sound::none(), Pads::none());
+        assert_eq!(game.settings.language, language, "{locale}");
+    }
+    let mut window = window(files("ja-JP"));
+    click(&mut window, "English");
+    assert_eq!(game(&mut window).settings.language, Language::English);
+    drop(window);
+    let game = Game::new(files("ja-JP"), Sound::none(), Pads::none());
+    assert_eq!(game.settings.language, Language::English, "it was chosen");
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn a_mouse_that_only_rests_moves_no_hand() {
+    let mut window = window(Files::nowhere());
+    start(&mut window, "classic");
+    for (at, moves) in [(egui::Pos2::ZERO, false), (egui::pos2(400.0, 300.0), true)] {
+        window.hover_at(at);
+        frames(&mut window, 2);
+        assert_eq!(
+            game(&mut window).controls.players.wanted(0).is_some(),
+            moves,
+            "{at}"
+        );
+    }
+}
+
+#[test]
+fn a_mouse_that_rests_presses_a_button_for_whoever_wants_it_so() {
+    let mut window = window(Files::nowhere());
+    let at = button(&window, "Play").rect().center();
+    window.hover_at(at);
+    frames(&mut window, 90);
+    assert_eq!(screen(&window), Screen::Title, "nobody asked for it");
+    window.hover_at(egui::Pos2::ZERO);
+    frames(&mut window, 2);
+    game(&mut window).settings.dwell = true;
+    window.hover_at(at);
+    frames(&mut window, 30);
+    assert_eq!(screen(&window), Screen::Title);
+    frames(&mut window, 60);
+    assert_eq!(screen(&window), Screen::Levels);
+}
+
+#[test]
+fn keys_stay_down_until_they_are_pressed_again_for_whoever_wants_it_so() {
+    let mut window = window(Files::nowhere());
+    start(&mut window, "classic");
+    game(&mut window).settings.toggle_keys = true;
+    let x = |window: &Window| {
+        let players = &window.state().game.controls.players;
+        players.wanted(0).map_or(-1.4, |wanted| wanted[0])
+    };
+    press(&mut window, Key::ArrowRight);
+    frames(&mut window, 30);
+    let first = x(&window);
+    assert!(first > -1.2, "{first}");
+    press(&mut window, Key::ArrowRight);
+    frames(&mut window, 10);
+    let second = x(&window);
+    frames(&mut window, 10);
+    assert_eq!(x(&window), second);
+}

@@ -1,0 +1,290 @@
+//! What the game puts up with.
+
+use crate::window::*;
+use egui::accesskit::Role;
+use egui::{DroppedFile, Event, Key, PointerButton, pos2};
+use egui_kittest::kittest::Queryable;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use sticks::{About, Device, DeviceId, Pad, PadButton, Snapshot};
+use tamaire::game::{Game, Screen};
+use tamaire::platform::{Files, Pads};
+use tamaire::words::Language;
+use tamaire_play::BotKind;
+
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+pub fn drop_file(window: &mut Window, path: PathBuf) {
+    game(window).notices.clear();
+    window
+        .input_mut()
+        .dropped_files
+        .push(Arc::new(Dropped(path)));
+    frames(window, 2);
+}
+
+#[test]
+fn a_picture_is_played_and_what_is_broken_is_named() {
+    let folder = folder("drop");
+    let mut window = window(Files::in_folder(&folder));
+    let cat = "../tamaire_play/levels/cat.png";
+    drop_file(&mut window, Path::new(env!("CARGO_MANIFEST_DIR")).join(cat));
+    assert_eq!(
+        (screen(&window), notices(&window).as_str()),
+        (Screen::Play, "")
+    );
+    let name = |window: &Window| {
+        window
+            .state()
+            .game
+            .bout
+            .session
+            .round()
+            .level()
+            .game()
+            .name
+            .en
+            .clone()
+    };
+    assert_eq!(name(&window), "cat");
+
+    let broken = folder.join("broken.toml");
+    fs::write(&broken, "dim = 2\ngravity = \"down\"\n").unwrap();
+    drop_file(&mut window, broken);
+    let said = notices(&window);
+    assert!(
+        said.contains("broken.toml") && said.contains("line 2"),
+        "{said}"
+    );
+    for (file, bytes) in [
+        ("no.png", &b"no picture"[..]),
+        ("no.tamaire", b"no replay"),
+        ("no.zip", b"\xff\xfe"),
+        ("no", b""),
+    ] {
+        let path = folder.join(file);
+        fs::write(&path, bytes).unwrap();
+        drop_file(&mut window, path);
+        assert!(
+            notices(&window).contains(file),
+            "{file}: {}",
+            notices(&window)
+        );
+    }
+    for path in [folder.join("nowhere.toml"), folder.clone(), PathBuf::new()] {
+        drop_file(&mut window, path.clone());
+        assert_ne!(notices(&window), "", "{path:?}");
+    }
+    let before = ticks(&window);
+    frames(&mut window, 5);
+    assert_eq!(name(&window), "cat");
+    assert!(ticks(&window) >= before + 5, "the game goes on");
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[cfg(unix)]
+#[test]
+fn pipes_and_devices_are_refused_and_not_waited_for() {
+    let folder = folder("pipes");
+    let mut window = window(Files::nowhere());
+    for (made, file) in [
+        ("mkfifo", "a.toml"),
+        ("mkfifo", "a.png"),
+        ("mkfifo", "a.vox"),
+        ("mkfifo", "a.tamaire"),
+        ("mkfifo", "a"),
+        ("ln -s /dev/zero", "b.toml"),
+        ("ln -s /dev/zero", "b.png"),
+        ("ln -s /dev/zero", "b.tamaire"),
+    ] {
+        let path = folder.join(file);
+        let mut words = made.split(' ');
+        let mut command = std::process::Command::new(words.next().expect("a program"));
+        assert!(command.args(words).arg(&path).status().unwrap().success());
+        drop_file(&mut window, path);
+        let said = notices(&window);
+        assert!(said.contains(file) && said.contains("a device"), "{said}");
+    }
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn a_notice_is_cut_to_what_can_be_read() {
+    let mut window = window(Files::nowhere());
+    let game = game(&mut window);
+    game.notices.clear();
+    game.notify("ふ".repeat(1 << 20));
+    let notice = game.notices.iter().next().unwrap();
+    assert_eq!(notice.text.chars().count(), 601);
+    assert!(notice.seconds < 60.0, "{} s", notice.seconds);
+}
+
+#[test]
+fn a_long_notice_stays_until_it_can_be_read() {
+    let mut window = window(Files::nowhere());
+    let game = game(&mut window);
+    game.notices.clear();
+    game.notify("short".into());
+    game.notify("a level with many words ".repeat(8));
+    let left = |game: &Game| game.notices.iter().count();
+    game.pass(5.9);
+    assert_eq!(left(game), 2);
+    game.pass(0.2);
+    assert_eq!(left(game), 1);
+    game.pass(7.0);
+    assert_eq!(left(game), 0);
+}
+
+#[test]
+fn a_round_waits_while_the_window_is_not_looked_at() {
+    let mut window = window(Files::nowhere());
+    let focus = |window: &mut Window, focused| {
+        window.input_mut().focused = focused;
+        window.event(Event::WindowFocused(focused));
+        frames(window, 2);
+    };
+    focus(&mut window, false);
+    assert_eq!(screen(&window), Screen::Title);
+    // What was named or dropped is played, focus or not: it is the loss that counts.
+    game(&mut window).start(0);
+    frames(&mut window, 5);
+    assert_eq!(screen(&window), Screen::Play);
+    focus(&mut window, true);
+    assert_eq!(screen(&window), Screen::Play);
+    focus(&mut window, false);
+    assert_eq!(screen(&window), Screen::Paused);
+}
+
+#[test]
+fn every_button_fits_into_the_smallest_window_with_the_largest_letters() {
+    let sizes = [
+        [900.0, 640.0],
+        [640.0, 400.0],
+        [390.0, 844.0],
+        [844.0, 390.0],
+    ];
+    for size in sizes.map(egui::Vec2::from) {
+        let mut window = open(Files::nowhere(), size, 0.5);
+        game(&mut window).settings.text_size = 1.6;
+        game(&mut window).start(0);
+        win(&mut window);
+        let round = game(&mut window).bout.round();
+        let wishes = round.level().game().wish.len();
+        assert!(wishes == 3 && game(&mut window).bout.won.unwrap().1);
+        let screens = [Screen::Result, Screen::Paused, Screen::Title];
+        for (screen, count) in screens.into_iter().zip([8, 6, 5]) {
+            for (language, _) in Language::ALL {
+                game(&mut window).settings.language = language;
+                game(&mut window).go(screen);
+                frames(&mut window, 3);
+                let room = window.ctx.content_rect();
+                let buttons: Vec<_> = window.get_all_by_role(Role::Button).collect();
+                assert_eq!(buttons.len(), count, "{screen:?}");
+                for button in buttons {
+                    let rect = button.rect();
+                    assert!(room.contains_rect(rect), "{screen:?}: {rect:?} in {room:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn two_thousand_frames_of_anything_are_survived() {
+    let folder = folder("anything");
+    let mut random = fastrand::Rng::with_seed(7);
+    let mut window = window(Files::in_folder(&folder));
+    let mut pad = Device::at_rest(DeviceId(1), about(), 6, 0, 0);
+    pad.pad = Some(Pad::default());
+    let mut devices = vec![pad, Device::at_rest(DeviceId(2), about(), 2, 8, 1)];
+    let mut seen = std::collections::BTreeSet::new();
+    // Each event has a frame of its own: a click is three.
+    for frame in 0..1000 {
+        let at = pos2(960.0 * random.f32(), 600.0 * random.f32());
+        match random.u32(0..12) {
+            0..4 => {
+                window.event(Event::PointerMoved(at));
+                for pressed in [true, false] {
+                    window.event(Event::PointerButton {
+                        pos: at,
+                        button: PointerButton::Primary,
+                        pressed,
+                        modifiers: egui::Modifiers::NONE,
+                    });
+                }
+            }
+            4..7 => window.key_press(Key::ALL[random.usize(..Key::ALL.len())]),
+            7 => window.key_press(Key::Enter),
+            8 => devices[0].pad.as_mut().unwrap().left = [random.f32() * 2.0 - 1.0, f32::NAN],
+            9 | 10 => {
+                let button = PadButton::ALL[random.usize(..PadButton::ALL.len())];
+                let pad = devices[0].pad.as_mut().unwrap();
+                for other in PadButton::ALL {
+                    pad.button_mut(other).down = false;
+                }
+                pad.button_mut(button).press();
+                let button = random.usize(..8);
+                devices[1].buttons[button].press();
+            }
+            _ => {}
+        }
+        let told = match frame % 100 {
+            90.. => Vec::new(),
+            _ => devices.clone(),
+        };
+        let game = game(&mut window);
+        game.controls.pads = Pads::of(Snapshot { devices: told });
+        match (frame % 100, random.u32(..5)) {
+            (99, 0) => game.go(Screen::Title),
+            (99, 1) => game.go(Screen::Replays),
+            (99, 2) => game.go(Screen::Settings),
+            (99, _) => game.start(random.usize(..game.levels.len())),
+            _ => {}
+        }
+        if frame == 500 {
+            game.start(0);
+            drive(game, BotKind::Squeeze, |game| game.bout.won.is_none());
+            game.pass(2.0);
+        }
+        seen.insert(format!("{:?}", screen(&window)));
+        window.step();
+        check(&window.state().game, frame);
+    }
+    assert!(seen.len() >= 6, "{seen:?}");
+    fs::remove_dir_all(folder).unwrap();
+}
+
+fn about() -> About {
+    About {
+        name: String::new(),
+        guid: String::new(),
+        labels: sticks::Labels::default(),
+    }
+}
+
+fn check(game: &Game, frame: usize) {
+    let round = game.bout.round();
+    let [low, high] = round.level().arena();
+    for hand in round.hands() {
+        let at = hand.position();
+        let is_in = |axis: usize| low[axis] <= at[axis] && at[axis] <= high[axis];
+        assert!(is_in(0) && is_in(1), "frame {frame}: a hand at {at:?}");
+    }
+    assert_eq!(
+        game.settings,
+        game.settings.clone().in_range(),
+        "frame {frame}"
+    );
+}

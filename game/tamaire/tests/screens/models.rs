@@ -1,0 +1,111 @@
+//! Models that are dropped onto the window.
+
+use crate::hostile::drop_file;
+use crate::space::{assert_near, goal, in_space, point_at};
+use crate::window::*;
+use std::path::Path;
+use tamaire::game::Screen;
+use tamaire::platform::{Files, Given};
+use tamaire_play::AnyRound;
+
+const MODEL: &str = "../tamaire_play/levels/pudding.vox";
+
+#[test]
+fn a_model_dropped_onto_any_round_is_played_in_space() {
+    let mut window = window(Files::nowhere());
+    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join(MODEL);
+    for level in ["classic", "hoop"] {
+        start(&mut window, level);
+        frames(&mut window, 10);
+        drop_file(&mut window, model.clone());
+        assert_eq!(
+            (screen(&window), notices(&window).as_str()),
+            (Screen::Play, ""),
+            "{level}"
+        );
+        let round = window.state().game.bout.round();
+        assert!(matches!(round, AnyRound::Space(_)), "{level}");
+        assert_eq!(round.level().game().name.en, "pudding");
+        assert!(
+            round.progress().mass > 0.0 && ticks(&window) <= 2,
+            "{level}"
+        );
+        // It is offered once, however often it is dropped.
+        let levels = &window.state().game.levels;
+        let name = &round.level().id;
+        assert_eq!(levels.iter().filter(|level| &level.id == name).count(), 1);
+        point_at(&mut window, -1.0, 0.7);
+        assert!(
+            (goal(&window, 0)[2] - 0.7).abs() < 0.05,
+            "{level}: it can be played"
+        );
+    }
+}
+
+#[test]
+fn what_the_command_line_names_is_played() {
+    let mut window = window(Files::nowhere());
+    let levels = window.state().game.levels.len();
+    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join(MODEL);
+    for (named, expected, more) in [
+        (Path::new("hoop"), "Through the hoop", 0),
+        (&model, "pudding", 1),
+        (&model, "pudding", 1),
+    ] {
+        window.state_mut().game.open(Given::at(named));
+        frames(&mut window, 3);
+        let game = &window.state().game;
+        assert_eq!(screen(&window), Screen::Play, "{named:?}");
+        assert_eq!(game.levels.len(), levels + more, "{named:?}");
+        let name = &game.bout.round().level().game().name.en;
+        assert_eq!(
+            (name.as_str(), name),
+            (expected, &game.levels[game.chosen].game().name.en)
+        );
+    }
+}
+
+#[test]
+fn a_damaged_model_is_named_and_nothing_is_lost() {
+    let folder = folder("vox");
+    let whole =
+        std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join(MODEL)).expect("it comes along");
+    let mut window = in_space();
+    point_at(&mut window, -1.0, 0.7);
+    let levels = window.state().game.levels.len();
+    let mut size = whole.clone();
+    // The number of voxels, far beyond the end of the file.
+    let count = whole
+        .windows(4)
+        .position(|word| word == b"XYZI")
+        .expect("it has voxels")
+        + 12;
+    size[count..count + 4].copy_from_slice(&u32::MAX.to_le_bytes());
+    let damaged: [(&str, &[u8], &str); 5] = [
+        ("cut.vox", &whole[..whole.len() / 2], "cut.vox"),
+        ("head.VOX", &whole[..3], "head.VOX"),
+        ("empty.vox", b"", "empty.vox"),
+        ("count.vox", &size, "count.vox"),
+        (
+            "picture.vox",
+            b"\x89PNG\r\n\x1a\n and no model",
+            "picture.vox",
+        ),
+    ];
+    for (file, bytes, told) in damaged {
+        let path = folder.join(file);
+        std::fs::write(&path, bytes).expect("it is ours");
+        let (before, at) = (ticks(&window), goal(&window, 0));
+        drop_file(&mut window, path);
+        let said = notices(&window);
+        assert!(
+            said.contains(told) && said.contains("expected"),
+            "{file}: {said}"
+        );
+        assert_eq!(window.state().game.levels.len(), levels, "{file}");
+        assert_eq!(screen(&window), Screen::Play, "{file}");
+        assert!(ticks(&window) > before, "{file}: the round goes on");
+        assert_near(goal(&window, 0), at);
+    }
+    std::fs::remove_dir_all(folder).expect("it is ours");
+}

@@ -1,0 +1,137 @@
+//! Levels of one's own.
+
+use crate::hostile::drop_file;
+use crate::window::*;
+use egui::Key;
+use egui_kittest::kittest::Queryable;
+use std::fs;
+use std::path::{Path, PathBuf};
+use tamaire::game::Screen;
+use tamaire::platform::Files;
+
+/// A picture that can be dropped.
+fn cat() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../tamaire_play/levels/cat.png")
+}
+
+/// The ids of the levels that do not come along, once all are read.
+fn own(window: &mut Window) -> Vec<String> {
+    wait(window);
+    let game = game(window);
+    let places = (0..game.levels.len()).filter(|&place| game.is_own(place));
+    places.map(|place| game.levels[place].id.clone()).collect()
+}
+
+fn wait(window: &mut Window) {
+    while game(window).files.is_busy() {
+        frames(window, 1);
+    }
+    frames(window, 1);
+}
+
+#[test]
+fn a_level_that_was_dropped_stays_until_it_is_taken_out() {
+    let folder = folder("own");
+    let begin = || window(Files::in_folder(&folder));
+    let mut first = begin();
+    drop_file(&mut first, cat());
+    assert_eq!(screen(&first), Screen::Play);
+    win(&mut first);
+    assert_eq!(own(&mut first), ["cat.png"]);
+    let dropped = game(&mut first).bout.round().level().clone();
+    drop(first);
+
+    let mut again = begin();
+    assert_eq!(own(&mut again), ["cat.png"]);
+    assert!(game(&mut again).levels.contains(&dropped));
+    game(&mut again).go(Screen::Levels);
+    frames(&mut again, 2);
+    click(&mut again, "Take out: cat");
+    assert_eq!(own(&mut again), ["cat.png"], "it is asked for again");
+    click(&mut again, "Really?: cat");
+    assert_eq!(own(&mut again).len(), 0);
+    assert_eq!(screen(&again), Screen::Levels);
+    drop(again);
+
+    let mut last = begin();
+    assert_eq!(own(&mut last).len(), 0);
+    assert!(game(&mut last).records.of("cat.png").is_some());
+    assert!(cat().exists(), "the picture itself is nobody's to delete");
+    drop(last);
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn keys_take_a_level_out_and_whoever_changes_their_mind_need_not() {
+    let mut window = window(Files::nowhere());
+    drop_file(&mut window, cat());
+    game(&mut window).go(Screen::Levels);
+    frames(&mut window, 3);
+    // The level that was played has the focus.
+    press(&mut window, Key::ArrowDown);
+    press(&mut window, Key::Enter);
+    assert!(window.query_by_label("Really?: cat").is_some());
+    frames(&mut window, 7 * 60);
+    assert!(window.query_by_label("Take out: cat").is_some());
+    assert_eq!(own(&mut window).len(), 1);
+    press(&mut window, Key::Enter);
+    press(&mut window, Key::Enter);
+    assert_eq!(own(&mut window).len(), 0);
+    let chosen = game(&mut window).chosen;
+    assert!(chosen < game(&mut window).levels.len());
+}
+
+#[test]
+fn a_kept_level_that_is_damaged_is_put_aside_and_told_once() {
+    let folder = folder("own-damaged");
+    let begin = || window(Files::in_folder(&folder));
+    let mut first = begin();
+    drop_file(&mut first, cat());
+    assert_eq!(own(&mut first).len(), 1);
+    drop(first);
+    let levels = folder.join("levels");
+    let good = fs::read_to_string(levels.join("cat.png.toml")).unwrap();
+    let body = good
+        .find("content = ")
+        .expect("it brings its picture along");
+    for (name, text) in [
+        ("cut.png.toml", &good[..body]),
+        ("classic.toml", &good),
+        ("large.toml", &good.replacen("n = ", "n = 100000", 1)),
+    ] {
+        fs::write(levels.join(name), text).unwrap();
+    }
+    let mut again = begin();
+    assert_eq!(own(&mut again), ["cat.png"]);
+    let told = notices(&again);
+    for name in ["cut.png", "classic", "large"] {
+        let aside = levels.join(format!("{name}.broken-1.toml"));
+        assert!(
+            aside.exists() && told.contains(aside.to_str().unwrap()),
+            "{told}"
+        );
+    }
+    drop(again);
+    let mut last = begin();
+    assert_eq!((own(&mut last).len(), notices(&last).as_str()), (1, ""));
+    drop(last);
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn two_games_at_once_lose_no_level() {
+    let folder = folder("own-two");
+    let other = folder.join("other.png");
+    fs::copy(cat(), &other).unwrap();
+    let begin = || window(Files::in_folder(&folder));
+    let mut windows = [begin(), begin()];
+    for (window, file) in windows.iter_mut().zip([cat(), other]) {
+        drop_file(window, file);
+        wait(window);
+    }
+    drop(windows);
+    let mut ids = own(&mut begin());
+    ids.sort();
+    assert_eq!(ids, ["cat.png", "other.png"]);
+    fs::remove_dir_all(folder).unwrap();
+}

@@ -1,0 +1,208 @@
+//! How it looks: pictures, compared with those in `tests/snapshots`.
+
+use crate::hostile::drop_file;
+use crate::window::*;
+use egui::{Key, Vec2, pos2, vec2};
+use egui_kittest::SnapshotOptions;
+use egui_kittest::kittest::Queryable;
+use force_feedback::{Ability, Recording};
+use std::path::Path;
+use sticks::{About, Device, DeviceId, Pad, Snapshot};
+use tamaire::game::Screen;
+use tamaire::input::{Action, Seat};
+use tamaire::platform::{Files, Pads};
+use tamaire::words::Language;
+use tamaire_play::{BotKind, Outcome, Route};
+
+/// A pixel may differ by about ten of 256 steps of grey, and so many pixels by more: drivers round
+/// corners and mix colours in ways of their own. Whatever moves, is missing or speaks another
+/// language differs by more than that.
+const STEP: f32 = 50.0;
+const PIXELS: usize = 800;
+
+/// What has much detail is shown smaller, for the files' sake.
+const SMALLER: Vec2 = vec2(592.0, 370.0);
+
+/// How somebody won before.
+const WON: Outcome = Outcome {
+    ticks: 600,
+    route: Route::Squeeze,
+    kept: 1.0,
+    inside: 1.0,
+    pieces: 1,
+    lost: 0,
+};
+
+fn picture(window: &mut Window, name: &str) {
+    let options = SnapshotOptions::new()
+        .threshold(STEP)
+        .max_failed_pixels(PIXELS);
+    window.snapshot_options(name, &options);
+}
+
+/// The same in each language.
+fn pictures(window: &mut Window, name: &str) {
+    for (language, tag) in [(Language::English, "en"), (Language::Japanese, "ja")] {
+        game(window).settings.language = language;
+        // It takes a frame to come on and one to be measured.
+        frames(window, 3);
+        picture(window, &format!("{name}_{tag}"));
+    }
+    game(window).settings.language = Language::English;
+}
+
+#[test]
+fn every_screen() {
+    let mut window = open(Files::nowhere(), vec2(704.0, 440.0), 1.0);
+    drive(game(&mut window), BotKind::Idle, |game| game.time < 2.0);
+    pictures(&mut window, "title");
+    game(&mut window).go(Screen::Levels);
+    // The map of each level takes a frame.
+    let levels = game(&mut window).levels.len();
+    frames(&mut window, levels);
+    pictures(&mut window, "levels");
+    game(&mut window).go(Screen::Settings);
+    pictures(&mut window, "settings");
+    game(&mut window).controls.pads = sticks_and_pads();
+    game(&mut window).go(Screen::Forces);
+    // Its thread says what they can do.
+    frames(&mut window, 5);
+    pictures(&mut window, "forces");
+    game(&mut window).controls.pads = Pads::none();
+    frames(&mut window, 1);
+
+    game(&mut window).start(0);
+    // Keys need to see where they are.
+    press(&mut window, Key::P);
+    pictures(&mut window, "paused");
+    game(&mut window).go(Screen::Play);
+    window.hover_at(pos2(10.0, 10.0));
+    win(&mut window);
+    pictures(&mut window, "result");
+    own_level(&mut window);
+}
+
+#[test]
+fn on_a_telephone_that_is_held_upright() {
+    let mut window = open(Files::nowhere(), vec2(390.0, 844.0), 1.0);
+    drive(game(&mut window), BotKind::Idle, |game| game.time < 2.0);
+    pictures(&mut window, "upright_title");
+    game(&mut window).go(Screen::Settings);
+    pictures(&mut window, "upright_settings");
+    game(&mut window).start(0);
+    window.hover_at(pos2(10.0, 10.0));
+    win(&mut window);
+    pictures(&mut window, "upright_result");
+    let link = game(&mut window).bout.round().replay().link();
+    game(&mut window).open_link(&link.expect("a bot's round is short"));
+    // The map of each level takes a frame.
+    frames(&mut window, 20);
+    pictures(&mut window, "upright_offered");
+}
+
+/// One that was dropped stands at the end of the list.
+fn own_level(window: &mut Window) {
+    let cat = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tamaire_play/levels/cat.png");
+    drop_file(window, cat);
+    game(window).go(Screen::Levels);
+    frames(window, 3);
+    press(window, Key::ArrowDown);
+    press(window, Key::Enter);
+    frames(window, 30);
+    pictures(window, "own");
+}
+
+#[test]
+fn rounds_that_were_kept() {
+    let folder = folder("kept-pictures");
+    let mut window = open(Files::in_folder(&folder), vec2(704.0, 440.0), 1.0);
+    game(&mut window).start(0);
+    win(&mut window);
+    game(&mut window).keep_replay();
+    game(&mut window).finish_writing();
+    game(&mut window).notices.clear();
+    game(&mut window).go(Screen::Replays);
+    frames(&mut window, 20);
+    std::fs::remove_dir_all(folder).unwrap();
+    window.get_by_label_contains("Squeezed in!");
+}
+
+#[test]
+fn what_fingers_press() {
+    let mut window = open(Files::nowhere(), vec2(704.0, 440.0), 1.0);
+    for level in ["twins", "classic-3d"] {
+        start(&mut window, level);
+        let at = pos2(500.0, 300.0);
+        touch(&mut window, 0, egui::TouchPhase::Start, at);
+        frames(&mut window, 3);
+        picture(&mut window, &format!("fingers_{level}"));
+        touch(&mut window, 0, egui::TouchPhase::End, at);
+    }
+}
+
+/// A stick that pushes back and a pad that rumbles, of which nobody plays with either.
+fn sticks_and_pads() -> Pads {
+    let about = |name: &str| About {
+        name: name.into(),
+        guid: name.into(),
+        labels: sticks::Labels::default(),
+    };
+    let mut stick = Device::at_rest(DeviceId(1), about("Force Stick 3D"), 4, 12, 1);
+    stick.axes = vec![0.6, -0.4, 0.2, -1.0];
+    stick.buttons[4].down = true;
+    let mut pad = Device::at_rest(DeviceId(2), about("Rumble Pad"), 6, 0, 0);
+    pad.pad = Some(Pad::default());
+    pad.axes[5] = -1.0;
+    let abilities = [(stick.id, Ability::Force), (pad.id, Ability::Rumble)];
+    let notes = abilities.map(|(id, ability)| (id, Recording::new(ability)));
+    let devices = vec![stick, pad];
+    Pads::of(Snapshot { devices }).noting(notes.into())
+}
+
+#[test]
+fn a_round() {
+    let mut window = open(Files::nowhere(), SMALLER, 1.0);
+    game(&mut window).start(0);
+    drive(game(&mut window), BotKind::Squeeze, |game| {
+        game.bout.round().frames().len() < 150
+    });
+    frames(&mut window, 1);
+    picture(&mut window, "play");
+}
+
+#[test]
+fn a_round_in_space() {
+    let mut window = open(Files::nowhere(), SMALLER, 1.0);
+    let mut levels = game(&mut window).levels.iter();
+    let classic = levels.position(|level| level.id == "classic-3d");
+    let classic = classic.expect("it comes along");
+    // Who has won is told nothing.
+    let level = game(&mut window).levels[classic].clone();
+    game(&mut window).records.note(&level, &WON);
+    game(&mut window).start(classic);
+    drive(game(&mut window), BotKind::Squeeze, |game| {
+        game.bout.round().frames().len() < 120
+    });
+    frames(&mut window, 1);
+    picture(&mut window, "space");
+    game(&mut window).bout.elements = Some(fuwafuwa_render::frame::ElementColour::Level);
+    game(&mut window).bout.opening.cut(0.05, 0.0, true);
+    game(&mut window).bout.camera.orbit(0.5, 0.1);
+    frames(&mut window, 1);
+    picture(&mut window, "space_elements");
+}
+
+#[test]
+fn a_tear() {
+    let mut window = open(Files::nowhere(), SMALLER, 1.0);
+    game(&mut window).start(0);
+    drive(game(&mut window), BotKind::Shave, |game| {
+        game.bout.round().progress().pieces < 8
+    });
+    frames(&mut window, 1);
+    picture(&mut window, "tear");
+    for action in [Action::Elements, Action::Slow] {
+        game(&mut window).act(action, Seat::Keys);
+    }
+    pictures(&mut window, "elements");
+}

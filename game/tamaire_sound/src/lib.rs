@@ -1,0 +1,51 @@
+//! The sounds of tamaire, all of them synthesised. It knows nothing of soft bodies: the game says
+//! each frame what there is to hear.
+//!
+//! - [`Soundscape`] is what lasts: hands that press and slip, squash, time held in the basket.
+//! - [`Cue`] is what happens at a moment: a thud, a tear, a crumb, a menu, a win.
+//! - [`Synth`] makes samples of both. It is a pure computation: the same calls, the same samples.
+//! - [`Message`] says all that to a synth elsewhere, as bytes (feature `serde`).
+//! - [`Speaker`] plays them on the machine's sound device (feature `output`).
+//!
+//! ```
+//! use tamaire_sound::{Cue, Press, Soundscape, Synth};
+//!
+//! let mut synth = Synth::new(48_000);
+//! let press = Press { force: 400.0, slip: 0.5, x: -0.3 };
+//! synth.hear(&Soundscape { presses: [press, Press::default()], ..Soundscape::default() });
+//! synth.play(Cue::Tear { energy: 1.0, x: 0.2 });
+//! let mut stereo = [0.0; 2 * 800]; // left, right, left, ... for 1/60 s
+//! synth.render(&mut stereo);
+//! assert!(stereo.iter().any(|sample| *sample != 0.0));
+//! ```
+#![deny(unsafe_code)]
+#![warn(missing_docs)]
+#![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
+
+mod cue;
+mod part;
+mod soundscape;
+
+mod grain;
+mod recipe;
+
+mod layer;
+mod music;
+
+mod master;
+mod synth;
+
+#[cfg(feature = "serde")]
+mod message;
+#[cfg(feature = "output")]
+mod speaker;
+#[cfg(feature = "worklet")]
+pub mod worklet;
+
+pub use cue::{Cue, Menu, Route};
+#[cfg(feature = "serde")]
+pub use message::Message;
+pub use soundscape::{Hush, Press, Soundscape, Volumes};
+#[cfg(feature = "output")]
+pub use speaker::{NoSound, Speaker};
+pub use synth::Synth;

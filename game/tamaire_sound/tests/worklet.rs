@@ -1,0 +1,122 @@
+//! The worklet beside a synth; and the browser's audio thread must never wait for memory.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use tamaire_sound::worklet::{MOST_FRAMES, Worklet};
+use tamaire_sound::{Cue, Menu, Message, Press, Soundscape, Synth};
+
+/// Counts how often a thread takes memory: that of the test harness may do so meanwhile.
+struct Counting;
+
+thread_local! {
+    static TAKEN: Cell<usize> = const { Cell::new(0) };
+}
+
+// SAFETY: hands everything on to the system's allocator.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        // A thread that ends may take memory when this is gone.
+        let _ = TAKEN.try_with(|taken| taken.set(taken.get() + 1));
+        // SAFETY: the caller keeps the same promises.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        // SAFETY: as above.
+        unsafe { System.dealloc(memory, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+const SOUNDSCAPE: Soundscape = Soundscape {
+    presses: [Press {
+        force: 500.0,
+        slip: 0.5,
+        x: 0.0,
+    }; 2],
+    squash: 0.3,
+    hold: 0.7,
+    music: true,
+    hush: tamaire_sound::Hush::Nothing,
+};
+
+fn tell(worklet: &mut Worklet, message: &[u8]) {
+    worklet.message()[..message.len()].copy_from_slice(message);
+    worklet.take(message.len());
+}
+
+fn loudest(samples: &[f32]) -> f32 {
+    samples
+        .iter()
+        .fold(0.0, |most, sample| most.max(sample.abs()))
+}
+
+#[test]
+fn it_plays_what_a_synth_plays() {
+    let mut worklet = Worklet::new(44_100);
+    let mut synth = Synth::new(44_100);
+    let mut message = Message::default();
+    message.hear(&SOUNDSCAPE);
+    message.play(Cue::Menu(Menu::Back));
+    tell(&mut worklet, message.bytes());
+    synth.hear(&SOUNDSCAPE);
+    synth.play(Cue::Menu(Menu::Back));
+    for _ in 0..100 {
+        let mut samples = [0.0; 2 * MOST_FRAMES];
+        synth.render(&mut samples);
+        assert!(loudest(&samples) > 0.0);
+        assert_eq!(worklet.render(MOST_FRAMES), samples);
+    }
+}
+
+#[test]
+fn without_news_it_falls_silent() {
+    let mut worklet = Worklet::new(48_000);
+    let mut message = Message::default();
+    let music = false;
+    message.hear(&Soundscape {
+        music,
+        ..SOUNDSCAPE
+    });
+    tell(&mut worklet, message.bytes());
+    let mut second = || {
+        (0..375)
+            .map(|_| loudest(worklet.render(MOST_FRAMES)))
+            .fold(0.0, f32::max)
+    };
+    assert!(second() > 0.1);
+    second();
+    assert!(second() < 1e-3);
+}
+
+#[test]
+fn lengths_that_are_none_do_no_harm() {
+    let mut worklet = Worklet::new(0);
+    worklet.message().fill(2);
+    worklet.take(usize::MAX);
+    assert_eq!(worklet.render(usize::MAX).len(), 2 * MOST_FRAMES);
+    assert!(worklet.render(0).is_empty());
+    assert_eq!(worklet.render(1).len(), 2);
+}
+
+#[test]
+fn neither_news_nor_samples_take_memory() {
+    let mut worklet = Worklet::new(48_000);
+    let mut message = Message::default();
+    for _ in 0..1000 {
+        message.play(Cue::Tear {
+            energy: 2.0,
+            x: 0.0,
+        });
+    }
+    message.hear(&SOUNDSCAPE);
+    let before = TAKEN.get();
+    assert!(before > 0);
+    for _ in 0..100 {
+        tell(&mut worklet, message.bytes());
+        assert!(loudest(worklet.render(MOST_FRAMES)) <= 1.0);
+    }
+    assert_eq!(TAKEN.get() - before, 0);
+}

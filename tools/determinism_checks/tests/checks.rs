@@ -1,0 +1,46 @@
+//! The checks natively: what they play, and that they would notice.
+
+use determinism_checks::rounds::{Game, ROUNDS, record, series, verify};
+use std::collections::BTreeSet;
+
+#[test]
+fn two_series_play_every_level_with_both_bots() {
+    let [first, second] = [series(0), series(1)];
+    assert_eq!([first.len(), second.len()], [ROUNDS; 2]);
+    let pairs = first.iter().chain(&second).filter_map(|text| {
+        let (pair, _) = text.rsplit_once(' ')?;
+        Some(pair)
+    });
+    let pairs: BTreeSet<&str> = pairs.collect();
+    // 14 levels; those two without a basket are played by one bot alone.
+    assert_eq!(pairs.len(), 14 + 12, "{pairs:?}");
+    let all: BTreeSet<&String> = first.iter().chain(&second).collect();
+    assert_eq!(all.len(), 2 * ROUNDS, "no round twice");
+}
+
+#[test]
+fn what_was_recorded_is_verified_and_what_was_changed_is_not() {
+    let text = record("hoop squeeze 1").expect("it is played");
+    verify(text.as_bytes()).expect("it goes as it says");
+    let at = text.find("hashes = [").expect("it has hashes") + "hashes = [\"".len();
+    let mut bytes = text.into_bytes();
+    bytes[at] = if bytes[at] == b'0' { b'1' } else { b'0' };
+    let reason = verify(&bytes).expect_err("its first hash was changed");
+    assert!(reason.contains("goes another way at second 1"), "{reason}");
+}
+
+#[test]
+fn what_cannot_be_played_is_told() {
+    let check = |text, expect| {
+        let reason = Game::begin(text).err().expect("there is no such round");
+        assert!(reason.contains(expect), "{text:?}: {reason}");
+    };
+    check("", "expected LEVEL BOT SEED");
+    check("classic shave 1 2", "expected LEVEL BOT SEED");
+    check("cheese shave 1", "no level or file \"cheese\"");
+    check("classic cook 1", "no bot \"cook\"");
+    check("classic shave x", "the seed of");
+    for bytes in [b"".as_slice(), b"\xff", b"version = 1"] {
+        assert!(verify(bytes).is_err());
+    }
+}

@@ -1,0 +1,48 @@
+//! libFuzzer at one door, which the environment names: `DOOR=level`. With `SEEDS=folder` it only writes good bytes for
+//! each door there, to begin with, and beside them the words that they are made of.
+
+use fuzz_targets::{Door, noise};
+use std::path::Path;
+use std::sync::LazyLock;
+use std::{env, fs, io, process};
+
+static DOOR: LazyLock<&Door> = LazyLock::new(|| {
+    let name = env::var("DOOR").unwrap_or_default();
+    Door::named(&name).unwrap_or_else(|| {
+        let names: Vec<&str> = fuzz_targets::DOORS.iter().map(|door| door.name).collect();
+        eprintln!(
+            "there is no door {name:?}; the doors are {}",
+            names.join(", ")
+        );
+        process::exit(2);
+    })
+});
+
+libfuzzer_sys::fuzz_target!(
+    init: {
+        if let Some(folder) = env::var_os("SEEDS") {
+            for door in fuzz_targets::DOORS {
+                write_seeds(door, Path::new(&folder)).expect("a folder to write to");
+            }
+            process::exit(0);
+        }
+    },
+    |bytes: &[u8]| {
+        (DOOR.enter)(bytes);
+    }
+);
+
+fn write_seeds(door: &Door, folder: &Path) -> io::Result<()> {
+    let seeds = (door.seeds)();
+    let folder = folder.join(door.name);
+    fs::create_dir_all(&folder)?;
+    for (number, seed) in seeds.iter().enumerate() {
+        fs::write(folder.join(format!("seed-{number}")), seed)?;
+    }
+    let quoted = |byte: &u8| format!("\\x{byte:02x}");
+    let lines = noise::words(&seeds).into_iter().map(|word| {
+        let bytes: String = word.iter().map(quoted).collect();
+        format!("\"{bytes}\"\n")
+    });
+    fs::write(folder.with_extension("words"), lines.collect::<String>())
+}

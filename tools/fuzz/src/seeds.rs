@@ -1,0 +1,336 @@
+//! Good bytes for each door, and small: what is large is tested where it is read.
+
+use base64::Engine;
+use base64::prelude::BASE64_URL_SAFE_NO_PAD as BASE64;
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use fuwafuwa::{
+    Body, Dim, Dim2, Dim3, End, Joint, Knife, Material, Rigid, Rotation, Settings, Shape, Tie,
+    VoxelGrid, World, snapshot,
+};
+use fuwafuwa_scenes::{Recording, Scene, scene};
+use fuwafuwa_surgery::phantom;
+use fuwafuwa_surgery::procedure::{Input, Procedure};
+use fuwafuwa_surgery::tools::Tool;
+use png::{BitDepth, ColorType};
+use std::io::Write;
+use std::sync::Arc;
+use tamaire_play::level::{NAMED, NAMED_3D};
+use tamaire_play::{AnyRound, InputFrame, Level, Replay};
+
+pub const CAT: &[u8] = include_bytes!("../../../game/tamaire_play/levels/cat.png");
+pub const PUDDING: &[u8] = include_bytes!("../../../game/tamaire_play/levels/pudding.vox");
+
+/// The four letters and the number of the format.
+pub const SNAPSHOT_HEADER: [u8; 8] = {
+    let [a, b, c, d] = snapshot::VERSION.to_le_bytes();
+    [b'f', b'u', b'w', b'a', a, b, c, d]
+};
+
+/// A scene with what those that come along lack.
+const RICH: &str = include_str!("rich.toml");
+
+/// Voxels across.
+const FEW: usize = 8;
+
+pub fn scenes() -> Vec<Vec<u8>> {
+    let texts = small_scenes().into_iter().map(|scene| text_of(&scene));
+    texts.chain([RICH.into()]).collect()
+}
+
+pub fn levels() -> Vec<Vec<u8>> {
+    small_levels()
+        .iter()
+        .map(|level| text_of(level.scene()))
+        .collect()
+}
+
+pub fn pictures() -> Vec<Vec<u8>> {
+    let kinds = [
+        (ColorType::Grayscale, BitDepth::One),
+        (ColorType::Grayscale, BitDepth::Sixteen),
+        (ColorType::GrayscaleAlpha, BitDepth::Eight),
+        (ColorType::Rgb, BitDepth::Eight),
+        (ColorType::Rgba, BitDepth::Eight),
+        (ColorType::Rgba, BitDepth::Sixteen),
+        (ColorType::Indexed, BitDepth::Two),
+    ];
+    let pictures = kinds
+        .into_iter()
+        .map(|(colour, depth)| picture(colour, depth));
+    pictures.chain([CAT.to_vec()]).collect()
+}
+
+pub fn models() -> Vec<Vec<u8>> {
+    let cube = (0..27_u8).map(|k| [k % 3, k / 3 % 3, k / 9, 1 + k % 2]);
+    vec![model(3, &cube.collect::<Vec<_>>()), PUDDING.to_vec()]
+}
+
+pub fn scans() -> Vec<Vec<u8>> {
+    let plain = [scan(false), scan(true)];
+    let zipped = plain.each_ref().map(|bytes| {
+        let mut encoder = GzEncoder::new(Vec::new(), Compression::default());
+        encoder.write_all(bytes).expect("a vector takes all");
+        encoder.finish().expect("a vector takes all")
+    });
+    plain.into_iter().chain(zipped).collect()
+}
+
+pub fn replays() -> Vec<Vec<u8>> {
+    let texts = small_rounds().into_iter().map(|round| round.text());
+    texts.map(String::into_bytes).collect()
+}
+
+pub fn links() -> Vec<Vec<u8>> {
+    let levels = small_levels().into_iter().map(|level| level.link());
+    let rounds = small_rounds().into_iter().map(|round| round.link());
+    levels
+        .chain(rounds)
+        .map(|link| sent(&link.expect("it is short")))
+        .collect()
+}
+
+/// What [`crate::DOORS`] takes of a link.
+fn sent(link: &str) -> Vec<u8> {
+    let bytes = BASE64.decode(&link[2..link.len() - 1]);
+    let bytes = bytes.expect("a link is made of base64url");
+    [&link.as_bytes()[..1], &bytes[4..]].concat()
+}
+
+fn small_rounds() -> Vec<Replay> {
+    let played = |level: Level| {
+        let mut round = AnyRound::new(Arc::new(level));
+        for tick in 0..61 {
+            let away = 0.01 * tick as f32;
+            let frame = InputFrame::towards([away, 0.5, 0.0]);
+            round.step(frame.with(1, [-away, 0.5, 0.0]));
+        }
+        round.replay()
+    };
+    let few = ["classic", "twins", "donut", "classic-3d"];
+    let levels = small_levels().into_iter();
+    levels
+        .filter(|level| few.contains(&level.id.as_str()))
+        .map(played)
+        .collect()
+}
+
+pub fn recordings() -> Vec<Vec<u8>> {
+    let recorded = |scene: &Scene| match scene.dim {
+        2 => Recording::of::<Dim2>(scene, 2, |_| {}),
+        _ => Recording::of::<Dim3>(scene, 2, |_| {}),
+    };
+    let text = |scene| recorded(&scene).expect("it can be built").text();
+    let texts = small_scenes().into_iter().map(text);
+    texts
+        .map(|text| text.expect("it is short").into_bytes())
+        .collect()
+}
+
+pub fn procedures() -> Vec<Vec<u8>> {
+    let case = Arc::new(phantom::case(8).expect("the engine takes it"));
+    let inside = |tool: Tool| {
+        let mut procedure = Procedure::new(case.clone()).expect("it can be laid on a table");
+        for tick in 0..3 {
+            let at = [0.0, 0.06 - 0.01 * tick as f32, 0.0];
+            let input = Input {
+                grips: tick > 1,
+                ..Input::default().at(tool, at, Rotation::about([0.0, 1.0, 0.0], 0.1))
+            };
+            procedure.step(input).expect("it is within the room");
+        }
+        fuwafuwa_surgery::record::Recording::of(&procedure).inside()
+    };
+    Tool::ALL.map(inside).to_vec()
+}
+
+pub fn snapshots() -> Vec<Vec<u8>> {
+    let scenes = small_scenes().into_iter();
+    let saved = |scene: Scene| match scene.dim {
+        2 => saved::<Dim2>(&scene),
+        _ => saved::<Dim3>(&scene),
+    };
+    let tied = [tied::<Dim2>(), tied::<Dim3>()];
+    scenes.map(saved).chain(tied).collect()
+}
+
+/// The same of a world with what scenes have none of: things that fall, sensors, joints.
+fn tied<D: Dim>() -> Vec<u8> {
+    let mut world = World::<D>::new(Settings::default()).expect("the usual settings are good");
+    let ball = VoxelGrid::ball(FEW, 1.0).expect("it is small");
+    let ball = Body::new(ball, &[Material::default()]).expect("it has its material");
+    let body = world.add_body(ball);
+    let cube = |height: f32| Shape::Box {
+        centre: [0.5, height, 0.5],
+        half: [0.2; 3],
+    };
+    let turned = Rotation::about([1.0, 2.0, 3.0], 0.4);
+    let mut gate = Rigid::fixed(cube(-0.5), 0.5).rotated(turned);
+    gate.is_sensor = true;
+    world.add_rigid(gate).expect("it can be");
+    let free = Rigid::free(cube(1.3), 1.0).rotated(turned);
+    let rigid = world.add_rigid(free).expect("it can be");
+    let ends = [
+        End::Soft {
+            body,
+            at: [0.5, 1.0, 0.5],
+            radius: 0.3,
+        },
+        End::Rigid {
+            rigid,
+            at: [0.5, 1.1, 0.5],
+        },
+        End::Position([0.5, 2.0, 0.5]),
+    ];
+    let spring = Tie::Spring {
+        stiffness: 100.0,
+        damping: 1.0,
+        length: 0.5,
+    };
+    let rope = Tie::Rope { length: 0.8 };
+    for (first, second, tie) in [(0, 1, Tie::Pin), (1, 2, spring), (0, 2, rope)] {
+        let joint = Joint::new([ends[first], ends[second]], tie);
+        world.add_joint(joint).expect("its ends are there");
+    }
+    let mut holder = Rigid::hand([0.5, 0.9, 0.5], 0.1);
+    holder.is_sensor = true;
+    let holder = world.add_rigid(holder).expect("it can be");
+    let edge = [[0.0, 0.0, -0.3], [0.0, 0.0, 0.3]];
+    let knife = Knife::new(holder, edge, [0.0, -1.0, 0.0]);
+    world.add_knife(knife).expect("it can be held");
+    let below = [0.5, 0.5, 0.5];
+    world.set_goal(holder, below).expect("it is near");
+    for _ in 0..5 {
+        world.step();
+    }
+    state_of(&world)
+}
+
+/// The scenes that come along, with small bodies.
+fn small_scenes() -> Vec<Scene> {
+    let small = |name: &str| {
+        let mut changes = vec![format!("body.n={FEW}"), "seconds=0.1".into()];
+        if name == "diced" {
+            changes.push("body.diced=0.5".into());
+        }
+        Scene::open(name, &changes).expect("it comes along")
+    };
+    scene::NAMED.iter().map(|(name, _)| small(name)).collect()
+}
+
+/// The levels that come along, with small bodies where their size can be chosen.
+pub fn small_levels() -> Vec<Level> {
+    let small = |(id, text): &(&str, &str)| {
+        let level = Level::open(id).expect("it comes along");
+        if level.scene().body[0].file.is_some() {
+            return level;
+        }
+        let scene = Scene::read(id, text, &[format!("body.n={FEW}")]);
+        Level::of(id, scene.expect("it comes along")).expect("it can be smaller")
+    };
+    NAMED.iter().chain(&NAMED_3D).map(small).collect()
+}
+
+fn text_of(scene: &Scene) -> Vec<u8> {
+    let text = toml::to_string(scene);
+    text.expect("a scene that was read can be written")
+        .into_bytes()
+}
+
+/// What [`crate::DOORS`] takes of a snapshot.
+fn saved<D: Dim>(scene: &Scene) -> Vec<u8> {
+    let mut world = scene.build::<D>().expect("it can be built");
+    world.step();
+    state_of(&world)
+}
+
+/// Of a snapshot the dimension, and what follows the checksum.
+fn state_of<D: Dim>(world: &World<D>) -> Vec<u8> {
+    let bytes = snapshot::save(world);
+    [&bytes[8..9], &bytes[17..]].concat()
+}
+
+/// Some pixels of a kind.
+fn picture(colour: ColorType, depth: BitDepth) -> Vec<u8> {
+    const SIDE: usize = 9;
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, SIDE as u32, SIDE as u32);
+    encoder.set_color(colour);
+    encoder.set_depth(depth);
+    if colour == ColorType::Indexed {
+        encoder.set_palette(&[255, 0, 0, 0, 0, 255, 250, 250, 250, 0, 0, 0][..]);
+        encoder.set_trns(&[255, 255, 0][..]);
+    }
+    let row = (SIDE * colour.samples() * depth as usize).div_ceil(8);
+    let samples: Vec<u8> = (0..SIDE * row).map(|k| (k * k * 37) as u8).collect();
+    let mut writer = encoder.write_header().expect("a vector takes all");
+    writer
+        .write_image_data(&samples)
+        .expect("a vector takes all");
+    writer.finish().expect("a vector takes all");
+    bytes
+}
+
+/// A model of MagicaVoxel.
+fn model(side: u32, voxels: &[[u8; 4]]) -> Vec<u8> {
+    let chunk = |name: &[u8; 4], contents: &[u8], children: &[u8]| {
+        let lengths = [contents, children].map(|part| (part.len() as u32).to_le_bytes());
+        [name, lengths.as_flattened(), contents, children].concat()
+    };
+    let count = (voxels.len() as u32).to_le_bytes();
+    let chunks = [
+        chunk(b"SIZE", [side.to_le_bytes(); 3].as_flattened(), &[]),
+        chunk(b"XYZI", &[&count, voxels.as_flattened()].concat(), &[]),
+        chunk(b"RGBA", &[200; 1024], &[]),
+    ];
+    let main = chunk(b"MAIN", &[], &chunks.concat());
+    [b"VOX ", &150_u32.to_le_bytes()[..], &main].concat()
+}
+
+/// A scan in NIfTI-1, the highest byte of each number first or last.
+fn scan(is_big_endian: bool) -> Vec<u8> {
+    const SIDE: i16 = 6;
+    let mut bytes = vec![0; 352];
+    let mut put = |at: usize, number: &[u8]| {
+        let end = at + number.len();
+        bytes[at..end].copy_from_slice(number);
+        if is_big_endian {
+            bytes[at..end].reverse();
+        }
+    };
+    put(0, &348_i32.to_le_bytes());
+    for (at, number) in [
+        (40, 3),
+        (42, SIDE),
+        (44, SIDE),
+        (46, SIDE),
+        (70, 4),
+        (72, 16),
+        (254, 1),
+    ] {
+        put(at, &i16::to_le_bytes(number));
+    }
+    // Where the voxels begin, two numbers that scale, and a matrix: a little askew.
+    let reals = [
+        (108, 352.0),
+        (112, 0.5),
+        (116, -1.0),
+        (280, 0.9),
+        (284, 0.4),
+        (300, 1.5),
+        (320, -2.0),
+    ];
+    for (at, number) in reals {
+        put(at, &f32::to_le_bytes(number));
+    }
+    for voxel in 0..SIDE.pow(3) {
+        let number = voxel % 5 + 2;
+        bytes.extend(if is_big_endian {
+            number.to_be_bytes()
+        } else {
+            number.to_le_bytes()
+        });
+    }
+    bytes[344..348].copy_from_slice(b"n+1\0");
+    bytes
+}

@@ -1,0 +1,329 @@
+//! Sticks and their motors against the force feedback of a real kernel, in a machine of its own: does a device's driver hear
+//! what it should, and nothing more once a process dies or hangs?
+//!
+//! The machine is QEMU's, without hardware acceleration, which some machines only seem to have. Its kernel is Debian's or
+//! Ubuntu's, and lies in the target folder, with busybox to start the test: neither is installed.
+
+use crate::packages::{self, IfMissing, Lack, Purpose, apt_get, install_arguments, list_lacks};
+use crate::shell::{
+    CANNOT, FAILED, Failure, answers, cargo, execute, output_of, root, show, target,
+};
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+const QEMU: &str = "qemu-system-x86_64";
+/// Packages that depend on the latest kernel, Debian's and Ubuntu's.
+const LATEST: [&str; 2] = ["linux-image-amd64", "linux-image-virtual"];
+const BUSYBOX: &str = "busybox-static";
+/// Fetches a package, and takes what is named from it, without its folders.
+const FETCH: &str = r#"
+    package=$1; shift
+    apt-get download --quiet "$package" &&
+        dpkg-deb --fsys-tarfile "$package"_*.deb | tar -x --wildcards --transform 's,.*/,,' "$@"
+    rm -f "$package"_*.deb
+"#;
+/// Where SDL is built with this, it does not push without, though nobody speaks to it in the machine.
+const UDEV: &str = "/lib/x86_64-linux-gnu/libudev.so.1";
+/// How long the machine may run, in seconds; it takes a minute or two.
+const PATIENCE: &str = "400";
+
+/// Builds the tests, boots the machine, and fails where a test does.
+pub fn run(if_missing: IfMissing) -> Result<(), Failure> {
+    let folder = root().join(target()).join("kernel");
+    let mut found = find_guest(&folder);
+    if if_missing == IfMissing::Install
+        && let Err(lacks) = &found
+    {
+        // Fresh machines have stale lists, or none. An update that fails may leave good ones.
+        apt_get(&["update", "--quiet"]);
+        lacks.iter().for_each(|lack| provide(&folder, lack));
+        found = find_guest(&folder);
+    }
+    let guest = found.map_err(|lacks| cannot(&lacks, if_missing))?;
+    packages::provide(&[Purpose::Build], if_missing);
+    let test = build()?;
+    pack(&folder, &guest, &test).map_err(|error| Failure {
+        message: format!("the machine could not be packed: {error}"),
+        code: FAILED,
+    })?;
+    boot(&folder, &guest.kernel)
+}
+
+/// What the machine is made of, beside the test.
+struct Guest {
+    kernel: PathBuf,
+    /// None where they are part of the kernel, as they are of Ubuntu's.
+    modules: Vec<PathBuf>,
+    busybox: PathBuf,
+}
+
+/// What is there for the machine, or all that is missing.
+fn find_guest(folder: &Path) -> Result<Guest, Vec<Lack>> {
+    let mut lacks = Vec::new();
+    if !answers(QEMU) {
+        lacks.push(Lack::new(
+            format!("there is no {QEMU} on the path"),
+            "qemu-system-x86",
+        ));
+    }
+    let mut find = |name: &str, package: &str| {
+        let found = files(folder, name).pop();
+        if found.is_none() {
+            let what = format!("there is no {name} in {}", folder.display());
+            lacks.push(Lack::new(what, package));
+        }
+        found.unwrap_or_default()
+    };
+    let guest = Guest {
+        kernel: find("vmlinuz", LATEST[0]),
+        busybox: find("busybox", BUSYBOX),
+        modules: ["evdev.ko", "uinput.ko"]
+            .iter()
+            .flat_map(|name| files(folder, name))
+            .collect(),
+    };
+    if lacks.is_empty() {
+        Ok(guest)
+    } else {
+        Err(lacks)
+    }
+}
+
+/// The files in a folder whose name begins so.
+fn files(folder: &Path, name: &str) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    entries
+        .filter(|entry| entry.file_name().to_string_lossy().starts_with(name))
+        .map(|entry| entry.path())
+        .filter(|path| path.is_file())
+        .collect()
+}
+
+/// Installs QEMU; what goes into the machine is fetched only. If it fails, it has said so.
+fn provide(folder: &Path, lack: &Lack) {
+    match lack.package.as_str() {
+        BUSYBOX => fetch(folder, BUSYBOX, &["*/bin/busybox"]),
+        package if package == LATEST[0] => match LATEST.iter().find_map(|name| kernel_of(name)) {
+            Some(kernel) => fetch(
+                folder,
+                &kernel,
+                &["*/vmlinuz-*", "*/evdev.ko*", "*/uinput.ko*"],
+            ),
+            None => eprintln!("xtask: apt knows no package {}", LATEST.join(" or ")),
+        },
+        package => {
+            apt_get(&install_arguments([package].into_iter()));
+        }
+    }
+}
+
+/// The package of the kernel that this one stands for.
+fn kernel_of(latest: &str) -> Option<String> {
+    named_kernel(&output_of("apt-cache", &["depends", latest])?)
+}
+
+fn named_kernel(depends: &str) -> Option<String> {
+    let mut names = depends
+        .lines()
+        .filter_map(|line| line.trim().strip_prefix("Depends: "));
+    names
+        .find(|name| name.starts_with("linux-image-"))
+        .map(str::to_string)
+}
+
+fn fetch(folder: &Path, package: &str, files: &[&str]) {
+    let outcome = fs::create_dir_all(folder).map_err(|error| error.to_string());
+    let outcome = outcome.and_then(|()| {
+        eprintln!("xtask: fetching {package}");
+        let mut shell = Command::new("sh");
+        shell.args(["-c", FETCH, "fetch", package]).args(files);
+        shell
+            .current_dir(folder)
+            .status()
+            .map_err(|error| error.to_string())
+    });
+    if let Err(error) = outcome {
+        eprintln!("xtask: {error}");
+    }
+}
+
+/// Builds the test. Returns where it is.
+fn build() -> Result<PathBuf, Failure> {
+    let mut command = cargo();
+    command
+        .args([
+            "test",
+            "--no-run",
+            "--message-format",
+            "json-render-diagnostics",
+        ])
+        .args([
+            "--package",
+            "sticks",
+            "--features",
+            "haptic",
+            "--test",
+            "kernel",
+        ]);
+    eprintln!("xtask: {}", show(&command));
+    let output = command
+        .current_dir(root())
+        .stderr(Stdio::inherit())
+        .output();
+    let built = output.ok().filter(|output| output.status.success());
+    let test = built.and_then(|output| executable_of(&String::from_utf8_lossy(&output.stdout)));
+    test.ok_or_else(|| Failure {
+        message: "the tests were not built, see above".to_string(),
+        code: FAILED,
+    })
+}
+
+/// The program that cargo says it built last.
+fn executable_of(messages: &str) -> Option<PathBuf> {
+    let (_, rest) = messages.rsplit_once("\"executable\":\"")?;
+    rest.split_once('"').map(|(path, _)| PathBuf::from(path))
+}
+
+/// Puts all that runs in the machine into the file that it boots from.
+fn pack(folder: &Path, guest: &Guest, test: &Path) -> io::Result<()> {
+    let disk = folder.join("disk");
+    if disk.exists() {
+        fs::remove_dir_all(&disk)?;
+    }
+    for empty in ["bin", "dev", "modules", "proc", "sys", "tmp"] {
+        fs::create_dir_all(disk.join(empty))?;
+    }
+    fs::copy(&guest.busybox, disk.join("bin/busybox"))?;
+    fs::copy(root().join("tools/xtask/guest.sh"), disk.join("init"))?;
+    fs::copy(test, disk.join("test"))?;
+    for module in &guest.modules {
+        let name = module.file_name().expect("it was found by its name");
+        fs::copy(module, disk.join("modules").join(name))?;
+    }
+    let ldd = |program: &str| output_of("ldd", &[program]).unwrap_or_default();
+    let needed = ldd(&test.to_string_lossy()) + &ldd(UDEV);
+    let udev = Some(UDEV).filter(|udev| Path::new(udev).exists());
+    for library in libraries(&needed).into_iter().chain(udev) {
+        let copy = disk.join(library.trim_start_matches('/'));
+        fs::create_dir_all(copy.parent().expect("it lies in a folder"))?;
+        fs::copy(library, copy)?;
+    }
+    let cpio = "chmod +x init && find . | bin/busybox cpio -o -H newc >../disk.cpio";
+    let status = Command::new("sh")
+        .args(["-c", cpio])
+        .current_dir(&disk)
+        .status()?;
+    if status.success() {
+        Ok(())
+    } else {
+        Err(io::Error::other("cpio failed"))
+    }
+}
+
+/// The paths in what ldd says.
+fn libraries(ldd: &str) -> Vec<&str> {
+    let words = ldd.split_whitespace();
+    words.filter(|word| word.starts_with('/')).collect()
+}
+
+/// Runs the machine until it turns itself off.
+fn boot(folder: &Path, kernel: &Path) -> Result<(), Failure> {
+    let status = folder.join("status");
+    // What an earlier run left must not be taken for the answer.
+    let _ = fs::remove_file(&status);
+    let mut machine = Command::new("timeout");
+    machine
+        .args([
+            "--foreground",
+            PATIENCE,
+            QEMU,
+            "-accel",
+            "tcg",
+            "-cpu",
+            "max",
+            "-smp",
+            "2",
+        ])
+        .args([
+            "-m",
+            "512",
+            "-nodefaults",
+            "-no-user-config",
+            "-no-reboot",
+            "-display",
+            "none",
+        ])
+        .args([
+            "-append",
+            "console=ttyS0 quiet panic=-1",
+            "-serial",
+            "stdio",
+            "-serial",
+        ])
+        .arg(format!("file:{}", status.display()))
+        .arg("-kernel")
+        .arg(kernel)
+        .arg("-initrd")
+        .arg(folder.join("disk.cpio"))
+        .stdin(Stdio::null());
+    execute(&mut machine, "the machine did not come to its end")?;
+    let said = fs::read_to_string(&status).unwrap_or_default();
+    if said.trim() == "0" {
+        return Ok(());
+    }
+    Err(Failure {
+        message: "a test failed in the machine, or it never came so far, see above".to_string(),
+        code: FAILED,
+    })
+}
+
+fn cannot(lacks: &[Lack], if_missing: IfMissing) -> Failure {
+    let advice = match if_missing {
+        IfMissing::Say => {
+            "On Debian and Ubuntu `cargo xtask kernel --install` installs QEMU, and fetches the rest."
+        }
+        IfMissing::Install => "What apt offers here is not enough, see above.",
+    };
+    Failure {
+        message: format!(
+            "sticks were NOT tested against a kernel:\n{}\n{advice}\n\
+             It needs Linux on x86-64.",
+            list_lacks(lacks)
+        ),
+        code: CANNOT,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_kernel_that_a_package_stands_for_is_found() {
+        let debian = "linux-image-amd64\n  Depends: linux-image-6.1.0-56-amd64\n";
+        let ubuntu = "linux-image-virtual\n  Depends: linux-modules-6.8.0-1\n |Depends: a\n  Depends: linux-image-6.8.0-1-generic\n  Suggests: b\n";
+        for (depends, expect) in [
+            (debian, Some("linux-image-6.1.0-56-amd64")),
+            (ubuntu, Some("linux-image-6.8.0-1-generic")),
+            ("linux-image-amd64\n", None),
+        ] {
+            assert_eq!(named_kernel(depends).as_deref(), expect, "{depends}");
+        }
+    }
+
+    #[test]
+    fn the_program_is_the_one_that_was_built_last() {
+        let messages = "{\"executable\":null}\n{\"name\":\"build\",\"executable\":\"/a/b\"}\n\
+                        {\"executable\":\"/t/kernel-1\",\"fresh\":true}\n{\"success\":true}\n";
+        assert_eq!(executable_of(messages), Some(PathBuf::from("/t/kernel-1")));
+        assert_eq!(executable_of("{\"success\":false}"), None);
+    }
+
+    #[test]
+    fn every_library_is_found_by_its_path() {
+        let ldd = "\tlinux-vdso.so.1 (0x7f)\n\tlibm.so.6 => /lib/libm.so.6 (0x7e)\n\t/lib64/ld.so.2 (0x7d)\n";
+        assert_eq!(libraries(ldd), ["/lib/libm.so.6", "/lib64/ld.so.2"]);
+    }
+}

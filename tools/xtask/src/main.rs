@@ -1,0 +1,256 @@
+//! The chores of this repository, run as `cargo xtask <task>`. Plain std, so that it builds in a moment.
+
+mod bevy;
+mod cross;
+mod debian;
+mod folders;
+mod fuzz;
+mod kernel;
+mod package;
+mod packages;
+mod release;
+mod scans;
+mod shell;
+mod task;
+mod version;
+mod wasm;
+mod web;
+mod wine;
+
+use packages::{IfMissing, Purpose, has_display};
+use shell::{FAILED, Failure, cargo, execute, show};
+use std::env;
+use std::process::ExitCode;
+use task::{Task, USAGE};
+
+/// Exit status for a command line that makes no sense, as shells and most tools use it.
+const BAD_USAGE: u8 = 2;
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = env::args().skip(1).collect();
+    let task = match Task::parse(&arguments) {
+        Ok(task) => task,
+        Err(complaint) => {
+            eprintln!("xtask: {complaint}\n\n{USAGE}");
+            return ExitCode::from(BAD_USAGE);
+        }
+    };
+    let outcome = match task {
+        Task::Help => {
+            println!("{USAGE}");
+            Ok(())
+        }
+        Task::Play(if_missing, words) => return play(if_missing, &words),
+        Task::Test(if_missing) => {
+            packages::provide(FOR_TESTS, if_missing);
+            run_all(TEST)
+        }
+        Task::Check(if_missing) => {
+            packages::provide(FOR_TESTS, if_missing);
+            run_all(CHECK).and_then(|()| run_all(TEST))
+        }
+        Task::Wasm(if_missing) => wasm::run(if_missing),
+        Task::Web(web, if_missing) => web::run(web, if_missing),
+        Task::Arm(if_missing) => cross::check(&cross::ARM, if_missing),
+        Task::Windows(if_missing) => cross::check(&cross::WINDOWS, if_missing),
+        Task::Release(wish, if_missing) => release::run(&wish, if_missing),
+        Task::Version(version) => version::raise(&version),
+        Task::Kernel(if_missing) => kernel::run(if_missing),
+        Task::Soak(words) => soak(&words),
+        Task::Stand(if_missing) => {
+            packages::provide(
+                &[
+                    Purpose::Build,
+                    Purpose::Window,
+                    Purpose::Drawing,
+                    Purpose::Staging,
+                ],
+                if_missing,
+            );
+            run_all(STAND)
+        }
+        Task::Fuzz(words) => fuzz::run(&words),
+        Task::Scans => scans::run(),
+        Task::Package(wish) => package::run(wish),
+        Task::Rapier => run_all(RAPIER),
+        Task::Bevy(wish, if_missing) => bevy::run(wish, if_missing),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("xtask: {}", failure.message);
+            ExitCode::from(failure.code)
+        }
+    }
+}
+
+/// Builds and runs the game; its exit status. In the folder of the caller, so that the files it is
+/// told to open are found.
+fn play(if_missing: IfMissing, words: &[String]) -> ExitCode {
+    let mut purposes = vec![Purpose::Build];
+    if has_display() {
+        purposes.push(Purpose::Window);
+    }
+    packages::provide(&purposes, if_missing);
+    let mut command = cargo();
+    command.args(["run", "--release", "--package", "tamaire", "--"]);
+    command.args(words);
+    eprintln!("xtask: {}", show(&command));
+    match command.status() {
+        Ok(status) => exit_code(status.code()),
+        Err(error) => {
+            eprintln!("xtask: cargo could not be started: {error}");
+            ExitCode::from(FAILED)
+        }
+    }
+}
+
+/// The exit status to hand on. A program that was killed has none.
+fn exit_code(code: Option<i32>) -> ExitCode {
+    let code = code.and_then(|code| u8::try_from(code).ok());
+    ExitCode::from(code.unwrap_or(FAILED))
+}
+
+/// Plays levels for long, as the words say.
+fn soak(words: &[String]) -> Result<(), Failure> {
+    let mut command = cargo();
+    command.args(["run", "--release", "--package", "tamaire_play"]);
+    command.args(["--example", "soak", "--"]).args(words);
+    execute(
+        &mut command,
+        "a round that nobody meant broke something, see above; its level and tick are named",
+    )
+}
+
+/// Tests draw into images, and open no window; one of them starts a database server.
+const FOR_TESTS: &[Purpose] = &[Purpose::Build, Purpose::Drawing, Purpose::Serving];
+
+/// One call of cargo.
+struct Step {
+    arguments: &'static [&'static str],
+    environment: &'static [(&'static str, &'static str)],
+    /// What to do when it fails.
+    hint: &'static str,
+}
+
+const CHECK: &[Step] = &[
+    Step {
+        arguments: &["fmt", "--all", "--check"],
+        environment: &[],
+        hint: "run `cargo fmt --all`; if cargo has no fmt, `rustup component add rustfmt`",
+    },
+    Step {
+        arguments: &[
+            "clippy",
+            "--workspace",
+            "--all-targets",
+            "--all-features",
+            "--",
+            "-D",
+            "warnings",
+        ],
+        environment: &[],
+        hint: "mend the warnings above; if cargo has no clippy, `rustup component add clippy`",
+    },
+    Step {
+        arguments: &[
+            "check",
+            "--package",
+            "tamaire",
+            "--no-default-features",
+            "--all-targets",
+        ],
+        environment: &[],
+        hint: "something needs force feedback, which may be left out",
+    },
+    Step {
+        arguments: &["doc", "--workspace", "--all-features", "--no-deps"],
+        environment: &[("RUSTDOCFLAGS", "-Dwarnings")],
+        hint: "mend the documentation warnings above; most are links to names that moved",
+    },
+];
+
+// All features, as in CHECK: what is compiled with others is compiled again. Examples are checked there.
+const TEST: &[Step] = &[
+    Step {
+        arguments: &["test", "--workspace", "--all-features", "--tests"],
+        environment: &[],
+        hint: "a test failed or did not compile, see above",
+    },
+    Step {
+        arguments: &["test", "--workspace", "--all-features", "--doc"],
+        environment: &[],
+        hint: "an example in the documentation failed or did not compile, see above",
+    },
+    Step {
+        arguments: &[
+            "test",
+            "--release",
+            "--tests",
+            "--package",
+            "fuwafuwa",
+            "--package",
+            "determinism_checks",
+            "--all-features",
+        ],
+        environment: &[],
+        hint: "passes in debug but not in release: look for work done inside a debug_assert!, \
+               and for sums whose order depends on the threads",
+    },
+];
+
+const STAND: &[Step] = &[Step {
+    arguments: &[
+        "test",
+        "--release",
+        "--package",
+        "tamaire",
+        "--test",
+        "stand",
+        "--",
+        "--ignored",
+        "--nocapture",
+    ],
+    environment: &[],
+    hint: "a stand did not come back, or lost a round that had ended, see above",
+}];
+
+const RAPIER: &[Step] = &[Step {
+    arguments: &[
+        "check",
+        "--all-targets",
+        "--manifest-path",
+        "tools/against_rapier/Cargo.toml",
+    ],
+    environment: &[],
+    hint: "the comparison does not follow the engine or Rapier any more, see above",
+}];
+
+/// Runs the steps in order, at the root of the workspace, up to the first that fails.
+fn run_all(steps: &[Step]) -> Result<(), Failure> {
+    steps.iter().try_for_each(run)
+}
+
+fn run(step: &Step) -> Result<(), Failure> {
+    let mut command = cargo();
+    command.args(step.arguments);
+    command.envs(step.environment.iter().copied());
+    execute(&mut command, step.hint)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_status_of_the_game_is_handed_on_where_it_has_one() {
+        for (code, expect) in [
+            (Some(0), 0),
+            (Some(101), 101),
+            (Some(-1), FAILED),
+            (None, FAILED),
+        ] {
+            assert_eq!(exit_code(code), ExitCode::from(expect), "{code:?}");
+        }
+    }
+}

@@ -1,0 +1,262 @@
+//! What others would get: the crates that are good for them, as packages.
+
+use crate::shell::{CANNOT, FAILED, Failure, cargo, execute, output_of, root, target};
+use std::path::Path;
+use std::process::Command;
+
+/// What is wanted.
+#[derive(Debug, PartialEq)]
+pub enum Package {
+    /// That they can be packed, and what is in them.
+    List,
+    /// That they build from what is packed, with the oldest Rust that they say they need.
+    Build,
+}
+
+/// The crates, each with the folders that its package has. Those of the game, and those that only tests use, say
+/// `publish = false`.
+const CRATES: [(&str, &[&str]); 9] = [
+    ("engine/fuwafuwa", &["src", "guide", "examples"]),
+    ("engine/fuwafuwa_scenes", &["src", "scenes", "examples"]),
+    ("engine/fuwafuwa_render", &["src"]),
+    ("engine/fuwafuwa_painter", &["src"]),
+    ("engine/fuwafuwa_scan", &["src"]),
+    ("apps/fuwafuwa_cli", &["src"]),
+    ("apps/fuwafuwa_manual", &["src"]),
+    ("devices/force_feedback", &["src"]),
+    ("devices/sticks", &["src", "examples"]),
+];
+
+/// A workspace of its own: cargo finds the crates of this one on a registry only, so until they are on one it can say
+/// what would be in it, and no more.
+const BEVY: (&str, &[&str]) = ("plugins/bevy_fuwafuwa", &["src"]);
+
+/// The name of the crate in a folder.
+fn name_of(path: &str) -> &str {
+    path.rsplit('/').next().unwrap_or(path)
+}
+
+/// What stands in a package beside those folders. Cargo writes the first four.
+const FILES: [&str; 7] = [
+    ".cargo_vcs_info.json",
+    "Cargo.lock",
+    "Cargo.toml",
+    "Cargo.toml.orig",
+    "README.md",
+    "LICENSE-APACHE",
+    "LICENSE-MIT",
+];
+
+/// A package may have as many bytes, packed: ours are words and code. crates.io takes ten times as many.
+const MOST_BYTES: u64 = 1 << 20;
+
+pub fn run(package: Package) -> Result<(), Failure> {
+    for (path, folders) in CRATES.into_iter().chain([BEVY]) {
+        check_list(path, folders)?;
+    }
+    match package {
+        Package::List => {
+            pack(&["--no-verify"], &[])?;
+            CRATES
+                .iter()
+                .try_for_each(|(path, _)| check_size(name_of(path)))
+        }
+        Package::Build => {
+            let oldest = oldest_rust()?;
+            let toolchain = toolchain_of(&oldest).ok_or_else(|| Failure {
+                message: format!(
+                    "neither is this Rust {oldest}, the oldest that the crates say they need, nor has \
+                     rustup one: `rustup toolchain install {oldest} --profile minimal`"
+                ),
+                code: CANNOT,
+            })?;
+            pack(&[], &toolchain)
+        }
+    }
+}
+
+/// What to tell rustup's programs so that they are of a version of Rust: nothing, where they are. Others have no rustup, and
+/// take no such word.
+fn toolchain_of(version: &str) -> Option<Vec<String>> {
+    let candidates = [
+        Vec::new(),
+        vec![format!("+{version}")],
+        vec![format!("+{version}.0")],
+    ];
+    let is_it = |words: &Vec<String>| {
+        let words = words.iter().map(String::as_str).chain(["--version"]);
+        let answer = output_of("rustc", &words.collect::<Vec<_>>());
+        answer.is_some_and(|answer| answer.starts_with(&format!("rustc {version}.")))
+    };
+    candidates.into_iter().find(is_it)
+}
+
+/// Packs all of them at once: so those that need each other find each other, though none is published.
+fn pack(words: &[&str], toolchain: &[String]) -> Result<(), Failure> {
+    let mut command = match toolchain {
+        [] => cargo(),
+        // The cargo that runs this is of another one: rustup picks.
+        _ => Command::new("cargo"),
+    };
+    command.args(toolchain);
+    command
+        .args(["package", "--quiet", "--allow-dirty"])
+        .args(words);
+    for (path, _) in CRATES {
+        command.args(["--package", name_of(path)]);
+    }
+    execute(
+        &mut command,
+        "a crate needs what is not in its package, or a version that is not there, see above",
+    )
+}
+
+/// That nothing is in a package but what is meant to be.
+fn check_list(path: &str, folders: &[&str]) -> Result<(), Failure> {
+    let name = name_of(path);
+    let manifest = root().join(path).join("Cargo.toml");
+    let manifest = manifest.display().to_string();
+    let words = [
+        "package",
+        "--list",
+        "--quiet",
+        "--allow-dirty",
+        "--manifest-path",
+        &manifest,
+    ];
+    let program = cargo().get_program().to_string_lossy().into_owned();
+    let list = output_of(&program, &words).ok_or_else(|| failure(format!(
+        "cargo does not say what is in the package of {name}: see `cargo package --list --manifest-path {manifest}`"
+    )))?;
+    let wrong = complaints(&list, folders);
+    match wrong.is_empty() {
+        true => Ok(()),
+        false => Err(failure(format!(
+            "the package of {name} {}",
+            wrong.join("; ")
+        ))),
+    }
+}
+
+/// What is in a package and should not be, and what is not and should.
+fn complaints(list: &str, folders: &[&str]) -> Vec<String> {
+    let is_meant = |file: &str| match file.split_once(['/', '\\']) {
+        Some((folder, _)) => folders.contains(&folder),
+        None => FILES.contains(&file),
+    };
+    let strange = list.lines().filter(|file| !is_meant(file));
+    let strange = strange.map(|file| format!("has {file}, which nobody needs"));
+    let needed = FILES
+        .iter()
+        .skip(2)
+        .filter(|file| **file != "Cargo.toml.orig");
+    let missing = needed.filter(|file| !list.lines().any(|line| line == **file));
+    let missing = missing.map(|file| format!("lacks {file}"));
+    strange.chain(missing).collect()
+}
+
+fn check_size(name: &str) -> Result<(), Failure> {
+    let version = field("version")?;
+    let file = root()
+        .join(target())
+        .join("package")
+        .join(format!("{name}-{version}.crate"));
+    let bytes = size(&file)?;
+    println!("{name} {version}: {} KiB", bytes.div_ceil(1024));
+    match bytes <= MOST_BYTES {
+        true => Ok(()),
+        false => Err(failure(format!(
+            "the package of {name} has {bytes} bytes, more than {MOST_BYTES}: what came into it?"
+        ))),
+    }
+}
+
+fn size(file: &Path) -> Result<u64, Failure> {
+    let found = std::fs::metadata(file).map(|file| file.len());
+    found.map_err(|error| failure(format!("{} is not there: {error}", file.display())))
+}
+
+/// The Rust that the workspace says it needs.
+fn oldest_rust() -> Result<String, Failure> {
+    field("rust-version")
+}
+
+/// A field of `[workspace.package]`.
+fn field(name: &str) -> Result<String, Failure> {
+    let manifest = root().join("Cargo.toml");
+    let text = std::fs::read_to_string(&manifest);
+    let text = text.map_err(|error| failure(format!("{}: {error}", manifest.display())))?;
+    value_of(&text, name).ok_or_else(|| failure(format!("Cargo.toml does not say its {name}")))
+}
+
+/// What stands between quotes behind a name.
+fn value_of(text: &str, name: &str) -> Option<String> {
+    let mut lines = text.lines().filter_map(|line| line.split_once(" = "));
+    let (_, value) = lines.find(|(own, _)| *own == name)?;
+    Some(value.trim().trim_matches('"').to_string())
+}
+
+fn failure(message: String) -> Failure {
+    Failure {
+        message,
+        code: FAILED,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    #[test]
+    fn a_package_has_what_is_meant_and_no_more() {
+        let good = "Cargo.lock\nCargo.toml\nCargo.toml.orig\nLICENSE-APACHE\nLICENSE-MIT\nREADME.md\nsrc/lib.rs";
+        assert_eq!(complaints(good, &["src"]), [] as [String; 0]);
+        let bad = good.replace("README.md\n", "tests/tidy.rs\nnotes.txt\n");
+        assert_eq!(
+            complaints(&bad, &["src"]),
+            [
+                "has tests/tidy.rs, which nobody needs",
+                "has notes.txt, which nobody needs",
+                "lacks README.md"
+            ]
+        );
+    }
+
+    /// A crate that somebody adds is for others or not, and says so.
+    #[test]
+    fn each_crate_is_packed_or_says_that_it_is_not_for_others() {
+        let mut seen = 0;
+        let groups = ["engine", "game", "devices", "apps", "plugins", "tools"];
+        let folders = groups.map(|group| fs::read_dir(root().join(group)).unwrap());
+        for folder in folders.into_iter().flatten() {
+            let folder = folder.unwrap().path();
+            let name = folder.strip_prefix(root()).unwrap().to_str().unwrap();
+            let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+            let is_private = manifest.contains("\npublish = false\n");
+            let is_packed = CRATES.iter().chain([&BEVY]).any(|(own, _)| *own == name);
+            assert!(is_private != is_packed, "{name}: is it for others?");
+            seen += 1;
+        }
+        assert!(seen > CRATES.len());
+    }
+
+    /// The oldest Rust that is promised is the same wherever it is said.
+    #[test]
+    fn every_document_promises_the_same_rust() {
+        let oldest = oldest_rust().unwrap_or_else(|_| panic!("it is said"));
+        let says = format!("Rust {oldest}");
+        let packed = CRATES.iter().map(|(path, _)| format!("{path}/README.md"));
+        let documents = [
+            "README.md",
+            "CONTRIBUTING.md",
+            "plugins/bevy_fuwafuwa/README.md",
+        ];
+        for document in documents.map(str::to_string).into_iter().chain(packed) {
+            let text = fs::read_to_string(root().join(&document)).unwrap();
+            assert!(text.contains(&says), "{document} does not say {says}");
+        }
+        let bevy = fs::read_to_string(root().join("plugins/bevy_fuwafuwa/Cargo.toml")).unwrap();
+        assert_eq!(value_of(&bevy, "rust-version"), Some(oldest));
+    }
+}

@@ -1,0 +1,100 @@
+//! The programs as they are handed out: small, without the folders of whoever built them, and with the licences of all inside.
+
+use super::files::put;
+use super::kit::Kit;
+use crate::cross::Compiler;
+use crate::folders;
+use crate::shell::{Failure, answers, cargo, execute, root, target, told};
+use std::env;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The packages that have the programs.
+pub const PACKAGES: [&str; 2] = ["tamaire", "fuwafuwa_cli"];
+const PROFILE: &str = "dist";
+
+/// Builds both programs, for this system or another; the folder that they are in.
+pub fn build(kit: &Kit, compiler: Option<&Compiler>) -> Result<PathBuf, Failure> {
+    let triple = match compiler {
+        Some(compiler) => compiler.system.triple.to_string(),
+        None => host()?,
+    };
+    let licences = licences(kit, &triple)?;
+    let mut words = vec!["build", "--profile", PROFILE, "--locked", "--bins"];
+    words.extend(PACKAGES.iter().flat_map(|name| ["--package", name]));
+    let mut command = match compiler {
+        Some(compiler) => compiler.cargo(&words),
+        None => {
+            let mut command = cargo();
+            command.args(&words);
+            command
+        }
+    };
+    let folder = match compiler {
+        Some(compiler) => compiler.system.folder().join(PROFILE),
+        None => root().join(target()).join(PROFILE),
+    };
+    let mut names = folders::names();
+    if let Some(sources) = compiler.and_then(|compiler| compiler.sources.as_deref()) {
+        names.push((sources.display().to_string(), "/rust/library"));
+    }
+    command.env("CARGO_ENCODED_RUSTFLAGS", folders::encoded([], &names));
+    let plain = names
+        .iter()
+        .filter(|(from, _)| !from.contains(char::is_whitespace));
+    let flags: Vec<String> = plain
+        .map(|(from, to)| format!("-ffile-prefix-map={from}={to}"))
+        .collect();
+    for language in ["CFLAGS", "CXXFLAGS"] {
+        command.env(language, flags.join(" "));
+    }
+    // It builds what it compares itself with, from sources that a player does not have.
+    command.env("FUWAFUWA_SOURCES", "/tamaire/apps/fuwafuwa_cli");
+    command.env("SOURCE_DATE_EPOCH", &kit.epoch);
+    command.env("CARGO_INCREMENTAL", "0");
+    command.env("TAMAIRE_LICENCES", &licences);
+    execute(&mut command, "the programs could not be built")?;
+    Ok(folder)
+}
+
+/// Copies a program to where it belongs, without the names that only a debugger needs: not every linker leaves them out.
+pub fn put_stripped(kit: &Kit, from: &Path, to: &Path, strip: &str) -> Result<(), Failure> {
+    put(from, to)?;
+    let mut command = Command::new(strip);
+    command.arg("--strip-all").arg(to);
+    // A program for Windows says when it was linked, and would say now.
+    command.env("SOURCE_DATE_EPOCH", &kit.epoch);
+    execute(&mut command, "Debian: binutils")
+}
+
+/// The target that this machine's programs are built for.
+pub fn host() -> Result<String, Failure> {
+    let mut rustc = Command::new(env::var_os("RUSTC").unwrap_or_else(|| "rustc".into()));
+    let output = rustc.args(["--print", "host-tuple"]).output();
+    let output = output.map_err(|error| told(Path::new("rustc"), &error))?;
+    Ok(String::from_utf8_lossy(&output.stdout).trim().to_string())
+}
+
+/// A file with the licences of all that is inside; without Node, what the project knows by itself.
+pub fn licences(kit: &Kit, triple: &str) -> Result<PathBuf, Failure> {
+    let file = kit
+        .folder()
+        .join("parts")
+        .join(format!("licences-{triple}.txt"));
+    let parts = kit.folder().join("parts");
+    fs::create_dir_all(&parts).map_err(|error| told(&parts, &error))?;
+    if !answers("node") {
+        eprintln!(
+            "xtask: there is no Node: the programs show THIRD-PARTY.md only, and NOT the texts of all licences"
+        );
+        return Ok(root().join("THIRD-PARTY.md"));
+    }
+    let mut node = Command::new("node");
+    node.arg("tools/xtask/web/licences.mjs")
+        .arg(&file)
+        .arg(triple)
+        .args(PACKAGES);
+    execute(&mut node, "the licences could not be gathered")?;
+    Ok(file)
+}

@@ -1,0 +1,101 @@
+//! What lets others check what they got: sums, what is inside, and whether that is known to be bad.
+
+use super::kit::Kit;
+use super::programs;
+use crate::cross::WINDOWS;
+use crate::packages::IfMissing;
+use crate::shell::{
+    CANNOT, Failure, answers, cargo, execute, is_on_path, lacking, output_of, told,
+};
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+/// A bill of materials for each system.
+pub fn bills(kit: &mut Kit) -> Result<(), Failure> {
+    if !answers("node") {
+        return Err(lacking("Node", "Debian: nodejs"));
+    }
+    let game = &programs::PACKAGES[..];
+    let web = &["tamaire"][..];
+    for (system, triple, programs) in [
+        ("linux", "x86_64-unknown-linux-gnu", game),
+        ("windows", WINDOWS.triple, game),
+        ("web", crate::wasm::TARGET, web),
+    ] {
+        let file = kit
+            .folder()
+            .join(format!("tamaire-{}-{system}.cdx.json", kit.version));
+        let mut node = Command::new("node");
+        node.arg("tools/xtask/web/sbom.mjs")
+            .arg(&file)
+            .arg(triple)
+            .args(programs);
+        execute(&mut node, "the bill of materials could not be written")?;
+        kit.add(file);
+    }
+    Ok(())
+}
+
+/// What `deny.toml` asks for: licences, origins, doubles, and advisories where their database can be had.
+pub fn deny(kit: &mut Kit) -> Result<(), Failure> {
+    let is_there = || output_of("cargo", &["deny", "--version"]).is_some();
+    if !is_there() && kit.if_missing == IfMissing::Install {
+        let mut install = cargo();
+        install.args(["install", "--locked", "cargo-deny"]);
+        execute(&mut install, "cargo-deny could not be installed")?;
+    }
+    if !is_there() {
+        return Err(lacking("cargo-deny", "`cargo install --locked cargo-deny`"));
+    }
+    let mut check = cargo();
+    check.args([
+        "deny",
+        "--all-features",
+        "check",
+        "licenses",
+        "bans",
+        "sources",
+    ]);
+    execute(&mut check, "deny.toml says what may be inside, and why")?;
+    // Fetching tells whether there is a database; what it says then counts.
+    let mut fetch = cargo();
+    fetch.args(["deny", "fetch", "db"]);
+    if execute(&mut fetch, "").is_err() {
+        return Err(Failure {
+            message: "the database of advisories could not be fetched: nobody looked whether what is inside is known to be bad"
+                .to_string(),
+            code: CANNOT,
+        });
+    }
+    let mut check = cargo();
+    check.args(["deny", "--all-features", "check", "advisories"]);
+    execute(&mut check, "an advisory names something that is inside")
+}
+
+/// The sums, for `sha256sum --check SHA256SUMS`.
+pub fn sums(kit: &mut Kit) -> Result<(), Failure> {
+    let packages = kit.packages()?;
+    if packages.is_empty() {
+        return Err(Failure {
+            message: "there is no package to sum up".to_string(),
+            code: CANNOT,
+        });
+    }
+    if !is_on_path("sha256sum") {
+        return Err(lacking("sha256sum", "Debian: coreutils"));
+    }
+    let names = packages
+        .iter()
+        .map(|path| path.file_name().unwrap_or_default());
+    let mut sum = Command::new("sha256sum");
+    sum.args(names).current_dir(kit.folder());
+    let output = sum
+        .output()
+        .map_err(|error| told(Path::new("sha256sum"), &error))?;
+    let file = kit.folder().join("SHA256SUMS");
+    fs::write(&file, &output.stdout).map_err(|error| told(&file, &error))?;
+    eprint!("{}", String::from_utf8_lossy(&output.stdout));
+    kit.add(file);
+    Ok(())
+}

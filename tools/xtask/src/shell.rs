@@ -1,0 +1,113 @@
+//! Calling other programs, and what became of it.
+
+use std::env;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// Exit status where a step failed.
+pub const FAILED: u8 = 1;
+
+/// Exit status where a task cannot be tried on this machine.
+pub const CANNOT: u8 = 3;
+
+/// Why a task stopped, and the exit status to hand on.
+pub struct Failure {
+    pub message: String,
+    pub code: u8,
+}
+
+pub fn cargo() -> Command {
+    Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+}
+
+/// Shows the command, and runs it at the root of the workspace. The hint says what to do when it fails.
+pub fn execute(command: &mut Command, hint: &str) -> Result<(), Failure> {
+    let line = show(command);
+    eprintln!("xtask: {line}");
+    let failure = |how: String| Failure {
+        message: format!("`{line}` {how}\n       {hint}"),
+        // Never the status of the command, which could be taken for `CANNOT`.
+        code: FAILED,
+    };
+    match command.current_dir(root()).status() {
+        Ok(status) if status.success() => Ok(()),
+        Ok(status) => Err(failure(format!("failed ({status})"))),
+        Err(error) => Err(failure(format!("could not be started: {error}"))),
+    }
+}
+
+/// What an error means for a file.
+pub fn told(path: &Path, error: &dyn std::error::Error) -> Failure {
+    Failure {
+        message: format!("{}: {error}", path.display()),
+        code: FAILED,
+    }
+}
+
+/// That something is not on this machine.
+pub fn lacking(program: &str, how: &str) -> Failure {
+    Failure {
+        message: format!("there is no {program}: {how}"),
+        code: CANNOT,
+    }
+}
+
+/// The command as one would type it, without the folder of the program.
+pub fn show(command: &Command) -> String {
+    let program = Path::new(command.get_program());
+    let name = program.file_name().unwrap_or(program.as_os_str());
+    let words = std::iter::once(name).chain(command.get_args());
+    let words: Vec<_> = words.map(|word| word.to_string_lossy()).collect();
+    words.join(" ")
+}
+
+/// The root of the workspace.
+pub fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .ancestors()
+        .nth(2)
+        .expect("xtask lies two folders below the root of the workspace")
+}
+
+/// Where everything is built; below the root, unless it is absolute.
+pub fn target() -> PathBuf {
+    env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from)
+}
+
+/// What a program writes, if it runs and succeeds.
+pub fn output_of(program: &str, arguments: &[&str]) -> Option<String> {
+    let output = Command::new(program).args(arguments).output().ok()?;
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    output.status.success().then_some(text)
+}
+
+/// Whether there is such a program, for those that do not answer.
+pub fn is_on_path(program: &str) -> bool {
+    let path = env::var_os("PATH").unwrap_or_default();
+    env::split_paths(&path).any(|folder| folder.join(program).is_file())
+}
+
+/// Whether the program runs at all.
+pub fn answers(program: &str) -> bool {
+    Command::new(program)
+        .arg("--version")
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status()
+        .is_ok_and(|status| status.success())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[cfg(unix)]
+    #[test]
+    fn a_failure_is_never_taken_for_a_task_that_cannot_be_tried() {
+        let mut command = Command::new("sh");
+        command.args(["-c", "exit 3"]);
+        let failure = execute(&mut command, "a hint").unwrap_err();
+        assert_eq!(failure.code, FAILED);
+        assert!(failure.message.contains("a hint"), "{}", failure.message);
+    }
+}

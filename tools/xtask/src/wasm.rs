@@ -1,0 +1,243 @@
+//! The golden scenes on wasm32, run under Node: do they end in the same bits as natively, and how much
+//! longer do they take?
+//!
+//! rustup's toolchain can build for wasm32 after `rustup target add wasm32-unknown-unknown`. Where
+//! it has not been told to, or cannot reach its server, Debian's packages do: a compiler, the
+//! sources of its standard library, which cargo then builds too, and a linker.
+
+use crate::debian;
+use crate::folders;
+use crate::packages::{IfMissing, Lack, apt_get, install_arguments, list_lacks};
+use crate::shell::{CANNOT, FAILED, Failure, answers, cargo, execute, root, target};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+pub const TARGET: &str = "wasm32-unknown-unknown";
+/// Every browser of today has wide lanes, but a module has them or not.
+const LANES: &str = "-Ctarget-feature=+simd128";
+
+/// Builds the golden scenes, runs them, and fails where one ends in other bits than it must.
+pub fn run(if_missing: IfMissing) -> Result<(), Failure> {
+    let compiler = compiler(if_missing, "the golden scenes were NOT run on wasm32")?;
+    let module = compile_checks(&compiler)?;
+    let native_times = native_times()?;
+    execute(
+        Command::new("node")
+            .arg("tools/xtask/golden.mjs")
+            .arg(module)
+            .args(native_times),
+        "a scene ends in other bits on wasm32: look for arithmetic beyond + - * / and sqrt, for \
+         usize, which has 32 bits there, and for lanes that sum in another order",
+    )
+}
+
+/// The compiler to use, and Node beside it; `undone` says what did not happen where there is none.
+pub fn compiler(if_missing: IfMissing, undone: &str) -> Result<Compiler, Failure> {
+    let mut found = find_compiler();
+    if if_missing == IfMissing::Install && found.is_err() {
+        // Fresh machines have stale lists, or none. An update that fails may leave good ones.
+        apt_get(&["update", "--quiet"]);
+        // Twice, because which linker fits is known only once the compiler is there.
+        for _ in 0..2 {
+            match &found {
+                Err(lacks) if install(lacks) => found = find_compiler(),
+                _ => break,
+            }
+        }
+    }
+    found.map_err(|lacks| cannot(undone, &lacks, if_missing))
+}
+
+/// What compiles for wasm32.
+#[derive(Debug, PartialEq)]
+pub enum Compiler {
+    /// The toolchain in use has the standard library for wasm32.
+    Ready,
+    /// Debian's, with this linker.
+    Debian { linker: String },
+}
+
+/// The compiler to use, or all that is missing.
+fn find_compiler() -> Result<Compiler, Vec<Lack>> {
+    let mut lacks = Vec::new();
+    if !answers("node") {
+        lacks.push(Lack::new("there is no Node on the path", "nodejs"));
+    }
+    let compiler = if debian::toolchain_has(TARGET) {
+        Ok(Compiler::Ready)
+    } else {
+        find_debian(debian::description().as_deref(), Path::exists, answers)
+    };
+    match compiler {
+        Ok(compiler) if lacks.is_empty() => Ok(compiler),
+        Ok(_) => Err(lacks),
+        Err(more) => {
+            lacks.extend(more);
+            Err(lacks)
+        }
+    }
+}
+
+/// Debian's compiler, from what it says about itself; or all that is missing.
+fn find_debian(
+    description: Option<&str>,
+    exists: impl Fn(&Path) -> bool,
+    answers: impl Fn(&str) -> bool,
+) -> Result<Compiler, Vec<Lack>> {
+    let found = debian::find(TARGET, description, exists).map_err(|lack| vec![lack])?;
+    let mut lacks = Vec::from_iter(found.sources.err());
+    let linker = format!("wasm-ld-{}", found.llvm);
+    if !answers(&linker) {
+        let what = format!("there is no linker {linker}");
+        lacks.push(Lack::new(what, format!("lld-{}", found.llvm)));
+    }
+    if lacks.is_empty() {
+        Ok(Compiler::Debian { linker })
+    } else {
+        Err(lacks)
+    }
+}
+
+/// Installs the packages; whether that went well.
+fn install(lacks: &[Lack]) -> bool {
+    // rustc-web conflicts with Debian's rustc and rustup, which is why nothing may be removed for it.
+    let names = lacks.iter().map(|lack| lack.package.as_str());
+    apt_get(&install_arguments(names))
+}
+
+/// Compiles a package, the first of the words, as the game for a browser is; where its module is.
+pub fn compile(compiler: &Compiler, words: &[&str]) -> Result<PathBuf, Failure> {
+    let mut command = cargo();
+    command
+        .args(["rustc", "--profile", "web", "--target", TARGET, "--package"])
+        .args(words)
+        .env("CARGO_TARGET_DIR", root().join(folder()))
+        // Takes the place of flags for the native build, such as a target-cpu, which make no sense here.
+        .env(
+            "CARGO_ENCODED_RUSTFLAGS",
+            folders::encoded([LANES], &folders::names()),
+        );
+    if let Compiler::Debian { linker } = compiler {
+        command
+            .arg("-Zbuild-std=std,panic_abort")
+            // None: the crates behind backtraces are among the largest, and a browser shows its own.
+            .arg("-Zbuild-std-features=")
+            .envs(debian::ENVIRONMENT)
+            .env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker);
+    }
+    execute(
+        &mut command,
+        "what differs in a browser belongs into game/tamaire/src/platform and behind features of its crates",
+    )?;
+    let modules = root().join(folder()).join(TARGET).join("web");
+    Ok(modules.join(words[0]).with_extension("wasm"))
+}
+
+/// Compiles the golden scenes, and what else a browser has to get right; where their module is.
+pub fn compile_checks(compiler: &Compiler) -> Result<PathBuf, Failure> {
+    compile(compiler, &["determinism_checks", "--crate-type", "cdylib"])
+}
+
+/// How long each scene takes natively on one thread \[ms\], in their order.
+fn native_times() -> Result<Vec<String>, Failure> {
+    // Of the packages whose tests are run in release, so that what they were built of is used again.
+    let mut build = cargo();
+    build.args(["build", "--release", "--all-features"]);
+    build.args(["--package", "fuwafuwa", "--package", "determinism_checks"]);
+    build.args(["--example", "times"]);
+    execute(
+        &mut build,
+        "the golden scenes could not be built natively, see above",
+    )?;
+    let output = Command::new(root().join(target()).join("release/examples/times"))
+        .env("RAYON_NUM_THREADS", "1")
+        .stderr(Stdio::inherit())
+        .output();
+    let Some(output) = output.ok().filter(|output| output.status.success()) else {
+        return Err(Failure {
+            message: "the golden scenes could not be timed natively".to_string(),
+            code: FAILED,
+        });
+    };
+    let times = String::from_utf8_lossy(&output.stdout);
+    Ok(times.split_whitespace().map(str::to_string).collect())
+}
+
+/// Where wasm32 is built: beside the native build.
+fn folder() -> PathBuf {
+    target().join("wasm")
+}
+
+fn cannot(undone: &str, lacks: &[Lack], if_missing: IfMissing) -> Failure {
+    let advice = match if_missing {
+        IfMissing::Say => "On Debian, the same with `--install` installs that.",
+        IfMissing::Install => "What Debian's packages offer here is not enough, see above.",
+    };
+    Failure {
+        message: format!(
+            "{undone}:\n{}\n{advice}\n\
+             Elsewhere: `rustup target add {TARGET}`, and Node on the path.",
+            list_lacks(lacks)
+        ),
+        code: CANNOT,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DESCRIPTION: &str = "rustc 1.96.0\nrelease: 1.96.0\nLLVM version: 22.1.8\n";
+
+    fn check(description: Option<&str>, has: &[&str], expect: Result<&str, &[&str]>) {
+        let found = find_debian(
+            description,
+            |path| has.iter().any(|there| path == Path::new(there)),
+            |program| has.contains(&program),
+        );
+        let found = match &found {
+            Ok(Compiler::Debian { linker }) => Ok(linker.as_str()),
+            Ok(Compiler::Ready) => Ok("ready"),
+            Err(lacks) => Err(lacks.iter().map(|lack| lack.package.as_str()).collect()),
+        };
+        assert_eq!(
+            found,
+            expect.map_err(<[&str]>::to_vec),
+            "{description:?}, {has:?}"
+        );
+    }
+
+    #[test]
+    fn what_is_missing_is_named_by_its_package() {
+        let sources = "/usr/src/rustc-1.96.0/library/std";
+        let other_sources = "/usr/src/rustc-1.85.0/library/std";
+        let old = DESCRIPTION.replace("1.96", "1.85");
+        check(None, &[], Err(&["rustc-web"]));
+        check(Some(&old), &[sources, "wasm-ld-22"], Err(&["rustc-web"]));
+        check(Some(DESCRIPTION), &[sources], Err(&["lld-22"]));
+        check(
+            Some(DESCRIPTION),
+            &[other_sources, "wasm-ld-19"],
+            Err(&["rust-web-src", "lld-22"]),
+        );
+        check(
+            Some(DESCRIPTION),
+            &[sources, "wasm-ld-22"],
+            Ok("wasm-ld-22"),
+        );
+    }
+
+    #[test]
+    fn a_compiler_that_is_too_old_is_refused_with_both_versions() {
+        let old = DESCRIPTION.replace("1.96", "1.85");
+        let lacks = find_debian(Some(&old), |_| true, |_| true).unwrap_err();
+        let failure = cannot("", &lacks, IfMissing::Say);
+        let said = |word| failure.message.contains(word);
+        assert!(
+            said("1.85.0") && said(debian::OLDEST),
+            "{}",
+            failure.message
+        );
+        assert_eq!(failure.code, CANNOT);
+    }
+}

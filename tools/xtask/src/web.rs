@@ -1,0 +1,133 @@
+//! The game for a browser: a folder of files that any web server can hand out.
+//!
+//! cargo compiles the game and its sound for wasm32, `xtask_bindgen` makes the glue between the game and the page
+//! (`game/web`), and `xtask/web/pack.mjs` the folder.
+
+use crate::packages::{self, IfMissing, Purpose};
+use crate::shell::{CANNOT, FAILED, Failure, cargo, execute, is_on_path, root, target};
+use crate::wasm::{self, Compiler, TARGET};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// What to do with the game for a browser.
+#[derive(Debug, PartialEq)]
+pub enum Web {
+    /// Build it, for this address where one is known.
+    Build(Option<String>),
+    /// And hand it out on this machine.
+    Serve,
+    /// And play it in browsers.
+    Test,
+}
+
+/// Builds the game for a browser, and serves or tests it.
+pub fn run(web: Web, if_missing: IfMissing) -> Result<(), Failure> {
+    if web == Web::Test {
+        provide_browsers(if_missing)?;
+    }
+    let compiler = wasm::compiler(if_missing, "the game was NOT built for a browser")?;
+    let address = match &web {
+        Web::Build(address) => address.as_deref(),
+        Web::Serve | Web::Test => None,
+    };
+    build(&compiler, address)?;
+    let site = folder().join("site");
+    match web {
+        Web::Build(_) => Ok(()),
+        Web::Serve => node("serve.mjs", &[&site], "the server ended"),
+        Web::Test => {
+            let checks = wasm::compile_checks(&compiler)?;
+            // Firefox draws in software only where there is a display.
+            let mut play = Command::new("xvfb-run");
+            play.args(["--auto-servernum", "node", "tools/xtask/web/test/all.mjs"])
+                .args([&site, &checks]);
+            execute(&mut play, "a browser did not play as it must, see above")
+        }
+    }
+}
+
+/// Where the tools, the stages and the folder of files are.
+pub fn folder() -> PathBuf {
+    root().join(target()).join("web")
+}
+
+fn build(compiler: &Compiler, address: Option<&str>) -> Result<(), Failure> {
+    let stage = folder().join("stage");
+    let game = wasm::compile(compiler, &["tamaire", "--bin", "tamaire"])?;
+    let sound = wasm::compile(
+        compiler,
+        &[
+            "tamaire_sound",
+            "--features",
+            "worklet",
+            "--crate-type",
+            "cdylib",
+        ],
+    )?;
+    let mut bind = cargo();
+    bind.args(["run", "--package", "xtask_bindgen", "--"])
+        .args([&game, &stage]);
+    execute(
+        &mut bind,
+        "the glue between the game and the page could not be made",
+    )?;
+    let licences = folder().join("licences.txt");
+    fs::copy(sound, stage.join("sound.wasm")).map_err(|error| Failure {
+        message: format!("{}: {error}", folder().display()),
+        code: FAILED,
+    })?;
+    provide_node_modules()?;
+    node(
+        "licences.mjs",
+        &[&licences, Path::new(TARGET), Path::new("tamaire")],
+        "the licences could not be gathered",
+    )?;
+    let (page, site) = (root().join("game/tamaire/web"), folder().join("site"));
+    let mut words: Vec<&Path> = vec![&stage, &page, &licences, &site];
+    words.extend(address.map(Path::new));
+    node("pack.mjs", &words, "the folder could not be packed")
+}
+
+/// npm's packages, as the lock file names them.
+fn provide_node_modules() -> Result<(), Failure> {
+    let here = root().join("tools/xtask/web");
+    let stamp = |path: &str| {
+        fs::metadata(here.join(path))
+            .and_then(|data| data.modified())
+            .ok()
+    };
+    if stamp("node_modules/.package-lock.json") > stamp("package-lock.json") {
+        return Ok(());
+    }
+    let mut install = Command::new("npm");
+    install
+        .args(["ci", "--no-audit", "--no-fund", "--prefix"])
+        .arg(&here);
+    execute(&mut install, "npm could not fetch what packs the page")
+}
+
+fn node(script: &str, words: &[&Path], hint: &str) -> Result<(), Failure> {
+    let script = Path::new("tools/xtask/web").join(script);
+    execute(Command::new("node").arg(script).args(words), hint)
+}
+
+/// Sees to it that there is what plays the game, as far as that goes.
+fn provide_browsers(if_missing: IfMissing) -> Result<(), Failure> {
+    packages::provide(&[Purpose::Browsing], if_missing);
+    let programs = ["chromium", "firefox-esr", "xvfb-run"];
+    let missing: Vec<&str> = programs
+        .into_iter()
+        .filter(|program| !is_on_path(program))
+        .collect();
+    match missing[..] {
+        [] => Ok(()),
+        _ => Err(Failure {
+            message: format!(
+                "the game was NOT played in browsers: no {} on the path",
+                missing.join(", ")
+            ),
+            code: CANNOT,
+        }),
+    }
+}

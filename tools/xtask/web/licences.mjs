@@ -1,0 +1,43 @@
+// The licences of all that is inside programs, each text once, and whose it is.
+// usage: node licences.mjs OUT TARGET PROGRAM...
+import { readFileSync, readdirSync, writeFileSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { inside, root } from "./inside.mjs";
+
+const [out, target, ...programs] = process.argv.slice(2);
+/** Texts of what others wrote in C, which lie deeper. */
+const DEEPER = new Map([["sdl3-src", ["SDL/LICENSE.txt", "SDL/src/hidapi/LICENSE-bsd.txt"]]]);
+
+/** @type {Map<string, string[]>} */
+const owners = new Map();
+const note = (/** @type {string} */ text, /** @type {string} */ owner) =>
+  owners.set(text.trim(), [...(owners.get(text.trim()) ?? []), owner]);
+for (const file of ["LICENSE-MIT", "LICENSE-APACHE"]) {
+  note(readFileSync(join(root, file), "utf8"), "tamaire, fuwafuwa");
+}
+note(readFileSync(join(root, "game/tamaire/fonts/OFL.txt"), "utf8"), "M PLUS Rounded 1c, the letters of the game");
+const { all } = inside(target, programs);
+const without = [];
+for (const { name, version, license, manifest_path, source } of all) {
+  if (!source) continue;
+  const folder = dirname(manifest_path);
+  const files = readdirSync(folder).filter((file) => /^(licen[cs]e|copying|notice|unlicense)/i.test(file));
+  const texts = [...files.sort(), ...(DEEPER.get(name) ?? [])].flatMap((file) => {
+    try {
+      return [readFileSync(join(folder, file), "utf8")];
+    } catch {
+      return []; // a folder
+    }
+  });
+  texts.forEach((text) => note(text, `${name} ${version}`));
+  if (!texts.length) without.push(`${name} ${version}: ${license}`);
+}
+// What the project says by itself comes first.
+const known = readFileSync(join(root, "THIRD-PARTY.md"), "utf8");
+const line = "=".repeat(78);
+const parts = [...owners].map(([text, who]) => `${line}\n${[...new Set(who)].sort().join(", ")}\n\n${text}\n`);
+if (without.length) {
+  parts.push(`${line}\nThese come without a text of their own:\n\n${without.sort().join("\n")}\n`);
+}
+writeFileSync(out, [known, ...parts].join("\n"));
+console.log(`licences: ${all.length} crates, ${owners.size} texts, ${without.length} named without one`);

@@ -1,0 +1,93 @@
+// Makes the folder that a web server hands out: the module optimised, everything that may be kept for ever in a folder that is
+// named by its contents, and what it costs on the wire.
+// usage: node pack.mjs STAGE PAGE LICENCES OUT [ADDRESS]
+//   STAGE: what wasm-bindgen made, and sound.wasm; PAGE: game/tamaire/web; LICENCES: a text; OUT: the folder, made anew;
+//   ADDRESS: where it will stand
+import { execFileSync } from "node:child_process";
+import { createHash } from "node:crypto";
+import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { addressed } from "./address.mjs";
+import { brotli } from "./compress.mjs";
+
+const [stage, page, licences, out, address] = process.argv.slice(2);
+const here = fileURLToPath(new URL(".", import.meta.url));
+
+/** What a browser must be able to do: page.js asks for the lanes, and all that have them have the rest. */
+const FEATURES = ["simd", "bulk-memory", "sign-ext", "mutable-globals", "nontrapping-float-to-int", "reference-types", "multivalue"];
+
+/** Files of the page that keep their names, because others know them by these. */
+const NAMED = ["index.html", "sw.js", "manifest.webmanifest", "icon.svg", "icon-192.png", "icon-512.png"];
+/** What others show of the page. */
+const PREVIEW = join(here, "../../../docs/game-squeezed.png");
+
+function optimised(/** @type {string} */ name) {
+  const file = join(stage, `${name}.opt.wasm`);
+  const flags = FEATURES.map((feature) => `--enable-${feature}`);
+  const program = join(here, "node_modules/.bin/wasm-opt");
+  execFileSync(program, [...flags, "-O2", join(stage, `${name}.wasm`), "-o", file], { stdio: "inherit" });
+  return readFileSync(file);
+}
+
+/** @type {Map<string, Buffer>} */
+const files = new Map();
+for (const name of readdirSync(page, { withFileTypes: true })) {
+  if (name.isFile() && !NAMED.includes(name.name)) {
+    files.set(name.name, readFileSync(join(page, name.name)));
+  }
+}
+files.set("tamaire.js", readFileSync(join(stage, "tamaire.js")));
+files.set("tamaire.wasm", optimised("tamaire_bg"));
+files.set("sound.wasm", optimised("sound"));
+files.set("japanese.ttf", readFileSync(join(page, "../fonts/MPLUSRounded1c-Bold-japanese.ttf")));
+const parts = {
+  game: "./tamaire.js",
+  wasm: "./tamaire.wasm",
+  bytes: files.get("tamaire.wasm").length,
+  worker: "../sw.js",
+};
+files.set("parts.js", Buffer.from(`export const PARTS = ${JSON.stringify(parts)};\n`));
+
+const hash = createHash("sha256");
+for (const [name, bytes] of [...files, ...NAMED.map((name) => [name, readFileSync(join(page, name))])]) {
+  hash.update(name).update(bytes);
+}
+hash.update(readFileSync(licences)).update(readFileSync(PREVIEW)).update(address ?? "");
+const version = hash.digest("hex").slice(0, 12);
+
+for (const folder of [out, `${out}.br`]) {
+  rmSync(folder, { recursive: true, force: true });
+}
+mkdirSync(join(out, version), { recursive: true });
+for (const [name, bytes] of files) {
+  writeFileSync(join(out, version, name), bytes);
+}
+for (const name of NAMED) {
+  cpSync(join(page, name), join(out, name));
+}
+cpSync(licences, join(out, "licences.txt"));
+cpSync(PREVIEW, join(out, "preview.png"));
+const change = (/** @type {string} */ name, /** @type {(text: string) => string} */ how) =>
+  writeFileSync(join(out, name), how(readFileSync(join(out, name), "utf8")));
+change("index.html", (text) => addressed(text, address).replaceAll(/"(page\.(?:css|js))"/g, `"${version}/$1"`));
+const kept = ["./", ...NAMED.filter((name) => name !== "sw.js" && name !== "index.html")];
+kept.push("licences.txt", ...[...files.keys()].map((name) => `${version}/${name}`));
+change("sw.js", (text) => text.replace("@VERSION@", version).replace('"@FILES@"', kept.map((name) => JSON.stringify(name)).join(", ")));
+
+console.log(`${out}: version ${version}`);
+const all = [...NAMED, "licences.txt", "preview.png", ...[...files.keys()].map((name) => `${version}/${name}`)];
+const rows = all.map((name) => {
+  const bytes = readFileSync(join(out, name));
+  const small = brotli(bytes);
+  // serve.mjs hands it out; compressing takes longer than a visit.
+  const beside = join(`${out}.br`, name);
+  mkdirSync(dirname(beside), { recursive: true });
+  writeFileSync(beside, small);
+  return [name, bytes.length, small.length];
+});
+rows.sort((a, b) => b[2] - a[2]);
+console.log("     bytes    brotli");
+for (const [name, bytes, small] of rows) {
+  console.log(`${String(bytes).padStart(10)}${String(small).padStart(10)}  ${name}`);
+}
