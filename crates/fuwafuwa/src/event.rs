@@ -63,8 +63,8 @@ pub enum Event {
         /// Highest approach speed [m/s].
         speed: f32,
     },
-    /// Two contact participants stopped touching, or one of them was removed. Participants at rest on each
-    /// other still touch.
+    /// Two contact participants stopped touching, or one of them was removed. Participants at rest side by
+    /// side still touch.
     ContactEnded {
         /// The participants, in ascending order.
         both: [Party; 2],

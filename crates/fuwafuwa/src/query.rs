@@ -282,7 +282,7 @@ impl Filled {
 
 fn soft<D: Dim>(id: BodyId, body: &Body<D>, element: ElementId) -> Thing {
     let mesh = body.mesh();
-    let alive = mesh.element(element).expect("it was looked at just now");
+    let alive = mesh.element(element).expect("the element is alive");
     Thing::Soft {
         body: id,
         piece: body.pieces().of_element(element),

@@ -172,8 +172,8 @@ impl<D: Dim> World<D> {
         self.ticks
     }
 
-    /// Returns a hash of the simulation state. Worlds with equal tick counters and bit-identical nodes and
-    /// moving rigid bodies have equal hashes.
+    /// Returns a hash of the simulation state. Except for hash collisions, two worlds have the same hash only
+    /// if their tick counters, nodes and moving rigid bodies are bit-identical.
     #[inline(never)]
     pub fn hash(&self) -> u64 {
         let mut hash = Hash::NONE;
@@ -227,7 +227,10 @@ impl<D: Dim> World<D> {
                 "a knife in it is invalid",
                 self.knives.iter().all(Knife::is_sound::<D>),
             ),
-            ("its tick counter is above the limit", self.ticks <= MOST_TICKS),
+            (
+                "its tick counter is above the limit",
+                self.ticks <= MOST_TICKS,
+            ),
         ];
         let wrong = checks.into_iter().find(|(_, is_good)| !is_good);
         wrong.map(|(defect, _)| defect)

@@ -46,7 +46,10 @@ impl<D: Dim> World<D> {
                 continue;
             };
             for cut in knife.pass(&self.bodies, holder, round) {
-                let body = self.bodies.get_mut(cut.body).expect("the cut names a live body");
+                let body = self
+                    .bodies
+                    .get_mut(cut.body)
+                    .expect("the cut names a live body");
                 let (released, changes) = body
                     .open(&cut.faces)
                     .expect("splitting a node keeps the mesh valid");

@@ -32,8 +32,8 @@ impl<'a> Substep<'a> {
         }
     }
 
-    /// Returns the force and torque on a kinematic or coupled rigid body in this substep, for force feedback
-    /// at the substep rate.
+    /// Returns the force and torque on a rigid body in this substep, for force feedback at the substep rate.
+    /// Zero for fixed rigid bodies.
     ///
     /// # Errors
     /// [`Gone`] if the handle is stale.
