@@ -111,7 +111,7 @@ impl Contacts {
                     continue;
                 }
                 let (at, velocity) = (body.state.position[node], body.state.velocity[node]);
-                // Most nodes are so far from a wall that they cannot reach it in any direction.
+                // Most nodes cannot reach a wall in this substep, in any direction.
                 let reachable = (pair.clear - travel).max(0.0) / (AHEAD * duration);
                 if !moves && inner::<D>(velocity, velocity) < reachable * reachable {
                     continue;
@@ -205,7 +205,7 @@ impl Contacts {
                     squared > furthest * furthest
                 };
                 let both = pair.both(&all.list);
-                // Most pairs are so far apart that no more of them need be read.
+                // Most pairs are too far apart, so the rest of their data is not read.
                 if is_beyond(widest) || is_beyond(both[0].radius + both[1].radius) {
                     pair.met_in_front = false;
                     pair.impulse.release();
@@ -387,7 +387,7 @@ impl Hits {
     }
 }
 
-/// For a crumb whose centre is behind a sphere of a surface, returns the outward normal, as it pushes the
+/// If a crumb is behind a sphere of a surface, returns the outward normal, as it pushes the
 /// first sphere, and the negative distance of the crumb along it [m].
 fn behind_surface<D: Dim>(
     bodies: &Bodies<D>,

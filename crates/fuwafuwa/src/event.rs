@@ -43,7 +43,7 @@ pub enum Event {
     RigidTouched {
         /// The dynamic rigid body.
         rigid: RigidId,
-        /// The other rigid body.
+        /// Handle of the second rigid body.
         with: RigidId,
         /// Position of the strongest contact [m].
         at: Vector,

@@ -193,7 +193,7 @@ impl<'a, D: Dim> Queries<'a, D> {
         let filled = self.filled.get_or_init(|| Filled::new(self.world));
         filled.tree.search(
             f32::INFINITY,
-            // Visits exactly the cells whose box contains the point.
+            // Visits exactly the cells with a bounding box around the point.
             |bounds| match distance_from(bounds, at) {
                 0.0 => 0.0,
                 _ => f32::INFINITY,

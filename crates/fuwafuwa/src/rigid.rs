@@ -355,7 +355,7 @@ impl Rigid {
                 damping,
                 limit,
             } => {
-                // Limits the stiffness to what is stable in this substep.
+                // Limits the stiffness to the stability limit of this substep.
                 let stiffness = stiffness.min(0.25 * mass / (duration * duration));
                 let damper = 2.0 * damping * (stiffness * mass).sqrt();
                 let stretch = minus(self.goal_before, self.position);

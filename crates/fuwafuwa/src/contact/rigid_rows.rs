@@ -11,8 +11,8 @@ use crate::solve::Row;
 use crate::touch::{Impulse, Passed, RigidTouch, RigidTouches, WAKE_SPEED};
 use crate::vector::{across, as_row, length, minus, plus, scaled, three};
 
-/// Approach speed below which contacts do not bounce [m/s], so that bodies come to rest. It is the speed of a
-/// fall by 13 mm, fifty times the gain from gravity in a substep.
+/// Approach speed below which contacts do not bounce [m/s], so that bodies can fall asleep. It is the speed
+/// of a fall by 13 mm, fifty times the gain from gravity in a substep.
 const BOUNCE_SPEED: f32 = 0.5;
 
 /// Finds the contacts of kinematic and coupled bodies with fixed bodies and with each other.

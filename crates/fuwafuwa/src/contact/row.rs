@@ -6,7 +6,7 @@ use crate::touch::Impulse;
 use crate::vector::{minus, plus, scaled};
 
 /// Warm-starting factor, applied to the impulses of the last substep. 1 is unstable, and with 0 piles never
-/// come to rest.
+/// settle.
 const WARM_START: f32 = 0.9;
 /// Share of an overlap that is resolved per substep, and the maximum speed of it [m/s] [Catto 2023]. Larger
 /// values throw overlapping bodies apart; smaller ones let heaps sink into each other.

@@ -125,7 +125,7 @@ impl Knife {
             gain: gains.sum(),
             weights,
             lever: self.lever(stance, place),
-            // A sample of length 0 in material that cannot tear gives NaN, which `max` turns into 0.
+            // A sample of zero length in unbreakable material gives 0 · ∞ = NaN, which `max` turns into 0.
             limits: [forth, material.strength * self.height].map(|k| (share * k).max(0.0)),
             impulse: [0.0; 2],
         }

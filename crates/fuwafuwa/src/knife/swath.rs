@@ -76,7 +76,7 @@ fn side(a: [f64; 2], b: [f64; 2], point: [f64; 2]) -> f64 {
     if is_forward { turn } else { -turn }
 }
 
-/// Returns the voxels, of `count` along an axis, whose centre is between the smallest and the largest
+/// Returns the voxels, of `count` along an axis, with a centre between the smallest and the largest
 /// coordinate.
 fn middles(along: [f64; 3], count: i32) -> std::ops::RangeInclusive<i32> {
     let low = along.into_iter().fold(f64::INFINITY, f64::min);

@@ -76,7 +76,7 @@ impl Tree {
         knot
     }
 
-    /// Visits the boxes whose cost is less than the smallest cost found up to then, which begins at `least`.
+    /// Visits the boxes with a cost below the smallest one found before. That limit begins at `least`.
     /// `cost` must not be larger for a box than for its content. `look` receives the index of a box and
     /// returns the cost of its content.
     pub fn search(

@@ -35,7 +35,7 @@ impl Inertia {
         };
         let moments = turning::<D>(scaled(shares, mass));
         let inverse = moments.map(|moment| if moment > 0.0 { 1.0 / moment } else { 0.0 });
-        // In 2D the only axis of rotation is the third one, whatever the direction of a capsule.
+        // In 2D the only axis of rotation is the third one, for capsules of any direction.
         let axes = if D::N == 2 {
             Rotation::NONE.axes()
         } else {

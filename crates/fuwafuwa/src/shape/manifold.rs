@@ -149,7 +149,7 @@ fn bricks(own: &Brick, other: &Brick, margin: f32) -> Manifold {
 fn on_face(ground: &Brick, axis: usize, out: Vector, brick: &Brick) -> Vec<ManifoldPoint> {
     let others: Vec<usize> = (0..brick.axis_count).filter(|&k| k != axis).collect();
     let level = dot(out, ground.centre) + ground.half[axis];
-    // The face whose normal is most opposite to that of the ground face.
+    // The face with the normal most opposite to that of the ground face.
     let facing = |k: &usize| dot(brick.axes[*k], out).abs();
     let face = (0..brick.axis_count).max_by(|a, b| facing(a).total_cmp(&facing(b)));
     let face = face.unwrap_or(axis);

@@ -64,8 +64,8 @@ impl<D: Dim> World<D> {
         Ok(self.rigids.get_mut(rigid)?.turn_to::<D>(rotation)?)
     }
 
-    /// Cuts a body along a blade at once, whatever its strength, and returns the number of split nodes. The
-    /// splits and the detached pieces are among the events until the next tick.
+    /// Cuts a body along a blade at once, at any strength of the material, and returns the number of split
+    /// nodes. The splits and the detached pieces are among the events until the next tick.
     ///
     /// # Errors
     /// [`Gone`] if the handle is stale.

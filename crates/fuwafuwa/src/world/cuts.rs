@@ -32,7 +32,7 @@ impl<D: Dim> World<D> {
         self.knives.remove(knife)
     }
 
-    /// Returns the knives. A knife whose rigid body was removed does not cut.
+    /// Returns the knives. A knife on a removed rigid body does not cut.
     pub fn knives(&self) -> &Knives {
         &self.knives
     }

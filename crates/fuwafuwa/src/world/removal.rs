@@ -27,7 +27,7 @@ pub enum PieceSize {
 pub struct Removed {
     /// Removed pieces, ascending by body and number.
     pub pieces: Vec<(BodyId, PieceId)>,
-    /// Bodies whose last piece was removed; their handles are stale.
+    /// Bodies without remaining pieces; they were removed, and their handles are stale.
     pub bodies: Vec<BodyId>,
     /// Removed dynamic rigid bodies.
     pub rigids: Vec<RigidId>,
