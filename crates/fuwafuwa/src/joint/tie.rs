@@ -10,8 +10,8 @@ use crate::shape::Vector;
 use crate::touch::WAKE_SPEED;
 use crate::vector::{cross, dot, length, minus, plus, scaled};
 
-/// Warm-starting factor of pins, the same as for contacts. Chains of pins with a heavy end swing with much
-/// less or more.
+/// Warm-starting factor of pins, the same as for contacts. Chains of pins with a heavy end swing more with
+/// other values.
 const WARM_START: f32 = 0.9;
 /// Share of the position error of pins and ropes that is corrected per substep, the same as for overlaps, and
 /// the maximum correction speed [m/s]. Twice the share is unstable.
