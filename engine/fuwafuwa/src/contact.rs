@@ -1,10 +1,10 @@
-//! What contacts do to velocities: nothing goes through, and friction holds.
+//! Contact solver: non-penetration and Coulomb friction.
 //!
-//! Each contact is a *row*: along its normal the two sides may not approach faster than their gap
-//! allows, across it they drag on each other within Coulomb's cone. Rows are solved one after the
-//! other, forwards and backwards, starting from the impulses of the last substep; the many small
-//! substeps are the iterations [Macklin 2019]. What is pushed out of an overlap gains no speed by it:
-//! after the move the same rows are solved again without the push [Catto 2023].
+//! Each contact is a solver row. Along its normal the two sides may not approach faster than their gap
+//! allows; tangentially they exchange friction within Coulomb's cone. The rows are solved by sequential
+//! impulses, once forwards and once backwards, with a warm start from the last substep. The many small
+//! substeps serve as the iterations [Macklin 2019]. Resolving an overlap adds no velocity: after the position
+//! update the same rows are solved again without the push-out velocity [Catto 2023].
 
 mod exit;
 mod motion;
@@ -29,19 +29,19 @@ use row::{AHEAD, CLOSE, Contact, is_close};
 use sides::{FreeContact, HandContact, NodeContact, SphereContact};
 use std::collections::BTreeSet;
 
-/// A crumb is behind a sphere when the way to it goes this far inwards (cosine). Less would take one that lies on a body for one
-/// behind it: beside a corner of a block in space, in the hollow between four spheres, the way from the one at the corner goes
-/// inwards by 0.17, and by 0.3 where the crumb is pressed straight in by a sixth of a voxel.
+/// Cosine limit beyond which a crumb is behind a contact sphere of a surface. A smaller value would include
+/// crumbs that lie on the body. Beside a corner of a 3D block, in the hollow between four spheres, the cosine
+/// is 0.17; pressed in by a sixth of a voxel it is 0.3.
 const BEHIND: f32 = 0.3;
-/// Shorter than this share of the radius the way out of a sphere says no direction: out of a flat face it is as long as the
-/// radius, so this is an element pressed to a fifth. From 0.1 to 0.4 dust comes out of a body as well; with 0.8 some stays.
+/// Minimum length of a sphere's outward vector, as a share of its radius, for its direction to be used. At a
+/// flat face it is as long as the radius, so the limit is an element pressed to a fifth.
 const SHORTEST_WAY_OUT: f32 = 0.2;
-/// A sleeper wakes when something rigid is no further from a node of it than this, in voxels, or a sphere no further from one of
-/// it, in widths of the two. With half and twice as much of either the same tests pass.
+/// Gaps below which a sleeper wakes: between a node and a rigid body, in voxels, and between two spheres, in
+/// sums of their radii.
 const WAKING_NODE: f32 = 2.0 * CLOSE;
 const WAKING_SPHERE: f32 = CLOSE;
 
-/// The contacts of one substep.
+/// Contacts of one substep.
 #[derive(Clone, Debug, Default)]
 pub struct Contacts {
     nodes: Vec<NodeContact>,
@@ -52,10 +52,10 @@ pub struct Contacts {
     motion: Motion,
 }
 
-/// A sleeping piece that was hit: body and piece number.
+/// Sleeping piece that was hit: body slot and piece number.
 pub type Hit = (BodySlot, PieceId);
 
-/// The sleepers that were hit in a substep, each once and ascending.
+/// Sleepers that were hit in a substep, each once, in ascending order.
 #[derive(Clone, Debug, Default)]
 pub struct Hits {
     pub pieces: Vec<Hit>,
@@ -63,7 +63,7 @@ pub struct Hits {
 }
 
 impl Contacts {
-    /// Finds the contacts of this substep among what is nearby. Returns the sleepers that were hit.
+    /// Finds the contacts of this substep among the nearby pairs. Returns the sleepers that were hit.
     pub fn find<D: Dim>(
         &mut self,
         bodies: &Bodies<D>,
@@ -105,13 +105,13 @@ impl Contacts {
                 let body = bodies.at(pair.body);
                 let rigid = rigids.at(pair.rigid);
                 let (node, moves) = (pair.node, rigid.moves());
-                // What sleeps is touched by what moves alone.
+                // Sleeping nodes have contacts with moving rigid bodies only.
                 if body.state.inverse_mass[node] == 0.0 && !moves {
                     pair.impulse.release();
                     continue;
                 }
                 let (at, velocity) = (body.state.position[node], body.state.velocity[node]);
-                // Most are so far from a wall that they could not come to it at any direction.
+                // Most nodes cannot reach a wall in this substep, in any direction.
                 let reachable = (pair.clear - travel).max(0.0) / (AHEAD * duration);
                 if !moves && inner::<D>(velocity, velocity) < reachable * reachable {
                     continue;
@@ -127,7 +127,7 @@ impl Contacts {
                 let approach = inner::<D>(relative, normal);
                 if !is_close(gap, approach, size, duration) {
                     pair.impulse.release();
-                    // With a little for rounding.
+                    // With a small margin for rounding.
                     pair.clear = travel + gap - 1.1 * CLOSE * size;
                     continue;
                 }
@@ -146,7 +146,7 @@ impl Contacts {
                     }
                 }
                 let inverse_mass = body.state.inverse_mass[node] + rigid.yields_near(three(at));
-                // To what is free, a sleeper is a wall.
+                // For a dynamic rigid body, a sleeping node is a wall.
                 if body.state.inverse_mass[node] == 0.0 && !rigid.is_free() {
                     continue;
                 }
@@ -189,7 +189,7 @@ impl Contacts {
         let layers = |sphere: &ContactSphere| bodies.at(sphere.body).state.layers;
         let meet = |both: [&ContactSphere; 2]| layers(both[0]).meet(layers(both[1]));
         let (all, captives) = (&nearby.spheres, &nearby.captives);
-        // Asked for by each pair: of a table it would be read anew where they lie.
+        // A local slice: through the table, each pair would load the pointer again.
         let centres = all.centres.as_slice();
         let widths = bodies.iter().map(|body| body.truth.grid.voxel_size());
         let widest = widths.fold(0.0, f32::max);
@@ -205,7 +205,7 @@ impl Contacts {
                     squared > furthest * furthest
                 };
                 let both = pair.both(&all.list);
-                // Most are so far apart that nothing more need be read of them.
+                // Most pairs are too far apart, so the rest of their data is not read.
                 if is_beyond(widest) || is_beyond(both[0].radius + both[1].radius) {
                     pair.met_in_front = false;
                     pair.impulse.release();
@@ -218,7 +218,7 @@ impl Contacts {
                 }
                 let touching = both[0].radius + both[1].radius;
                 if captives.is_inside(pair.spheres, both) {
-                    // What came out is not to be drawn in again.
+                    // So that an escaped sphere is not pulled in again.
                     pair.met_in_front = true;
                     pair.impulse.release();
                     continue;
@@ -266,14 +266,14 @@ impl Contacts {
         }
     }
 
-    /// What is free and pressed on by a hand.
+    /// Returns the dynamic rigid bodies that a moving kinematic or coupled body presses on.
     pub fn handled(&self, rigids: &Rigids) -> BTreeSet<RigidSlot> {
         let pressed = self.free.iter().filter(|row| row.contact.pressed > 0.0);
         let handled = pressed.filter(|row| rigids.at(row.both[1]).pushes());
         handled.map(|row| row.both[0]).collect()
     }
 
-    /// Changes velocities so that the contacts hold.
+    /// Solves the contacts on the velocities.
     pub fn solve<D: Dim>(
         &mut self,
         bodies: &mut Bodies<D>,
@@ -292,7 +292,7 @@ impl Contacts {
         for row in &self.free {
             row.start(rigids, duration);
         }
-        // Once only: what is held fast inside must not pull its way out.
+        // Solved once only: a sphere that is stuck inside must not pull its way out.
         for exit in &self.exits {
             exit.solve::<D>(motion);
         }
@@ -337,7 +337,7 @@ impl Contacts {
             .renew(self.free.iter().map(FreeContact::touch));
     }
 
-    /// After the move: takes back the speed of what was pushed out.
+    /// Removes, after the position update, the velocity that resolved overlaps.
     pub fn relax<D: Dim>(&mut self, bodies: &mut Bodies<D>, rigids: &mut Rigids, duration: f32) {
         let motion = &mut self.motion;
         motion.load(bodies);
@@ -370,7 +370,7 @@ impl Contacts {
 }
 
 impl Hits {
-    /// Some more.
+    /// Adds more hits.
     pub fn add(&mut self, pieces: Vec<Hit>, rigids: Vec<RigidSlot>) {
         if !pieces.is_empty() || !rigids.is_empty() {
             self.pieces.extend(pieces);
@@ -387,8 +387,8 @@ impl Hits {
     }
 }
 
-/// For a crumb whose middle is behind a sphere of a surface: the direction out of the surface, as it
-/// pushes the first of both, and how far in front of it the crumb is [m], less than 0.
+/// If a crumb is behind a sphere of a surface, returns the outward normal, as it pushes the
+/// first sphere, and the negative distance of the crumb along it [m].
 fn behind_surface<D: Dim>(
     bodies: &Bodies<D>,
     [a, b]: [&ContactSphere; 2],

@@ -1,85 +1,86 @@
-//! What happened in a tick.
+//! Events of a tick and the report of a step.
 
 use crate::handle::{BodyId, JointId, KnifeId, RigidId};
 use crate::ids::PieceId;
 use crate::shape::Vector;
 
-/// Something that happened in the last tick, for sound, score and show.
+/// Event of the last tick, for sounds, scores and effects.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Event {
-    /// Voxels stopped sharing a node: a crack went on.
+    /// A node was split: a crack advanced, or a cut passed here.
     Released {
         /// The body.
         body: BodyId,
-        /// Where [m].
+        /// Position of the node [m].
         at: Vector,
-        /// Elastic energy set free [J]; 0 where it was cut on purpose.
+        /// Elastic energy released [J]; 0 for an intentional cut.
         energy: f32,
     },
-    /// A piece came off.
+    /// A piece was detached from its body.
     Parted {
         /// The body.
         body: BodyId,
         /// Number of the new piece.
         piece: PieceId,
     },
-    /// Things pressed on each other.
+    /// A piece pressed on something during the tick.
     Touched {
         /// The body.
         body: BodyId,
         /// Number of the piece.
         piece: PieceId,
-        /// What it pressed on.
+        /// Object that it pressed on.
         with: With,
-        /// Where, at the strongest contact [m].
+        /// Position of the strongest contact [m].
         at: Vector,
-        /// Which way it got away from that there, of length 1.
+        /// Unit contact normal there, from the object towards the piece.
         normal: Vector,
-        /// Along the normals, over the whole tick [N s].
+        /// Normal impulse, summed over the contacts and substeps of the tick [N s].
         impulse: f32,
     },
-    /// Rigid things pressed on each other, of which one is free.
+    /// Two rigid bodies pressed on each other during the tick; at least the first one is dynamic.
     RigidTouched {
-        /// The one that is free.
+        /// The dynamic rigid body.
         rigid: RigidId,
-        /// The other.
+        /// Handle of the second rigid body.
         with: RigidId,
-        /// Where, at the strongest contact [m].
+        /// Position of the strongest contact [m].
         at: Vector,
-        /// Which way the first got away from the other there, of length 1.
+        /// Unit contact normal there, from the second body towards the first.
         normal: Vector,
-        /// Along the normals, over the whole tick [N s].
+        /// Normal impulse, summed over the contacts and substeps of the tick [N s].
         impulse: f32,
     },
-    /// Two began to touch.
+    /// Two contact participants began to touch.
     ContactBegan {
-        /// Who.
+        /// The participants, in ascending order.
         both: [Party; 2],
-        /// Where, at the strongest contact [m].
+        /// Position of the strongest contact [m].
         at: Vector,
-        /// Which way the first got away from the second there, of length 1.
+        /// Unit contact normal there, from the second participant towards the first.
         normal: Vector,
-        /// How fast they approached each other [m/s].
+        /// Highest approach speed [m/s].
         speed: f32,
     },
-    /// Two touch no more, or one of them is gone. What rests side by side still touches.
+    /// Two contact participants stopped touching, or one of them was removed. Participants at rest side by
+    /// side still touch.
     ContactEnded {
-        /// Who.
+        /// The participants, in ascending order.
         both: [Party; 2],
     },
-    /// Somebody came into a sensor.
+    /// A sensor was entered.
     Entered {
         /// The sensor.
         sensor: RigidId,
-        /// Who.
+        /// The piece or rigid body that entered.
         who: Party,
     },
-    /// Somebody left a sensor, or is gone, or the sensor is.
+    /// A sensor was exited, or the participant or the sensor was removed.
     Left {
         /// The sensor.
         sensor: RigidId,
-        /// Who.
+        /// The piece or rigid body that left.
         who: Party,
     },
     /// A knife opened faces between voxels.
@@ -88,26 +89,26 @@ pub enum Event {
         knife: KnifeId,
         /// The body.
         body: BodyId,
-        /// In the middle of its edge in there [m].
+        /// Middle of the part of the cutting edge that is inside the body [m].
         at: Vector,
-        /// How much it cut since it last told so, of all bodies that it was in, at rest [m²].
+        /// Area cut since the last such event of this knife, in all bodies, measured at rest [m²].
         area: f32,
-        /// The work that it did since then, in all of them [J].
+        /// Work done since the last such event of this knife, in all bodies [J].
         work: f32,
     },
-    /// A joint broke, or lost an end, and is gone.
+    /// A joint broke or lost one of its anchors, and was removed.
     JointBroke {
-        /// Which one it was.
+        /// Handle of the removed joint.
         joint: JointId,
     },
-    /// A piece came to rest.
+    /// A piece fell asleep.
     FellAsleep {
         /// The body.
         body: BodyId,
         /// Number of the piece.
         piece: PieceId,
     },
-    /// A resting piece was disturbed.
+    /// A sleeping piece was woken.
     Woke {
         /// The body.
         body: BodyId,
@@ -116,22 +117,23 @@ pub enum Event {
     },
     /// A piece was [removed](crate::World::remove_piece) from the world.
     PieceRemoved {
-        /// The body, which may be gone with it.
+        /// The body. If this was its last piece, the handle is stale.
         body: BodyId,
         /// Number of the piece.
         piece: PieceId,
     },
     /// The last piece of a body was removed, and the body with it.
     BodyRemoved {
-        /// Which one it was.
+        /// Handle of the removed body.
         body: BodyId,
     },
-    /// Something rigid was removed because it [left a region](crate::World::remove_outside).
+    /// A rigid body was removed because it [left a region](crate::World::remove_outside).
     RigidRemoved {
-        /// Which one it was.
+        /// Handle of the removed rigid body.
         rigid: RigidId,
     },
-    /// A piece went out of hand and was stopped for good, so that it spoils nothing else.
+    /// A piece became non-finite or too fast. It was stopped for good, so that it cannot affect the rest of
+    /// the world.
     Quarantined {
         /// The body.
         body: BodyId,
@@ -141,7 +143,7 @@ pub enum Event {
 }
 
 impl Event {
-    /// These pieces of a body came off.
+    /// Returns the events for pieces detached from a body.
     pub(crate) fn parted(body: BodyId, pieces: &[PieceId]) -> impl Iterator<Item = Self> {
         pieces
             .iter()
@@ -149,17 +151,17 @@ impl Event {
     }
 }
 
-/// What a piece can press on.
+/// Object that a piece presses on.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum With {
-    /// Something rigid that stands still.
+    /// A fixed rigid body.
     Obstacle(RigidId),
-    /// A hand.
+    /// A kinematic or coupled rigid body.
     Hand(RigidId),
-    /// Something rigid that is free.
+    /// A dynamic rigid body.
     Free(RigidId),
-    /// Another piece, or itself.
+    /// Another piece, or the same piece where it folds onto itself.
     Piece {
         /// The body.
         body: BodyId,
@@ -168,7 +170,7 @@ pub enum With {
     },
 }
 
-/// Who can touch and be touched.
+/// Participant of a contact or a sensor overlap.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Party {
@@ -179,7 +181,7 @@ pub enum Party {
         /// Number of the piece.
         piece: PieceId,
     },
-    /// Something rigid.
+    /// A rigid body.
     Rigid(RigidId),
 }
 
@@ -192,18 +194,18 @@ impl From<With> for Party {
     }
 }
 
-/// What a tick did.
+/// Summary of one tick.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StepReport {
-    /// Substeps in the tick.
+    /// Number of substeps.
     pub substeps: u32,
-    /// Nodes that were released.
+    /// Number of split nodes.
     pub released: u32,
-    /// Pieces that came off.
+    /// Number of detached pieces.
     pub parted: u32,
-    /// Elements that were inside out in its last substep; they turn themselves back.
+    /// Number of inverted elements in the last substep; they recover by themselves.
     pub inverted: u32,
-    /// Pieces that went out of hand and were stopped.
+    /// Number of pieces that were stopped by the quarantine.
     pub quarantined: u32,
 }

@@ -1,11 +1,12 @@
-//! Things that come and go: each keeps its slot while others leave, and its handle is of no use once it has left.
+//! Generational arenas and their handles. An item keeps its slot while others are removed, and a handle to a
+//! removed item is detected as stale.
 
 use crate::ids::{Id, Table, id};
 use std::fmt;
 
-/// What a thing in an [`Arena`] is known by: a slot, and how many stood there before.
+/// Generational handle into an [`Arena`]: a slot, and the number of items that have left the slot before.
 pub trait Handle: Copy + Ord + fmt::Debug + sealed::Sealed {
-    /// What it is a handle of.
+    /// Name of the item type, for error texts.
     const KIND: &'static str;
 
     #[doc(hidden)]
@@ -19,7 +20,7 @@ pub trait Handle: Copy + Ord + fmt::Debug + sealed::Sealed {
 }
 
 mod sealed {
-    /// Only worlds give out handles.
+    /// Restricts [`Handle`](super::Handle) to the types of this module.
     pub trait Sealed {}
 }
 
@@ -34,8 +35,8 @@ macro_rules! handle {
         }
 
         impl $name {
-            /// Where it stands or stood among the others.
-            #[allow(dead_code)] // no list names joints or knives by their slots
+            /// Index of the slot in the arena.
+            #[allow(dead_code)] // unused for joints and knives
             pub(crate) fn slot(self) -> $slot {
                 self.slot
             }
@@ -59,75 +60,74 @@ macro_rules! handle {
 }
 
 id! {
-    /// Where a body stands in a world; given out again once it has left.
+    /// Slot of a body in a world; reused after the body is removed.
     #[doc(hidden)]
     pub BodySlot
 }
 id! {
-    /// Where something rigid stands in a world; given out again once it has left.
+    /// Slot of a rigid body in a world; reused after the rigid body is removed.
     #[doc(hidden)]
     pub RigidSlot
 }
 
 id! {
-    /// Where a joint stands in a world; given out again once it has left.
+    /// Slot of a joint in a world; reused after the joint is removed.
     #[doc(hidden)]
     pub JointSlot
 }
 
 id! {
-    /// Where a knife stands in a world; given out again once it has left.
+    /// Slot of a knife in a world; reused after the knife is removed.
     #[doc(hidden)]
     pub KnifeSlot
 }
 
 impl BodySlot {
-    /// That of a body in no world.
+    /// Slot of a body that is in no world.
     pub(crate) const NONE: Self = Self(u32::MAX);
 }
 
 handle! {
-    /// What a body in a world is known by, whoever comes or goes beside it.
+    /// Handle of a soft body in a [`World`](crate::World). Adding or removing other bodies does not change
+    /// it.
     BodyId, "body", BodySlot
 }
 handle! {
-    /// What something rigid in a world is known by, whoever comes or goes beside it.
-    RigidId, "rigid thing", RigidSlot
+    /// Handle of a rigid body in a [`World`](crate::World). Adding or removing other rigid bodies does not
+    /// change it.
+    RigidId, "rigid body", RigidSlot
 }
 
 handle! {
-    /// What a joint in a world is known by, whoever comes or goes beside it.
+    /// Handle of a joint in a [`World`](crate::World). Adding or removing other joints does not change it.
     JointId, "joint", JointSlot
 }
 
 handle! {
-    /// What a knife in a world is known by, whoever comes or goes beside it.
+    /// Handle of a knife in a [`World`](crate::World). Adding or removing other knives does not change it.
     KnifeId, "knife", KnifeSlot
 }
 
-/// A handle was used of something that is not there: it was taken out, or never was in this world. A handle of another
-/// world is not always noticed: it may be good for something here too.
+/// Error for a stale handle: the item was removed, or was never in this world. A handle from another world is
+/// not always detected, because the same slot and generation may be in use in both.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Gone {
-    /// What it was the handle of.
+    /// Kind of the item, such as "body" or "joint".
     pub kind: &'static str,
-    /// In which slot it stood.
+    /// Slot of the handle.
     pub slot: u32,
 }
 
 impl fmt::Display for Gone {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { kind, slot } = self;
-        write!(
-            f,
-            "there is no such {kind} in this world: who had slot {slot} was taken out"
-        )
+        write!(f, "stale {kind} handle: slot {slot} was removed or reused")
     }
 }
 
 impl std::error::Error for Gone {}
 
-/// Things that come and go, by their handles and in the order of their slots.
+/// Generational arena: items by handle, iterated in the order of their slots.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -138,7 +138,7 @@ pub struct Arena<K: Handle, T> {
     slots: Table<K::Slot, Slot<T>>,
 }
 
-/// How many have left it, and who is there.
+/// Slot of an [`Arena`]: the number of items that have left it, and the present item.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Slot<T> {
@@ -154,10 +154,10 @@ impl<K: Handle, T> Default for Arena<K, T> {
 }
 
 impl<K: Handle, T> Arena<K, T> {
-    /// Who has a handle.
+    /// Returns the item of a handle.
     ///
     /// # Errors
-    /// [`Gone`] when nobody has it any more.
+    /// [`Gone`] if the handle is stale.
     pub fn get(&self, id: K) -> Result<&T, Gone> {
         let (own, generation) = id.parts();
         let slot = self.slots.get(own.index());
@@ -166,7 +166,7 @@ impl<K: Handle, T> Arena<K, T> {
             .ok_or(gone::<K>(own))
     }
 
-    /// As [`Arena::get`], to be changed.
+    /// Returns the item of a handle, mutably; see [`Arena::get`].
     pub(crate) fn get_mut(&mut self, id: K) -> Result<&mut T, Gone> {
         let (own, generation) = id.parts();
         let slot = self.slots.get_mut(own.index());
@@ -175,42 +175,42 @@ impl<K: Handle, T> Arena<K, T> {
             .ok_or(gone::<K>(own))
     }
 
-    /// All of them, in the order of their slots.
+    /// Iterates over the items in the order of their slots.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = &T> + Clone {
         self.slots.iter().filter_map(|slot| slot.thing.as_ref())
     }
 
-    /// All of them with their handles, in the order of their slots.
+    /// Iterates over handles and items in the order of their slots.
     pub fn entries(&self) -> impl DoubleEndedIterator<Item = (K, &T)> + Clone {
         self.by_slot().map(|(slot, thing)| (self.id(slot), thing))
     }
 
-    /// Their handles, in the order of their slots.
+    /// Iterates over the handles in the order of their slots.
     pub fn ids(&self) -> impl Iterator<Item = K> {
         self.by_slot().map(|(slot, _)| self.id(slot))
     }
 
-    /// The first of them.
+    /// Returns the item in the lowest occupied slot.
     pub fn first(&self) -> Option<&T> {
         self.iter().next()
     }
 
-    /// How many of them stand before one; nothing when it is gone.
+    /// Returns the number of items in lower slots, or `None` if the handle is stale.
     pub fn rank(&self, id: K) -> Option<usize> {
         self.ids().position(|other| other == id)
     }
 
-    /// How many there are.
+    /// Returns the number of items.
     pub fn len(&self) -> usize {
         self.iter().count()
     }
 
-    /// Whether there are none.
+    /// Returns whether the arena has no items.
     pub fn is_empty(&self) -> bool {
         self.first().is_none()
     }
 
-    /// Puts one into the first free slot.
+    /// Inserts an item into the first free slot.
     pub(crate) fn insert(&mut self, thing: T) -> K {
         let free = self.slots.iter().position(|slot| slot.thing.is_none());
         let own = free.map_or(self.slots.next_id(), K::Slot::of);
@@ -224,7 +224,7 @@ impl<K: Handle, T> Arena<K, T> {
         self.id(own)
     }
 
-    /// Takes one out; the others stay where they are.
+    /// Removes an item; the others keep their slots.
     pub(crate) fn remove(&mut self, id: K) -> Result<T, Gone> {
         let (own, _) = id.parts();
         self.get(id)?;
@@ -233,29 +233,29 @@ impl<K: Handle, T> Arena<K, T> {
         slot.thing.take().ok_or(gone::<K>(own))
     }
 
-    /// How many slots there are, free or not.
+    /// Returns the number of slots, free ones included.
     pub(crate) fn slot_count(&self) -> usize {
         self.slots.len()
     }
 
-    /// Who is in each slot, if anybody.
+    /// Iterates over all slots; free ones give `None`.
     pub(crate) fn slots(&self) -> impl Iterator<Item = Option<&T>> {
         self.slots.iter().map(|slot| slot.thing.as_ref())
     }
 
-    /// All of them with their slots.
+    /// Iterates over occupied slots and their items.
     pub(crate) fn by_slot(&self) -> impl DoubleEndedIterator<Item = (K::Slot, &T)> + Clone {
         let slots = self.slots.entries();
         slots.filter_map(|(own, slot)| Some((own, slot.thing.as_ref()?)))
     }
 
-    /// As [`Arena::by_slot`], to be changed.
+    /// Iterates over occupied slots and their items, mutably.
     pub(crate) fn by_slot_mut(&mut self) -> impl Iterator<Item = (K::Slot, &mut T)> {
         let slots = self.slots.entries_mut();
         slots.filter_map(|(own, slot)| Some((own, slot.thing.as_mut()?)))
     }
 
-    /// As [`Arena::entries`], to be changed.
+    /// Iterates over handles and items, mutably.
     pub(crate) fn entries_mut(&mut self) -> impl Iterator<Item = (K, &mut T)> {
         let slots = self.slots.entries_mut();
         slots.filter_map(|(own, slot)| {
@@ -264,31 +264,31 @@ impl<K: Handle, T> Arena<K, T> {
         })
     }
 
-    /// As [`Arena::iter`], to be changed.
+    /// Iterates over the items, mutably.
     pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = &mut T> {
         self.slots.iter_mut().filter_map(|slot| slot.thing.as_mut())
     }
 
-    /// Who is in a slot, if anybody.
+    /// Returns the item in a slot, or `None` if the slot is free.
     pub(crate) fn find(&self, slot: K::Slot) -> Option<&T> {
         self.slots.get(slot.index())?.thing.as_ref()
     }
 
-    /// Who is in a slot that is known not to be free.
+    /// Returns the item in an occupied slot.
     #[inline(always)]
     pub(crate) fn at(&self, slot: K::Slot) -> &T {
         let thing = self.slots[slot].thing.as_ref();
-        thing.expect("lists of the world name slots that are not free")
+        thing.expect("internal slot lists contain occupied slots only")
     }
 
-    /// As [`Arena::at`], to be changed.
+    /// Returns the item in an occupied slot, mutably.
     #[inline(always)]
     pub(crate) fn at_mut(&mut self, slot: K::Slot) -> &mut T {
         let thing = self.slots[slot].thing.as_mut();
-        thing.expect("lists of the world name slots that are not free")
+        thing.expect("internal slot lists contain occupied slots only")
     }
 
-    /// The handle of who is in a slot.
+    /// Returns the handle of the item in a slot.
     pub(crate) fn id(&self, slot: K::Slot) -> K {
         K::new(slot, self.slots[slot].generation)
     }
@@ -313,10 +313,10 @@ impl<'a, K: Handle, T> IntoIterator for &'a Arena<K, T> {
 impl<K: Handle, T> std::ops::Index<K> for Arena<K, T> {
     type Output = T;
 
-    /// Who has a handle.
+    /// Returns the item of a handle.
     ///
     /// # Panics
-    /// When nobody has it any more; [`Arena::get`] tells.
+    /// If the handle is stale. [`Arena::get`] returns an error instead.
     fn index(&self, id: K) -> &T {
         self.get(id).unwrap_or_else(|gone| panic!("{gone}"))
     }
@@ -327,7 +327,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn who_leaves_moves_nobody_and_is_not_mistaken_for_who_comes_next() {
+    fn removal_keeps_other_slots_and_makes_the_handle_stale() {
         let mut names = Arena::<BodyId, &str>::default();
         let [ball, ring, heart] = ["ball", "ring", "heart"].map(|name| names.insert(name));
         assert_eq!(names.remove(ring), Ok("ring"));
@@ -341,7 +341,7 @@ mod tests {
         let gone = names.get(ring).unwrap_err();
         assert_eq!(
             gone.to_string(),
-            "there is no such body in this world: who had slot 1 was taken out"
+            "stale body handle: slot 1 was removed or reused"
         );
         assert_eq!(names.remove(ring), Err(gone));
         let all: Vec<BodyId> = names.entries().map(|(id, _)| id).collect();

@@ -1,8 +1,8 @@
-//! What ties things together: pins, springs and ropes between soft bodies, rigid things and places of the world.
+//! Joints: pins, springs and ropes between soft bodies, rigid bodies and points of the world.
 //!
-//! Each joint holds two *anchors*. Every substep gives them the impulse that a pin, a spring or a rope asks for, worked out
-//! at once for all axes; what draws a pin together again gains no speed by it, as with contacts [Catto 2023]. Springs are
-//! implicit: however stiff, they do not blow up.
+//! Each joint connects two *anchors*. In every substep it applies the impulse of its kind, solved for all
+//! axes together. As with contacts, the correction of position errors adds no velocity [Catto 2023]. Springs
+//! are integrated implicitly and are stable at any stiffness.
 
 mod anchor;
 mod end;
@@ -18,14 +18,14 @@ use anchor::Anchor;
 pub(crate) use end::Woken;
 pub use end::{End, Tie};
 
-/// How often all joints are solved in a substep: what hangs in a chain hangs on the others.
-/// With 1, 2, 4 and 8 a chain of pins with a heavy end hangs still to 10, 5, 2 and 2 cm/s.
+/// Solver iterations over all joints per substep. Chains need more than one, because their links depend on
+/// each other.
 const ROUNDS: usize = 4;
 
-/// The joints of a world.
+/// Joints of a world.
 pub type Joints = Arena<JointId, Joint>;
 
-/// Two ends that are tied.
+/// Joint between two anchors.
 ///
 /// ```
 /// use fuwafuwa::joint::{End, Joint};
@@ -47,24 +47,24 @@ pub type Joints = Arena<JointId, Joint>;
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Joint {
-    /// What is tied.
+    /// Attachment points of both anchors.
     pub ends: [End; 2],
-    /// How.
+    /// Joint kind.
     pub tie: Tie,
-    /// It breaks when it pulls or pushes by more than this [N]; infinite = never.
+    /// Force above which the joint breaks [N], in tension or compression; infinite (default) = never.
     pub breaking_force: f32,
     anchors: [Anchor; 2],
-    /// What passed in the last substep, on the first end [N s].
+    /// Impulse on the first anchor in the last substep [N s].
     impulse: Vector,
-    /// How strongly it pulled in the last substep [N].
+    /// Magnitude of the joint force in the last substep [N].
     force: f32,
 }
 
-/// What of a joint is out of range: which field, and what was expected.
+/// Name of an invalid parameter, and the expected value.
 pub type BadJoint = (&'static str, &'static str);
 
 impl Joint {
-    /// Ends that are tied in some way and never break.
+    /// Returns a joint of any kind that never breaks.
     pub fn new(ends: [End; 2], tie: Tie) -> Self {
         Self {
             ends,
@@ -76,12 +76,12 @@ impl Joint {
         }
     }
 
-    /// Ends that stay together.
+    /// Returns a pin, which keeps its anchors together.
     pub fn pin(first: End, second: End) -> Self {
         Self::new([first, second], Tie::Pin)
     }
 
-    /// The same, but it breaks at a force [N].
+    /// Returns the joint with a breaking force [N].
     #[must_use]
     pub fn breaking_at(self, force: f32) -> Self {
         Self {
@@ -90,12 +90,12 @@ impl Joint {
         }
     }
 
-    /// How strongly it pulled or pushed in the last substep [N].
+    /// Returns the magnitude of the joint force in the last substep [N].
     pub fn force(&self) -> f32 {
         self.force
     }
 
-    /// Takes hold of its ends, as they are said.
+    /// Attaches the anchors to their bodies at the present positions.
     pub(crate) fn hold<D: Dim>(&mut self, bodies: &Bodies<D>, rigids: &Rigids) -> Result<(), Gone> {
         for (anchor, end) in self.anchors.iter_mut().zip(&self.ends) {
             *anchor = Anchor::of(end, bodies, rigids)?;
@@ -107,7 +107,8 @@ impl Joint {
         Ok(())
     }
 
-    /// A pin between something soft and something that is not is where the soft end is: nothing jumps.
+    /// For a pin between a soft anchor and another one, moves the other to the soft anchor, so that nothing
+    /// jumps at the first step.
     fn meet_soft_ends<D: Dim>(&mut self, bodies: &Bodies<D>, rigids: &Rigids) {
         let is_soft = self.anchors.each_ref().map(Anchor::is_soft);
         for (own, other) in [(0, 1), (1, 0)] {
@@ -119,7 +120,7 @@ impl Joint {
         }
     }
 
-    /// Where its ends are now [m]; nothing when one is gone.
+    /// Returns the positions of both anchors [m]; `None` if an attached body is gone.
     pub(crate) fn places<D: Dim>(
         &self,
         bodies: &Bodies<D>,
@@ -130,7 +131,7 @@ impl Joint {
         Some([at(first)?, at(second)?])
     }
 
-    /// Whether its numbers are in range.
+    /// Checks that all parameters are in range.
     pub(crate) fn check(&self) -> Result<(), BadJoint> {
         for end in &self.ends {
             let (at, radius) = match *end {
@@ -141,7 +142,7 @@ impl Joint {
             require(is_near, "place of an end", "within 1e6 m of the origin")?;
             require(
                 (0.0..=FARTHEST).contains(&radius),
-                "radius of an end",
+                "radius of a soft joint anchor",
                 "0 to 1e6 m",
             )?;
         }
@@ -150,8 +151,8 @@ impl Joint {
             [End::Rigid { rigid, .. }, End::Rigid { rigid: other, .. }] => rigid != other,
             _ => true,
         };
-        let expected = "of two things, of which one can be moved";
-        require(is_of_two, "ends of a joint", expected)?;
+        let expected = "on two different objects, at least one of them a body";
+        require(is_of_two, "joint ends", expected)?;
         require(self.breaking_force > 0.0, "breaking force", "positive")?;
         let is_within = |k: f32, least: f32| (least..=f32::MAX).contains(&k);
         match self.tie {
@@ -174,7 +175,7 @@ impl Joint {
         }
     }
 
-    /// Whether what was read from a file may be one.
+    /// Returns whether a joint that was read from a file is valid.
     #[cfg(feature = "serde")]
     pub(crate) fn is_sound<D: Dim>(&self) -> bool {
         let is_finite = crate::vector::is_finite(self.impulse) && self.force >= 0.0;
@@ -187,7 +188,8 @@ impl Joint {
     }
 }
 
-/// Gives all ends of joints the impulses of a substep of `duration` [s]. Returns those that broke or lost an end.
+/// Applies the joint impulses of a substep of `duration` [s]. Returns the joints that lost an anchor, and the
+/// sleepers to wake.
 pub(crate) fn solve<D: Dim>(
     joints: &mut Joints,
     bodies: &mut Bodies<D>,
@@ -209,7 +211,8 @@ pub(crate) fn solve<D: Dim>(
     (broken, woken)
 }
 
-/// After the move: takes back the speed with which pins were drawn together. Returns those that broke.
+/// Removes, after the position update, the velocity that was added to correct pins and ropes. Returns the
+/// joints that exceeded their breaking force.
 pub(crate) fn relax<D: Dim>(
     joints: &mut Joints,
     bodies: &mut Bodies<D>,
@@ -224,7 +227,7 @@ pub(crate) fn relax<D: Dim>(
     }
     for (id, joint) in joints.entries_mut() {
         if !joint.yields(bodies, rigids) {
-            // Both ends rest: it goes on pulling as it did.
+            // Nothing attached can move, so the joint keeps its last force.
             continue;
         }
         joint.force = length(flat::<D>(joint.impulse)) / duration;

@@ -1,16 +1,18 @@
-//! Knives: edges that cut where they pass, at the energy that a material's toughness asks for.
+//! Knives: cutting edges that open the faces they pass through, with the force that follows from the
+//! material's toughness.
 //!
-//! Along an edge stand *samples*. Each knows where in the body at rest it is, and a row of the solver holds the material
-//! there, as dry friction does: below a force the material goes along with the edge and is pressed; at that force the edge
-//! goes on, and the faces between voxels are opened that the samples, joined to a swath, went across.
+//! *Samples* are spaced along an edge. Each sample tracks its rest position in the body, and a solver row
+//! holds the material there like dry friction. Below a limit force the material moves with the edge and is
+//! compressed. At the limit the edge advances, and the faces between voxels that the area swept by the
+//! samples crosses are opened.
 //!
 //! ```text
 //!     force per metre of edge = G + 2 r σ      G = toughness² / Y   [Irwin 1957]
 //! ```
 //!
-//! G is the energy that a square metre of crack takes, and r the radius of the edge: in front of a dull one a strip of its
-//! width has to fail, too, at the strength σ [Atkins 2009, ch. 9]. Sideways it is the flat of the blade that presses, with
-//! the strength over its height. Where it was cut before nothing holds the edge.
+//! G is the fracture energy per square metre of crack, and r the radius of the edge. In front of a dull edge
+//! a strip of its width fails at the strength σ, too [Atkins 2009, ch. 9]. Sideways the flat of the blade is
+//! limited by the strength over its height. Material that was cut before does not resist the edge.
 
 mod edge;
 mod inside;
@@ -27,10 +29,10 @@ use crate::vector::{cross, dot, is_finite, length, minus, scaled};
 use sample::MOST_SAMPLES;
 use sample::{Near, Sample};
 
-/// The knives of a world.
+/// Knives of a world.
 pub type Knives = Arena<KnifeId, Knife>;
 
-/// An edge that cuts, held by something rigid that follows a goal.
+/// Cutting edge on a kinematic or coupled rigid body.
 ///
 /// ```
 /// use fuwafuwa::{Body, Dim2, Event, Knife, Material, Rigid, Settings, Shape, VoxelGrid, World};
@@ -58,36 +60,39 @@ pub type Knives = Arena<KnifeId, Knife>;
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Knife {
-    /// What holds it: something that follows a goal. A [sensor](Rigid::is_sensor) touches with its edge alone.
+    /// Rigid body that holds the knife, kinematic or coupled. If it is a [sensor](Rigid::is_sensor), only its
+    /// edge touches.
     pub holder: RigidId,
-    /// The ends of the edge, as they are on the [form](Rigid::form) of the holder [m]; in the plane the middle between
-    /// them counts, for a sheet 1 m deep.
+    /// Ends of the edge in local coordinates of the holder, see [`Rigid::form`] [m]. In 2D only their
+    /// midpoint counts, and the body is a sheet 1 m deep.
     pub edge: [Vector; 2],
-    /// Which way it cuts, as on the form of the holder: across the edge.
+    /// Cutting direction in local coordinates of the holder, across the edge.
     pub toward: Vector,
-    /// Radius of the edge [m]: 0 is sharp, a tenth of a millimetre is dull.
+    /// Radius of the edge [m], 0 to 1, default 0 (sharp); 1e-4 is dull.
     pub radius: f32,
-    /// From the edge to the back [m]: the flat that holds it from going sideways.
+    /// Height of the blade from the edge to the back [m], 0 to 10, default 0.02. The flat of the blade
+    /// resists sideways motion.
     pub height: f32,
     samples: Vec<Sample>,
-    /// What each of them may come into, and whether that holds still.
+    /// Elements near each sample, and whether these lists are up to date.
     #[cfg_attr(feature = "serde", serde(skip))]
     near: Vec<Vec<Near>>,
     #[cfg_attr(feature = "serde", serde(skip))]
     knows_near: bool,
-    /// Of the last substep [N] and [N m], on the knife; the torque about the place of its holder.
+    /// Force [N] and torque [N m] on the knife in the last substep; the torque is about the position of the
+    /// holder.
     force: Vector,
     torque: Vector,
-    /// What it cut [m²] and the work that it did [J], since it told of that.
+    /// Area cut [m²] and work done [J] since the last event.
     area: f64,
     work: f64,
 }
 
-/// What of a knife is out of range: which field, and what was expected.
+/// Name of an invalid parameter, and the expected value.
 pub type BadKnife = (&'static str, &'static str);
 
 impl Knife {
-    /// A sharp one of usual height, 0.02 m.
+    /// Returns a sharp knife with the default height, 0.02 m.
     pub fn new(holder: RigidId, edge: [Vector; 2], toward: Vector) -> Self {
         Self {
             holder,
@@ -105,22 +110,23 @@ impl Knife {
         }
     }
 
-    /// What was cut or pressed did this to it in the last substep [N].
+    /// Returns the force of the tissue on the knife in the last substep [N].
     pub fn force(&self) -> Vector {
         self.force
     }
 
-    /// The same about the position of its holder [N m].
+    /// Returns the torque of the tissue on the knife about the position of its holder in the last substep [N
+    /// m].
     pub fn torque(&self) -> Vector {
         self.torque
     }
 
-    /// What it cut [m²] and the work that it did [J], since it told of that.
+    /// Returns and resets the area cut [m²] and the work done [J] since the last event.
     pub(crate) fn take_sums(&mut self) -> [f32; 2] {
         [&mut self.area, &mut self.work].map(|sum| std::mem::take(sum) as f32)
     }
 
-    /// As new: it is in nobody.
+    /// Clears the runtime state: the knife is in no body.
     pub(crate) fn forget(&mut self) {
         *self = Self {
             radius: self.radius,
@@ -129,11 +135,11 @@ impl Knife {
         };
     }
 
-    /// Whether its numbers are in range, in a world of `D`.
+    /// Checks that all parameters are in range for a world of `D`.
     pub(crate) fn check<D: Dim>(&self, rigids: &Rigids) -> Result<(), BadKnife> {
         let holder = rigids.get(self.holder);
         let is_held = holder.is_ok_and(Rigid::is_driven);
-        require(is_held, "holder", "something rigid that follows a goal")?;
+        require(is_held, "holder", "a kinematic or coupled rigid body")?;
         self.check_numbers::<D>()
     }
 
@@ -143,7 +149,7 @@ impl Knife {
         let are_near = self.edge.iter().all(is_near);
         require(are_near, "edge", "within 1e6 m of its holder")?;
         let along = minus(to, from);
-        // In the plane an edge is a point, and leads nowhere.
+        // In 2D the edge is a point.
         let has_length = D::N == 2 || length(along) > 0.0;
         require(has_length, "edge", "of a length that is not 0")?;
         let toward = flat::<D>(self.toward);
@@ -155,11 +161,11 @@ impl Knife {
         require((0.0..=10.0).contains(&self.height), "height", "0 to 10 m")
     }
 
-    /// Whether what was read from a file may be one.
+    /// Returns whether a knife that was read from a file is valid.
     #[cfg(feature = "serde")]
     pub(crate) fn is_sound<D: Dim>(&self) -> bool {
         let numbers = [self.force, self.torque];
-        // Its holder may be gone since; that shows when it is asked for.
+        // The holder may have been removed; the simulation handles that.
         self.check_numbers::<D>().is_ok()
             && numbers.into_iter().all(is_finite)
             && self.work.is_finite()
@@ -168,11 +174,11 @@ impl Knife {
             && self.samples.iter().all(Sample::is_sound)
     }
 
-    /// The edge, the way it cuts and the way across both, as they are in the world: the ends [m] and two directions.
+    /// Returns the edge and its directions in world coordinates.
     fn stance<D: Dim>(&self, holder: &Rigid) -> Stance {
         let turn = |vector: Vector| holder.rotation().apply(vector);
         let levers = self.edge.map(|end| flat::<D>(turn(end)));
-        // In the plane it is a point, and stands for an edge across the body.
+        // In 2D the edge is a point that stands for an edge along the third axis.
         let along = match D::N {
             2 => [0.0, 0.0, 1.0],
             _ => direction(minus(levers[1], levers[0])),
@@ -190,11 +196,11 @@ impl Knife {
     }
 }
 
-/// How a knife is held.
+/// World-space pose of a cutting edge.
 struct Stance {
-    /// Where its holder is [m].
+    /// Position of the holder [m].
     position: Vector,
-    /// Its ends, seen from the position of the holder [m].
+    /// Ends of the edge relative to the position of the holder [m].
     levers: [Vector; 2],
     along: Vector,
     toward: Vector,
@@ -202,7 +208,7 @@ struct Stance {
 }
 
 impl Stance {
-    /// How long the edge is [m].
+    /// Returns the length of the edge [m].
     fn long(&self) -> f32 {
         length(minus(self.levers[1], self.levers[0]))
     }

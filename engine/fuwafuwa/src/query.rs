@@ -1,4 +1,4 @@
-//! What is where in a world: what a ray meets, what is nearest to a place, what is there, what overlaps a shape.
+//! Scene queries: ray cast, nearest point, objects at a point, overlap with a shape.
 
 mod figure;
 mod tree;
@@ -19,46 +19,47 @@ use std::cell::OnceCell;
 use std::collections::BTreeSet;
 use tree::{Tree, around_all, distance_from, entry};
 
-/// The place on an edge where it is closest to a shape is narrowed down so many times, by a third of what is left: to
-/// 6·10⁻⁵ of the edge, less than a figure may reach beyond its ends.
+/// Ternary-search steps for the closest approach of a triangle to a shape, each of which keeps two thirds. 24
+/// steps leave 6·10⁻⁵ of the edge, less than the tolerance of the primitives.
 const NARROWINGS: usize = 24;
 
-/// Whether a thing counts.
+/// Filter of a query: returns whether an object counts.
 type Counts<'a> = &'a dyn Fn(Thing) -> bool;
 
-/// Something in a world that can be found.
+/// Object found by a query.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Thing {
-    /// Something rigid.
+    /// Rigid body.
     Rigid(RigidId),
-    /// A soft body.
+    /// Element of a soft body.
     Soft {
-        /// The body.
+        /// Handle of the body.
         body: BodyId,
-        /// Its piece.
+        /// Piece number.
         piece: PieceId,
-        /// Its element.
+        /// Element.
         element: ElementId,
-        /// The number of the material there.
+        /// Material number at the element.
         material: u8,
     },
 }
 
-/// A place on the surface of something.
+/// Hit of a query: a point on the surface of an object.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Found {
-    /// What it is.
+    /// The object.
     pub thing: Thing,
-    /// Where [m].
+    /// Position [m].
     pub at: Vector,
-    /// Out of it, of length 1.
+    /// Outward unit normal.
     pub normal: Vector,
-    /// How far it is from where it was looked for [m].
+    /// Distance from the origin of the query [m].
     pub distance: f32,
 }
 
-/// Answers about a world as it is now. To make them costs about as much as to look at all bare faces once; each answer
-/// costs little then. Sensors are never found, and layers do not count. A condition says of each thing whether it counts.
+/// Scene queries on the present state of a world. Construction costs about one pass over all bare faces; each
+/// query is then cheap. Sensors are never found, and layers are ignored. The filter of a query decides which
+/// objects count.
 ///
 /// ```
 /// use fuwafuwa::{Body, Dim3, Material, Queries, Settings, Thing, VoxelGrid, World};
@@ -78,11 +79,11 @@ pub struct Queries<'a, D: Dim> {
     world: &'a World<D>,
     facets: Vec<(BodyId, Facet)>,
     surface: Tree,
-    /// The blocks of all elements, once they are asked for.
+    /// Filled cells of all elements, built by the first query that requires them.
     filled: OnceCell<Filled>,
 }
 
-/// What elements fill: blocks, with who they are of, and the corners of each in a row.
+/// Filled cells of elements: the object of each, its corners, and a tree over them.
 struct Filled {
     things: Vec<Thing>,
     corners: Vec<Vector>,
@@ -90,7 +91,7 @@ struct Filled {
 }
 
 impl<'a, D: Dim> Queries<'a, D> {
-    /// About a world.
+    /// Builds the queries for a world.
     #[inline(never)]
     pub fn new(world: &'a World<D>) -> Self {
         let mut facets = Vec::new();
@@ -107,15 +108,15 @@ impl<'a, D: Dim> Queries<'a, D> {
         }
     }
 
-    /// What is rigid and not a sensor: that touches nobody.
+    /// Iterates over the rigid bodies, except sensors.
     fn rigids(&self) -> impl Iterator<Item = (RigidId, &Rigid)> + Clone {
         let all = self.world.rigids().entries();
         all.filter(|(_, rigid)| !rigid.is_sensor)
     }
 
-    /// The first surface that a ray meets, from inside or from outside, no further than `most` [m] from where it begins,
-    /// which may be infinite. Nothing when the direction has no length, another number is not finite, or `most` is
-    /// negative.
+    /// Casts a ray. Returns the first hit on any surface, from inside or outside, within the distance `most`
+    /// [m], which may be infinite. Returns `None` if the direction has no length, another value is not
+    /// finite, or `most` is negative.
     #[inline(never)]
     pub fn ray(
         &self,
@@ -150,8 +151,9 @@ impl<'a, D: Dim> Queries<'a, D> {
         best.found
     }
 
-    /// The place on any surface that is nearest to `at` [m], from inside or from outside, no further than `most` [m], which
-    /// may be infinite. Nothing when another number is not finite, or `most` is negative.
+    /// Returns the point on any surface that is nearest to `at` [m], from inside or outside, within the
+    /// distance `most` [m], which may be infinite. Returns `None` if another value is not finite, or `most`
+    /// is negative.
     #[inline(never)]
     pub fn nearest(&self, at: Vector, most: f32, counts: Counts<'_>) -> Option<Found> {
         let at = flat::<D>(at);
@@ -177,8 +179,8 @@ impl<'a, D: Dim> Queries<'a, D> {
         best.found
     }
 
-    /// All that is at a place [m]: things that are forced into each other may be more than one. Nothing where a number is
-    /// not finite.
+    /// Returns the objects at a point [m]; more than one if objects overlap. Each rigid body and each piece
+    /// is listed once. Returns nothing if a coordinate is not finite.
     #[inline(never)]
     pub fn at(&self, at: Vector) -> Vec<Thing> {
         let at = flat::<D>(at);
@@ -191,7 +193,7 @@ impl<'a, D: Dim> Queries<'a, D> {
         let filled = self.filled.get_or_init(|| Filled::new(self.world));
         filled.tree.search(
             f32::INFINITY,
-            // All whose box the place is in, and none else.
+            // Visits exactly the cells with a bounding box around the point.
             |bounds| match distance_from(bounds, at) {
                 0.0 => 0.0,
                 _ => f32::INFINITY,
@@ -204,14 +206,14 @@ impl<'a, D: Dim> Queries<'a, D> {
                 f32::INFINITY
             },
         );
-        // Neighbours share the place between them.
+        // Neighbouring elements share the point between them.
         things.sort();
         things.dedup_by_key(|thing| thing.owner());
         things
     }
 
-    /// All that overlaps a shape: what is rigid, and each piece whose surface reaches into it or that has it all inside,
-    /// with one of its elements.
+    /// Returns the objects that overlap a shape: rigid bodies, and for each overlapping piece one of its
+    /// elements. A piece overlaps if its surface intersects the shape, or if it contains the shape.
     #[inline(never)]
     pub fn overlapping(&self, shape: &Shape) -> Vec<Thing> {
         let shape = shape.seen_in::<D>();
@@ -234,7 +236,7 @@ impl<'a, D: Dim> Queries<'a, D> {
                 f32::INFINITY
             },
         );
-        // One that is all inside a piece is near no face of it.
+        // A shape that lies completely inside a piece is near no face of it.
         let [low, high] = shape.bounds();
         things.extend(self.at(scaled(plus(low, high), 0.5)));
         let mut things: Vec<Thing> = things.into_iter().collect();
@@ -248,7 +250,7 @@ impl<'a, D: Dim> Queries<'a, D> {
 }
 
 impl Thing {
-    /// What it is of: something rigid, or a piece of a body.
+    /// Returns the owner of the object: a rigid body, or a piece of a body.
     pub fn owner(self) -> (Option<RigidId>, Option<(BodyId, PieceId)>) {
         match self {
             Self::Rigid(rigid) => (Some(rigid), None),
@@ -282,7 +284,7 @@ impl Filled {
 
 fn soft<D: Dim>(id: BodyId, body: &Body<D>, element: ElementId) -> Thing {
     let mesh = body.mesh();
-    let alive = mesh.element(element).expect("it was looked at just now");
+    let alive = mesh.element(element).expect("the element is alive");
     Thing::Soft {
         body: id,
         piece: body.pieces().of_element(element),
@@ -291,23 +293,24 @@ fn soft<D: Dim>(id: BodyId, body: &Body<D>, element: ElementId) -> Thing {
     }
 }
 
-/// The nearest that was found so far.
+/// Nearest hit of a running query.
 struct Best {
     found: Option<Found>,
-    /// What is nearer than this counts.
+    /// Upper limit: only smaller distances count.
     least: f32,
 }
 
 impl Best {
-    /// Nothing yet; nothing can be found within what is negative or not a number.
+    /// Returns the initial state; `None` if the distance is negative or NaN.
     fn within(most: f32) -> Option<Self> {
         let found = None;
-        // Up to there, and not only before.
+        // A hit at exactly `most` counts, too.
         let least = most.next_up();
         (most >= 0.0).then_some(Self { found, least })
     }
 
-    /// Takes up what is nearer and counts: its distance, place and normal. Returns the distance if it is taken.
+    /// Takes a hit, given by distance, position and normal, if it is nearer and counts. Returns its distance,
+    /// or infinity if it is not taken.
     fn consider(
         &mut self,
         met: Option<(f32, Vector, Vector)>,
@@ -337,17 +340,18 @@ fn along(from: Vector, direction: Vector, far: f32) -> Vector {
     plus(from, scaled(direction, far))
 }
 
-/// The corners of a bare face.
+/// Returns the corners of a bare face.
 fn corners<D: Dim>(facet: &Facet) -> impl Iterator<Item = Vector> {
     facet.corners.into_iter().take(D::CORNERS / 2)
 }
 
-/// A quad as two triangles.
+/// Returns the two triangles of a quad.
 fn triangles([a, b, c, d]: [Vector; 4]) -> [[Vector; 3]; 2] {
     [[a, b, c], [a, c, d]]
 }
 
-/// How far along a ray, whose direction is of length 1, a bare face is [m]. In the plane a face is a segment, in space two triangles.
+/// Returns the distance [m] along a ray with a unit direction to a bare face: a segment in 2D, two triangles
+/// in 3D.
 fn distance_to<D: Dim>(facet: &Facet, from: Vector, direction: Vector) -> Option<f32> {
     let [a, b, ..] = facet.corners;
     if D::N == 2 {
@@ -357,7 +361,7 @@ fn distance_to<D: Dim>(facet: &Facet, from: Vector, direction: Vector) -> Option
     met.into_iter().flatten().reduce(f32::min)
 }
 
-/// The place on a bare face that is nearest.
+/// Returns the point on a bare face that is nearest to `at`.
 fn nearest_on<D: Dim>(facet: &Facet, at: Vector) -> Vector {
     let [a, b, ..] = facet.corners;
     if D::N == 2 {
@@ -372,8 +376,8 @@ fn nearest_on<D: Dim>(facet: &Facet, at: Vector) -> Vector {
     }
 }
 
-/// Whether a bare face reaches into a shape: the least distance of its points is narrowed down, which is exact, as
-/// distances from something convex have one valley.
+/// Returns whether a bare face intersects a shape. The ternary search for the closest approach is exact,
+/// because the distance from a convex shape has a single minimum.
 fn is_near<D: Dim>(facet: &Facet, shape: &Shape) -> bool {
     let gap = |from: Vector, to: Vector| {
         let radius = 0.0;
@@ -408,7 +412,7 @@ fn is_near<D: Dim>(facet: &Facet, shape: &Shape) -> bool {
     })
 }
 
-/// Whether two shapes overlap; half-spaces do unless they face each other with something in between.
+/// Returns whether two shapes overlap. Two half-spaces do, unless they face each other with a gap in between.
 fn overlap(a: &Shape, b: &Shape) -> bool {
     match (*a, *b) {
         (

@@ -1,9 +1,9 @@
-//! What is rigid: walls, bars and floors that stand, and the hands that players move.
+//! Rigid bodies: fixed, kinematic, coupled and dynamic.
 //!
-//! Between the goal of a hand, which the input moves, and the hand stands a spring with a damper, the
-//! *virtual coupling* [Colgate 1995]. Its force is smooth, because the hand has inertia, and it is
-//! what a force-feedback device should play; the raw contact force jumps. What is *free* falls, turns and is pushed
-//! around; hands and what is kinematic turn as they are told.
+//! A coupled rigid body follows its target through a spring and a damper, the *virtual coupling* [Colgate
+//! 1995]. Because the body has inertia, the coupling force is smooth, and it is the force that a
+//! force-feedback device should play. The raw contact force jumps. Contacts turn only dynamic rigid bodies;
+//! kinematic and coupled ones turn to their target rotation.
 
 mod bad;
 mod check;
@@ -20,35 +20,35 @@ pub use bad::{BadRigid, FARTHEST};
 use bad::{is_within_reach, require};
 use inertia::{Inertia, Matrix};
 
-/// The rigid things of a world.
+/// Rigid bodies of a world.
 pub type Rigids = Arena<RigidId, Rigid>;
 
-/// What moves a rigid thing.
+/// Motion type of a rigid body.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Drive {
-    /// Nothing: it stays where it is, and what rests on it may sleep.
+    /// Fixed: never moves. Bodies resting on it may sleep.
     Fixed,
-    /// It is at its goal at the end of each tick, whatever is in the way.
+    /// Kinematic: reaches its target pose at the end of each tick, through any obstacle.
     Kinematic,
-    /// It is pulled by a spring and a damper and stopped by what it touches; it turns as it is told, whatever that does.
+    /// Coupled: pulled towards its target position by a spring and a damper, and stopped by contacts.
+    /// Contacts do not turn it; it turns to its target rotation.
     Coupled {
-        /// Mass of the hand, 1e-6 to 1e6 [kg]; about 2. Lighter is livelier, and rougher to feel.
+        /// Mass [kg], 1e-6 to 1e6, default 2. A lighter body follows faster and feels rougher.
         mass: f32,
-        /// Stiffness of the spring [N/m]; about 3000. What is more than a quarter of
-        /// mass / substep² counts as that much.
+        /// Spring stiffness [N/m], default 3000. Values above a quarter of mass / substep² are limited to it.
         stiffness: f32,
-        /// Damping ratio, up to 10; about 0.9. Below 0.5 the hand swings around its goal.
+        /// Damping ratio, above 0 and up to 10, default 0.9. Below 0.5 the body oscillates around its target.
         damping: f32,
-        /// The strongest pull of the coupling [N]; infinite = no limit.
+        /// Maximum force of the coupling [N], default 1000; infinite = no limit.
         limit: f32,
     },
-    /// It falls, and is moved and turned by what it touches. Its shape has an end, and its middle at the origin: see
-    /// [`Rigid::free`].
+    /// Dynamic: moved and turned by gravity and contacts. The shape must be bounded and centred on its
+    /// origin, see [`Rigid::free`].
     Free {
-        /// Its mass, 1e-6 to 1e6 [kg], spread evenly. What is ten times as heavy as what bears it, soft or rigid,
-        /// sinks into it.
+        /// Mass [kg], 1e-6 to 1e6, with uniform density. A body ten times as heavy as its soft or rigid
+        /// support sinks into it.
         mass: f32,
     },
 }
@@ -64,72 +64,72 @@ impl Default for Drive {
     }
 }
 
-/// Something rigid: an obstacle, which stands still, a hand, which follows its goal, or what is free. Of a soft body it meets
-/// the nodes: what is thinner than three of its voxels may slip in between them.
+/// Rigid body. In contacts with soft bodies it collides with their nodes, so a rigid body thinner than three
+/// of their voxels may slip in between.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rigid {
-    /// Coulomb friction with what it touches; about 0.2. With soft bodies it counts alone, whatever their materials say.
-    /// Of two rigid things the mean counts, but with what is fixed that of the fixed one where the other is free, and that
-    /// of the hand where it is a hand.
+    /// Coulomb friction coefficient; usual value 0.2. Contacts with soft bodies use this value alone, not
+    /// that of the material. Contacts between two rigid bodies use the mean of both, except against a fixed
+    /// body. There, a dynamic body uses the value of the fixed body, and a kinematic or coupled body its own.
     pub friction: f32,
-    /// Share of its speed with which it bounces off something else that is rigid, 0 to 1, where one of both is free; the
-    /// larger one counts. About 0; soft bodies bounce by themselves.
+    /// Restitution coefficient of contacts between rigid bodies of which one is dynamic, 0 to 1, default 0.
+    /// The larger of both values counts. Soft bodies rebound by their elasticity.
     pub restitution: f32,
-    /// What moves it.
+    /// Motion type.
     pub drive: Drive,
-    /// Who touches it.
+    /// Collision layers.
     pub layers: Layers,
-    /// Whether it touches nobody, and tells who comes into it: [`Event::Entered`](crate::Event::Entered) and
-    /// [`Event::Left`](crate::Event::Left).
+    /// Whether the body is a sensor. A sensor has no contacts, but reports
+    /// [`Event::Entered`](crate::Event::Entered) and [`Event::Left`](crate::Event::Left).
     pub is_sensor: bool,
-    /// What whoever put it into a world wants to know of it.
+    /// Number for use by the program; the engine ignores it.
     pub user_data: u64,
-    /// As it would be at the origin, and where it is.
+    /// Shape in local coordinates, and in the world.
     form: Shape,
     shape: Shape,
-    /// How far from the origin it is [m].
+    /// Position of the local origin [m].
     pub(crate) position: Vector,
-    /// [m/s]
+    /// Linear velocity [m/s].
     pub(crate) velocity: Vector,
-    /// How it is turned from its form.
+    /// Rotation from local to world axes.
     pub(crate) rotation: Rotation,
-    /// [rad/s]
+    /// Angular velocity [rad/s].
     pub(crate) spin: Vector,
-    /// Whether it rests, and for how long it has been slow [s].
+    /// Whether the body sleeps, and its sleep timer: for how long it has been slow [s].
     pub(crate) asleep: bool,
     pub(crate) still: f32,
-    /// Where it was at the start of the tick [m], and how it was turned.
+    /// Position [m] and rotation at the start of the tick.
     position_before: Vector,
     rotation_before: Rotation,
-    /// What it turns by, if it is free, and the inverse of that about the axes of the world.
+    /// Moments of inertia, for dynamic bodies only, and the inverse inertia matrix about the world axes.
     inertia: Option<Inertia>,
     inverse_inertia: Matrix,
-    /// Where it is to go [m].
+    /// Target position [m] and target rotation.
     goal: Vector,
     rotation_goal: Rotation,
-    /// Where the goal was at the end of the last tick [m], and how fast it moves [m/s].
+    /// Interpolated target position [m] and its velocity in this tick [m/s].
     goal_before: Vector,
     goal_velocity: Vector,
-    /// For each substep of the last tick.
+    /// Reaction of each substep of the last tick.
     pub(crate) reactions: Vec<Reaction>,
 }
 
-/// What a hand feels in one substep.
+/// Force and torque on a rigid body in one substep.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Reaction {
-    /// Force of everything it touches [N]; jumps when something tears.
+    /// Contact force [N]; jumps when something tears.
     pub contact: Vector,
-    /// Torque of the bodies that it touches, about its [`position`](Rigid::position) [N m]; in the plane the third
-    /// component alone.
+    /// Torque of the contacts and knives about [`position`](Rigid::position) [N m]; in 2D only the third
+    /// component.
     pub torque: Vector,
-    /// Force of the coupling towards the goal, reversed [N]: what a stick should push back with.
+    /// Reversed force of the virtual coupling [N]: the force to play on a force-feedback device.
     pub coupling: Vector,
 }
 
 impl Rigid {
-    /// A shape that stands still where it is; of friction about 0.2.
+    /// Returns a fixed rigid body; usual friction 0.2.
     pub fn fixed(shape: Shape, friction: f32) -> Self {
         Self {
             friction,
@@ -137,14 +137,15 @@ impl Rigid {
         }
     }
 
-    /// A hand: a ball (2D: a disc) of the given radius [m], at rest at `position` [m], with the usual coupling.
+    /// Returns a coupled rigid body with the default coupling, at rest at `position` [m]: a ball (2D: a disc)
+    /// of the given radius [m].
     pub fn hand(position: Vector, radius: f32) -> Self {
         let centre = [0.0; 3];
         Self::driven(Shape::Ball { centre, radius }, position, Drive::default())
     }
 
-    /// A hand of any shape that ends somewhere, at rest at `position` [m]. `form` is what it would be at the origin,
-    /// best with its middle there.
+    /// Returns a rigid body of any bounded shape and motion type, at rest at `position` [m]. `form` is the
+    /// shape in local coordinates, preferably centred on the origin.
     pub fn driven(form: Shape, position: Vector, drive: Drive) -> Self {
         Self {
             friction: 0.2,
@@ -173,7 +174,7 @@ impl Rigid {
         }
     }
 
-    /// Something that falls, of a mass [kg], at rest where the shape is.
+    /// Returns a dynamic rigid body of a mass [kg], at rest at the position of `shape`; friction 0.5.
     ///
     /// ```
     /// use fuwafuwa::{Dim3, Rigid, Rotation, Settings, Shape, World};
@@ -201,7 +202,7 @@ impl Rigid {
         }
     }
 
-    /// The same turned about its [`position`](Rigid::position).
+    /// Returns the body rotated about its [`position`](Rigid::position), target included.
     #[must_use]
     pub fn rotated(self, by: Rotation) -> Self {
         let rotation = self.rotation.then(by);
@@ -214,12 +215,12 @@ impl Rigid {
         }
     }
 
-    /// The same with another drive.
+    /// Returns the body with another motion type.
     pub fn with_drive(self, drive: Drive) -> Self {
         Self { drive, ..self }
     }
 
-    /// As a world of `D` sees it: in the plane third coordinates do not count.
+    /// Returns the body for a world of `D`: in 2D third coordinates are set to 0.
     pub(crate) fn seen_in<D: Dim>(mut self) -> Self {
         self.form = self.form.seen_in::<D>();
         let positions = [&mut self.position, &mut self.goal, &mut self.goal_before];
@@ -233,7 +234,7 @@ impl Rigid {
         }
         self.spin = turning::<D>(self.spin);
         if self.drive == Drive::Fixed {
-            // It may have been a hand.
+            // The body may have been kinematic or coupled before.
             (self.velocity, self.goal_velocity) = ([0.0; 3], [0.0; 3]);
             self.stay();
         }
@@ -245,60 +246,60 @@ impl Rigid {
         self
     }
 
-    /// How far what it would be at the origin was moved [m]: of a hand of the usual form, its middle.
+    /// Returns the position of the local origin [m]: the centre of a [`Rigid::hand`].
     pub fn position(&self) -> Vector {
         self.position
     }
 
-    /// Velocity [m/s].
+    /// Returns the linear velocity [m/s].
     pub fn velocity(&self) -> Vector {
         self.velocity
     }
 
-    /// How it is turned from its form.
+    /// Returns the rotation from local to world axes.
     pub fn rotation(&self) -> Rotation {
         self.rotation
     }
 
-    /// Angular velocity [rad/s]; in the plane the third component alone.
+    /// Returns the angular velocity [rad/s]; in 2D only the third component.
     pub fn angular_velocity(&self) -> Vector {
         self.spin
     }
 
-    /// Where it is to go [m].
+    /// Returns the target position [m].
     pub fn goal(&self) -> Vector {
         self.goal
     }
 
-    /// What it felt, one entry for each substep of the last tick.
+    /// Returns the reactions, one for each substep of the last tick.
     pub fn reactions(&self) -> &[Reaction] {
         &self.reactions
     }
 
-    /// What it would be at the origin.
+    /// Returns the shape in local coordinates.
     pub fn form(&self) -> &Shape {
         &self.form
     }
 
-    /// Its shape where it is now.
+    /// Returns the shape in world coordinates.
     pub fn shape(&self) -> &Shape {
         &self.shape
     }
 
-    /// Whether it follows a goal: a hand, no obstacle.
+    /// Returns whether the body follows a target: it is kinematic or coupled.
     pub fn is_driven(&self) -> bool {
         matches!(self.drive, Drive::Kinematic | Drive::Coupled { .. })
     }
 
-    /// Sends it to a goal [m]; the third coordinate does not count in the plane.
+    /// Sets the target position [m]; in 2D the third coordinate is ignored.
     pub(crate) fn send<D: Dim>(&mut self, goal: Vector) -> Result<(), BadRigid> {
-        require(self.is_driven(), "drive", "one that follows a goal")?;
+        require(self.is_driven(), "drive", "kinematic or coupled")?;
         require(is_within_reach(goal), "goal", "within 1e6 m of the origin")?;
         self.goal[..D::N].copy_from_slice(&goal[..D::N]);
         Ok(())
     }
 
-    /// One over its mass as contact sees it [1/kg]; 0 when nothing can push it.
+    /// Returns the inverse mass for contacts [1/kg]; 0 for fixed, kinematic and sleeping bodies.
     #[inline(always)]
     pub(crate) fn inverse_mass(&self) -> f32 {
         match self.drive {
@@ -308,7 +309,7 @@ impl Rigid {
         }
     }
 
-    /// Takes up the goal at the start of a tick of `duration` [s]: it moves there evenly.
+    /// Starts a tick of `duration` [s], in which the target moves at a constant velocity.
     pub(crate) fn start_tick(&mut self, duration: f32) {
         (self.position_before, self.rotation_before) = (self.position, self.rotation);
         self.goal_velocity = scaled(minus(self.goal, self.goal_before), 1.0 / duration);
@@ -320,8 +321,8 @@ impl Rigid {
         self.reactions.clear();
     }
 
-    /// The goal stands still at the end of a tick. A hand that was thrown out of the world is back
-    /// where it was, at rest.
+    /// Ends a tick: the target stops, and the rotation is set to its target. A body that is non-finite or out
+    /// of range is reset to its pose at the start of the tick, at rest.
     pub(crate) fn end_tick(&mut self) {
         self.goal_before = self.goal;
         if self.is_driven() && self.rotation != self.rotation_goal {
@@ -338,7 +339,7 @@ impl Rigid {
         }
     }
 
-    /// Pulls the hand towards its goal for `duration` [s].
+    /// Applies the virtual coupling, or the velocity of a kinematic body, for `duration` [s].
     pub(crate) fn pull(&mut self, duration: f32) {
         self.goal_before = plus(self.goal_before, scaled(self.goal_velocity, duration));
         let mut reaction = Reaction::default();
@@ -354,7 +355,7 @@ impl Rigid {
                 damping,
                 limit,
             } => {
-                // A coupling stiffer than the substep bears is as stiff as it bears.
+                // Limits the stiffness to the stability limit of this substep.
                 let stiffness = stiffness.min(0.25 * mass / (duration * duration));
                 let damper = 2.0 * damping * (stiffness * mass).sqrt();
                 let stretch = minus(self.goal_before, self.position);
@@ -373,7 +374,7 @@ impl Rigid {
         self.reactions.push(reaction);
     }
 
-    /// Feels an impulse [N s] of something that it touches, within a substep of `duration` [s].
+    /// Applies an impulse [N s] of a contact, within a substep of `duration` [s].
     #[inline(always)]
     pub(crate) fn push(&mut self, impulse: Vector, duration: f32) {
         let inverse_mass = self.inverse_mass();
@@ -387,7 +388,7 @@ impl Rigid {
         }
     }
 
-    /// Feels a torque [N m] of bodies that it touches.
+    /// Adds a torque [N m] to the reaction of this substep.
     pub(crate) fn twist(&mut self, torque: Vector) {
         if let Some(reaction) = self.reactions.last_mut() {
             reaction.torque = plus(reaction.torque, torque);

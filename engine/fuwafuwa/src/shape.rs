@@ -1,7 +1,7 @@
-//! Rigid shapes as signed distances: floors, walls, bars, balls.
+//! Rigid shapes with signed distances: half-spaces, boxes, capsules, balls.
 //!
-//! The same shapes serve both dimensions. In 2D the third coordinate is 0 everywhere, so that a
-//! ball is a disc and a capsule a bar with round ends.
+//! The same shapes serve 2D and 3D. In 2D all third coordinates are 0: a ball is a disc, and a capsule is a
+//! bar with round ends.
 
 mod between;
 mod brick;
@@ -14,83 +14,83 @@ pub use crate::vector::Vector;
 use crate::vector::{dot, length, minus, plus, scaled};
 use std::fmt;
 
-/// The low and the high corner of a box [m].
+/// Lower and upper corner of an axis-aligned box [m].
 pub type Bounds = [Vector; 2];
 
-/// A rigid shape.
+/// Rigid shape.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Shape {
-    /// Everything below a plane (2D: a line).
+    /// Half-space below a plane (2D: a line).
     HalfSpace {
-        /// Points out of the solid; length 1.
+        /// Outward unit normal.
         normal: Vector,
-        /// Distance of the surface from the origin along the normal [m].
+        /// Signed distance of the surface from the origin along the normal [m].
         offset: f32,
     },
-    /// An upright box.
+    /// Axis-aligned box.
     Box {
-        /// Its middle [m].
+        /// Centre [m].
         centre: Vector,
-        /// Half of its width on each axis [m]; in 2D the third one does not count.
+        /// Half extents [m]; in 2D the third one is ignored.
         half: Vector,
     },
-    /// A box that is turned.
+    /// Oriented box.
     OrientedBox {
-        /// Its middle [m].
+        /// Centre [m].
         centre: Vector,
-        /// Half of its width on each of its own axes [m]; in 2D the third one does not count.
+        /// Half extents along the local axes [m]; in 2D the third one is ignored.
         half: Vector,
-        /// From its own axes to those of the world.
+        /// Rotation from local to world axes.
         rotation: Rotation,
     },
-    /// All points within `radius` of a segment: a bar with round ends.
+    /// Capsule: all points within `radius` of a segment.
     Capsule {
-        /// One end [m].
+        /// First end of the segment [m].
         from: Vector,
-        /// The other end [m].
+        /// Second end of the segment [m].
         to: Vector,
-        /// Half of its thickness [m].
+        /// Radius [m].
         radius: f32,
     },
-    /// A ball; in 2D a disc.
+    /// Ball; in 2D a disc.
     Ball {
-        /// Its middle [m].
+        /// Centre [m].
         centre: Vector,
-        /// Its radius [m].
+        /// Radius [m].
         radius: f32,
     },
 }
 
-/// A shape that is not one: which field, and what it must be.
+/// Invalid shape parameter.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct BadShape {
-    /// The field.
+    /// Name of the field.
     pub field: &'static str,
-    /// What was expected.
+    /// Expected value.
     pub expected: &'static str,
 }
 
 impl fmt::Display for BadShape {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "the shape's {} must be {}", self.field, self.expected)
+        write!(f, "invalid shape: {} must be {}", self.field, self.expected)
     }
 }
 
 impl std::error::Error for BadShape {}
 
 impl Shape {
-    /// The half-space with the given outward normal, of any length, and surface through `point`.
+    /// Returns the half-space with an outward normal of any length and its surface through `point` [m].
     pub fn half_space(normal: Vector, point: Vector) -> Self {
         let normal = scaled(normal, 1.0 / length(normal));
         let offset = dot(normal, point);
         Self::HalfSpace { normal, offset }
     }
 
-    /// Checks that every number is finite and every size positive.
+    /// Checks that all numbers are finite, sizes positive, and normals and rotations normalised.
     ///
     /// # Errors
-    /// [`BadShape`] names the first field that is wrong.
+    /// [`BadShape`] names the first invalid field.
     pub fn check(&self) -> Result<(), BadShape> {
         let finite = |field, v: Vector| {
             let expected = "finite";
@@ -136,8 +136,9 @@ impl Shape {
         }
     }
 
-    /// Distance of a point from the surface [m], negative inside, and the outward normal there.
-    // In line: to hand a point over in memory takes as long as the rest.
+    /// Returns the signed distance of a point from the surface [m], negative inside, and the outward normal
+    /// there.
+    // Inlined, because passing a point through memory takes as long as the computation.
     #[inline(always)]
     pub fn distance(&self, point: Vector) -> (f32, Vector) {
         match *self {
@@ -162,7 +163,7 @@ impl Shape {
         }
     }
 
-    /// The corners of the box around it [m]; of a half-space, everything. Axes that do not count are 0.
+    /// Returns the axis-aligned bounding box [m]; that of a half-space is infinite. Ignored axes are 0.
     pub fn bounds(&self) -> Bounds {
         let around = |from: Vector, to: Vector, half: Vector| {
             let low = [0, 1, 2].map(|axis: usize| from[axis].min(to[axis]) - half[axis]);
@@ -193,7 +194,7 @@ impl Shape {
         }
     }
 
-    /// Radius of the largest ball that fits into it [m].
+    /// Returns the radius of the largest ball that fits into the shape [m].
     pub fn inradius(&self) -> f32 {
         match *self {
             Self::HalfSpace { .. } => f32::INFINITY,
@@ -204,10 +205,10 @@ impl Shape {
         }
     }
 
-    /// The shape as a world of `D` sees it: in the plane third coordinates do not count, so that
-    /// nothing is pushed out of the plane.
+    /// Returns the shape for a world of `D`. In 2D third coordinates are removed, so that no contact pushes
+    /// out of the plane.
     pub(crate) fn seen_in<D: Dim>(self) -> Self {
-        // Flattened below: in space nothing is to be.
+        // The code below flattens shapes, for 2D only.
         if D::N == 3 {
             return self;
         }
@@ -246,7 +247,7 @@ impl Shape {
         }
     }
 
-    /// The same shape moved `by` [m].
+    /// Returns the shape translated `by` [m].
     pub fn moved(self, by: Vector) -> Self {
         match self {
             Self::HalfSpace { normal, offset } => Self::HalfSpace {
@@ -280,7 +281,7 @@ impl Shape {
 }
 
 impl Shape {
-    /// The same shape turned about the origin.
+    /// Returns the shape rotated about the origin.
     #[must_use]
     pub fn rotated(self, by: Rotation) -> Self {
         if by == Rotation::NONE {
@@ -318,7 +319,8 @@ impl Shape {
     }
 }
 
-/// As [`distance_from_box`], of one that is turned. Few are: in line it would slow down all others.
+/// Returns the distance from an oriented box, like [`distance_from_box`]. Not inlined, because it is rare and
+/// would slow down the common cases.
 #[inline(never)]
 fn distance_from_turned(point: Vector, half: Vector, rotation: Rotation) -> (f32, Vector) {
     let own = rotation.inverse().apply(point);
@@ -326,7 +328,7 @@ fn distance_from_turned(point: Vector, half: Vector, rotation: Rotation) -> (f32
     (distance, rotation.apply(normal))
 }
 
-/// How far a half width reaches along an axis of the world; what has no end on it has no side there.
+/// Returns the extent of a half width along a world axis; 0 for the unbounded third axis of a 2D box.
 fn reach_of(cosine: f32, half: f32) -> f32 {
     match half == f32::MAX {
         true => 0.0,
@@ -334,13 +336,13 @@ fn reach_of(cosine: f32, half: f32) -> f32 {
     }
 }
 
-/// A vector as a world of `D` sees it: in the plane third coordinates do not count.
+/// Returns a vector for a world of `D`: in 2D with the third coordinate 0.
 pub(crate) fn flat<D: Dim>(mut vector: Vector) -> Vector {
     vector[D::N..].fill(0.0);
     vector
 }
 
-/// Length and direction of a vector; upwards where it has none.
+/// Returns the length and the direction of a vector; the direction of a vector of length 0 is upwards.
 #[inline]
 fn away(v: Vector) -> (f32, Vector) {
     let distance = length(v);
@@ -351,7 +353,8 @@ fn away(v: Vector) -> (f32, Vector) {
     }
 }
 
-/// Inside, the way out is through the nearest side; outside, away from the nearest point.
+/// Returns the signed distance from a box around the origin and the normal. Inside it is that of the nearest
+/// face, outside that of the nearest point.
 #[inline]
 fn distance_from_box(at: Vector, half: Vector) -> (f32, Vector) {
     let beyond = [0, 1, 2].map(|k: usize| at[k].abs() - half[k]);
@@ -370,7 +373,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn distances_and_normals() {
+    fn distance_returns_signed_distance_and_normal() {
         let wall = Shape::Box {
             centre: [1.0, 0.0, 0.0],
             half: [0.5, 2.0, 9.0],
@@ -392,7 +395,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bad_shape_names_its_field() {
+    fn check_names_the_invalid_field() {
         let ball = Shape::Ball {
             centre: [0.0; 3],
             radius: -1.0,

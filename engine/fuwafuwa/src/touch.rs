@@ -1,9 +1,9 @@
-//! Finding what may touch, ahead of time, with a margin for how far things can come.
+//! Broad phase: finds pairs that may touch, ahead of time, with a margin for their motion.
 //!
-//! Against rigid shapes every node counts (`nodes`). Against each other, bodies touch with their
-//! *contact spheres* (`sphere`, `spheres`): every surface element is of level 0, so a ball of one
-//! voxel's width around the middle of each is enough. `pairs` finds which of them may meet
-//! soon, `captives` who was forced into another piece. What outruns its margin is looked for again.
+//! All nodes can touch rigid shapes (`nodes`). Soft bodies touch each other through *contact spheres*
+//! (`sphere`, `spheres`): every surface element is of level 0, so one ball of a voxel's width at its centre
+//! is enough. `pairs` finds the spheres that may meet soon. `captives` finds embedded spheres, which were
+//! forced into another piece. Objects that exceed their margin are searched again.
 
 mod bins;
 mod captives;
@@ -35,29 +35,28 @@ pub use rigids::{Passed, RigidTouch, RigidTouches};
 pub use sphere::{ContactSphere, SphereId, mean};
 pub use spheres::Spheres;
 
-/// A sleeper wakes when what touches it moves at this speed [m/s]: what it did move, since deep in
-/// a heap the forces of a substep alone would give as much to what rests. Five times as fast as what falls
-/// asleep: less, and a heap would keep itself awake. With twice as much a box whose foot was pulled
-/// away does not get to lie flat.
+/// Speed of a touching object above which a sleeper wakes [m/s]. The actual motion counts, because deep in a
+/// heap the forces of a substep alone would give a resting body as much speed. It is five times the sleep
+/// speed threshold; with less, a heap would keep itself awake.
 pub const WAKE_SPEED: f32 = 0.15;
 
-/// What may touch what. Between ticks nothing of it counts but the impulses, who met in front, and the order of the
-/// spheres.
+/// Nearby objects of the broad phase. Between ticks only the impulses, the `met_in_front` flags and the order
+/// of the spheres matter.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Nearby {
-    /// Nodes close to rigid shapes.
+    /// Pairs of nodes and rigid bodies.
     pub nodes: NodePairs,
-    /// The contact spheres.
+    /// Contact spheres.
     pub spheres: Spheres,
-    /// Those of them that are close to each other.
+    /// Pairs of contact spheres.
     pub pairs: SpherePairs,
-    /// What passes between rigid things.
+    /// Contact points between rigid bodies.
     pub rigids: RigidTouches,
-    /// Those inside another piece.
+    /// Spheres embedded in another piece.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub captives: Captives,
-    /// What is left of the tick [s], and whether captives were looked for in it.
+    /// Remaining time of the tick [s], and whether embedded spheres were searched in this tick.
     #[cfg_attr(feature = "serde", serde(skip))]
     left: f32,
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -65,8 +64,8 @@ pub struct Nearby {
 }
 
 impl Nearby {
-    /// A tick of `duration` [s] begins: what passed in the last one is settled, and bodies may be
-    /// anything and anywhere.
+    /// Starts a tick of `duration` [s]: clears the sums of the last tick. Bodies may have changed in any way
+    /// since then.
     pub fn start_tick<D: Dim>(&mut self, bodies: &Bodies<D>, duration: f32) {
         self.nodes.start_tick();
         self.rigids.start_tick();
@@ -79,7 +78,7 @@ impl Nearby {
         (self.left, self.knows_captives) = (duration, false);
     }
 
-    /// A body was torn.
+    /// Updates the lists after a body was torn.
     pub fn tear<D: Dim>(&mut self, slot: BodySlot, body: &Body<D>, changes: &Changes) {
         self.nodes.tear(slot, &changes.nodes);
         let changed = &mut self.pairs.changed;
@@ -87,7 +86,7 @@ impl Nearby {
         self.captives.tear(&self.spheres);
     }
 
-    /// A body was taken out: another one may come to its slot.
+    /// Removes a body; its slot may be reused.
     pub fn remove_body(&mut self, slot: BodySlot) {
         let is_of_it = |&sphere: &SphereId| self.spheres.body_of(sphere) == slot;
         self.pairs
@@ -97,7 +96,7 @@ impl Nearby {
         self.spheres.remove_body(slot);
     }
 
-    /// Elements of a body, ascending, are gone, and nodes with them.
+    /// Removes elements of a body, in ascending order, and their nodes.
     pub fn remove_elements<D: Dim>(
         &mut self,
         slot: BodySlot,
@@ -113,8 +112,8 @@ impl Nearby {
         nodes.retain(|pair| pair.body != slot || is_there(pair.node));
     }
 
-    /// Forgets what was read from a file and is of nothing that is there. What a tick forgets by itself, because
-    /// bodies may be anything, may go now: impulses are all that counts.
+    /// Discards data that was read from a file and refers to nothing in the world. Other lists may stay,
+    /// because a new tick rebuilds them; only impulses matter.
     #[cfg(feature = "serde")]
     pub fn keep_known<D: Dim>(&mut self, bodies: &Bodies<D>, rigids: &Rigids) {
         self.nodes.keep_known(bodies, rigids);
@@ -132,26 +131,26 @@ impl Nearby {
         nodes.chain(pairs).for_each(Impulse::flatten::<D>);
     }
 
-    /// Something rigid was taken out.
+    /// Removes a rigid body.
     pub fn remove_rigid(&mut self, slot: RigidSlot) {
         self.nodes.list.retain(|pair| pair.rigid != slot);
         self.rigids.remove(slot);
     }
 
-    /// Pieces woke, given by body and number in ascending order.
+    /// Updates the lists after pieces woke, given by body and number in ascending order.
     pub fn wake<D: Dim>(&mut self, pieces: &[(BodySlot, PieceId)], bodies: &Bodies<D>) {
         self.nodes.wake(pieces, bodies);
         self.spheres.wake(pieces, &mut self.pairs.changed);
     }
 
-    /// So much time has passed [s], in which no node came further than by `distance` [m].
+    /// Accounts for a substep [s] in which no node moved farther than `distance` [m].
     pub fn pass(&mut self, duration: f32, distance: f32) {
         self.left -= duration;
         self.nodes.pass(distance);
         self.pairs.pass(duration, distance);
     }
 
-    /// Follows the bodies, and brings the lists up to date; a substep takes `duration` [s].
+    /// Updates the lists to the present positions; a substep takes `duration` [s].
     pub fn follow<D: Dim>(&mut self, bodies: &Bodies<D>, rigids: &Rigids, duration: f32) {
         self.nodes.follow(bodies, rigids, duration, self.left);
         let changed = self.pairs.follow(&mut self.spheres, bodies);
@@ -168,7 +167,7 @@ impl Nearby {
         self.spheres.take_velocities(bodies);
     }
 
-    /// Pieces that press on something, by body and number, some more than once.
+    /// Iterates over pieces that press on something, by body and number, possibly repeated.
     pub fn pressed<D: Dim>(&self, bodies: &Bodies<D>) -> impl Iterator<Item = (BodySlot, PieceId)> {
         let nodes = { self.nodes.list.iter() }.filter(|pair| pair.impulse.pressed > 0.0);
         let nodes = nodes.filter_map(|pair| Some((pair.body, pair.piece(bodies)?)));

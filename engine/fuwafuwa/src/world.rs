@@ -1,4 +1,4 @@
-//! Everything together, and time: [`World::step`] is the program.
+//! The simulated world and its time step, [`World::step`].
 
 mod acts;
 mod contents;
@@ -29,39 +29,40 @@ use settings::BadSetting;
 pub use settings::{FEWEST_SUBSTEPS, LONGEST_TICK, SHORTEST_TICK, Settings, TICK, USUAL_SUBSTEPS};
 use std::fmt;
 
-/// A piece of one voxel does not roll on what it touches; its spin dies at this rate [1/s]: in
-/// a tenth of a second but for an eighth. Faster would stop it in the air between two bounces.
+/// Decay rate of the angular velocity of a one-voxel piece that touches something [1/s], because it does not
+/// roll. In 0.1 s it falls to an eighth. A higher rate would stop the rotation in the air between two
+/// bounces.
 const CRUMB_SPIN_LOSS: f32 = 20.0;
-/// Slow pieces that touch something lose their last motion at this rate [1/s], below this speed [m/s],
-/// that of a fall by half a millimetre: heaps would creep for long before they sleep. Faster than that, one would see
-/// what slides being braked. With none `pile` sleeps as soon, but stacks lean half as far again; twice as much of either takes
-/// momentum from dust that drifts out of a body.
+/// Extra drag [1/s] of pieces that touch something and move slower than `SETTLING_SPEED`: without it heaps
+/// creep for long before they fall asleep. The speed [m/s] is that of a fall by 0.5 mm; above it the braking
+/// of sliding pieces would be visible.
 const SETTLING: f32 = 2.0;
 const SETTLING_SPEED: f64 = 0.1;
-/// A piece with a node faster than this [m/s] has gone out of hand. Small voxels cannot: no node
-/// moves by more than a voxel in a substep, and this speed is a voxel of 1 m in each of the usual 960 a second.
+/// Node speed above which a piece is quarantined [m/s]. It corresponds to a voxel of 1 m in each of the usual
+/// 960 substeps a second. Smaller voxels cannot reach it, because no node moves by more than a voxel in a
+/// substep.
 const TOP_SPEED: f32 = 1000.0;
 
-/// Why something was not let into the world, or could not be done with what is in it.
+/// Error of an operation on the world.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum Refused {
     /// A setting is out of range.
     Setting {
-        /// The field.
+        /// Name of the setting.
         field: &'static str,
-        /// What was expected.
+        /// Expected value.
         expected: &'static str,
     },
-    /// What it is to be done with is out of range.
+    /// An argument is out of range.
     Argument {
-        /// Which of what was given.
+        /// Name of the offending argument.
         field: &'static str,
-        /// What was expected.
+        /// Expected value.
         expected: &'static str,
     },
-    /// Something rigid cannot be so.
+    /// Invalid rigid-body parameter.
     Rigid(BadRigid),
-    /// It is not there.
+    /// A handle is stale.
     Gone(Gone),
 }
 
@@ -98,7 +99,7 @@ impl fmt::Display for Refused {
 
 impl std::error::Error for Refused {}
 
-/// Bodies, what they bump into, and the hands that push them.
+/// Soft bodies, rigid bodies, joints and knives, and their simulation.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
@@ -111,7 +112,7 @@ pub struct World<D: Dim> {
     ticks: u64,
     nearby: Nearby,
     events: Vec<Event>,
-    /// Who touched whom in the last tick, and who was in which sensor, ascending.
+    /// Contact pairs of the last tick, and participants inside each sensor; both ascending.
     touching: Vec<[Party; 2]>,
     inside: Vec<(RigidId, Party)>,
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -119,10 +120,10 @@ pub struct World<D: Dim> {
 }
 
 impl<D: Dim> World<D> {
-    /// An empty world.
+    /// Returns an empty world.
     ///
     /// # Errors
-    /// [`Refused::Setting`] when a setting is out of range.
+    /// [`Refused::Setting`] if a setting is out of range.
     #[inline(never)]
     pub fn new(settings: Settings) -> Result<Self, Refused> {
         settings.check().map_err(Refused::setting)?;
@@ -141,14 +142,14 @@ impl<D: Dim> World<D> {
         })
     }
 
-    /// Lets a tick pass.
+    /// Advances the world by one tick.
     #[inline(never)]
     pub fn step(&mut self) -> StepReport {
         self.step_with(&mut Hooks::default())
     }
 
-    /// Lets a tick pass in which a program has a say. What sleeps feels no field until it is
-    /// [woken](World::wake_up).
+    /// Advances the world by one tick, with hooks for an external field and for a callback after each
+    /// substep. A field does not act on sleeping pieces; [`wake_up`](World::wake_up) wakes them.
     ///
     /// ```
     /// use fuwafuwa::{Dim2, Hooks, Rigid, Settings, World};
@@ -198,7 +199,8 @@ impl<D: Dim> World<D> {
         report
     }
 
-    /// Substeps that the stiffest body asks for: at least 16 in 1/60 s and at most what the settings allow.
+    /// Returns the number of substeps per tick that the stiffest body requires. At least 16 in 1/60 s, at
+    /// most the limit of the settings.
     pub fn substeps(&self) -> u32 {
         let longest = self.bodies.iter().map(Body::longest_substep);
         let longest = longest.fold(f64::INFINITY, f64::min);
@@ -224,7 +226,7 @@ impl<D: Dim> World<D> {
         self.ticks += 1;
     }
 
-    /// Releases what is overstrained, and remodels around it.
+    /// Splits overstrained nodes and remodels the elements around them.
     fn fracture(&mut self, report: &mut StepReport) {
         let duration = self.settings.round();
         for (id, body) in self.bodies.entries_mut() {
@@ -240,7 +242,7 @@ impl<D: Dim> World<D> {
             self.events.extend(failures.iter().map(released));
             let sides = failures.iter().map(|failure| (failure.at, failure.side));
             let changes = body.tear(&sides.collect::<Vec<_>>());
-            let changes = changes.expect("a release leaves the mesh whole");
+            let changes = changes.expect("splitting a node keeps the mesh valid");
             report.released += failures.len() as u32;
             report.parted += changes.parted.len() as u32;
             self.events.extend(Event::parted(id, &changes.parted));
@@ -248,7 +250,7 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Calms the swings within each piece, and slows what moves through air.
+    /// Damps the internal vibration of each piece, and applies drag.
     fn damp(&mut self, substep: f32) {
         let duration = self.settings.round();
         let touching = self.touching();
@@ -268,7 +270,7 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Adds elastic forces, gravity, a field and the pull of the coupling to the velocities.
+    /// Integrates velocities: elastic forces, gravity, external field and virtual coupling.
     fn push(&mut self, duration: f32, hooks: &Hooks<'_>) {
         for body in self.bodies.iter_mut() {
             body.push(duration, self.settings.gravity);
@@ -288,8 +290,8 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Changes velocities so that nothing goes through anything else. Returns the sleepers that were hit: in
-    /// this substep they are walls still.
+    /// Solves joints, knives and contacts on the velocities. Returns the sleepers that were hit; until the
+    /// end of this substep they still act as walls.
     fn touch(&mut self, duration: f32) -> Hits {
         let (bodies, rigids) = (&mut self.bodies, &mut self.rigids);
         let nearby = &mut self.nearby;
@@ -306,7 +308,7 @@ impl<D: Dim> World<D> {
         hits
     }
 
-    /// Moves everything by its velocity, and takes back what only pushed overlaps out.
+    /// Integrates positions, then removes the velocity that was added only to resolve overlaps.
     fn drift(&mut self, duration: f32) {
         let mut furthest = 0.0f32;
         for body in self.bodies.iter_mut() {
@@ -323,7 +325,7 @@ impl<D: Dim> World<D> {
         self.part_joints(broken);
     }
 
-    /// Stops pieces that went out of hand where they were before the tick, for good.
+    /// Stops pieces that are non-finite or too fast, for good, at their positions before the tick.
     fn quarantine(&mut self, report: &mut StepReport) {
         for (id, body) in self.bodies.entries_mut() {
             body.refresh_awake();
@@ -334,7 +336,7 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Lets pieces that have been slow fall asleep.
+    /// Puts pieces and rigid bodies to sleep that have been slow for long enough.
     fn sleep(&mut self) {
         let motions: Vec<Table<PieceId, PieceMotion>> = self
             .bodies
@@ -370,7 +372,7 @@ impl<D: Dim> World<D> {
         fall_asleep_rigid(&mut self.rigids, &handled, self.settings.tick);
     }
 
-    /// Wakes free things that were hit.
+    /// Wakes the dynamic rigid bodies that were hit.
     fn wake_rigids(&mut self, hits: &[RigidSlot]) {
         for &slot in hits {
             self.rigids.at_mut(slot).wake();
@@ -380,7 +382,7 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Wakes the sleepers that were hit.
+    /// Wakes the sleeping pieces that were hit.
     fn wake(&mut self, hits: &[Hit]) {
         let woken = wake(&mut self.bodies, hits);
         if woken.is_empty() {
@@ -397,7 +399,7 @@ impl<D: Dim> World<D> {
         self.events.extend(events);
     }
 
-    /// Which pieces of each body touch anything.
+    /// Returns for each piece of each body whether it touches anything.
     fn touching(&self) -> Table<BodySlot, Table<PieceId, bool>> {
         let none = |body: Option<&Body<D>>| {
             let pieces = body.map_or(0, |body| body.truth.pieces.list.len());
@@ -405,7 +407,7 @@ impl<D: Dim> World<D> {
         };
         let mut touching: Table<_, Table<_, bool>> = self.bodies.slots().map(none).collect();
         for (body, piece) in self.nearby.pressed(&self.bodies) {
-            // The lists are of the last substep: the body may be another one since.
+            // The pair lists date from the last substep, and the slot may have been reused since.
             if let Some(touches) = touching[body].get_mut(piece.index()) {
                 *touches = true;
             }
@@ -414,12 +416,12 @@ impl<D: Dim> World<D> {
     }
 }
 
-/// Whether one of `rounds` rounds, spread evenly over the substeps of a tick, is due in this one.
+/// Returns whether one of `rounds` rounds, spread evenly over the substeps of a tick, is due in this substep.
 fn is_due(substep: u32, substeps: u32, rounds: u32) -> bool {
     substep * rounds % substeps < rounds
 }
 
-/// How a piece is slowed [1/s].
+/// Returns the damping rates of a piece [1/s].
 fn slowing(motion: &PieceMotion, touches: bool, rate: f32, drag: f32, corners: usize) -> Slowing {
     let is_crumb = motion.nodes as usize == corners;
     let settles = touches && motion.speed_squared < SETTLING_SPEED * SETTLING_SPEED;

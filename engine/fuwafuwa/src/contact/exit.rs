@@ -1,4 +1,4 @@
-//! The way out for who is inside another piece: along with it, and towards the exit.
+//! Escape contacts: they guide a sphere embedded in another piece to the nearest way out.
 
 use super::motion::Motion;
 use super::row::PUSH_OUT_SPEED;
@@ -9,18 +9,19 @@ use crate::solve::Row;
 use crate::touch::{Captive, Spheres};
 use crate::vector::{minus, plus, scaled};
 
-/// A captive and its exit, in one substep.
+/// Embedded sphere and its escape sphere in one substep.
 #[derive(Copy, Clone, Debug)]
 pub struct Exit {
     grips: [Grip; 2],
-    /// One over the speed that a unit of impulse gives [kg].
+    /// Effective mass [kg].
     inertia: f32,
-    /// How the captive is to move as seen from its exit [m/s].
+    /// Target velocity of the embedded sphere relative to its escape sphere [m/s].
     velocity: Row,
 }
 
 impl Exit {
-    /// The way of a captive to the place in front of its exit; nothing when neither can move.
+    /// Returns the escape contact that moves an embedded sphere to the front of its escape sphere; `None` if
+    /// neither can move.
     pub fn new<D: Dim>(
         captive: &Captive,
         bodies: &Bodies<D>,
@@ -38,7 +39,8 @@ impl Exit {
         let speed = PUSH_OUT_SPEED.min(length(way) / duration);
         let [first, second] = both.map(|sphere| sphere.inverse_mass(bodies));
         let inverse_mass = first + second;
-        // Who is out of hand must not take the other one along; and what is no number is less than nothing.
+        // An embedded sphere that is too fast must not accelerate the other piece. The comparisons are false
+        // for NaN.
         let relative = minus(spheres.velocities[a], spheres.velocities[b]);
         let most = (both[0].radius + both[1].radius) / duration;
         let squared = |row: Row| inner::<D>(row, row);
@@ -50,12 +52,12 @@ impl Exit {
         })
     }
 
-    /// Sends the captive on its way.
+    /// Applies the escape velocity.
     pub fn solve<D: Dim>(&self, motion: &mut Motion) {
         self.push::<D>(self.velocity, motion);
     }
 
-    /// After the move: takes back the speed it was given for it.
+    /// Removes, after the position update, the velocity of the escape.
     pub fn relax<D: Dim>(&self, motion: &mut Motion) {
         self.push::<D>([0.0; 4], motion);
     }

@@ -1,4 +1,4 @@
-//! The velocities that contacts push on, side by side.
+//! Contiguous node velocities for the contact solver.
 
 use super::sides::{Grip, NodeContact, NodeRow};
 use crate::body::Bodies;
@@ -11,24 +11,24 @@ use crate::solve::Row;
 use crate::touch::{ContactSphere, mean};
 use crate::vector::{as_row, minus, plus, scaled, three};
 
-/// Nodes whose velocities are copied together: more copies more in vain, less asks more often. From 4 to 64
-/// `diced`, `pile` and `tear-3d` take the same.
+/// Number of nodes copied together: a larger block copies more unused nodes, a smaller one is tested more
+/// often.
 const STRETCH: usize = 16;
 
-/// The velocities of the nodes that contacts push on [m/s], one over their mass as the fourth
-/// component [1/kg]: what a push needs is in one place.
+/// Velocities of the nodes in contact [m/s], with the inverse mass [1/kg] as the fourth component, so that an
+/// impulse reads one row.
 #[derive(Clone, Debug, Default)]
 pub struct Motion {
-    /// Where nothing is touched, anything.
+    /// Rows; unspecified where no contact uses them.
     rows: Table<NodeRow, Row>,
-    /// The row of the first node of each body, where a stretch begins.
+    /// Row of the first node of each body, at the start of a block.
     first: Table<BodySlot, NodeRow>,
-    /// For each stretch whether any of its nodes is touched: of a large body few are.
+    /// Whether any node of a block is in contact; in a large body few are.
     is_touched: Vec<bool>,
 }
 
 impl Motion {
-    /// Nothing is touched yet.
+    /// Prepares the rows, none of them in contact.
     pub fn clear<D: Dim>(&mut self, bodies: &Bodies<D>) {
         self.first.clear();
         let mut count = 0;
@@ -42,7 +42,7 @@ impl Motion {
         self.is_touched.resize(count / STRETCH, false);
     }
 
-    /// The row of a node of a body, which something touches.
+    /// Returns the row of a node and marks it as in contact.
     #[inline(always)]
     pub fn row(&mut self, body: BodySlot, node: NodeId) -> NodeRow {
         let row = row_of(self.first[body], node);
@@ -50,7 +50,7 @@ impl Motion {
         row
     }
 
-    /// The rows of the corner nodes of a sphere that something touches.
+    /// Returns the rows of a sphere's corner nodes and marks them as in contact.
     #[inline(always)]
     pub fn grip<D: Dim>(&mut self, sphere: &ContactSphere) -> Grip {
         let first = self.first[sphere.body];
@@ -61,7 +61,7 @@ impl Motion {
         grip
     }
 
-    /// Takes the velocities from the bodies.
+    /// Copies the velocities from the bodies.
     pub fn load<D: Dim>(&mut self, bodies: &Bodies<D>) {
         for (slot, body) in bodies.by_slot() {
             let first = self.first[slot].index();
@@ -81,7 +81,7 @@ impl Motion {
         }
     }
 
-    /// Gives them back.
+    /// Copies the velocities back to the bodies.
     pub fn store<D: Dim>(&self, bodies: &mut Bodies<D>) {
         for (slot, body) in bodies.by_slot_mut() {
             let first = self.first[slot].index();
@@ -96,14 +96,14 @@ impl Motion {
         }
     }
 
-    /// How fast the first sphere moves as seen from the second.
+    /// Returns the velocity of the first sphere relative to the second [m/s].
     #[inline(always)]
     pub fn between<D: Dim>(&self, grips: &[Grip; 2]) -> Row {
         let [first, second] = grips.each_ref().map(|grip| mean::<D, _>(&self.rows, grip));
         with_fourth(minus(first, second), 0.0)
     }
 
-    /// Pushes the first sphere, and the second the other way.
+    /// Applies an impulse to the first sphere and its opposite to the second.
     #[inline(always)]
     pub fn push_spheres<D: Dim>(&mut self, grips: &[Grip; 2], impulse: Row) {
         let share = scaled(impulse, 1.0 / D::CORNERS as f32);
@@ -115,7 +115,7 @@ impl Motion {
         }
     }
 
-    /// How fast a node moves as seen from what it touches.
+    /// Returns the velocity of a node relative to the rigid body that it touches [m/s].
     #[inline(always)]
     pub fn of_node(&self, row: &NodeContact, rigids: &Rigids) -> Row {
         let own = self.rows[row.node];
@@ -123,7 +123,7 @@ impl Motion {
         with_fourth(minus(own, other), 0.0)
     }
 
-    /// Pushes a node, and what moves against it the other way.
+    /// Applies an impulse to a node and its opposite to a moving rigid body.
     #[inline(always)]
     pub fn push_node(
         &mut self,
@@ -140,13 +140,14 @@ impl Motion {
     }
 }
 
-/// How fast something rigid moves so far from its position. Few contacts ask: in line it would slow down all others.
+/// Returns the velocity of a rigid body at a lever arm [m/s]. Not inlined, because it is rare and would slow
+/// down the other contacts.
 #[inline(never)]
 fn velocity((mover, lever): (RigidSlot, Vector), rigids: &Rigids) -> Row {
     as_row(rigids.at(mover).velocity_at(lever))
 }
 
-/// Pushes it there.
+/// Applies an impulse to a rigid body at a lever arm.
 #[inline(never)]
 fn push((mover, lever): (RigidSlot, Vector), rigids: &mut Rigids, impulse: Row, duration: f32) {
     rigids
@@ -154,7 +155,7 @@ fn push((mover, lever): (RigidSlot, Vector), rigids: &mut Rigids, impulse: Row, 
         .push_at(three(impulse), lever, duration);
 }
 
-/// The row of a node of the body that has this first one.
+/// Returns the row of a node of a body, given the row of the first node.
 #[inline(always)]
 fn row_of(first: NodeRow, node: NodeId) -> NodeRow {
     NodeRow(first.0 + node.0)

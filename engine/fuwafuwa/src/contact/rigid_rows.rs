@@ -1,4 +1,5 @@
-//! Contacts between rigid things: hands against walls and each other at one point, what is free at as many as it lies on.
+//! Contacts between rigid bodies. Kinematic and coupled bodies touch each other and fixed bodies at one
+//! point; dynamic bodies use a manifold.
 
 use super::row::{AHEAD, CLOSE, Contact, is_close};
 use super::sides::{FreeContact, HandContact};
@@ -10,11 +11,11 @@ use crate::solve::Row;
 use crate::touch::{Impulse, Passed, RigidTouch, RigidTouches, WAKE_SPEED};
 use crate::vector::{across, as_row, length, minus, plus, scaled, three};
 
-/// What comes slower than this [m/s] does not bounce: else nothing would come to rest. A choice: it is a fall by 13 mm, fifty
-/// times what gravity adds in a substep; with a tenth of it, and with twice as much, all shapes come to rest as well.
+/// Approach speed below which contacts do not bounce [m/s], so that bodies can fall asleep. It is the speed
+/// of a fall by 13 mm, fifty times the gain from gravity in a substep.
 const BOUNCE_SPEED: f32 = 0.5;
 
-/// The contacts of the hands with what is fixed, and with each other.
+/// Finds the contacts of kinematic and coupled bodies with fixed bodies and with each other.
 pub fn find_hands(rigids: &Rigids, duration: f32, found: &mut Vec<HandContact>) {
     found.clear();
     let hands = rigids
@@ -31,7 +32,7 @@ pub fn find_hands(rigids: &Rigids, duration: f32, found: &mut Vec<HandContact>) 
                 continue;
             }
             let (gap, normal) = hand.shape().gap(rigid.shape());
-            // What is not finite touches nothing.
+            // A gap that is not finite gives no contact.
             if gap.is_nan() || gap >= hand.shape().inradius() {
                 continue;
             }
@@ -48,7 +49,8 @@ pub fn find_hands(rigids: &Rigids, duration: f32, found: &mut Vec<HandContact>) 
     }
 }
 
-/// The contacts of what is free with everything rigid. Returns the sleepers that were hit, some more than once.
+/// Finds the contacts of dynamic bodies with all rigid bodies. Returns the sleepers that were hit, possibly
+/// repeated.
 pub fn find_free<D: Dim>(
     rigids: &Rigids,
     known: &RigidTouches,
@@ -92,7 +94,7 @@ pub fn find_free<D: Dim>(
     hits
 }
 
-/// How far something may be from what it touches within a substep [m].
+/// Returns the distance at which a contact may matter within a substep [m].
 fn margin(rigid: &Rigid, duration: f32) -> f32 {
     CLOSE * rigid.shape().inradius().min(1.0) + margin_of_other(rigid, duration)
 }
@@ -101,7 +103,7 @@ fn margin_of_other(rigid: &Rigid, duration: f32) -> f32 {
     AHEAD * duration * rigid.top_speed()
 }
 
-/// The contacts of two.
+/// Finds the contacts between two bodies.
 fn touch<D: Dim>(
     slots: [RigidSlot; 2],
     both: [&Rigid; 2],
@@ -163,7 +165,7 @@ fn touch<D: Dim>(
     }
 }
 
-/// Directions across a normal; in the plane the first alone counts.
+/// Returns two unit tangents of a normal; in 2D only the first one counts.
 fn tangents<D: Dim>(normal: Vector) -> [Vector; 2] {
     if D::N == 2 {
         return [[normal[1], -normal[0], 0.0], [0.0; 3]];
@@ -172,7 +174,7 @@ fn tangents<D: Dim>(normal: Vector) -> [Vector; 2] {
 }
 
 impl FreeContact {
-    /// What passed at its point.
+    /// Returns the impulse at the contact point, to be stored for the next substep.
     pub fn touch(&self) -> RigidTouch {
         let mut impulse = Impulse::default();
         impulse.note(&self.contact);
@@ -183,7 +185,7 @@ impl FreeContact {
         }
     }
 
-    /// What passed at it in this substep, if anything.
+    /// Returns the contact's part of the events, if it pressed in this substep.
     pub fn passed(&self) -> Option<Passed> {
         let passed = Passed {
             both: self.both,
@@ -195,7 +197,7 @@ impl FreeContact {
         (passed.impulse > 0.0).then_some(passed)
     }
 
-    /// Starts from what passed so far.
+    /// Applies the warm-start impulse.
     pub fn start(&self, rigids: &mut Rigids, duration: f32) {
         self.push(rigids, self.contact.start(), duration);
     }
@@ -206,7 +208,7 @@ impl FreeContact {
         self.push(rigids, change, duration);
     }
 
-    /// After the move: takes back the speed of what was pushed out, but for that of a bounce.
+    /// Removes, after the position update, the velocity that resolved an overlap, but keeps that of a bounce.
     pub fn relax<D: Dim>(&mut self, rigids: &mut Rigids, duration: f32) {
         if self.contact.was_pushed_out() {
             let kept = scaled(self.contact.normal, self.bounce);
@@ -216,7 +218,7 @@ impl FreeContact {
         }
     }
 
-    /// How fast the first moves there as seen from the second.
+    /// Returns the velocity of the first body relative to the second at the contact point [m/s].
     fn relative(&self, rigids: &Rigids) -> Row {
         let [own, other] =
             [0, 1].map(|k: usize| rigids.at(self.both[k]).velocity_at(self.levers[k]));

@@ -1,38 +1,37 @@
-//! One contact: what it may do to the velocities of its two sides.
+//! A contact as a solver row.
 
 use crate::dim::{Dim, inner};
 use crate::solve::Row;
 use crate::touch::Impulse;
 use crate::vector::{minus, plus, scaled};
 
-/// How much of the last substep's impulse a row starts from: 1 is unstable, 0 never comes to rest. With 0.8 and 0.95 the scene
-/// `pile` sleeps after 5.9 and 8.2 s in place of 4.9, with 0.5 and 1 not within 10, and towers of ten boxes lean in all of them.
+/// Warm-starting factor, applied to the impulses of the last substep. 1 is unstable, and with 0 piles never
+/// settle.
 const WARM_START: f32 = 0.9;
-/// How much of an overlap is pushed out in a substep, and how fast at most [m/s] [Catto 2023]. More throws apart what
-/// was forced together; less lets heaps sink into each other. Half of the share lets stacks lean twice as far, twice as much
-/// lets towers of ten boxes lean by a fifth of a box; twice the speed throws dust that began inside a body out at 1.7 m/s.
+/// Share of an overlap that is resolved per substep, and the maximum speed of it [m/s] [Catto 2023]. Larger
+/// values throw overlapping bodies apart; smaller ones let heaps sink into each other.
 const PUSH_OUT: f32 = 0.2;
 pub const PUSH_OUT_SPEED: f32 = 0.5;
 
-/// A contact matters when the gap closes to so many voxels within so many substeps: one, and half of another, for
-/// other contacts may make it close faster. Half and twice the voxels stack, heap and squeeze alike.
+/// Gap [voxels] that a contact must be able to reach within `AHEAD` substeps in order to be active. The extra
+/// half substep allows for other contacts that make the gap close faster.
 pub const CLOSE: f32 = 0.05;
 pub const AHEAD: f32 = 1.5;
 
-/// One contact in one substep.
+/// Contact in one substep.
 #[derive(Copy, Clone, Debug)]
 pub struct Contact {
     pub normal: Row,
-    /// [m]
+    /// Distance of the two sides [m], negative if they overlap.
     pub gap: f32,
-    /// The approach along the normal may not be less than this [m/s].
+    /// Lower limit of the normal velocity [m/s]; negative values allow an approach.
     pub least: f32,
-    /// One over the speed that a unit of impulse gives [kg].
+    /// Effective mass [kg].
     pub inertia: f32,
     pub friction: f32,
     pub pressed: f32,
     pub dragged: Row,
-    /// Place of its pair in the list.
+    /// Index of its pair in the list.
     pub pair: u32,
 }
 
@@ -56,7 +55,7 @@ impl Contact {
         }
     }
 
-    /// The same, starting from what passed between the two sides so far.
+    /// Returns the contact with a pair index and a warm start from the pair's impulse.
     #[inline(always)]
     pub fn known_as<D: Dim>(mut self, pair: usize, impulse: &Impulse) -> Self {
         self.pair = pair as u32;
@@ -69,25 +68,27 @@ impl Contact {
         self
     }
 
-    /// Whether it neither presses nor has to, at this motion: most that are merely close do not.
+    /// Returns whether the contact has no normal impulse and requires none at this relative velocity. This is
+    /// true for most contacts that are merely close.
     #[inline(always)]
     pub fn is_idle<D: Dim>(&self, relative: Row) -> bool {
         self.pressed == 0.0 && inner::<D>(relative, self.normal) >= self.least
     }
 
-    /// What it starts from.
+    /// Returns the warm-start impulse [N s].
     pub fn start(&self) -> Row {
         plus(scaled(self.normal, self.pressed), self.dragged)
     }
 
-    /// The change of impulse on the first side [N s], which moves at `relative` [m/s] as seen from
-    /// the second.
+    /// Returns the change of impulse on the first side [N s], given its velocity relative to the second side
+    /// [m/s].
     #[inline(always)]
     pub fn solve<D: Dim>(&mut self, relative: Row) -> Row {
         self.solve_across::<D>(relative, self.inertia)
     }
 
-    /// The same for sides that turn: across the normal they yield otherwise, `across` [kg].
+    /// Like [`Contact::solve`], with a separate tangential effective mass `across` [kg] for sides that
+    /// rotate.
     #[inline(always)]
     pub fn solve_across<D: Dim>(&mut self, relative: Row, across: f32) -> Row {
         let approach = inner::<D>(relative, self.normal);
@@ -105,7 +106,7 @@ impl Contact {
         change
     }
 
-    /// As [`Contact::solve`], along the normal only, and without the push out of an overlap.
+    /// Like [`Contact::solve`], along the normal only and without the push-out velocity.
     #[inline(always)]
     pub fn relax<D: Dim>(&mut self, relative: Row) -> Row {
         let approach = inner::<D>(relative, self.normal);
@@ -121,10 +122,10 @@ impl Contact {
 }
 
 impl Impulse {
-    /// They do not touch any more.
+    /// Clears the impulses after the two sides have separated.
     #[inline(always)]
     pub fn release(&mut self) {
-        // Most never did; what does not press does not drag.
+        // Most pairs never touched, and without normal impulse there is no friction.
         if self.pressed > 0.0 {
             (self.pressed, self.dragged) = (0.0, [0.0; 4]);
         }
@@ -137,8 +138,8 @@ impl Impulse {
     }
 }
 
-/// Whether a contact may matter in this substep: it overlaps, or will if nothing is done. What is not
-/// finite touches nothing, so that it spoils nothing else.
+/// Returns whether a contact is active in this substep: the sides overlap or may do so within `AHEAD`
+/// substeps. Non-finite approach speeds are inactive, so that they cannot spread.
 pub fn is_close(gap: f32, approach: f32, size: f32, duration: f32) -> bool {
     approach.is_finite() && gap + AHEAD * duration * approach.min(0.0) < CLOSE * size
 }

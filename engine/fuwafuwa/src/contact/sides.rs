@@ -1,4 +1,4 @@
-//! Contacts with what is on their two sides.
+//! Contacts with the objects on their two sides.
 
 use super::row::Contact;
 use crate::handle::RigidSlot;
@@ -6,52 +6,52 @@ use crate::ids::id;
 use crate::shape::Vector;
 
 id! {
-    /// A node among those of all bodies.
+    /// Row of a node among those of all bodies.
     pub NodeRow
 }
 
-/// A node against something rigid.
+/// Contact between a node and a rigid body.
 #[derive(Copy, Clone, Debug)]
 pub struct NodeContact {
     pub contact: Contact,
     pub node: NodeRow,
-    /// What is rigid, if it moves, and how far from its position the node is [m].
+    /// Rigid body, if it moves, and the lever arm of the node from its position [m].
     pub mover: Option<(RigidSlot, Vector)>,
 }
 
-/// Two spheres against each other.
+/// Contact between two contact spheres.
 #[derive(Copy, Clone, Debug)]
 pub struct SphereContact {
     pub contact: Contact,
     pub grips: [Grip; 2],
 }
 
-/// The corner nodes of a sphere; the first four in 2D.
+/// Rows of a sphere's corner nodes; only the first four in 2D.
 pub type Grip = [NodeRow; 8];
 
-/// What is free against something else that is rigid, at one point.
+/// Contact point between a dynamic and any other rigid body.
 #[derive(Copy, Clone, Debug)]
 pub struct FreeContact {
     pub contact: Contact,
-    /// The one that is free, and the other.
+    /// The dynamic body and the other one.
     pub both: [RigidSlot; 2],
-    /// How far the point is from the position of each [m].
+    /// Lever arms of the point from the position of each body [m].
     pub levers: [Vector; 2],
-    /// One over the speed across the normal that a unit of impulse gives at the most [kg].
+    /// Tangential effective mass [kg]: a lower bound over all tangents.
     pub across: f32,
-    /// Where [m], and how fast both approach each other there [m/s].
+    /// Position of the point [m], and the approach speed there [m/s].
     pub at: Vector,
     pub speed: f32,
-    /// How fast it is to go away from the other [m/s].
+    /// Separation speed of a bounce [m/s].
     pub bounce: f32,
-    /// Which corner or edge it is.
+    /// Key of the corner or edge.
     pub key: u32,
 }
 
-/// A hand against something else that is rigid.
+/// Contact of a kinematic or coupled rigid body with a fixed or another such body.
 #[derive(Copy, Clone, Debug)]
 pub struct HandContact {
     pub contact: Contact,
-    /// The hand and the other.
+    /// The kinematic or coupled body and the other one.
     pub both: [RigidSlot; 2],
 }

@@ -1,4 +1,4 @@
-//! What a joint holds: a place, a place of something rigid, or the middle of some nodes.
+//! Joint anchors: a point of the world, a point of a rigid body, or the mean of some nodes.
 
 use super::end::{End, Woken};
 use crate::body::{Bodies, Body};
@@ -11,32 +11,33 @@ use crate::rigid::Rigids;
 use crate::shape::{Vector, flat};
 use crate::vector::{as_row, dot, minus, plus, scaled, three};
 
-/// What one end of a joint holds.
+/// Anchor of a joint.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Anchor {
-    /// A place [m].
+    /// Point of the world [m].
     Position(Vector),
-    /// A place of something rigid, as it would be at the origin and not turned [m].
+    /// Point of a rigid body in local coordinates [m].
     Rigid(RigidId, Vector),
-    /// Corners of a body: a voxel, and the lattice point of its node. Whatever is torn around it, the voxel keeps it.
+    /// Corners of a soft body, each a voxel and the lattice point of its node. A voxel keeps its corner when
+    /// the body tears around it.
     Soft(BodyId, Vec<(Point, Point)>),
 }
 
-/// How an anchor is and moves, and how it yields.
+/// State and compliance of an anchor.
 #[derive(Copy, Clone, Debug)]
 pub struct Grip {
-    /// [m]
+    /// Position [m].
     pub at: Vector,
-    /// [m/s]
+    /// Velocity [m/s].
     pub velocity: Vector,
-    /// The velocity that an impulse of 1 N s gives it, by rows [1/kg].
+    /// Inverse effective mass matrix, by rows [1/kg].
     pub yields: [Vector; 3],
     pub is_asleep: bool,
 }
 
 impl Anchor {
-    /// Takes hold of an end.
+    /// Returns the anchor at an attachment point.
     pub fn of<D: Dim>(end: &End, bodies: &Bodies<D>, rigids: &Rigids) -> Result<Self, Gone> {
         Ok(match *end {
             End::Position(at) => Self::Position(flat::<D>(at)),
@@ -56,12 +57,12 @@ impl Anchor {
         })
     }
 
-    /// Whether it holds nodes of a body.
+    /// Returns whether the anchor is on nodes of a soft body.
     pub fn is_soft(&self) -> bool {
         matches!(self, Self::Soft(..))
     }
 
-    /// Puts what is not soft elsewhere [m].
+    /// Moves an anchor that is not soft to a world-space point [m].
     pub fn stand_at(&mut self, at: Vector, rigids: &Rigids) {
         match self {
             Self::Position(place) => *place = at,
@@ -77,7 +78,7 @@ impl Anchor {
         }
     }
 
-    /// How it is now; nothing when what it holds is gone.
+    /// Returns the present state of the anchor; `None` if its body or all of its voxels are gone.
     pub fn grip<D: Dim>(&self, bodies: &Bodies<D>, rigids: &Rigids) -> Option<Grip> {
         match self {
             Self::Position(at) => Some(Grip {
@@ -124,7 +125,7 @@ impl Anchor {
         }
     }
 
-    /// Gives it an impulse [N s].
+    /// Applies an impulse [N s].
     pub fn push<D: Dim>(&self, bodies: &mut Bodies<D>, rigids: &mut Rigids, impulse: Vector) {
         match self {
             Self::Position(_) => {}
@@ -148,7 +149,7 @@ impl Anchor {
         }
     }
 
-    /// Notes who of it sleeps.
+    /// Adds the attached bodies or pieces to the sleepers to wake.
     pub fn wake<D: Dim>(&self, bodies: &Bodies<D>, woken: &mut Woken) {
         match self {
             Self::Position(_) => {}
@@ -163,7 +164,7 @@ impl Anchor {
         }
     }
 
-    /// Whether what was read from a file may be one.
+    /// Returns whether an anchor that was read from a file is valid.
     #[cfg(feature = "serde")]
     pub fn is_sound<D: Dim>(&self, end: &End) -> bool {
         let is_of_it = match (self, end) {
@@ -183,7 +184,7 @@ impl Anchor {
     }
 }
 
-/// The nodes at some corners. A voxel that is not there has none.
+/// Returns the nodes at some corners; removed voxels are skipped.
 fn nodes<'a, D: Dim>(
     body: &'a Body<D>,
     corners: &'a [(Point, Point)],
@@ -193,7 +194,7 @@ fn nodes<'a, D: Dim>(
         let element = mesh.element_at(voxel)?;
         let apart = |node: NodeId| {
             let at = mesh.node(node).at;
-            // A stranger's file may name any point.
+            // In 64 bits, because a file from elsewhere may contain any lattice point.
             let along = |axis: usize| i64::from(at[axis]) - i64::from(point[axis]);
             (0..D::N).map(|axis| along(axis).abs()).sum::<i64>()
         };
@@ -205,7 +206,7 @@ fn nodes<'a, D: Dim>(
     })
 }
 
-/// The corners of a body within `radius` [m] of a place, or the nearest one.
+/// Returns the corners of a body within `radius` [m] of a point, or the nearest one.
 fn corners_near<D: Dim>(body: &Body<D>, at: Vector, radius: f32) -> Vec<(Point, Point)> {
     let distance = |node: NodeId| {
         let apart = minus(three(body.state.position[node]), at);

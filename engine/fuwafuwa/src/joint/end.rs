@@ -1,58 +1,58 @@
-//! What can be tied, and how.
+//! Attachment points and kinds of joints.
 
 use crate::handle::{BodyId, BodySlot, RigidId, RigidSlot};
 use crate::ids::PieceId;
 use crate::shape::Vector;
 
-/// What something is tied at. All places are where they are in the world when it is tied.
+/// Attachment point of a joint. Positions are world-space positions at the time when the joint is added.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum End {
-    /// A position in the world [m].
+    /// Point of the world [m].
     Position(Vector),
-    /// A place of something rigid, on it or not.
+    /// Point of a rigid body, on its surface or elsewhere.
     Rigid {
-        /// The rigid thing.
+        /// Handle of the rigid body.
         rigid: RigidId,
-        /// Where [m].
+        /// Position [m].
         at: Vector,
     },
-    /// The middle of some nodes of a soft body.
+    /// Mean of some nodes of a soft body.
     Soft {
-        /// The body.
+        /// Handle of the body.
         body: BodyId,
-        /// Where [m].
+        /// Position [m].
         at: Vector,
-        /// Nodes within this distance [m], or the nearest one where there is none. The more there are, the less is torn
-        /// off by a pull.
+        /// Radius within which nodes are attached [m], or the nearest node if it contains none. With more
+        /// nodes a pull tears off less.
         radius: f32,
     },
 }
 
-/// How two ends are tied.
+/// Kind of a joint.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Tie {
-    /// They stay together, and may turn. Two soft or two other ends that are apart are drawn together; a soft end is held
-    /// where it is.
+    /// Pin: keeps the anchors together and lets them rotate. A soft anchor that is pinned to a rigid body or
+    /// a point is held where it is; other anchors that are apart are drawn together.
     Pin,
-    /// They are drawn to be so far apart.
+    /// Spring with a rest length.
     Spring {
-        /// [N/m], positive.
+        /// Stiffness [N/m], positive.
         stiffness: f32,
-        /// [N s/m], 0 or more.
+        /// Damping [N s/m], 0 or more.
         damping: f32,
-        /// At rest [m], 0 or more.
+        /// Rest length [m], 0 or more.
         length: f32,
     },
-    /// They are at most so far apart.
+    /// Rope: limits the distance of the anchors.
     Rope {
-        /// [m], positive.
+        /// Maximum distance [m], positive.
         length: f32,
     },
 }
 
-/// Who sleeps and has to wake, because the other end of a joint moves.
+/// Sleepers to wake because the other anchor of their joint moves.
 #[derive(Debug, Default)]
 pub(crate) struct Woken {
     pub(crate) pieces: Vec<(BodySlot, PieceId)>,

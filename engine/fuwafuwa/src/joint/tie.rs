@@ -1,4 +1,4 @@
-//! The impulses that pins, springs and ropes ask for.
+//! Impulses of pins, springs and ropes.
 
 use super::Joint;
 use super::anchor::Grip;
@@ -10,22 +10,21 @@ use crate::shape::Vector;
 use crate::touch::WAKE_SPEED;
 use crate::vector::{cross, dot, length, minus, plus, scaled};
 
-/// How much of the last substep's impulse a pin starts from: as a contact. A chain of pins with a heavy end hangs
-/// still to 2 cm/s then, with 0.8 to 3, with 0 to 11 and with 0.95 to 20.
+/// Warm-starting factor of pins, the same as for contacts. Chains of pins with a heavy end swing more with
+/// other values.
 const WARM_START: f32 = 0.9;
-/// How much of what pins and ropes are apart is drawn together in a substep, and how fast at most [m/s].
-/// The share is that of overlaps; with half of it that chain hangs as still, with twice as much it flies about at 13 m/s. The
-/// speed is a choice: with an eighth of it and with twice as much the same tests pass.
+/// Share of the position error of pins and ropes that is corrected per substep, the same as for overlaps, and
+/// the maximum correction speed [m/s]. Twice the share is unstable.
 const DRAW: f32 = 0.2;
 const DRAW_SPEED: f32 = 2.0;
-/// A sleeper wakes, besides when the other end moves as what wakes it by a touch, when a pin or a rope has given way by so
-/// much [m], and when a spring pulls by such a share more or less than when it fell asleep.
-/// A choice, of what one sees: with a twentieth of each and with twice as much the same tests pass.
+/// A sleeper wakes if a pin or a rope is stretched by `WAKE_STRETCH` [m], or if a spring force differs by the
+/// share `WAKE_SHARE` from that at sleep. Smaller changes are not visible. It also wakes if the other anchor
+/// moves faster than `WAKE_SPEED`.
 const WAKE_STRETCH: f32 = 0.002;
 const WAKE_SHARE: f32 = 0.02;
 
 impl Joint {
-    /// Begins a substep with what passed in the last one; whether both ends are there.
+    /// Begins a substep with a warm start. Returns whether both anchors exist.
     pub(super) fn start<D: Dim>(
         &mut self,
         bodies: &mut Bodies<D>,
@@ -49,7 +48,7 @@ impl Joint {
         true
     }
 
-    /// Whether ends so far apart [m] do not rest.
+    /// Returns whether the joint is out of balance at a distance of its anchors [m].
     fn is_strained(&self, distance: f32) -> bool {
         match self.tie {
             Tie::Pin => distance > WAKE_STRETCH,
@@ -63,7 +62,7 @@ impl Joint {
         }
     }
 
-    /// Gives the ends what they lack; `draws` them together, too, where they are apart.
+    /// Applies one solver iteration; with `draws` it also corrects position errors.
     pub(super) fn solve<D: Dim>(
         &mut self,
         bodies: &mut Bodies<D>,
@@ -108,7 +107,7 @@ impl Joint {
         }
     }
 
-    /// A rope pulls and never pushes.
+    /// Returns the impulse of a rope, which pulls and never pushes.
     fn rope(
         &self,
         apart: Vector,
@@ -136,7 +135,7 @@ impl Joint {
         scaled(way, (pulled + change).min(0.0) - pulled)
     }
 
-    /// Whether an end can be moved.
+    /// Returns whether at least one attached body can move.
     pub(super) fn yields<D: Dim>(&self, bodies: &Bodies<D>, rigids: &Rigids) -> bool {
         let grips = self.grips(bodies, rigids).into_iter().flatten();
         let mut ways = grips.flat_map(|grip| grip.yields);
@@ -155,7 +154,7 @@ impl Joint {
     }
 }
 
-/// The velocity with which a pin is drawn together [m/s].
+/// Returns the velocity at which a pin corrects its position error [m/s].
 fn drawn(apart: Vector, duration: f32) -> Vector {
     let draw = scaled(apart, DRAW / duration);
     let speed = length(draw);
@@ -165,8 +164,8 @@ fn drawn(apart: Vector, duration: f32) -> Vector {
     }
 }
 
-/// The impulse of a spring over a substep, worked out for its end: m⁻¹ λ = −v − (k x + k h v' + c v') h, solved for the
-/// velocity v' that it leads to.
+/// Returns the impulse of an implicit spring over a substep. It solves m⁻¹ λ = −v − (k x + k h v' + c v') h
+/// for the end velocity v'.
 fn spring(
     apart: Vector,
     relative: Vector,
@@ -183,21 +182,21 @@ fn spring(
     scaled(way, -(dot(relative, way) + push) / under)
 }
 
-/// Length and direction; nothing where there is none.
+/// Returns the length and direction of a vector; `None` for a zero vector.
 fn direction(apart: Vector) -> Option<(f32, Vector)> {
     let distance = length(apart);
     (distance > 1e-6).then(|| (distance, scaled(apart, 1.0 / distance)))
 }
 
-/// The speed along a direction that an impulse of 1 N s along it gives [1/kg].
+/// Returns the inverse effective mass along a unit direction [1/kg].
 fn along(yields: &[Vector; 3], way: Vector) -> f32 {
     dot(way, [0, 1, 2].map(|row: usize| dot(yields[row], way)))
 }
 
-/// The impulse that gives a velocity; none where nothing yields.
+/// Returns the impulse for a change of velocity; 0 if nothing can move.
 fn solved<D: Dim>(yields: &[Vector; 3], velocity: Vector) -> Vector {
     let [x, y, mut z] = *yields;
-    // Nothing yields along the third axis of the plane, and nothing comes along it.
+    // In 2D the third row and the third velocity are 0.
     if D::N == 2 {
         z = [0.0, 0.0, 1.0];
     }
@@ -205,7 +204,7 @@ fn solved<D: Dim>(yields: &[Vector; 3], velocity: Vector) -> Vector {
     if under <= 0.0 {
         return [0.0; 3];
     }
-    // By the columns of the inverse of a symmetric matrix.
+    // Columns of the inverse of a symmetric matrix.
     let columns = [cross(y, z), cross(z, x), cross(x, y)];
     let sum = (0..D::N).fold([0.0; 3], |sum, axis| {
         plus(sum, scaled(columns[axis], velocity[axis]))

@@ -1,4 +1,4 @@
-//! Follows an edge through bodies: where each of its samples is, and what their swath went through.
+//! Tracks a cutting edge through bodies: the position of each sample, and the area that the samples sweep.
 
 use super::inside::{self, Spot};
 use super::sample::{MOST_SAMPLES, Near, Sample};
@@ -11,29 +11,30 @@ use crate::rigid::Rigid;
 use crate::shape::Vector;
 use crate::vector::{dot, length, minus, plus, scaled, three};
 
-/// Samples on the width of the smallest voxel: none slips between two samples, not even of an edge that lies askew. With one for
-/// two voxels area and work of a cut are wrong by more than a tenth; with 1 and 4 it cuts as well.
+/// Edge samples per width of the smallest voxel, so that no voxel slips between two samples, even at an
+/// oblique edge. With one sample for two voxels, area and work of a cut are wrong by more than 10 %.
 const SAMPLES_PER_VOXEL: f32 = 2.0;
-/// An element may be stretched by so much, and is still found. A choice: from 1 to 3 all is cut as well, and more is looked at.
+/// Maximum stretch of an element that is still found.
 const STRETCH: f32 = 1.5;
-/// Between two looks at its swath no sample goes further in the body at rest than so many times as far as in the world,
-/// and so many voxels: what seems to did not go there, but came into other tissue.
-/// A choice, twice [`STRETCH`] and two voxels of play: with half and twice as much of either all is cut as well.
+/// Maximum movement of a sample in rest coordinates between two sweeps: `MOST_STRETCH` times its movement in
+/// the world, plus `MOST_JUMP` voxels. A larger jump means that the sample entered other tissue. The values
+/// are twice [`STRETCH`] and a play of two voxels.
 const MOST_STRETCH: f64 = 3.0;
 const MOST_JUMP: f64 = 2.0;
 
-/// What an edge went through in a body.
+/// Part of a body that an edge has passed through.
 pub struct Cut {
     pub body: BodyId,
     pub faces: Faces,
-    /// Of the swath where it was whole, at rest [m²].
+    /// Swept area where the material was whole, at rest [m²].
     pub area: f64,
-    /// In the middle of what is in the body [m].
+    /// Middle of the part of the edge that is inside the body [m].
     pub at: Vector,
 }
 
 impl Knife {
-    /// Brings up to date where its samples are. `ahead` is for how long it is not looked around again [s].
+    /// Updates the positions of the samples in the bodies. `ahead` is the time until the next search for
+    /// nearby elements [s].
     pub(crate) fn follow<D: Dim>(&mut self, bodies: &Bodies<D>, holder: &Rigid, ahead: f32) {
         let stance = self.stance::<D>(holder);
         self.take_samples(&stance, bodies);
@@ -46,7 +47,8 @@ impl Knife {
         }
     }
 
-    /// What its swath went through since the last time, so long ago [s], in each body that it is or was in.
+    /// Returns what the edge has passed through in the last `since` seconds, for each body that it is or was
+    /// in.
     pub(crate) fn pass<D: Dim>(
         &mut self,
         bodies: &Bodies<D>,
@@ -77,10 +79,10 @@ impl Knife {
         cuts
     }
 
-    /// How much of the edge a sample stands for [m].
+    /// Returns the length of edge that a sample represents [m].
     pub(super) fn share<D: Dim>(&self, stance: &Stance, place: usize) -> f32 {
         let last = self.samples.len() - 1;
-        // In the plane an edge is a point, and what it cuts 1 m thick.
+        // In 2D the edge is a point, and the body 1 m thick.
         if D::N == 2 {
             return 1.0;
         }
@@ -91,7 +93,7 @@ impl Knife {
         }
     }
 
-    /// Where a sample is, seen from the position of the holder [m].
+    /// Returns the position of a sample relative to the holder [m].
     pub(super) fn lever(&self, stance: &Stance, place: usize) -> Vector {
         let [from, to] = stance.levers;
         let share = match self.samples.len() {
@@ -101,19 +103,19 @@ impl Knife {
         plus(from, scaled(minus(to, from), share))
     }
 
-    /// Where a sample is [m].
+    /// Returns the world-space position of a sample [m].
     fn place(&self, stance: &Stance, place: usize) -> Vector {
         plus(stance.position, self.lever(stance, place))
     }
 
-    /// Sees to it that there are enough samples for the bodies that there are.
+    /// Adjusts the number of samples to the smallest voxel of all bodies.
     fn take_samples<D: Dim>(&mut self, stance: &Stance, bodies: &Bodies<D>) {
         let sizes = bodies.iter().map(|body| body.truth.grid.voxel_size());
         let least = sizes.fold(f32::INFINITY, f32::min);
-        // Not as it is turned: its length would tremble.
+        // In local coordinates, because the length of the rotated edge fluctuates by rounding.
         let long = length(minus(self.edge[1], self.edge[0]));
         let asked = (SAMPLES_PER_VOXEL * long / least).ceil() as usize;
-        // In the plane an edge is a point.
+        // In 2D the edge is a point.
         let count = match D::N {
             2 => 1,
             _ => asked.clamp(1, MOST_SAMPLES) + 1,
@@ -127,7 +129,7 @@ impl Knife {
         }
     }
 
-    /// Notes the elements that each sample may come into soon.
+    /// Lists the elements that each sample may enter soon.
     fn look_around<D: Dim>(
         &mut self,
         stance: &Stance,
@@ -140,7 +142,7 @@ impl Knife {
         self.near.iter_mut().for_each(Vec::clear);
         let from = plus(stance.position, stance.levers[0]);
         let long = stance.long();
-        // In the plane there is one sample, which all of them are near.
+        // In 2D a single sample is near all listed elements.
         let spacing = match D::N {
             2 => f32::INFINITY,
             _ => long / (self.samples.len() - 1) as f32,
@@ -181,12 +183,13 @@ impl Knife {
         }
     }
 
-    /// In whom a sample is: where it was, where its neighbours are, or in what is around.
+    /// Returns the body and the rest position of a sample: near its last position, at its neighbours, or in
+    /// nearby elements.
     fn find<D: Dim>(&self, bodies: &Bodies<D>, place: usize, at: Vector) -> Option<(BodyId, Spot)> {
         if let Some((id, spot)) = self.samples[place].inside
             && let Ok(body) = bodies.get(id)
         {
-            // What is pressed flat is not found, and is still there.
+            // In an element that is pressed flat nothing can be found, but the sample stays in it.
             let found = Spot::find(body, at, spot.voxel);
             if let Some(spot) = found.or(Some(spot).filter(|spot| spot.is_near(body, at))) {
                 return Some((id, spot));
@@ -210,7 +213,7 @@ impl Knife {
         tried.find_map(|(id, voxel)| Some((id, Spot::find(bodies.get(id).ok()?, at, voxel)?)))
     }
 
-    /// The swath that it swept through a body since the last look.
+    /// Returns the area that the edge has swept through a body since the last sweep.
     fn swath_in<D: Dim>(&self, stance: &Stance, (id, body): (BodyId, &Body<D>), since: f32) -> Cut {
         let size = body.truth.grid.voxel_size();
         let rows: Vec<Option<[RestPosition; 2]>> = (0..self.samples.len())
@@ -223,7 +226,7 @@ impl Knife {
             swath::go_through::<D>(patch, body.truth.grid.size(), &mut faces);
             area += share * swath::area(patch);
         };
-        // In the plane a sample sweeps a line, which stands for a swath across the body.
+        // In 2D a sample sweeps a line, which stands for an area across the body.
         if D::N == 2 {
             if let Some([from, to]) = rows[0] {
                 let deep = |[x, y, _]: RestPosition, z: f64| [x, y, z];
@@ -261,7 +264,7 @@ impl Knife {
         let all = 0..rows.len();
         let mut within: Vec<usize> = all.clone().filter(|&place| is_inside(place)).collect();
         if within.is_empty() {
-            // It has just come out.
+            // The edge has just left the body.
             within = all.filter(|&place| rows[place].is_some()).collect();
         }
         let middle = within.get(within.len() / 2).copied().unwrap_or(0);
@@ -273,7 +276,8 @@ impl Knife {
         }
     }
 
-    /// From where to where in a body at rest [voxels] a sample went since the last look, if it cut there.
+    /// Returns the start and end of a sample's path in rest coordinates [voxels] since the last sweep, if it
+    /// has been in the body.
     fn way_in<D: Dim>(
         &self,
         stance: &Stance,
@@ -286,12 +290,12 @@ impl Knife {
         let mut others = beside.into_iter().flatten();
         let (inside, passed) = (sample.inside_of(id), sample.passed_in(id));
         let of_neighbour = || others.find_map(|other| self.samples.get(other)?.inside_of(id));
-        // One that is outside is where it would be if the tissue went on.
+        // A sample outside of the body is extrapolated from tissue nearby.
         let base = inside.or(passed).or_else(of_neighbour)?;
         let size = body.truth.grid.voxel_size();
         let at = self.place(stance, place);
         let now = inside.map_or_else(|| base.extend(body, at), |spot| Some(spot.at))?;
-        // What comes to an edge that stands is cut as by one that comes to it.
+        // The motion of the tissue counts, too: tissue that moves against a resting edge is cut.
         let tissue = scaled(base.velocity(body)?, since);
         let before = || base.extend(body, plus(sample.before, tissue));
         let before = passed.map_or_else(before, |spot| Some(spot.at))?;
@@ -305,7 +309,7 @@ impl Knife {
         let travel = length(minus(at, sample.before)) + length(tissue);
         let reach = f64::from(travel / size);
         let is_jump = dot(way, way).sqrt() > MOST_STRETCH * reach + MOST_JUMP;
-        // It is drawn back through what it cut.
+        // Moving backwards through its own cut opens nothing.
         let forth = dot(way, toward) / dot(toward, toward).sqrt().max(1e-9);
         let is_drawn_back = forth < 0.0 && 2.0 * forth * forth > dot(way, way);
         match is_jump || is_drawn_back {

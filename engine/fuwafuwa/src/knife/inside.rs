@@ -1,4 +1,4 @@
-//! Where in a body a place is: in which voxel, and where it was at rest.
+//! Rest positions of world-space points in a body.
 
 use crate::body::Body;
 use crate::dim::{Dim, Point, voxel_around};
@@ -7,24 +7,25 @@ use crate::mesh::Element;
 use crate::shape::Vector;
 use crate::vector::{cross, length, minus};
 
-/// From a voxel to the one that has a place leads a way of so many elements at most. A choice: from 2 to 12 all is cut as well.
+/// Maximum number of elements visited from the starting voxel.
 const STEPS: usize = 6;
-/// So far out of both of two elements [voxels] a place is still in one of them: neighbours differ by their bending.
-/// A choice: from 0 to 0.5 all is cut as well.
+/// Tolerance outside of a cell [voxels] at which a point still counts as inside: neighbouring elements deform
+/// differently, so a point can be outside of both.
 const LITTLE: f32 = 0.25;
 
-/// A place in a body.
+/// Point in a body.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Spot {
-    /// The voxel that it is in.
+    /// Voxel that contains the point.
     pub voxel: Point,
-    /// Where it was at rest [voxels].
+    /// Rest position [voxels].
     pub at: Vector,
 }
 
 impl Spot {
-    /// Where a place [m] is, looked for from a voxel on. Nothing when it is not in the body, or far from there.
+    /// Finds a world-space point [m] in a body, starting from a voxel. Returns `None` if the point is not in
+    /// the body or too far from the start.
     pub fn find<D: Dim>(body: &Body<D>, at: Vector, from: Point) -> Option<Self> {
         let mesh = &body.truth.mesh;
         let mut voxel = from;
@@ -50,18 +51,18 @@ impl Spot {
         None
     }
 
-    /// Where a place [m] would be if all moved as here.
+    /// Returns the rest position of a world-space point [m], extrapolated with the deformation here.
     pub fn extend<D: Dim>(&self, body: &Body<D>, at: Vector) -> Option<Vector> {
         body.at_rest(body.truth.mesh.element_at(self.voxel)?, at)
     }
 
-    /// How fast the body moves there [m/s].
+    /// Returns the velocity of the body here [m/s].
     pub fn velocity<D: Dim>(&self, body: &Body<D>) -> Option<Vector> {
         let element = body.truth.mesh.element_at(self.voxel)?;
         Some(body.velocity_of(&body.weights(element, self.at)))
     }
 
-    /// Where directions of the world point in the body at rest, for the width of a voxel [voxels].
+    /// Returns world-space directions in rest coordinates, scaled to the width of a voxel [voxels].
     pub fn directions<D: Dim, const COUNT: usize>(
         &self,
         body: &Body<D>,
@@ -71,15 +72,15 @@ impl Spot {
         Some(ways.map(undo))
     }
 
-    /// Whether it is within half a voxel of a place [m].
+    /// Returns whether the point is within half a voxel of a world-space point [m].
     pub fn is_near<D: Dim>(&self, body: &Body<D>, at: Vector) -> bool {
         let element = body.truth.mesh.element_at(self.voxel);
         let half = 0.5 * body.truth.grid.voxel_size();
         element.is_some_and(|element| length(minus(body.carry(element)(self.at), at)) <= half)
     }
 
-    /// Whether the material is whole where an edge goes on that lies and cuts along these [voxels]: the face that it opens
-    /// next is closed.
+    /// Returns whether the material in front of an edge is whole: whether the next face that it opens is
+    /// closed. `along` is the direction of the edge and `toward` the cutting direction [voxels].
     pub fn is_whole_ahead<D: Dim>(&self, body: &Body<D>, along: Vector, toward: Vector) -> bool {
         let ahead = [0, 1, 2].map(|k: usize| self.at[k] + 0.5 * toward[k]);
         let Some(voxel) = voxel_of::<D>(ahead).filter(|&at| body.truth.grid.is_solid(at)) else {
@@ -88,7 +89,7 @@ impl Spot {
         let normal = cross(along, toward);
         let steepest = |a: &usize, b: &usize| normal[*a].abs().total_cmp(&normal[*b].abs());
         let axis = (0..D::N).max_by(steepest).unwrap_or(0);
-        // Where the swath crosses the line along the axis through the middle of the voxel, seen from there.
+        // Signed distance from the middle of the voxel to the swept plane, along the axis.
         let apart: f32 = (0..D::N)
             .map(|k| normal[k] * (ahead[k] - voxel[k] as f32 - 0.5))
             .sum();
@@ -99,11 +100,12 @@ impl Spot {
     }
 }
 
-/// Whether the face after a voxel across an axis holds it and its neighbour together.
+/// Returns whether the face behind a voxel across an axis connects it to its neighbour.
 fn is_closed<D: Dim>(body: &Body<D>, voxel: Point, axis: usize) -> bool {
     let mut corner = voxel;
     corner[axis] += 1;
-    // Seen from its low corner the voxel is in the octant that is low along the axis alone.
+    // Relative to the voxel's upper corner along the axis, the voxel is in the octant that is low along this
+    // axis only.
     let octant = (0..D::N)
         .filter(|&other| other != axis)
         .fold(0, |octant, other| octant | 1 << other);
@@ -111,7 +113,7 @@ fn is_closed<D: Dim>(body: &Body<D>, voxel: Point, axis: usize) -> bool {
     body.truth.sharing.around(corner).is_closed(octant, axis)
 }
 
-/// The voxel that has a place, however far from a body it is.
+/// Returns the voxel at a rest position; `None` far from any grid.
 fn voxel_of<D: Dim>(at: Vector) -> Option<Point> {
     let mut voxel = [0; 3];
     for axis in 0..D::N {
@@ -123,7 +125,7 @@ fn voxel_of<D: Dim>(at: Vector) -> Option<Point> {
     Some(voxel)
 }
 
-/// Whether an element may have a place [m] in it: whether it is in the box around its nodes, or little out of it.
+/// Returns whether an element may contain a point [m]: a test with the enlarged box around its nodes.
 pub fn may_have<D: Dim>(body: &Body<D>, element: &Element, at: Vector) -> bool {
     let margin = LITTLE * body.truth.grid.voxel_size() * element.cell.width() as f32;
     (0..D::N).all(|axis| {
@@ -136,7 +138,7 @@ pub fn may_have<D: Dim>(body: &Body<D>, element: &Element, at: Vector) -> bool {
     })
 }
 
-/// How far a place is out of the cell of an element [voxels].
+/// Returns the distance of a rest position from the cell of an element [voxels].
 fn distance<D: Dim>(element: &Element, at: Vector) -> f32 {
     let (low, width) = (element.cell.first_voxel(), element.cell.width() as f32);
     let out = |axis: usize| {

@@ -1,4 +1,4 @@
-//! The rows of the solver by which an edge holds the tissue that it is in, and is held by it.
+//! Solver rows between a cutting edge and the tissue that it is in.
 
 use super::{Knife, Stance};
 use crate::body::{Bodies, Body};
@@ -10,30 +10,29 @@ use crate::rigid::{Rigid, Rigids};
 use crate::shape::Vector;
 use crate::vector::{as_row, cross, dot, minus, plus, scaled};
 
-/// How often all rows are solved in a substep: samples that stand side by side push the same nodes.
-/// With 2 what was cut is not in two; with 4 and 16 it is.
+/// Solver iterations over all rows per substep. Neighbouring samples push the same nodes; with 2 iterations a
+/// cut does not separate the parts.
 const ROUNDS: usize = 8;
 
-/// From this share of the most that can hold it on a sample goes on: below, what it moves is rounding. A choice:
-/// from 0.5 to 1 the same tests pass.
+/// Share of its limit above which a row counts as sliding; the remainder is rounding.
 const AT_LIMIT: f32 = 0.98;
 
-/// What one sample holds.
+/// Solver row of one sample.
 struct Row {
     body: BodyId,
-    /// Nodes, and by how much each counts.
+    /// Nodes and their weights.
     weights: Vec<(NodeId, f32)>,
-    /// How fast a unit of impulse makes them there [1/kg].
+    /// Inverse effective mass of the tissue [1/kg].
     gain: f32,
-    /// From the position of the holder [m].
+    /// Lever arm from the position of the holder [m].
     lever: Vector,
-    /// The most that passes forth and sideways in the substep [N s], and what did.
+    /// Limits of the impulse in the cutting direction and sideways in the substep [N s], and the impulses.
     limits: [f32; 2],
     impulse: [f32; 2],
 }
 
 impl Knife {
-    /// Gives it and what it is in the impulses of a substep of `duration` [s]. Returns the sleepers that wake.
+    /// Solves the edge against the tissue for a substep of `duration` [s]. Returns the sleepers to wake.
     pub(crate) fn solve<D: Dim>(
         &mut self,
         bodies: &mut Bodies<D>,
@@ -61,7 +60,9 @@ impl Knife {
         let ways = [stance.toward, stance.across];
         for _ in 0..ROUNDS {
             for (_, row) in &mut rows {
-                let body = bodies.get_mut(row.body).expect("it was there just now");
+                let body = bodies
+                    .get_mut(row.body)
+                    .expect("the body is alive in this substep");
                 solve_row(row, body, holder, ways, duration);
             }
         }
@@ -85,7 +86,7 @@ impl Knife {
         woken
     }
 
-    /// The pieces that it is in: they stay awake while something moves it.
+    /// Returns the pieces that the edge is in. They stay awake while the edge moves.
     pub(crate) fn held<D: Dim>(&self, bodies: &Bodies<D>) -> Vec<(BodySlot, PieceId)> {
         let inside = self.samples.iter().filter_map(|sample| sample.inside);
         let pieces = inside.filter_map(|(id, spot)| {
@@ -99,11 +100,13 @@ impl Knife {
         pieces
     }
 
-    /// The row of a sample that is in a body.
+    /// Returns the solver row of a sample that is in a body.
     fn row<D: Dim>(&self, stance: &Stance, place: usize, body: &Body<D>, duration: f32) -> Row {
-        let (id, spot) = self.samples[place].inside.expect("it is in a body");
+        let (id, spot) = self.samples[place].inside.expect("the sample is in a body");
         let mesh = &body.truth.mesh;
-        let owner = mesh.owner(spot.voxel).expect("a place is in a solid voxel");
+        let owner = mesh
+            .owner(spot.voxel)
+            .expect("the sample is in a solid voxel");
         let element = mesh.element(owner).expect("owners are alive");
         let material = body.material(element);
         let ways = [stance.along, stance.toward];
@@ -122,13 +125,13 @@ impl Knife {
             gain: gains.sum(),
             weights,
             lever: self.lever(stance, place),
-            // No length of what cannot be torn holds nothing.
+            // A sample of zero length in unbreakable material gives 0 · ∞ = NaN, which `max` turns into 0.
             limits: [forth, material.strength * self.height].map(|k| (share * k).max(0.0)),
             impulse: [0.0; 2],
         }
     }
 
-    /// The force on a metre of edge that it takes to cut a material [N/m].
+    /// Returns the force per metre of edge that cuts a material [N/m].
     fn force_of_a_cut(&self, material: &Material) -> f32 {
         let dull = match self.radius > 0.0 {
             true => 2.0 * self.radius * material.strength,
@@ -138,7 +141,7 @@ impl Knife {
     }
 }
 
-/// How much faster than the tissue the edge is [m/s].
+/// Returns the velocity of the edge relative to the tissue [m/s].
 fn slip<D: Dim>(row: &Row, body: &Body<D>, holder: &Rigid) -> Vector {
     minus(
         holder.velocity_at(row.lever),
@@ -146,7 +149,7 @@ fn slip<D: Dim>(row: &Row, body: &Body<D>, holder: &Rigid) -> Vector {
     )
 }
 
-/// Takes away what slip the row can.
+/// Applies the impulse that removes the slip, within the limits of the row.
 fn solve_row<D: Dim>(
     row: &mut Row,
     body: &mut Body<D>,
@@ -155,7 +158,7 @@ fn solve_row<D: Dim>(
     duration: f32,
 ) {
     for (way, direction) in ways.into_iter().enumerate() {
-        // Where neither side yields, all that may pass does.
+        // If neither side can move, the division by 0 drives the impulse to its limit.
         let yields = row.gain + holder.yields(row.lever, direction);
         let speed = dot(slip(row, body, holder), direction);
         let least = if way == 0 { 0.0 } else { -row.limits[way] };

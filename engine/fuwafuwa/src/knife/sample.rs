@@ -1,4 +1,4 @@
-//! A place of an edge, and what it knows of the tissue that it is in.
+//! Samples of a cutting edge and their state in the tissue.
 
 use super::inside::Spot;
 use crate::dim::Point;
@@ -8,53 +8,53 @@ use crate::shape::Vector;
 #[cfg(feature = "serde")]
 use crate::vector::is_finite;
 
-/// The most spaces between samples on an edge: up to 256 voxels, a quarter of the largest grid, they stand close enough.
+/// Maximum number of intervals between samples. It suffices for 256 voxels, a quarter of the largest grid.
 pub const MOST_SAMPLES: usize = 512;
 
-/// An element that a sample may come into.
+/// Element that a sample may enter.
 #[derive(Copy, Clone, Debug)]
 pub struct Near {
     pub body: BodyId,
     pub voxel: Point,
-    /// One of its nodes, and how far from that it reaches [m].
+    /// A node of the element, and the reach of the element from it [m].
     pub node: NodeId,
     pub reach: f32,
 }
 
-/// A place of an edge.
+/// Sample of a cutting edge.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Sample {
-    /// In whom it is, and where.
+    /// Body and rest position that the sample is in.
     pub inside: Option<(BodyId, Spot)>,
-    /// Where it was in whom when its swath was last looked at: the swath ends there.
+    /// Body and rest position at the last sweep, where the swept area ends.
     pub passed: Option<(BodyId, Spot)>,
-    /// Where it was then [m].
+    /// World-space position at the last sweep [m].
     pub before: Vector,
-    /// Whether it went on through tissue since then, and through some that was whole.
+    /// Whether the sample has advanced through tissue since the last sweep, and whether through whole tissue.
     pub slid: bool,
     pub cut: bool,
 }
 
 impl Sample {
-    /// Where it was in a body at rest when its swath was last looked at.
+    /// Returns the rest position in a body at the last sweep.
     pub fn passed_in(&self, body: BodyId) -> Option<Spot> {
         let passed = self.passed.filter(|(own, _)| *own == body);
         passed.map(|(_, spot)| spot)
     }
 
-    /// Where it is in a body.
+    /// Returns the present rest position in a body.
     pub fn inside_of(&self, body: BodyId) -> Option<Spot> {
         let inside = self.inside.filter(|(own, _)| *own == body);
         inside.map(|(_, spot)| spot)
     }
 
-    /// Whether tissue held it since its swath was last looked at.
+    /// Returns whether tissue has held the sample since the last sweep.
     pub fn is_stuck(&self) -> bool {
         self.inside.is_some() && !self.slid
     }
 
-    /// Whether what was read from a file may be one.
+    /// Returns whether a sample that was read from a file is valid.
     #[cfg(feature = "serde")]
     pub fn is_sound(&self) -> bool {
         let spots = [self.inside, self.passed].into_iter().flatten();

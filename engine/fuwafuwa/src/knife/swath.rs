@@ -1,19 +1,20 @@
-//! The swath that an edge sweeps through the lattice of a body at rest, and the faces between voxels that it goes through.
+//! Area that an edge sweeps through the rest lattice of a body, and the faces between voxels that it crosses.
 //!
-//! A face between two voxels is gone through when the line between their middles is. All lines along an axis are looked at
-//! as points in a picture of the swath seen along it, as a rasteriser does: neighbouring triangles leave no gap, and
-//! so the swath leaves none.
+//! A face between two voxels is crossed if the line between their centres is. For each axis, the lines along
+//! it are tested like the pixels of a rasteriser that views the swept area along the axis. Neighbouring
+//! triangles leave no gap, so neither does the swept area.
 
 use crate::dim::{Dim, Point};
 use std::collections::BTreeSet;
 
-/// A position in the lattice of a body as it was built [voxels].
+/// Rest position in the lattice of a body [voxels].
 pub type RestPosition = [f64; 3];
 
-/// Faces, each as the voxel before it and its axis.
+/// Faces, each given by the voxel before it and its axis.
 pub type Faces = BTreeSet<(Point, usize)>;
 
-/// Adds the faces in a grid of a size [voxels] that a patch goes through; its corners are in the order of its outline.
+/// Adds the faces of a grid of `size` [voxels] that a patch crosses. The corners are in the order of its
+/// outline.
 pub fn go_through<D: Dim>([a, b, c, d]: [RestPosition; 4], size: Point, faces: &mut Faces) {
     for triangle in [[a, b, c], [a, c, d]] {
         for axis in 0..D::N {
@@ -22,7 +23,7 @@ pub fn go_through<D: Dim>([a, b, c, d]: [RestPosition; 4], size: Point, faces: &
     }
 }
 
-/// The area of a patch [voxel²].
+/// Returns the area of a patch [voxel²].
 pub fn area([a, b, c, d]: [RestPosition; 4]) -> f64 {
     let half = |u: RestPosition, v: RestPosition| {
         let square = |i: usize, j: usize| {
@@ -35,7 +36,7 @@ pub fn area([a, b, c, d]: [RestPosition; 4]) -> f64 {
     half(from(b), from(c)) + half(from(c), from(d))
 }
 
-/// The faces across an axis that a triangle goes through.
+/// Adds the faces across an axis that a triangle crosses.
 fn go_along(triangle: [RestPosition; 3], axis: usize, size: Point, faces: &mut Faces) {
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
     let seen = triangle.map(|corner| [corner[u], corner[v]]);
@@ -51,7 +52,7 @@ fn go_along(triangle: [RestPosition; 3], axis: usize, size: Point, faces: &mut F
                 side(seen[2], seen[0], middle),
                 side(seen[0], seen[1], middle),
             ];
-            // What is on an edge is in both triangles at it: rather twice than not at all.
+            // A point on an edge counts for both triangles, so that none is missed.
             if shares.iter().any(|share| share * double < 0.0) {
                 continue;
             }
@@ -66,7 +67,8 @@ fn go_along(triangle: [RestPosition; 3], axis: usize, size: Point, faces: &mut F
     }
 }
 
-/// On which side of a line from `a` to `b` a point is. The same from either end, so that neighbours agree.
+/// Returns on which side of the line from `a` to `b` a point is. The result does not depend on the direction
+/// of the line except for its sign, so that neighbouring triangles agree.
 fn side(a: [f64; 2], b: [f64; 2], point: [f64; 2]) -> f64 {
     let is_forward = a <= b;
     let (low, high) = if is_forward { (a, b) } else { (b, a) };
@@ -74,7 +76,8 @@ fn side(a: [f64; 2], b: [f64; 2], point: [f64; 2]) -> f64 {
     if is_forward { turn } else { -turn }
 }
 
-/// Those of so many voxels whose middle is between the least and the greatest of some numbers.
+/// Returns the voxels, of `count` along an axis, with a centre between the smallest and the largest
+/// coordinate.
 fn middles(along: [f64; 3], count: i32) -> std::ops::RangeInclusive<i32> {
     let low = along.into_iter().fold(f64::INFINITY, f64::min);
     let high = along.into_iter().fold(f64::NEG_INFINITY, f64::max);
@@ -88,7 +91,7 @@ mod tests {
     use crate::dim::{Dim2, Dim3};
 
     #[test]
-    fn a_flat_swath_opens_the_faces_that_it_goes_through_and_no_others() {
+    fn flat_swath_opens_exactly_the_crossed_faces() {
         let mut faces = Faces::new();
         let at = |x: f64, y: f64, z: f64| [x, y, z];
         let corners = [
@@ -104,8 +107,8 @@ mod tests {
     }
 
     #[test]
-    fn a_swath_in_many_small_steps_parts_the_lattice_without_a_gap() {
-        // A wavy swath over 12 by 12 voxels: what is above it and what is below are not joined by a closed face.
+    fn swath_of_small_patches_separates_the_lattice_without_gaps() {
+        // A wavy swept area over 12 by 12 voxels: no closed face joins the voxels above it to those below.
         let height =
             |x: f64, z: f64| 6.0 + 2.3 * libm::sin(0.7 * x) + 1.9 * libm::cos(0.55 * z + 0.3 * x);
         let place = |i: i32, k: i32| {
@@ -145,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn a_swath_that_goes_far_out_of_the_grid_takes_no_longer() {
+    fn swath_far_beyond_the_grid_is_clipped() {
         let far = 1e12;
         let corners = [
             [-far, 1.4, -far],
@@ -160,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn in_the_plane_the_way_of_a_point_opens_what_it_crosses() {
+    fn path_of_a_point_opens_the_crossed_faces_in_2d() {
         let mut faces = Faces::new();
         let (from, to) = ([0.2, 2.3], [4.1, 2.3]);
         let corners = [

@@ -1,28 +1,30 @@
-//! Lines, triangles and blocks: where a ray meets them, what of them is nearest, what is inside.
+//! Geometric primitives of queries: intersections, nearest points and containment for segments, triangles and
+//! blocks.
 
 use crate::dim::{Dim, corner};
 use crate::shape::Vector;
 use crate::vector::{cross, dot, minus, plus, scaled};
 
-/// Rounds of Newton that find a place in a block that is not turned inside out: of blocks whose corners were moved at random by
-/// up to 0.6 of their width 6 rounds found all that 40 do, so it is twice what it takes.
+/// Newton iterations to locate a point in a block. 6 are sufficient for blocks with corners displaced at
+/// random by up to 0.6 of their width; 12 leave a factor of 2.
 const ROUNDS: usize = 12;
-/// How far beyond its ends something may reach, in terms of its width: rounding leaves no gap between neighbours.
-/// It is what single precision leaves of a voxel of 1 cm that is 16 m from the origin.
+/// Relative tolerance at the ends of primitives, so that rounding leaves no gap between neighbours. It is the
+/// single-precision resolution of a voxel of 1 cm at 16 m from the origin.
 const LITTLE: f32 = 1e-4;
 
-/// How far along a ray it crosses a segment of the plane, in lengths of its direction.
+/// Returns the distance to the intersection of a ray with a segment in 2D, in multiples of the direction.
 pub fn ray_meets_segment(from: Vector, direction: Vector, [a, b]: [Vector; 2]) -> Option<f32> {
     let flat = |a: Vector, b: Vector| a[0] * b[1] - a[1] * b[0];
     let (along, reach) = (minus(b, a), minus(a, from));
     let across = flat(direction, along);
     let (far, share) = (flat(reach, along) / across, flat(reach, direction) / across);
-    // Of lines side by side both are infinite, or not a number.
+    // For parallel lines both are infinite or NaN.
     let is_in = (-LITTLE..=1.0 + LITTLE).contains(&share);
     (is_in && far >= 0.0 && far.is_finite()).then_some(far)
 }
 
-/// How far along a ray it crosses a triangle, in lengths of its direction [Möller 1997].
+/// Returns the distance to the intersection of a ray with a triangle, in multiples of the direction [Möller
+/// 1997].
 pub fn ray_meets_triangle(from: Vector, direction: Vector, [a, b, c]: [Vector; 3]) -> Option<f32> {
     let (one, two, reach) = (minus(b, a), minus(c, a), minus(from, a));
     let across = cross(direction, two);
@@ -35,14 +37,15 @@ pub fn ray_meets_triangle(from: Vector, direction: Vector, [a, b, c]: [Vector; 3
     (is_in && far >= 0.0 && far.is_finite()).then_some(far)
 }
 
-/// The place on a segment that is nearest.
+/// Returns the nearest point on a segment.
 pub fn nearest_on_segment(at: Vector, [a, b]: [Vector; 2]) -> Vector {
     let along = minus(b, a);
     let share = dot(minus(at, a), along) / dot(along, along).max(f32::MIN_POSITIVE);
     plus(a, scaled(along, share.clamp(0.0, 1.0)))
 }
 
-/// The place on a triangle that is nearest: straight below where that is inside, else on an edge.
+/// Returns the nearest point on a triangle: the projection if it is inside, otherwise the nearest point of an
+/// edge.
 pub fn nearest_on_triangle(at: Vector, [a, b, c]: [Vector; 3]) -> Vector {
     let normal = cross(minus(b, a), minus(c, a));
     let squared = dot(normal, normal);
@@ -65,10 +68,10 @@ pub fn nearest_on_triangle(at: Vector, [a, b, c]: [Vector; 3]) -> Vector {
     others.into_iter().fold(first, nearer)
 }
 
-/// Whether a place is in a block whose corners are given in the order of [`corner`]: whether some shares of its
-/// widths, from 0 to 1, lead there.
+/// Returns whether a point is in a block, given by its corners in the order of [`corner`]: whether local
+/// coordinates from 0 to 1 map to the point.
 pub fn is_in_block<D: Dim>(at: Vector, corners: &[Vector]) -> bool {
-    // As seen from there, which may be far from the origin.
+    // Relative to the point, which may be far from the origin.
     let corners: Vec<Vector> = corners.iter().map(|&corner| minus(corner, at)).collect();
     let mut shares = [0.5f32; 3];
     shares[D::N..].fill(0.0);
@@ -91,7 +94,7 @@ pub fn is_in_block<D: Dim>(at: Vector, corners: &[Vector]) -> bool {
             .all(|share| (-LITTLE..=1.0 + LITTLE).contains(share))
 }
 
-/// Where some shares of the widths of a block lead, and how that changes with each of them.
+/// Returns the point at local coordinates of a block, and its derivatives by each of them.
 fn in_block<D: Dim>(shares: Vector, corners: &[Vector]) -> (Vector, [Vector; 3]) {
     let mut place = [0.0; 3];
     let mut slopes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -102,7 +105,7 @@ fn in_block<D: Dim>(shares: Vector, corners: &[Vector]) -> (Vector, [Vector; 3])
             0 => 1.0 - shares[axis],
             _ => shares[axis],
         };
-        // In the plane corners differ along two axes.
+        // In 2D corners differ along two axes only.
         let weights = [0, 1, 2].map(|axis| if axis < D::N { weight(axis) } else { 1.0 });
         place = plus(place, scaled(at, weights.iter().product()));
         for axis in 0..D::N {
@@ -115,7 +118,7 @@ fn in_block<D: Dim>(shares: Vector, corners: &[Vector]) -> (Vector, [Vector; 3])
     (place, slopes)
 }
 
-/// x, where the columns times x are `wanted`.
+/// Returns the solution x of the 3×3 system with columns `a`, `b`, `c`, or `None` if it is singular.
 fn solved([a, b, c]: [Vector; 3], wanted: Vector) -> Option<Vector> {
     let determinant = dot(a, cross(b, c));
     let parts = [cross(b, c), cross(c, a), cross(a, b)];
@@ -131,7 +134,7 @@ mod tests {
     const TRIANGLE: [Vector; 3] = [[0.0, 0.0, 1.0], [2.0, 0.0, 1.0], [0.0, 2.0, 1.0]];
 
     #[test]
-    fn rays_meet_what_is_before_them() {
+    fn ray_hits_only_in_front_of_its_origin() {
         let up = [0.0, 0.0, 2.0];
         assert_eq!(ray_meets_triangle([0.5, 0.5, 0.0], up, TRIANGLE), Some(0.5));
         assert_eq!(ray_meets_triangle([0.5, 0.5, 2.0], up, TRIANGLE), None);
@@ -153,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_nearest_is_inside_on_an_edge_or_a_corner() {
+    fn nearest_point_on_triangle_is_inside_on_edge_or_at_corner() {
         let check = |at, expect| assert_eq!(nearest_on_triangle(at, TRIANGLE), expect);
         check([0.5, 0.5, 3.0], [0.5, 0.5, 1.0]);
         check([1.0, -4.0, 0.0], [1.0, 0.0, 1.0]);
@@ -162,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn a_crooked_block_has_what_lies_between_its_corners() {
+    fn is_in_block_is_exact_for_deformed_blocks() {
         let crooked = |at: [i32; 3]| {
             let [x, y, z] = at.map(|k| k as f32);
             [x + 0.2 * y, 1.5 * y - 0.1 * x * z, z + 0.3 * x * y]

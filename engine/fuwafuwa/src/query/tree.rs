@@ -1,35 +1,35 @@
-//! Boxes in boxes, so that what is near a place or on a ray is found without looking at all.
+//! Bounding-volume hierarchy for queries.
 
 use crate::shape::{Bounds, Vector};
 use crate::vector::length;
 use std::ops::Range;
 
-/// Most boxes that are not parted further. A tree is made anew for each `Queries`: with 1 it takes a fifth longer to make,
-/// and what is nearest to a place and what is there are found in half the time, with 16 in twice. 4 suits few questions.
+/// Maximum number of boxes in a leaf. Smaller leaves make queries faster and construction slower. The tree is
+/// built for each `Queries`, so 4 suits a small number of queries.
 const LEAF: usize = 4;
 
-/// By how much a box reaches beyond what is in it, in terms of its width: ten times as far as a figure reaches beyond its ends.
+/// Relative margin of a box around its content: ten times the tolerance of the primitives.
 const LITTLE: f32 = 1e-3;
 
-/// A tree over boxes that are known by their place in a list.
+/// Bounding-volume hierarchy over boxes, which are known by their index in a list.
 #[derive(Clone, Debug, Default)]
 pub struct Tree {
     knots: Vec<Knot>,
-    /// Places in the list, in the order of the leaves.
+    /// Indices of the list, in the order of the leaves.
     places: Vec<u32>,
 }
 
 #[derive(Clone, Debug)]
 struct Knot {
     bounds: Bounds,
-    /// Of a leaf, which places are in it.
+    /// Range of `places` in a leaf; empty for an inner node.
     leaf: Range<u32>,
-    /// Of what is no leaf, its two parts.
+    /// Children of an inner node.
     parts: [u32; 2],
 }
 
 impl Tree {
-    /// Over these boxes.
+    /// Builds the hierarchy over boxes.
     pub fn new(boxes: &[Bounds]) -> Self {
         let mut tree = Self {
             knots: Vec::new(),
@@ -41,11 +41,11 @@ impl Tree {
         tree
     }
 
-    /// Adds what is over a range of the places; returns its knot.
+    /// Adds a node over a range of `places`; returns its index.
     fn grow(&mut self, boxes: &[Bounds], range: Range<usize>) -> u32 {
         let places = &mut self.places[range.clone()];
         let bounds = { places.iter() }.map(|&place| boxes[place as usize]);
-        let bounds = bounds.reduce(around).expect("no range is empty");
+        let bounds = bounds.reduce(around).expect("ranges are not empty");
         let knot = self.knots.len() as u32;
         self.knots.push(Knot {
             bounds,
@@ -76,8 +76,9 @@ impl Tree {
         knot
     }
 
-    /// Looks at all boxes whose cost, and that of those around them, is less than the least so far, which begins with
-    /// `least`. `look` is told the place of a box and returns the cost of what is in it, not less than that of the box.
+    /// Visits the boxes with a cost below the smallest one found before. That limit begins at `least`.
+    /// `cost` must not be larger for a box than for its content. `look` receives the index of a box and
+    /// returns the cost of its content.
     pub fn search(
         &self,
         mut least: f32,
@@ -89,7 +90,7 @@ impl Tree {
         };
         let mut stack = vec![(0, cost(&root.bounds))];
         while let Some((knot, at_least)) = stack.pop() {
-            // What is not a number is not less.
+            // False if `at_least` is NaN.
             if at_least < least {
                 let Knot { leaf, parts, .. } = &self.knots[knot as usize];
                 for place in leaf.clone() {
@@ -98,7 +99,7 @@ impl Tree {
                 if leaf.is_empty() {
                     let mut parts =
                         parts.map(|part| (part, cost(&self.knots[part as usize].bounds)));
-                    // The last one is looked at first.
+                    // The last one on the stack is visited first.
                     parts.sort_by(|a, b| b.1.total_cmp(&a.1));
                     stack.extend(parts);
                 }
@@ -107,14 +108,14 @@ impl Tree {
     }
 }
 
-/// The box around two.
+/// Returns the box around two boxes.
 pub fn around([a, b]: Bounds, [c, d]: Bounds) -> Bounds {
     let low = [0, 1, 2].map(|axis: usize| a[axis].min(c[axis]));
     let high = [0, 1, 2].map(|axis: usize| b[axis].max(d[axis]));
     [low, high]
 }
 
-/// The box around points, with a little more, so that rounding leaves no gap.
+/// Returns the box around points, with a margin against rounding.
 pub fn around_all(points: impl IntoIterator<Item = Vector>) -> Bounds {
     let nothing = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
     let points = points.into_iter();
@@ -124,13 +125,14 @@ pub fn around_all(points: impl IntoIterator<Item = Vector>) -> Bounds {
     [low.map(|k| k - little), high.map(|k| k + little)]
 }
 
-/// How far a place is from a box [m]; 0 inside.
+/// Returns the distance of a point from a box [m]; 0 inside.
 pub fn distance_from([low, high]: &Bounds, at: Vector) -> f32 {
     let beyond = |axis: usize| (low[axis] - at[axis]).max(at[axis] - high[axis]).max(0.0);
     length([0, 1, 2].map(beyond))
 }
 
-/// How far along a ray a box begins, in lengths of its direction; infinite where the ray misses it.
+/// Returns the distance along a ray to the entry into a box, in multiples of the direction; infinite if the
+/// ray misses the box.
 pub fn entry([low, high]: &Bounds, from: Vector, direction: Vector) -> f32 {
     let (mut first, mut last) = (0.0f32, f32::INFINITY);
     for axis in 0..3 {
@@ -152,7 +154,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_nearest_is_found() {
+    fn search_finds_the_nearest_box_in_few_visits() {
         let places: Vec<Vector> = (0..500)
             .map(|k| {
                 let at = |step: usize| (k * step % 101) as f32;
@@ -176,11 +178,15 @@ mod tests {
             assert_eq!(best, all.fold(f32::INFINITY, f32::min));
             assert!(looked < 100, "{looked}");
         }
-        Tree::new(&[]).search(1.0, |_| 0.0, |_| panic!("there is nothing"));
+        Tree::new(&[]).search(
+            1.0,
+            |_| 0.0,
+            |_| panic!("an empty tree has no boxes to visit"),
+        );
     }
 
     #[test]
-    fn a_ray_enters_a_box_where_it_does() {
+    fn entry_returns_distance_or_infinity() {
         let bounds = [[1.0, -1.0, 0.0], [2.0, 1.0, 0.0]];
         assert_eq!(entry(&bounds, [0.0; 3], [1.0, 0.0, 0.0]), 1.0);
         assert_eq!(entry(&bounds, [1.5, 0.0, 0.0], [0.0, 1.0, 0.0]), 0.0);

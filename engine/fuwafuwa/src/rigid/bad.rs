@@ -1,25 +1,25 @@
-//! How something rigid cannot be.
+//! Errors of rigid-body parameters.
 
 use crate::shape::{BadShape, Vector};
 use std::fmt;
 
-/// Hands and goals further from the origin than this on an axis [m] are refused, like those that
-/// are not finite: single precision has no millimetres out there, and no such speeds.
+/// Largest absolute coordinate of rigid bodies and targets [m]; larger and non-finite ones are rejected.
+/// Beyond it, single precision cannot resolve millimetres or the corresponding velocities.
 pub const FARTHEST: f32 = 1e6;
 
-/// Something rigid that cannot be: which field, and what it must be.
+/// Invalid rigid-body parameter.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct BadRigid {
-    /// The field.
+    /// Name of the field.
     pub field: &'static str,
-    /// What was expected.
+    /// Expected value.
     pub expected: &'static str,
 }
 
 impl fmt::Display for BadRigid {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { field, expected } = self;
-        write!(f, "the {field} of what is rigid must be {expected}")
+        write!(f, "invalid rigid body: {field} must be {expected}")
     }
 }
 
@@ -35,7 +35,7 @@ pub fn require(good: bool, field: &'static str, expected: &'static str) -> Resul
     good.then_some(()).ok_or(BadRigid { field, expected })
 }
 
-/// Whether something rigid or its goal may be there.
+/// Returns whether a position is allowed for rigid bodies and targets.
 pub fn is_within_reach(at: Vector) -> bool {
     at.iter().all(|k| k.abs() <= FARTHEST)
 }

@@ -1,4 +1,4 @@
-//! What something rigid may be.
+//! Validation of rigid bodies.
 
 use super::bad::{BadRigid, is_within_reach, require};
 use super::{Drive, Rigid};
@@ -33,10 +33,10 @@ impl Rigid {
         let rotations = [self.rotation, self.rotation_before, self.rotation_goal];
         let are_rotations = rotations.into_iter().all(Rotation::is_one);
         require(are_rotations, "rotation", "of length 1")?;
-        require(self.still >= 0.0, "time at rest", "0 or more")?;
+        require(self.still >= 0.0, "sleep timer", "0 or more")?;
         self.form.check()?;
         let is_moved = self.shape == self.form.rotated(self.rotation).moved(self.position);
-        let expected = "what it is at the origin, turned and moved to its position";
+        let expected = "the local shape, rotated and translated to the pose";
         require(is_moved, "shape", expected)?;
         within(
             "friction",
@@ -48,7 +48,7 @@ impl Rigid {
         within("restitution", self.restitution, 0.0, 1.0, "0 to 1")?;
         if self.drive != Drive::Fixed {
             let ends = self.form.bounds().into_iter().all(is_within_reach);
-            require(ends, "shape", "one that ends within 1e6 m of its middle")?;
+            require(ends, "shape", "bounded, within 1e6 m of its position")?;
         }
         match self.drive {
             Drive::Fixed | Drive::Kinematic => Ok(()),

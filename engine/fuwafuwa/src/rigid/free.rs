@@ -1,4 +1,4 @@
-//! What falls: how it is moved, turned, pushed and put to sleep.
+//! Motion of rigid bodies: integration, impulses, sleep.
 
 use super::bad::{BadRigid, is_within_reach, require};
 use super::inertia::{Inertia, times};
@@ -10,17 +10,18 @@ use crate::shape::{Vector, flat};
 use crate::vector::{cross, dot, length, minus, plus, scaled};
 
 impl Rigid {
-    /// Whether it is free to fall.
+    /// Returns whether the body is dynamic.
     pub fn is_free(&self) -> bool {
         matches!(self.drive, Drive::Free { .. })
     }
 
-    /// Whether it is free and came to rest, until something moves against it.
+    /// Returns whether the body is dynamic and sleeps, until something moves against it.
     pub fn is_asleep(&self) -> bool {
         self.asleep
     }
 
-    /// Whether it keeps awake what it touches: a hand does, and so does what is moved, however slowly.
+    /// Returns whether the body keeps objects in contact with it awake: a coupled body always, a kinematic
+    /// body while it moves.
     pub(crate) fn pushes(&self) -> bool {
         match self.drive {
             Drive::Coupled { .. } => true,
@@ -29,25 +30,25 @@ impl Rigid {
         }
     }
 
-    /// Whether it touches something soft of these layers.
+    /// Returns whether the body has contacts with soft bodies of the given layers.
     #[inline(always)]
     pub(crate) fn meets(&self, layers: Layers) -> bool {
         !self.is_sensor && self.layers.meet(layers)
     }
 
-    /// Whether it touches something rigid.
+    /// Returns whether the body has contacts with another rigid body.
     #[inline(always)]
     pub(crate) fn meets_rigid(&self, other: &Self) -> bool {
         !self.is_sensor && other.meets(self.layers)
     }
 
-    /// Whether it may be somewhere else a moment later.
+    /// Returns whether the body can move in this substep.
     #[inline(always)]
     pub(crate) fn moves(&self) -> bool {
         !matches!(self.drive, Drive::Fixed) && !self.asleep
     }
 
-    /// Velocity of a place on it [m/s], so far from its [`position`](Rigid::position) [m].
+    /// Returns the velocity [m/s] of a body point, given relative to [`position`](Rigid::position) [m].
     #[inline(always)]
     pub(crate) fn velocity_at(&self, lever: Vector) -> Vector {
         match self.turns() {
@@ -56,7 +57,7 @@ impl Rigid {
         }
     }
 
-    /// The same of a place of the world [m].
+    /// Returns the velocity [m/s] of the body at a world-space point [m].
     #[inline(always)]
     pub(crate) fn velocity_near(&self, at: Vector) -> Vector {
         match self.turns() {
@@ -65,7 +66,7 @@ impl Rigid {
         }
     }
 
-    /// The speed that none of its places exceeds [m/s].
+    /// Returns an upper bound of the speed of all body points [m/s].
     pub(crate) fn top_speed(&self) -> f32 {
         let speed = length(self.velocity);
         match self.turns() && self.spin != [0.0; 3] {
@@ -74,20 +75,20 @@ impl Rigid {
         }
     }
 
-    /// How far its form reaches from its position [m].
+    /// Returns the largest distance of the shape from its local origin [m].
     pub(crate) fn extent(&self) -> f32 {
         let [low, high] = self.form.bounds();
         length([0, 1, 2].map(|axis: usize| low[axis].abs().max(high[axis].abs())))
     }
 
-    /// Lets it turn to a rotation.
+    /// Sets the target rotation.
     pub(crate) fn turn_to<D: Dim>(&mut self, rotation: Rotation) -> Result<(), BadRigid> {
-        require(self.is_driven(), "drive", "one that follows a goal")?;
+        require(self.is_driven(), "drive", "kinematic or coupled")?;
         self.rotation_goal = rotation.seen_in::<D>();
         Ok(())
     }
 
-    /// Puts it somewhere at once, turned in a way, awake, with the velocity that it has.
+    /// Sets the pose at once and wakes the body; its velocity stays.
     pub(crate) fn place<D: Dim>(
         &mut self,
         position: Vector,
@@ -103,18 +104,18 @@ impl Rigid {
         Ok(())
     }
 
-    /// Its goal is where it is.
+    /// Sets the target pose to the present pose.
     pub(crate) fn stay(&mut self) {
         (self.goal, self.goal_before) = (self.position, self.position);
         self.rotation_goal = self.rotation;
     }
 
-    /// It does not rest any more.
+    /// Wakes the body and restarts its sleep timer.
     pub(crate) fn wake(&mut self) {
         (self.asleep, self.still) = (false, 0.0);
     }
 
-    /// Works out anew what it turns by, as a world of `D` sees it.
+    /// Computes the moments of inertia for a world of `D`.
     pub(super) fn take_inertia<D: Dim>(&mut self) {
         self.inertia = match self.drive {
             Drive::Free { mass } => Some(Inertia::of::<D>(&self.form, mass)),
@@ -122,7 +123,7 @@ impl Rigid {
         };
     }
 
-    /// Lets what is free gain speed for `duration` [s]; everything loses a share `drag` [1/s] of it to the air.
+    /// Integrates gravity and air drag: velocities decay at the rate `drag` [1/s] over `duration` [s].
     pub(crate) fn fall<D: Dim>(&mut self, acceleration: Vector, drag: f32, duration: f32) {
         let gain = scaled(flat::<D>(acceleration), duration);
         let left = 1.0 / (1.0 + drag * duration);
@@ -130,7 +131,7 @@ impl Rigid {
         self.spin = scaled(self.spin, left);
     }
 
-    /// Moves and turns it by its velocities.
+    /// Integrates position and rotation.
     pub(crate) fn drift(&mut self, duration: f32) {
         if !self.moves() {
             return;
@@ -142,20 +143,20 @@ impl Rigid {
         let way = Rotation::about(self.spin, length(self.spin) * duration);
         let rotation = self.rotation.then(way);
         if let Some(inertia) = &self.inertia {
-            // No torque: the angular momentum stays.
+            // Without torque the angular momentum is preserved.
             self.spin = inertia.spin_kept(self.spin, self.rotation, rotation);
         }
         self.stand_at(position, rotation);
     }
 
-    /// Gains what an impulse [N s] gives it so far from its position [m].
+    /// Applies an impulse [N s] at a lever arm from the position [m].
     pub(crate) fn kick(&mut self, impulse: Vector, lever: Vector) {
         self.velocity = plus(self.velocity, scaled(impulse, self.inverse_mass()));
         self.twirl(impulse, lever);
     }
 
-    /// Feels an impulse [N s] of something that touches it so far from its position [m], within a substep of `duration`
-    /// [s].
+    /// Applies an impulse [N s] of a contact at a lever arm from the position [m], within a substep of
+    /// `duration` [s].
     #[inline(always)]
     pub(crate) fn push_at(&mut self, impulse: Vector, lever: Vector, duration: f32) {
         self.push(impulse, duration);
@@ -170,8 +171,7 @@ impl Rigid {
         }
     }
 
-    /// The speed [m/s] that an impulse of 1 N s at a place so far from its position [m] gives that place along a direction
-    /// of length 1.
+    /// Returns the inverse effective mass [1/kg] at a lever arm [m] along a unit direction.
     pub(crate) fn yields(&self, lever: Vector, way: Vector) -> f32 {
         let mut gain = self.inverse_mass();
         if self.can_be_turned() {
@@ -182,7 +182,8 @@ impl Rigid {
         gain
     }
 
-    /// The velocity that an impulse of 1 N s along a direction gives a place so far from its position [1/kg].
+    /// Returns the velocity that an impulse of 1 N s along a unit direction gives the point at a lever arm
+    /// [1/kg].
     pub(crate) fn gain(&self, lever: Vector, way: Vector) -> Vector {
         let gain = scaled(way, self.inverse_mass());
         match self.can_be_turned() {
@@ -194,7 +195,8 @@ impl Rigid {
         }
     }
 
-    /// No less than that at a place of the world [m], whatever the direction.
+    /// Returns an upper bound of the inverse effective mass at a world-space point [m], over all directions
+    /// [1/kg].
     #[inline(always)]
     pub(crate) fn yields_near(&self, at: Vector) -> f32 {
         let gain = self.inverse_mass();
@@ -206,13 +208,13 @@ impl Rigid {
         gain + (x[0] + y[1] + z[2]) * dot(lever, lever)
     }
 
-    /// Whether what touches it can turn it.
+    /// Returns whether contacts can turn the body.
     #[inline(always)]
     fn can_be_turned(&self) -> bool {
         self.is_free() && !self.asleep
     }
 
-    /// Whether it turns.
+    /// Returns whether the body can have an angular velocity.
     #[inline(always)]
     fn turns(&self) -> bool {
         match self.drive {

@@ -1,4 +1,4 @@
-//! How hard it is to turn what is rigid: its principal moments of inertia, of an even density.
+//! Principal moments of inertia of shapes with uniform density.
 
 use crate::dim::{Dim, turning};
 use crate::rotation::Rotation;
@@ -6,22 +6,22 @@ use crate::shape::{Shape, Vector};
 use crate::vector::{across, dot, length, minus, plus, scaled};
 use std::f32::consts::PI;
 
-/// A symmetric matrix, by its rows.
+/// Symmetric 3×3 matrix, by rows.
 pub type Matrix = [Vector; 3];
 
-/// Moments of inertia about the principal axes of a form.
+/// Principal axes and moments of inertia in local coordinates.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Inertia {
     axes: [Vector; 3],
-    /// [kg m²]; in the plane the third alone, and 0 on the others.
+    /// Principal moments [kg m²]; in 2D only the third is not 0.
     moments: Vector,
-    /// One over each of those; 0 about axes that it does not turn about.
+    /// Inverse moments [1/(kg m²)]; 0 about axes that the body cannot turn about.
     inverse: Vector,
 }
 
 impl Inertia {
-    /// Of a form with its middle at the origin, by its mass [kg].
+    /// Returns the inertia of a shape centred on the origin, for a mass [kg].
     pub fn of<D: Dim>(form: &Shape, mass: f32) -> Self {
         let (axes, shares) = match *form {
             Shape::HalfSpace { .. } => (Rotation::NONE.axes(), [0.0; 3]),
@@ -35,7 +35,7 @@ impl Inertia {
         };
         let moments = turning::<D>(scaled(shares, mass));
         let inverse = moments.map(|moment| if moment > 0.0 { 1.0 / moment } else { 0.0 });
-        // In the plane all turn about the third axis, wherever a bar leads.
+        // In 2D the only axis of rotation is the third one, for capsules of any direction.
         let axes = if D::N == 2 {
             Rotation::NONE.axes()
         } else {
@@ -48,13 +48,13 @@ impl Inertia {
         }
     }
 
-    /// Whether it can be turned, and is a number.
+    /// Returns whether the inertia is finite and the body can turn.
     pub fn is_sound(&self) -> bool {
         let numbers = self.moments.iter().chain(&self.inverse);
         numbers.clone().all(|k| k.is_finite()) && self.inverse[2] > 0.0
     }
 
-    /// The inverse of its matrix about the axes of the world [1/(kg m²)], where it is turned so.
+    /// Returns the inverse inertia matrix about the world axes [1/(kg m²)] for a rotation of the body.
     pub fn inverse(&self, rotation: Rotation) -> Matrix {
         let mut matrix = [[0.0; 3]; 3];
         for (axis, inverse) in self.axes.into_iter().zip(self.inverse) {
@@ -66,7 +66,7 @@ impl Inertia {
         matrix
     }
 
-    /// The angular velocity [rad/s] with which it keeps its angular momentum when it has turned.
+    /// Returns the angular velocity [rad/s] after a rotation, so that the angular momentum is preserved.
     pub fn spin_kept(&self, spin: Vector, before: Rotation, after: Rotation) -> Vector {
         let axes = self.axes.into_iter().zip(self.moments);
         let momentum = axes.fold([0.0; 3], |sum, (axis, moment)| {
@@ -81,31 +81,31 @@ impl Inertia {
     }
 }
 
-/// A matrix times a vector.
+/// Returns the product of a matrix and a vector.
 #[inline(always)]
 pub fn times(matrix: &Matrix, vector: Vector) -> Vector {
     [0, 1, 2].map(|row: usize| dot(matrix[row], vector))
 }
 
-// What follows is for a mass of 1.
+// The functions below return moments per unit mass.
 
 fn cuboid([x, y, z]: Vector) -> Vector {
     let about = |a: f32, b: f32| (a * a + b * b) / 3.0;
-    // What has no end on the third axis is of the plane, and turns about that one.
+    // In 2D the third half extent is `f32::MAX`, and only the moment about the third axis is used.
     [about(y, z), about(z, x), about(x, y)]
 }
 
-/// In the plane a disc.
+/// Returns the moments of a ball; in 2D of a disc.
 fn ball<D: Dim>(radius: f32) -> Vector {
     let share = if D::N == 2 { 0.5 } else { 0.4 };
     [share * radius * radius; 3]
 }
 
-/// A bar with round ends, whose first axis is its own: what is between the ends, and both halves of a ball. In the plane
-/// a rectangle and both halves of a disc.
+/// Returns the moments of a capsule along its own axis, the first one: a cylinder and two half balls; in 2D a
+/// rectangle and two half discs.
 fn bar<D: Dim>(long: f32, radius: f32) -> Vector {
     let squared = radius * radius;
-    // How far the middle of half a ball is from its flat side.
+    // `middle` is the distance of the centroid of a half ball from its flat side.
     let (between, round, middle) = match D::N {
         2 => (2.0 * radius * long, PI * squared, 4.0 * radius / (3.0 * PI)),
         _ => (
@@ -126,7 +126,7 @@ fn bar<D: Dim>(long: f32, radius: f32) -> Vector {
     [0.5 * between * squared + round * own, aside, aside]
 }
 
-/// Three axes, the first along a direction.
+/// Returns three orthonormal axes, the first along a direction.
 fn axes_along(way: Vector) -> [Vector; 3] {
     let long = length(way);
     if long <= 0.0 {
@@ -142,7 +142,7 @@ mod tests {
     use super::*;
     use crate::dim::{Dim2, Dim3};
 
-    /// Against a sum over small cells.
+    /// Compares the moments with a sum over small cells.
     fn check<D: Dim>(form: Shape) {
         let [low, high] = form.bounds();
         let count = if D::N == 2 { 200 } else { 60 };
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn moments_are_those_of_the_shapes() {
+    fn moments_match_numeric_integration() {
         let [x, y, z] = [0.3, 0.5, 0.9];
         let long = Shape::Capsule {
             from: [-x, 0.0, 0.0],
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn what_tumbles_keeps_its_momentum() {
+    fn tumbling_preserves_angular_momentum() {
         let form = Shape::Box {
             centre: [0.0; 3],
             half: [0.3, 0.5, 0.9],
@@ -222,7 +222,7 @@ mod tests {
         }
         let off = minus(momentum(spin, rotation), before);
         assert!(length(off) < 1e-3 * length(before), "{off:?}");
-        // The middle axis is the one that does not hold [Euler].
+        // Rotation about the middle principal axis is unstable [Euler].
         assert!(most > 2.0, "{most}");
     }
 }

@@ -1,16 +1,16 @@
-//! How far two shapes are from each other.
+//! Distances between shapes.
 
 use super::brick::Brick;
 use super::{Shape, Vector, distance_from_box};
 use crate::vector::{dot, minus, plus, scaled};
 
-/// The nearest point of a bar's axis is narrowed down so many times, each time to two thirds: 1e-7 of its
-/// length are left, what single precision tells apart.
+/// Ternary-search steps for the nearest point of a segment, each of which keeps two thirds. 40 steps leave
+/// 1e-7 of its length, the resolution of single precision.
 const NARROWINGS: usize = 40;
 
 impl Shape {
-    /// How far it is from another shape [m], negative where they overlap, and the direction in which it gets away
-    /// from it. Boxes that are turned and apart corner to corner may be further apart than that.
+    /// Returns the distance to another shape [m], negative if they overlap, and the unit direction from the
+    /// other shape to this one. For oriented boxes corner to corner the distance is a lower bound.
     pub fn gap(&self, other: &Self) -> (f32, Vector) {
         match (*self, *other) {
             (Self::Ball { centre, radius }, _) => {
@@ -49,20 +49,21 @@ impl Shape {
                     (found.gap, found.normal)
                 })
             }
-            // Each fills half of everything: no push would part them.
+            // Two half-spaces overlap without bound, so no push can separate them.
             (Self::HalfSpace { normal, .. }, Self::HalfSpace { .. }) => (f32::INFINITY, normal),
         }
     }
 }
 
-/// The same gap as seen from the other side.
+/// Returns the gap with the shapes swapped.
 fn turned((gap, normal): (f32, Vector)) -> (f32, Vector) {
     (gap, scaled(normal, -1.0))
 }
 
 impl Shape {
-    /// The least distance of the points of a segment from it, the normal there, and where on the segment that is, from 0 to
-    /// 1: along a segment the distance from something convex has one valley.
+    /// Returns the smallest distance of a segment's points from the shape [m], the normal there, and the
+    /// position on the segment from 0 to 1. A ternary search finds it, because along a segment the distance
+    /// from a convex shape has a single minimum.
     pub(super) fn nearest_of_segment(&self, from: Vector, to: Vector) -> (f32, Vector, f32) {
         let at = |share: f32| self.distance(plus(from, scaled(minus(to, from), share)));
         let (mut low, mut high) = (0.0f32, 1.0f32);
@@ -79,7 +80,7 @@ impl Shape {
             .map(|share| (at(share).0, at(share).1, share))
             .into_iter()
             .reduce(|best, end| if end.0 < best.0 { end } else { best })
-            .expect("there are three")
+            .expect("the array is not empty")
     }
 }
 
@@ -88,7 +89,7 @@ mod tests {
     use super::*;
     use crate::rotation::Rotation;
 
-    /// Gap and direction, and the same from the other side.
+    /// Checks the gap and the direction, in both orders.
     fn check(a: Shape, b: Shape, gap: f32, normal: Vector) {
         for (first, second, sign) in [(a, b, 1.0), (b, a, -1.0)] {
             let (found, way) = first.gap(&second);
@@ -99,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn every_shape_knows_how_far_it_is_from_every_other() {
+    fn gap_and_normal_are_correct_for_all_pairs_of_shapes() {
         let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
         let ball = |centre| Shape::Ball {
             centre,
@@ -129,7 +130,7 @@ mod tests {
             0.75,
             up,
         );
-        // Bars that cross each other have their nearest points within.
+        // Crossing capsules have their nearest points inside their segments.
         let [along, across] =
             [[2.0, 0.0, 0.0], [0.0, 0.0, 2.0]].map(|way: Vector| (scaled(way, -1.0), way));
         let above = |k: Vector| plus(k, up);

@@ -1,47 +1,47 @@
-//! A box with its axes, and how two of them lie to each other: by separating axes [Gottschalk 1996].
+//! Boxes with their axes, and the separating-axis test [Gottschalk 1996].
 
 use super::{Shape, Vector};
 use crate::rotation::Rotation;
 use crate::vector::{cross, dot, minus, plus, scaled};
 
-/// An axis of the second box is taken only when it parts two boxes by so much of their size more than one of the first, and
-/// one across two edges only when by as much more than both: what lies still keeps its points, and faces have more of them.
-/// With none towers of ten boxes lean by a quarter of a box; with a thousandth and with a tenth they stand.
+/// Bias of the separating-axis test, as a share of the smallest half extent. A face axis of the second box
+/// must exceed the best one of the first box by it, and an edge axis must exceed both. Resting boxes so keep
+/// their contact points, preferably on faces, which have more of them.
 const BEHIND: f32 = 0.01;
 
-/// A box, and the axes that it has.
+/// Box with its centre, half extents and axes.
 #[derive(Copy, Clone, Debug)]
 pub struct Brick {
     pub centre: Vector,
     pub half: Vector,
     pub axes: [Vector; 3],
-    /// 2, where it has no ends on the third axis, or 3.
+    /// Number of bounded axes: 2 for boxes of the plane, otherwise 3.
     pub axis_count: usize,
 }
 
-/// The axis along which two boxes are furthest apart, or overlap least.
+/// Axis of largest separation, or of smallest overlap, of two boxes.
 #[derive(Copy, Clone, Debug)]
 pub struct Separation {
-    /// [m], negative where they overlap.
+    /// Separation [m], negative if the boxes overlap.
     pub gap: f32,
-    /// From the second to the first, of length 1.
+    /// Unit normal from the second box to the first.
     pub normal: Vector,
     pub side: Side,
 }
 
-/// What an axis is of.
+/// Feature that defines a separating axis.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum Side {
-    /// A face of the first, across this axis of it.
+    /// Face of the first box, normal to this axis of it.
     First(usize),
-    /// A face of the second.
+    /// Face of the second box, normal to this axis of it.
     Second(usize),
-    /// An edge of each, along these axes.
+    /// Edge of each box, along these axes.
     Edges(usize, usize),
 }
 
 impl Brick {
-    /// The box that a shape is, if it is one.
+    /// Returns the box of a box-shaped shape.
     pub fn of(shape: &Shape) -> Option<Self> {
         let (centre, half, rotation) = match *shape {
             Shape::Box { centre, half } => (centre, half, Rotation::NONE),
@@ -61,14 +61,14 @@ impl Brick {
         })
     }
 
-    /// How far it reaches from its middle along a direction [m].
+    /// Returns the extent from the centre along a direction [m].
     pub fn reach(&self, way: Vector) -> f32 {
         let own =
             (0..self.axis_count).map(|axis| dot(self.axes[axis], way).abs() * self.half[axis]);
         own.sum()
     }
 
-    /// The corner that is so many, by the bits of its number on the upper side of each axis.
+    /// Returns a corner by number: bit `k` selects the upper side of axis `k`.
     pub fn corner(&self, number: usize) -> Vector {
         (0..self.axis_count).fold(self.centre, |at, axis| {
             let sign = if number >> axis & 1 == 1 { 1.0 } else { -1.0 };
@@ -76,12 +76,12 @@ impl Brick {
         })
     }
 
-    /// How many corners it has.
+    /// Returns the number of corners.
     pub fn corner_count(&self) -> usize {
         1 << self.axis_count
     }
 
-    /// How it lies to another.
+    /// Returns the separating axis of two boxes.
     pub fn separation(&self, other: &Self) -> Separation {
         let apart = minus(self.centre, other.centre);
         let along = |way: Vector, side: Side| {
@@ -118,7 +118,7 @@ impl Brick {
         for (own, others) in (0..9).map(|pair| (pair / 3, pair % 3)) {
             let way = cross(self.axes[own], other.axes[others]);
             let squared = dot(way, way);
-            // Edges that are parallel part nothing that faces do not.
+            // Parallel edges cannot separate boxes that face axes do not separate.
             if squared > 1e-6 {
                 let way = scaled(way, 1.0 / squared.sqrt());
                 edges = larger(edges, along(way, Side::Edges(own, others)));

@@ -1,37 +1,37 @@
-//! Where two shapes touch: one direction, and the points that hold them apart along it.
+//! Contact manifolds between shapes: a common normal and the contact points.
 
 use super::brick::{Brick, Separation, Side};
 use super::{Shape, Vector};
 use crate::vector::{dot, length, minus, plus, scaled};
 
-/// An end of a bar counts when what is nearest to it lies in the direction of the whole bar (cosine).
-/// A choice, 26°: on a face all directions are one, and from 0.8 to 0.97 bars lie as well.
+/// Cosine limit for the end of a capsule to be a contact point: its normal must be within 26° of the
+/// manifold's normal. On a face all normals are equal.
 const ALONG: f32 = 0.9;
-/// Where a bar is nearest counts when it is further than this share of its radius from its ends: closer, it would be the same
-/// point twice. A choice: with half and twice as much bars lie as well.
+/// Minimum distance of the nearest point of a capsule from its end points, as a share of its radius. A closer
+/// point would be a duplicate.
 const APART: f32 = 0.5;
 
-/// Where two shapes touch.
+/// Contact manifold of two shapes.
 #[derive(Clone, Debug, Default)]
 pub struct Manifold {
-    /// The direction in which the first gets away from the second, of length 1.
+    /// Unit normal from the second shape to the first.
     pub normal: Vector,
     pub points: Vec<ManifoldPoint>,
 }
 
-/// A point at which two shapes touch.
+/// Contact point of a manifold.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct ManifoldPoint {
-    /// In the middle between the two surfaces [m].
+    /// Midpoint between both surfaces [m].
     pub at: Vector,
-    /// How far they are apart there [m], negative where they overlap.
+    /// Distance of the surfaces there [m], negative if they overlap.
     pub gap: f32,
-    /// Of the same corners and edges in the next substep the same.
+    /// Feature key, equal in the next substep for the same corners and edges.
     pub key: u32,
 }
 
 impl Shape {
-    /// Where it touches another shape, or comes closer to it than `margin` [m]: nowhere or at up to eight points.
+    /// Returns the contact manifold with another shape: up to eight points with a gap below `margin` [m].
     pub fn manifold(&self, other: &Self, margin: f32) -> Manifold {
         let found = match (*self, *other) {
             (Self::Ball { centre, radius }, _) => {
@@ -56,7 +56,7 @@ impl Shape {
 }
 
 impl Manifold {
-    /// The same as seen from the other shape.
+    /// Returns the manifold with the shapes swapped.
     fn turned(mut self) -> Self {
         self.normal = scaled(self.normal, -1.0);
         self
@@ -68,13 +68,13 @@ impl Manifold {
     }
 }
 
-/// The point between a surface and what lies below something round.
+/// Returns the contact point between a ball and the surface below it.
 fn beneath(centre: Vector, normal: Vector, radius: f32, gap: f32, key: u32) -> ManifoldPoint {
     let at = minus(centre, scaled(normal, radius + 0.5 * gap));
     ManifoldPoint { at, gap, key }
 }
 
-/// A bar on anything but a ball: where it is nearest, and its ends.
+/// Returns the manifold of a capsule with any shape except a ball: its nearest point and its ends.
 fn bar(own: &Shape, other: &Shape) -> Manifold {
     let &Shape::Capsule { from, to, radius } = own else {
         return Manifold::default();
@@ -144,11 +144,12 @@ fn bricks(own: &Brick, other: &Brick, margin: f32) -> Manifold {
     Manifold { normal, points }
 }
 
-/// Where a box lies on a face of another, which is across this axis of that one and looks `out`.
+/// Returns the contact points of a box on the face of another box, `ground`. The face is normal to `axis`,
+/// with the outward normal `out`.
 fn on_face(ground: &Brick, axis: usize, out: Vector, brick: &Brick) -> Vec<ManifoldPoint> {
     let others: Vec<usize> = (0..brick.axis_count).filter(|&k| k != axis).collect();
     let level = dot(out, ground.centre) + ground.half[axis];
-    // The face that looks most towards the ground.
+    // The face with the normal most opposite to that of the ground face.
     let facing = |k: &usize| dot(brick.axes[*k], out).abs();
     let face = (0..brick.axis_count).max_by(|a, b| facing(a).total_cmp(&facing(b)));
     let face = face.unwrap_or(axis);
@@ -169,7 +170,7 @@ fn on_face(ground: &Brick, axis: usize, out: Vector, brick: &Brick) -> Vec<Manif
     polygon.iter().map(point).collect()
 }
 
-/// The corners of a face, one after the other around it.
+/// Returns the corners of a face in order around it, with their keys.
 fn around(brick: &Brick, face: usize, is_upper: bool) -> Vec<(Vector, u32)> {
     let fixed = usize::from(is_upper) << face;
     let others: Vec<usize> = (0..brick.axis_count).filter(|&k| k != face).collect();
@@ -184,7 +185,7 @@ fn around(brick: &Brick, face: usize, is_upper: bool) -> Vec<(Vector, u32)> {
         .collect()
 }
 
-/// What of a polygon, in the plane of a line, is not beyond `most` [m] in a direction.
+/// Clips a polygon (in 2D a segment) against the half-space up to `most` [m] in a direction.
 fn clipped(polygon: &[(Vector, u32)], way: Vector, most: f32, plane: u32) -> Vec<(Vector, u32)> {
     let mut kept = Vec::with_capacity(polygon.len() + 1);
     let is_line = polygon.len() == 2;
@@ -209,7 +210,7 @@ fn clipped(polygon: &[(Vector, u32)], way: Vector, most: f32, plane: u32) -> Vec
     kept
 }
 
-/// A point on the edge along an axis that is furthest in a direction.
+/// Returns a point on the edge along an axis that is farthest in a direction.
 fn edge(brick: &Brick, along: usize, way: Vector) -> Vector {
     let others = (0..brick.axis_count).filter(|&axis| axis != along);
     others.fold(brick.centre, |at, axis| {
@@ -222,7 +223,7 @@ fn edge(brick: &Brick, along: usize, way: Vector) -> Vector {
     })
 }
 
-/// The middle between the nearest points of two lines that are not parallel.
+/// Returns the midpoint between the nearest points of two lines that are not parallel.
 fn between(a: Vector, along: Vector, b: Vector, across: Vector) -> Vector {
     let (apart, cosine) = (minus(b, a), dot(along, across));
     let under = (1.0 - cosine * cosine).max(1e-6);
@@ -241,7 +242,7 @@ mod tests {
         Shape::Box { centre, half }
     }
 
-    /// Both ways round: how many points, the lowest gap, and the direction.
+    /// Checks the number of points, the smallest gap and the normal, in both orders.
     fn check(a: Shape, b: Shape, count: usize, gap: f32, normal: Vector) {
         for (first, second, sign) in [(a, b, 1.0), (b, a, -1.0)] {
             let found = first.manifold(&second, 0.1);
@@ -264,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn shapes_lie_on_each_other_at_the_right_places() {
+    fn manifold_points_are_correct_for_all_pairs_of_shapes() {
         let up = [0.0, 1.0, 0.0];
         let floor = Shape::half_space(up, [0.0; 3]);
         let brick = cube([0.0, 0.49, 0.0], [1.0, 0.5, 0.7]);
@@ -273,11 +274,11 @@ mod tests {
         let turned = Rotation::about(up, 0.7);
         let above = cube([0.0; 3], [0.9, 0.5, 0.9]).rotated(turned);
         check(above.moved([0.0, 1.48, 0.0]), brick, 8, -0.01, up);
-        // In the plane.
+        // Boxes in 2D.
         let flat = |centre: Vector| cube(centre, [1.0, 0.5, f32::MAX]);
         check(flat([0.4, 0.99, 0.0]), flat([0.0; 3]), 2, -0.01, up);
         check(flat([0.4, 0.49, 0.0]), floor, 2, -0.01, up);
-        // Bars.
+        // Capsules.
         let bar = |y: f32, to: Vector| {
             Shape::Capsule {
                 from: scaled(to, -1.0),
@@ -309,7 +310,7 @@ mod tests {
         };
         check(ball, brick, 1, 0.0, up);
         check(bar(1.73, [1.0, 0.0, 0.0]), ball, 1, -0.01, up);
-        // Two edges across each other.
+        // Two crossing edges.
         let quarter = std::f32::consts::FRAC_PI_4;
         let beam = |axis| cube([0.0; 3], [1.0; 3]).rotated(Rotation::about(axis, quarter));
         let high = beam([1.0, 0.0, 0.0]).moved([0.0, 2.0 * 2.0f32.sqrt() - 0.01, 0.0]);

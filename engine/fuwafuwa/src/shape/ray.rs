@@ -1,4 +1,4 @@
-//! Where rays meet shapes.
+//! Ray casts against shapes.
 
 use super::{Shape, Vector};
 use crate::vector::{dot, minus, plus, scaled};
@@ -6,8 +6,8 @@ use crate::vector::{dot, minus, plus, scaled};
 type Vector64 = [f64; 3];
 
 impl Shape {
-    /// How far along a ray, whose direction is of length 1, it first meets the surface, from outside or from inside [m],
-    /// and the outward normal there.
+    /// Casts a ray with a unit direction. Returns the distance [m] to the first intersection with the
+    /// surface, from outside or inside, and the outward normal there.
     pub fn ray(&self, from: Vector, direction: Vector) -> Option<(f32, Vector)> {
         let (begin, way) = (from.map(f64::from), direction.map(f64::from));
         let crossings: Vec<f64> = match *self {
@@ -35,7 +35,7 @@ impl Shape {
             } => {
                 let ends = [low, high].map(|end| through_ball(minus(from, end), way, radius));
                 let side = through_side(minus(from, low), way, minus(high, low), radius);
-                // Of the ends, what is not within the bar: no other surface is outside of it.
+                // Keeps intersections with an end ball only where the ball is on the surface of the capsule.
                 let is_bare = |far: &f64| {
                     let at = plus(begin, scaled(way, *far)).map(|k| k as f32);
                     self.distance(at).0 >= -1e-4 * radius
@@ -53,7 +53,7 @@ impl Shape {
     }
 }
 
-/// Where a ray enters and leaves a box around the origin.
+/// Returns where a ray enters and leaves a box around the origin.
 fn through_box(from: Vector64, way: Vector64, half: Vector) -> Vec<f64> {
     let (mut enters, mut leaves) = (f64::NEG_INFINITY, f64::INFINITY);
     for axis in 0..3 {
@@ -74,7 +74,7 @@ fn through_box(from: Vector64, way: Vector64, half: Vector) -> Vec<f64> {
     }
 }
 
-/// Where a ray enters and leaves a ball around the origin.
+/// Returns where a ray enters and leaves a ball around the origin.
 fn through_ball(from: Vector, way: Vector64, radius: f32) -> Vec<f64> {
     let from = from.map(f64::from);
     roots(
@@ -84,7 +84,7 @@ fn through_ball(from: Vector, way: Vector64, radius: f32) -> Vec<f64> {
     )
 }
 
-/// Where a ray enters and leaves the side of a bar that begins at the origin.
+/// Returns where a ray enters and leaves the cylindrical part of a capsule that begins at the origin.
 fn through_side(from: Vector, way: Vector64, axis: Vector, radius: f32) -> Vec<f64> {
     let (from, axis) = (from.map(f64::from), axis.map(f64::from));
     let squared = dot(axis, axis);
@@ -102,7 +102,7 @@ fn through_side(from: Vector, way: Vector64, axis: Vector, radius: f32) -> Vec<f
     far.into_iter().filter(is_between).collect()
 }
 
-/// x, where a x² + 2 b x + c = 0; none where all of it is one number.
+/// Returns the roots of a x² + 2 b x + c = 0; none if a is 0.
 fn roots(a: f64, b: f64, c: f64) -> Vec<f64> {
     let under = b * b - a * c;
     match under >= 0.0 && a > 0.0 {
@@ -119,7 +119,7 @@ mod tests {
     use crate::rotation::Rotation;
 
     #[test]
-    fn rays_meet_every_shape_from_outside_and_from_inside() {
+    fn ray_hits_every_shape_from_outside_and_inside() {
         let shapes = [
             Shape::half_space([0.0, 1.0, 0.0], [0.0, -0.3, 0.0]),
             Shape::Box {
@@ -152,7 +152,7 @@ mod tests {
                 let at = |far: f32| shape.distance(plus(from, scaled(way, far)));
                 let begins_inside = at(0.0).0 < 0.0;
                 let Some((far, normal)) = shape.ray(from, way) else {
-                    // Nothing of it is on the way.
+                    // A ray that misses never crosses the surface.
                     assert!((0..400).all(|step| (at(0.02 * step as f32).0 < 0.0) == begins_inside));
                     missed += 1;
                     continue;
@@ -169,7 +169,7 @@ mod tests {
             }
         }
         assert!(met > 1100 && missed > 100, "{met} {missed}");
-        // Far away, and along a floor.
+        // Large distances, and a grazing ray.
         let floor = Shape::half_space([0.0, 1.0, 0.0], [0.0; 3]);
         assert_eq!(
             floor.ray([0.0, 1000.0, 0.0], [0.0, -1.0, 0.0]).unwrap().0,

@@ -1,4 +1,4 @@
-//! Points sorted into square bins, so that those near a place are found without looking at all.
+//! Spatial hash of points in cubic bins, for finding the points near a position.
 
 use crate::dim::{Dim, Point};
 use crate::lanes::{LANES, Lanes, Row, splat};
@@ -7,34 +7,34 @@ use crate::vector::{minus, plus};
 use fearless_simd::prelude::*;
 use std::ops::Range;
 
-/// 1.5 · 2²³: to it and to what is up to 2²² greater or smaller only whole numbers can be added.
+/// 1.5 · 2²³: at this magnitude, up to a difference of 2²², single-precision numbers are integers.
 const LARGE: f32 = 12_582_912.0;
 
-/// Points in the bins of a grid that goes round and round: what lies a multiple of the grid's
-/// extent apart shares a bin, so bodies may fly off, for two million bins.
+/// Points in the bins of a periodic grid. Points that are a multiple of the grid's extent apart share a bin,
+/// so bodies may be up to two million bins away.
 #[derive(Clone, Debug)]
 pub struct Bins {
-    /// One over the width of a bin [1/m].
+    /// Inverse width of a bin [1/m].
     inverse: f32,
     /// log₂ of the number of bins on each axis, and that number − 1.
     bits: usize,
     mask: i32,
-    /// The points at `start[b]..start[b + 1]` lie in bin b, by ascending numbers.
+    /// The points at `start[b]..start[b + 1]` are in bin b, ascending by number.
     start: Vec<u32>,
     numbers: Vec<u32>,
-    /// Where they are, axis by axis [m]; a few more, so that eight can be read from the last on.
+    /// Positions in bin order, axis by axis [m]; padded, so that eight can be read from the last index on.
     places: [Vec<f32>; 3],
 }
 
 impl Bins {
     /// Sorts points [m] into bins of a `width` [m].
     pub fn new<D: Dim>(points: &[Row], width: f32) -> Self {
-        // About a bin for each point; four on an axis, so that three neighbours differ.
+        // About one bin per point, and at least four on an axis, so that three neighbours differ.
         let wanted = points.len().max(1).ilog2() as usize;
         let bits = wanted.div_ceil(D::N).max(2);
         let places = || vec![0.0; points.len() + LANES];
         let mut bins = Self {
-            // A little wider: what is no further apart than a width is rounded to squares side by side.
+            // A little wider than `width`, so that rounding keeps points within a width in adjacent bins.
             inverse: 0.999 / width,
             bits,
             mask: (1 << bits) - 1,
@@ -61,37 +61,36 @@ impl Bins {
         bins
     }
 
-    /// Where the points of each bin that has any begin and end.
+    /// Iterates over the ranges of the bins that are not empty.
     pub fn filled(&self) -> impl Iterator<Item = Range<usize>> + '_ {
         let ends = self.start.windows(2);
         let ranges = ends.map(|ends| ends[0] as usize..ends[1] as usize);
         ranges.filter(|range| !range.is_empty())
     }
 
-    /// The number of each point, by its place in the bins.
+    /// Returns the point numbers in bin order.
     pub fn numbers(&self) -> &[u32] {
         &self.numbers
     }
 
-    /// Where the point at a place is [m].
+    /// Returns the position of the point at an index in bin order [m].
     #[inline(always)]
     pub fn point(&self, place: usize) -> Row {
         let [x, y, z] = self.places.each_ref().map(|places| places[place]);
         [x, y, z, 0.0]
     }
 
-    /// All bins, in shares.
+    /// Iterates over shares of the bins.
     pub fn shares(&self) -> impl Iterator<Item = Range<usize>> + use<> {
         let bins = self.start.len() - 1;
         let firsts = (0..bins).step_by(SHARE);
         firsts.map(move |first| first..bins.min(first + SHARE))
     }
 
-    /// Calls `visit` once with the places of any two points that are no further apart than `reach`
-    /// [m], which may be no more than a bin is wide, and of which one lies in these `bins`: all shares
-    /// together make all pairs. Of a point and eight from the other place on, `is_out` tells as a mask
-    /// which are left out; where `is_idle` says of two stretches of places that no two of theirs
-    /// make a pair, they are not looked at together.
+    /// Calls `visit` once for each pair of points within `reach` [m] of which one is in `bins`. It receives
+    /// their indices in bin order. `reach` may be at most the width of a bin. All shares together give all
+    /// pairs. For a point and the eight from a second index on, `is_out` returns a mask of those to skip. Two
+    /// ranges for which `is_idle` is true are not compared.
     #[inline(always)]
     pub fn pairs<D: Dim, S: Simd>(
         &self,
@@ -102,7 +101,7 @@ impl Bins {
         is_out: impl Fn(usize, usize) -> u64,
         mut visit: impl FnMut(usize, usize),
     ) {
-        // Of two bins side by side one looks at the other.
+        // Of two adjacent bins only one searches the other.
         let ahead: &[[i32; 2]] = match D::N {
             2 => &[[1, 0]],
             _ => &[[1, 0], [-1, 1], [0, 1], [1, 1]],
@@ -149,8 +148,8 @@ impl Bins {
         }
     }
 
-    /// Finds the places of the points that are no further from `at` than `reach` [m]. Of eight from a
-    /// place on, `is_out` tells as a mask which are left out.
+    /// Finds the indices of the points within `reach` [m] of `at`. For eight points from an index on,
+    /// `is_out` returns a mask of those to skip.
     #[inline(always)]
     pub fn near<D: Dim, S: Simd>(
         &self,
@@ -161,13 +160,13 @@ impl Bins {
         near: &mut Vec<u32>,
     ) {
         near.clear();
-        // With a little for rounding.
+        // With a small margin for rounding.
         let mut aside = [0.0; 4];
         aside[..D::N].fill(1.01 * reach);
         let low = self.square(&minus(at, aside));
         let high = self.square(&plus(at, aside));
         let count = |axis: usize| high[axis].wrapping_sub(low[axis]).wrapping_add(1);
-        // So far around the grid meets itself.
+        // The box covers the whole periodic grid.
         let is_far = |axis: usize| !(1..=self.mask).contains(&count(axis));
         if reach.is_nan() || (0..D::N).any(is_far) {
             self.look(simd, 0..self.numbers.len(), at, reach, is_out, near);
@@ -183,7 +182,7 @@ impl Bins {
         }
     }
 
-    /// Adds the places of those of some points that are no further from `at` than `reach` [m].
+    /// Adds the indices of those points in a range that are within `reach` [m] of `at`.
     #[inline(always)]
     fn look<S: Simd>(
         &self,
@@ -203,7 +202,7 @@ impl Bins {
             let (x, y, z) = (along(0), along(1), along(2));
             let squared = x * x + y * y + z * z;
             let mut lanes = squared.simd_le(reach * reach).to_bitmask();
-            // The last ones may be of another bin.
+            // The last lanes may belong to another bin.
             let left = range.end - first;
             if left < LANES {
                 lanes &= (1 << left) - 1;
@@ -218,8 +217,8 @@ impl Bins {
         }
     }
 
-    /// Where the points in so many bins in a row, from the one of a square on, begin and end: one stretch,
-    /// and another where the grid goes round.
+    /// Returns the ranges of `count` bins in a row along the first axis: one range, and a second one if the
+    /// row wraps around the grid.
     #[inline(always)]
     fn row(&self, [x, y, z]: Point, count: i32) -> [Range<usize>; 2] {
         let (x, start) = (x & self.mask, self.bin([0, y, z]) as usize);
@@ -233,16 +232,16 @@ impl Bins {
         }
     }
 
-    /// Where the points in the bins from the first to the last begin and end.
+    /// Returns the range of the points in the bins from `first` to `last`.
     #[inline(always)]
     fn range(&self, first: usize, last: usize) -> Range<usize> {
         self.start[first] as usize..self.start[last + 1] as usize
     }
 
-    /// The square of the endless grid that a place lies in.
+    /// Returns the coordinates of the bin, before they wrap around the grid.
     #[inline(always)]
     fn square(&self, at: &Row) -> Point {
-        // The last bits of a number so large are the whole ones: quicker than to ask whether they fit.
+        // The lowest bits of such a large number are its integer part; faster than a checked conversion.
         let whole = |along: f32| (along * self.inverse + LARGE).to_bits() as i32;
         [whole(at[0]), whole(at[1]), whole(at[2])]
     }
@@ -302,7 +301,7 @@ mod tests {
         let expected: Vec<_> = all.filter(|&(a, b)| is_near(a, b)).collect();
         assert_eq!(found, expected);
         let mut total = 0;
-        // A bin, several, and so many that they meet around the grid.
+        // One bin, several, and enough to wrap around the grid.
         let reaches = [0.5, 1.0, 2.7, 40.0].into_iter().cycle();
         for ((place, &at), steps) in points.iter().enumerate().zip(reaches) {
             let reach = steps * reach;
@@ -327,7 +326,7 @@ mod tests {
     }
 
     #[test]
-    fn points_nearby_are_found_once_each() {
+    fn pairs_and_near_find_each_point_exactly_once() {
         check::<Dim2>();
         check::<Dim3>();
     }

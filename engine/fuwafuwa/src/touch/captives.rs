@@ -1,9 +1,9 @@
-//! Contact spheres that were forced into another piece, and the way out.
+//! Contact spheres embedded in another piece, and their way out.
 //!
-//! Inside a piece there is none that would hold anything off: a crumb that was pressed through a
-//! stretched surface would stay. So once a tick the elements of the larger pieces are asked whose
-//! middle lies in them. Such a sphere is a *captive*: it no longer touches the spheres of the piece
-//! around it, but for the nearest, its *exit*, which lets it out.
+//! Inside a piece there are no contact spheres that could push anything out, so a crumb forced through a
+//! stretched surface would stay there. Therefore, once per tick, the elements of the larger pieces are tested
+//! for sphere centres inside them. Such a sphere is *embedded* (a captive). It has no contacts with its host
+//! piece, except for the *escape contact* with the nearest surface sphere, its exit.
 
 use super::bins::Bins;
 use super::pair::SpherePair;
@@ -19,32 +19,31 @@ use crate::solve::Row;
 use crate::vector::{dot, minus, plus, scaled, three};
 use std::collections::BTreeMap;
 
-/// Exits are looked for so many voxels around first: few captives are deeper, and for those all are looked at. From 0.5 to 8
-/// `diced`, `pile` and `tear-3d` take the same.
+/// Search radius for exits [voxels]. Few embedded spheres are deeper; for those all exits are compared.
 const EXIT_REACH: f32 = 2.0;
 
-/// A sphere whose middle is inside another piece.
+/// Sphere with its centre inside another piece.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Captive {
     pub sphere: SphereId,
-    /// The nearest sphere of the piece around it.
+    /// Nearest surface sphere of the host piece.
     pub exit: SphereId,
 }
 
-/// A piece with somebody inside: its body and number.
+/// Host piece of an embedded sphere: body and piece number.
 type Captor = (BodySlot, PieceId);
 
-/// Who is inside another piece.
+/// Spheres embedded in other pieces.
 #[derive(Clone, Debug, Default)]
 pub struct Captives {
-    /// Ascending.
+    /// Embedded spheres, ascending.
     pub list: Vec<Captive>,
-    /// The piece that each sphere is inside.
+    /// Host piece of each sphere.
     captors: Table<SphereId, Option<Captor>>,
 }
 
 impl Captives {
-    /// Finds out who is inside a piece that is larger than its own.
+    /// Finds the spheres that are inside a piece larger than their own.
     pub fn find<D: Dim>(&mut self, spheres: &Spheres, pairs: &[SpherePair], bodies: &Bodies<D>) {
         self.list.clear();
         self.captors.clear();
@@ -65,7 +64,7 @@ impl Captives {
         if small.is_empty() {
             return;
         }
-        // Surface elements hold spheres that are close to their own.
+        // Surface elements contain only spheres that are close to their own.
         for pair in pairs {
             let [a, b] = pair.both(&spheres.list);
             let [at, other] = pair.spheres.map(|sphere| spheres.centres[sphere]);
@@ -85,13 +84,13 @@ impl Captives {
                 }
             }
         }
-        // Inner elements hold whoever is deeper inside; few pieces have anybody in their box.
+        // Inner elements contain the deeper spheres; few pieces have any sphere in their box.
         for (sphere, &centre) in spheres.list.iter().zip(&spheres.centres) {
             pieces[sphere.body][sphere.piece].extend(&centre);
         }
         let placed = |&sphere: &SphereId| (sphere, own(&pieces, sphere), spheres.centres[sphere]);
         let mut placed: Vec<(SphereId, u32, Row)> = small.iter().map(placed).collect();
-        // In the order in which a box is passed along the first axis; who is nowhere is in no box.
+        // Sorted along the first axis, in which a box covers one range. Non-finite centres are in no box.
         placed.retain(|(.., centre)| centre[0].is_finite());
         placed.sort_unstable_by(|(.., a), (.., b)| a[0].total_cmp(&b[0]));
         let mut near: Vec<SphereId> = Vec::new();
@@ -144,8 +143,8 @@ impl Captives {
         }
     }
 
-    /// Something came off somewhere: where the exit went with it, the rest is a stranger until the next
-    /// tick.
+    /// Updates the host pieces after a tear. An embedded sphere follows the piece of its exit; the other
+    /// fragments count as foreign until the next tick.
     pub fn tear(&mut self, spheres: &Spheres) {
         for captive in &self.list {
             let exit = &spheres.list[captive.exit];
@@ -153,7 +152,7 @@ impl Captives {
         }
     }
 
-    /// Whether one of two spheres is inside the piece of the other.
+    /// Returns whether one of two spheres is embedded in the piece of the other.
     #[inline(always)]
     pub fn is_inside(&self, spheres: [SphereId; 2], [a, b]: [&ContactSphere; 2]) -> bool {
         let inside = |own: SphereId, other: &ContactSphere| {
@@ -164,13 +163,13 @@ impl Captives {
     }
 }
 
-/// The spheres of a piece that lead out.
+/// Possible exits of a host piece.
 struct Exits {
-    /// Ascending.
+    /// Exits, ascending.
     list: Vec<SphereId>,
     centres: Vec<Row>,
     bins: Bins,
-    /// How far the bins are looked through [m].
+    /// Search radius in the bins [m].
     reach: f32,
 }
 
@@ -192,7 +191,7 @@ impl Exits {
         }
     }
 
-    /// The one that is nearest to a position [m], of equals the first.
+    /// Returns the exit nearest to a position [m]; the first of several equally near ones.
     fn nearest<D: Dim>(&self, at: Row) -> Option<SphereId> {
         let nearer = |nearest: (f32, u32), number: u32| {
             let apart = minus(self.centres[number as usize], at);
@@ -211,18 +210,18 @@ impl Exits {
     }
 }
 
-/// An element that has no bare face, and a ball around it.
+/// Element without a bare face, and a ball around it.
 struct Inner {
     level: u8,
     element: ElementId,
-    /// Its piece, and how many elements that has.
+    /// Its piece, and the number of elements of that piece.
     captor: Captor,
     count: u32,
     centre: Row,
     radius: f32,
 }
 
-/// The elements without a bare face of the pieces that count as having any, by level, as far as they reach into a box.
+/// Returns the elements without a bare face that reach into a box, by level, for pieces with `has_inner`.
 fn inner_elements<D: Dim>(bodies: &Bodies<D>, pieces: &Extents, within: &Extent) -> Vec<Inner> {
     let mut found = Vec::new();
     for (slot, body) in bodies.by_slot() {
@@ -255,24 +254,24 @@ fn inner_elements<D: Dim>(bodies: &Bodies<D>, pieces: &Extents, within: &Extent)
     found
 }
 
-/// The median radius [m]: a few that are stretched across the room make no bins as wide as it.
+/// Returns the median radius [m], so that a few widely stretched elements do not make the bins too wide.
 fn usual_radius(elements: &[Inner]) -> f32 {
     let mut radii: Vec<f32> = elements.iter().map(|inner| inner.radius).collect();
     let middle = radii.len() / 2;
     *radii.select_nth_unstable_by(middle, f32::total_cmp).1
 }
 
-/// Those of the pieces of all bodies.
+/// Extents of all pieces of all bodies.
 type Extents = Table<BodySlot, Table<PieceId, Extent>>;
 
-/// How large a piece is.
+/// Extent of a piece.
 #[derive(Copy, Clone, Debug)]
 struct Extent {
-    /// Number of its elements.
+    /// Number of elements.
     count: u32,
-    /// Whether some of them have no bare face.
+    /// Whether the piece has elements without a bare face.
     has_inner: bool,
-    /// The box around the middles of its contact spheres [m].
+    /// Box around the centres of its contact spheres [m].
     low: Row,
     high: Row,
 }
@@ -285,7 +284,7 @@ impl Extent {
         high: [f32::MIN; 4],
     };
 
-    /// The box around some places.
+    /// Returns the box around some points.
     fn around(places: &[Row]) -> Self {
         let mut extent = Self::NONE;
         places.iter().for_each(|at| extent.extend(at));
@@ -297,7 +296,7 @@ impl Extent {
         self.high = [0, 1, 2, 3].map(|axis: usize| self.high[axis].max(at[axis]));
     }
 
-    /// Whether a ball may reach into the box.
+    /// Returns whether a ball may reach into the box.
     fn reaches(&self, at: Row, radius: f32) -> bool {
         (0..3).all(|axis| (self.low[axis] - radius..=self.high[axis] + radius).contains(&at[axis]))
     }
@@ -307,7 +306,7 @@ impl Extent {
     }
 }
 
-/// The pieces of a body, by number, without their boxes.
+/// Returns the extents of the pieces of a body, by number, without their boxes.
 fn extents<D: Dim>(body: Option<&Body<D>>) -> Table<PieceId, Extent> {
     let Some(body) = body else {
         return Table::default();
@@ -323,7 +322,7 @@ fn extents<D: Dim>(body: Option<&Body<D>>) -> Table<PieceId, Extent> {
 }
 
 impl<D: Dim> Body<D> {
-    /// Whether a position [m] lies in an element, taken for evenly deformed.
+    /// Returns whether a position [m] is in an element, which is treated as evenly deformed.
     fn holds(&self, id: ElementId, at: Vector) -> bool {
         let Some(element) = self.truth.mesh.element(id) else {
             return false;
@@ -339,7 +338,7 @@ mod tests {
     use crate::dim::Dim3;
 
     #[test]
-    fn the_nearest_exit_is_found_near_and_far() {
+    fn nearest_exit_is_found_inside_and_outside_the_search_radius() {
         let mut seed = 7u32;
         let mut random = || {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -374,10 +373,10 @@ mod tests {
         assert!(near > 100 && far > 100, "{near} near, {far} far");
     }
 
-    /// Bins were as wide as the widest element, so one that was stretched across the room had every other one look at
-    /// all crumbs.
+    /// Regression test: bins as wide as the widest element made every element scan all crumbs when one was
+    /// stretched.
     #[test]
-    fn the_bins_of_captives_do_not_grow_with_the_widest_element() {
+    fn usual_radius_ignores_stretched_elements() {
         let inner = |radius| Inner {
             level: 1,
             element: ElementId(0),

@@ -1,26 +1,26 @@
-//! What passes between two that touch.
+//! Impulses between two sides of a contact.
 
 #[cfg(feature = "serde")]
 use crate::dim::Dim;
 use crate::solve::Row;
 
-/// The impulses of a contact [N s]: from one substep to the next, and over a tick.
+/// Impulses of a contact, in the last substep and over the tick [N s].
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Impulse {
-    /// Along the normal.
+    /// Normal impulse.
     pub pressed: f32,
-    /// Across it.
+    /// Friction impulse.
     pub dragged: Row,
-    /// Along the normal, since the start of the tick.
+    /// Sum of the normal impulses since the start of the tick.
     pub total: f32,
-    /// How fast the two approached each other at the most since then [m/s].
+    /// Highest approach speed since the start of the tick [m/s].
     pub speed: f32,
 }
 
 #[cfg(feature = "serde")]
 impl Impulse {
-    /// Takes out what leads out of the plane.
+    /// Clears the components beyond the dimension.
     pub fn flatten<D: Dim>(&mut self) {
         let aside = self.dragged[D::N..].iter_mut();
         aside

@@ -1,5 +1,6 @@
-//! Who leans on what is taken out of the world, directly or by way of others: such sleepers are to wake. A sleeper
-//! wakes by itself only when what it touches moves quickly; what is left hanging hardly does at first.
+//! Sleepers in contact with something that is removed or moved, directly or through other sleepers; they must
+//! wake. A sleeper wakes by itself only if something it touches moves quickly, which a body that loses its
+//! support does not do at first.
 
 use super::bins::Bins;
 use super::pair::MARGIN;
@@ -16,10 +17,10 @@ use crate::vector::{minus, plus, three};
 use std::collections::{BTreeMap, BTreeSet};
 use std::marker::PhantomData;
 
-/// A piece: its body and number.
+/// Sleeping piece: body and piece number.
 pub type Sleeper = (BodySlot, PieceId);
 
-/// The boxes around pieces of a body, so much wider that who leans on them touches them [m].
+/// Returns the boxes around pieces of a body, enlarged by the contact margin [m].
 pub fn bounds_of<D: Dim>(body: &Body<D>, is_one: impl Fn(PieceId) -> bool) -> Vec<Bounds> {
     let margin = [MARGIN * body.truth.grid.voxel_size(); 3];
     let pieces = body.piece_views().into_iter();
@@ -28,7 +29,7 @@ pub fn bounds_of<D: Dim>(body: &Body<D>, is_one: impl Fn(PieceId) -> bool) -> Ve
     bounds.collect()
 }
 
-/// What is free and sleeps in some boxes: it may lean on what is there, or was.
+/// Returns the sleeping dynamic rigid bodies with a bounding box that overlaps one of `places`.
 pub fn sleeping_in<D: Dim>(places: &[Bounds], rigids: &Rigids) -> Vec<RigidSlot> {
     let is_there = |rigid: &Rigid| {
         let [low, high] = rigid.shape().bounds();
@@ -42,7 +43,7 @@ pub fn sleeping_in<D: Dim>(places: &[Bounds], rigids: &Rigids) -> Vec<RigidSlot>
     sleepers.map(|(slot, _)| slot).collect()
 }
 
-/// The sleepers that lean on something rigid, by body and number in ascending order.
+/// Returns the sleepers in contact with a rigid body, ascending by body and number.
 pub fn leaning_on_rigid<D: Dim>(rigid: &Rigid, bodies: &Bodies<D>) -> Vec<Sleeper> {
     let mut leaning = BTreeSet::new();
     for (slot, body) in bodies.by_slot() {
@@ -58,7 +59,7 @@ pub fn leaning_on_rigid<D: Dim>(rigid: &Rigid, bodies: &Bodies<D>) -> Vec<Sleepe
     Sleepers::of(bodies).with_those_on(leaning)
 }
 
-/// The sleepers that lean on a body which is not among them, by body and number in ascending order.
+/// Returns the sleepers in contact with a body that is not in `bodies`, ascending by body and number.
 pub fn leaning_on_body<D: Dim>(body: &Body<D>, bodies: &Bodies<D>) -> Vec<Sleeper> {
     let sleepers = Sleepers::of(bodies);
     let mut leaning = BTreeSet::new();
@@ -69,7 +70,8 @@ pub fn leaning_on_body<D: Dim>(body: &Body<D>, bodies: &Bodies<D>) -> Vec<Sleepe
     sleepers.with_those_on(leaning)
 }
 
-/// The sleepers that lean on some pieces, given in ascending order, and are none of them; ascending.
+/// Returns the sleepers in contact with some pieces, given in ascending order, without these pieces;
+/// ascending.
 pub fn leaning_on_pieces<D: Dim>(pieces: &[Sleeper], bodies: &Bodies<D>) -> Vec<Sleeper> {
     let sleepers = Sleepers::of(bodies);
     let is_one = |piece: &Sleeper| pieces.binary_search(piece).is_ok();
@@ -90,12 +92,12 @@ pub fn leaning_on_pieces<D: Dim>(pieces: &[Sleeper], bodies: &Bodies<D>) -> Vec<
     leaning
 }
 
-/// The contact spheres of all sleepers.
+/// Contact spheres of all sleepers.
 struct Sleepers<D: Dim> {
     spheres: Vec<ContactSphere>,
     centres: Vec<Row>,
     bins: Bins,
-    /// Radius of the largest [m].
+    /// Largest radius [m].
     largest: f32,
     dim: PhantomData<D>,
 }
@@ -120,7 +122,7 @@ impl<D: Dim> Sleepers<D> {
         }
     }
 
-    /// The pieces that touch a sphere, some more than once.
+    /// Returns the pieces that touch a sphere, possibly repeated.
     fn touching(&self, at: Row, radius: f32) -> Vec<Sleeper> {
         let (mut near, furthest) = (Vec::new(), reach(radius, self.largest));
         on_widest_lanes!(simd => self.bins.near::<D, _>(simd, at, furthest, |_| 0, &mut near));
@@ -132,7 +134,7 @@ impl<D: Dim> Sleepers<D> {
         pieces.collect()
     }
 
-    /// Some pieces, and all that lean on them by way of others, ascending.
+    /// Returns some pieces and all sleepers in contact with them, directly or through others; ascending.
     fn with_those_on(&self, some: BTreeSet<Sleeper>) -> Vec<Sleeper> {
         let mut own: BTreeMap<Sleeper, Vec<usize>> = BTreeMap::new();
         for (number, sphere) in self.spheres.iter().enumerate() {
@@ -152,7 +154,7 @@ impl<D: Dim> Sleepers<D> {
     }
 }
 
-/// How close the middles of two spheres are that touch [m].
+/// Returns the distance of the centres of two spheres in contact [m].
 fn reach(first: f32, second: f32) -> f32 {
     (1.0 + MARGIN) * (first + second)
 }

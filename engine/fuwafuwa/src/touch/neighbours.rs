@@ -1,5 +1,6 @@
-//! Who is so close to whom in their piece that a search for all pairs may leave the two out: either their body
-//! holds them at their distance, or they are lips of a crack, which are known without a search. And who sleeps beside sleepers.
+//! Spheres of the same piece so close at rest that the search for all pairs can skip them. Either the piece
+//! itself keeps them apart, or they are on opposite crack faces, which are listed separately. Also finds
+//! ranges in which all spheres sleep.
 
 use super::path::Traveller;
 use super::sphere::{NEAR, SphereId};
@@ -12,20 +13,20 @@ use crate::lanes::LANES;
 use fearless_simd::{prelude::*, u16x8, u32x8};
 use std::ops::Range;
 
-/// Where in which piece contact spheres are, in columns, so that eight can be asked at once.
+/// Pieces and voxels of contact spheres, in columns, so that eight are compared at once.
 #[derive(Clone, Debug, Default)]
 pub struct Neighbours {
-    /// The number that the first piece of each body has among those of all.
+    /// Number of each body's first piece among the pieces of all bodies.
     first: Table<BodySlot, u32>,
-    /// Those of their pieces.
+    /// Piece numbers of the spheres.
     pieces: Vec<u32>,
-    /// The voxels, axis by axis.
+    /// Voxel coordinates, axis by axis.
     voxels: [Vec<u16>; 3],
-    /// How many of those before each are awake.
+    /// Number of awake spheres before each index.
     awake: Vec<u32>,
 }
 
-/// The piece and the voxel of one sphere.
+/// Piece and voxel of a sphere.
 #[derive(Copy, Clone, Debug)]
 pub struct PieceSite {
     piece: u32,
@@ -33,7 +34,7 @@ pub struct PieceSite {
 }
 
 impl Neighbours {
-    /// Those of some spheres, in their order.
+    /// Returns the table for swept spheres, in their order.
     pub fn of<D: Dim>(travellers: &[Traveller], spheres: &Spheres, bodies: &Bodies<D>) -> Self {
         let mut neighbours = Self::default();
         let mut count = 0;
@@ -42,7 +43,7 @@ impl Neighbours {
             count += body.map_or(0, |body| body.truth.pieces.list.len()) as u32;
         }
         neighbours.awake.push(0);
-        // Eight can be read from the last on.
+        // Padding, so that eight can be read from the last index on.
         neighbours.pieces.resize(travellers.len() + LANES, u32::MAX);
         for column in &mut neighbours.voxels {
             column.resize(travellers.len() + LANES, 0);
@@ -57,7 +58,7 @@ impl Neighbours {
         neighbours
     }
 
-    /// That of a sphere.
+    /// Returns the piece and voxel of a sphere.
     pub fn site(&self, sphere: SphereId, spheres: &Spheres) -> PieceSite {
         let sphere = &spheres.list[sphere];
         PieceSite {
@@ -66,7 +67,7 @@ impl Neighbours {
         }
     }
 
-    /// The one so many places from the first.
+    /// Returns the piece and voxel at an index.
     #[inline(always)]
     pub fn at(&self, at: usize) -> PieceSite {
         PieceSite {
@@ -75,13 +76,14 @@ impl Neighbours {
         }
     }
 
-    /// Whether all at some places sleep: of a heap that does, only what somebody comes near to is looked at.
+    /// Returns whether all spheres in a range sleep. In a sleeping heap, only spheres near awake ones are
+    /// compared.
     #[inline(always)]
     pub fn are_asleep(&self, places: &Range<usize>) -> bool {
         self.awake[places.start] == self.awake[places.end]
     }
 
-    /// Which of the eight from the `first` on are neighbours of a sphere, as a mask.
+    /// Returns a mask of the spheres, of eight from `first` on, that are neighbours of a sphere.
     #[inline(always)]
     pub fn of_eight<S: Simd>(&self, simd: S, own: PieceSite, first: usize) -> u64 {
         let eight = first..first + LANES;
@@ -90,7 +92,7 @@ impl Neighbours {
         if same == 0 {
             return 0;
         }
-        // From 0 on where it is near: what is less wraps round.
+        // Offset from the lower limit; smaller coordinates wrap around.
         let along = |axis: usize| {
             let column = u16x8::from_slice(simd, &self.voxels[axis][eight.clone()]);
             column - u16x8::splat(simd, own.voxel[axis].wrapping_sub(NEAR))
@@ -101,7 +103,7 @@ impl Neighbours {
 }
 
 impl PieceSite {
-    /// Whether the two are neighbours.
+    /// Returns whether two spheres are neighbours.
     pub fn is_neighbour(&self, other: &Self) -> bool {
         let mut axes = self.voxel.iter().zip(other.voxel);
         self.piece == other.piece && axes.all(|(&own, other)| own.abs_diff(other) <= NEAR)

@@ -1,5 +1,4 @@
-//! Which nodes may touch rigid shapes. Every node counts, so that an element squashed flat lets none
-//! through.
+//! Nodes that may touch rigid shapes. All nodes count, so that a flattened element lets nothing through.
 
 use super::bins::Bins;
 use super::impulse::Impulse;
@@ -14,60 +13,59 @@ use crate::solve::Row;
 use crate::vector::{dot, length, minus, plus, scaled, three};
 use std::ops::Range;
 
-/// How far a node and how far a hand may come beyond what their speed says, in voxels, before they are
-/// looked for again: larger means longer lists, smaller more looks. What pulls a hand is stronger. Neither is critical: with
-/// a quarter and twice of the first, and half and twice of the second, `diced` and `tear-3d` take the same.
+/// Distances [voxels] that a node and a moving rigid body may move beyond the prediction from their velocity
+/// before they are searched again. Larger values mean longer lists, smaller ones more searches. Rigid bodies
+/// have more, because the coupling force accelerates them strongly.
 const SLACK: f32 = 0.4;
 const HAND_SLACK: f32 = 1.0;
 
-/// Nodes in a square of so many voxels are tested against a rigid shape together, before each is on
-/// its own. From 2 to 8 `diced` and `tear-3d` take the same.
+/// Width of a bin [voxels]. Its nodes are tested against a rigid shape together, before each one is tested
+/// alone.
 const SQUARE: f32 = 4.0;
 
-/// A node that may touch a rigid shape.
+/// Node that may touch a rigid shape.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NodePair {
-    /// The slot of what is rigid.
+    /// Slot of the rigid body.
     pub rigid: RigidSlot,
-    /// The slot of the body.
+    /// Slot of the soft body.
     pub body: BodySlot,
-    /// Node id.
+    /// Node of the soft body.
     pub node: NodeId,
-    /// What passed between them.
+    /// Impulses of the contact.
     pub impulse: Impulse,
-    /// How far any node must have come, since all were looked for, before this one may be where it
-    /// touches a shape that stands still [m].
+    /// Value of [`NodePairs::travel`] from which this node may be in contact with a shape that does not move
+    /// [m].
     #[cfg_attr(feature = "serde", serde(skip))]
     pub clear: f32,
 }
 
-/// The nodes that may touch rigid shapes in this tick.
+/// Pairs of nodes and rigid shapes that may touch in this tick.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NodePairs {
-    /// By rigid thing, body and node, asleep or not.
+    /// Pairs, ascending by rigid body, soft body and node; sleeping nodes included.
     pub list: Vec<NodePair>,
-    /// How far the fastest nodes have come since all were looked for [m].
+    /// Distance that the fastest nodes have moved since the last full search [m].
     #[cfg_attr(feature = "serde", serde(skip))]
     pub travel: f32,
-    /// Where each node was when it was last looked for, and as the fourth number how far it may come
-    /// from there, by body and node [m].
+    /// Position of each node at its last search, and as the fourth component its allowed distance from there
+    /// [m], by body and node.
     #[cfg_attr(feature = "serde", serde(skip))]
     anchors: Table<BodySlot, Table<NodeId, Row>>,
-    /// How far nodes may still come before one may have come too far [m].
+    /// Distance that all nodes may still move before one may exceed its allowed distance [m].
     #[cfg_attr(feature = "serde", serde(skip))]
     spare: f32,
-    /// How far each rigid thing may come from where it was, and how far it has come [m]; nothing while all
-    /// must be looked for.
+    /// Allowed and actual movement of each rigid body [m]; empty if a full search is due.
     #[cfg_attr(feature = "serde", serde(skip))]
     leeways: Vec<Leeway>,
-    /// Nodes that are gone, new or awake since: body and node.
+    /// Nodes removed, added or woken since the last update.
     #[cfg_attr(feature = "serde", serde(skip))]
     changed: Vec<(BodySlot, NodeId)>,
 }
 
-/// How far something rigid may come, and how far it has come [m].
+/// Allowed and actual movement of a rigid body [m].
 #[derive(Copy, Clone, Debug)]
 struct Leeway {
     most: f32,
@@ -75,7 +73,7 @@ struct Leeway {
 }
 
 impl NodePairs {
-    /// What passed in the last tick is settled. All will be looked for.
+    /// Starts a tick: clears the sums of the last one and requests a full search.
     pub fn start_tick(&mut self) {
         for pair in &mut self.list {
             (pair.impulse.total, pair.impulse.speed) = (0.0, 0.0);
@@ -84,12 +82,13 @@ impl NodePairs {
         self.changed.clear();
     }
 
-    /// Something rigid moves that stood: all will be looked for.
+    /// Requests a full search, because a rigid body changed.
     pub fn look_again(&mut self) {
         self.leeways.clear();
     }
 
-    /// Forgets what is of no body, node or rigid thing that is there; leaves each pair once, in their order.
+    /// Discards pairs without an existing rigid body, soft body or node, and restores the order without
+    /// duplicates.
     #[cfg(feature = "serde")]
     pub fn keep_known<D: Dim>(&mut self, bodies: &Bodies<D>, rigids: &Rigids) {
         let is_known =
@@ -99,12 +98,13 @@ impl NodePairs {
         self.list.dedup_by_key(|pair| pair.key());
     }
 
-    /// Nodes of a body are gone or new.
+    /// Notes removed and added nodes of a body.
     pub fn tear(&mut self, body: BodySlot, nodes: &[NodeId]) {
         self.changed.extend(nodes.iter().map(|&node| (body, node)));
     }
 
-    /// Pieces woke, given by body and number in ascending order: they meet walls again.
+    /// Notes the nodes of woken pieces, given by body and number in ascending order, because they can touch
+    /// fixed bodies again.
     pub fn wake<D: Dim>(&mut self, pieces: &[(BodySlot, PieceId)], bodies: &Bodies<D>) {
         for (slot, body) in bodies.by_slot() {
             if pieces.iter().all(|&(body, _)| body != slot) {
@@ -119,14 +119,13 @@ impl NodePairs {
         }
     }
 
-    /// The bodies have moved, no node of them further than by `distance` [m].
+    /// Accounts for a move in which no node moved farther than `distance` [m].
     pub fn pass(&mut self, distance: f32) {
         self.travel += distance;
         self.spare -= distance;
     }
 
-    /// Brings the list up to date; a substep takes `duration` [s], and `left` [s] of the tick are to
-    /// come.
+    /// Updates the list. A substep takes `duration` [s], and `left` [s] of the tick remain.
     pub fn follow<D: Dim>(
         &mut self,
         bodies: &Bodies<D>,
@@ -177,8 +176,8 @@ impl NodePairs {
         });
     }
 
-    /// Looks for all nodes that may come to something rigid in what is `left` of the tick [s]. Those that
-    /// sleep meet hands only.
+    /// Searches all nodes that may reach a rigid body in the remaining time `left` of the tick [s]. Sleeping
+    /// nodes are paired only with moving rigid bodies.
     fn find_all<D: Dim>(&mut self, bodies: &Bodies<D>, rigids: &Rigids, left: f32) {
         self.changed.clear();
         self.travel = 0.0;
@@ -227,7 +226,7 @@ impl NodePairs {
                             .filter(is_near),
                     );
                 }
-                // What is near comes square by square.
+                // Found bin by bin, so not in order.
                 near.sort_unstable();
                 found.extend(near.iter().map(|&node| (own, *slot, node)));
             }
@@ -235,8 +234,8 @@ impl NodePairs {
         self.merge(&found, |pair| pair.has_touched(bodies));
     }
 
-    /// Adds the nodes that came further than they might to the changed ones; notes what the others have
-    /// to spare.
+    /// Adds the nodes that have exceeded their allowed distance to the changed ones, and updates the spare
+    /// distance of the others.
     fn find_strayed<D: Dim>(&mut self, bodies: &Bodies<D>) {
         let mut spare = f32::INFINITY;
         for (slot, body) in bodies.by_slot() {
@@ -260,7 +259,7 @@ impl NodePairs {
         self.spare = spare;
     }
 
-    /// Notes where a node is, and how far it may come until the end of the tick.
+    /// Stores the position of a node and its allowed distance until the end of the tick.
     fn anchor<D: Dim>(&mut self, slot: BodySlot, node: NodeId, bodies: &Bodies<D>, left: f32) {
         let body = bodies.at(slot);
         let anchors = &mut self.anchors[slot];
@@ -272,13 +271,12 @@ impl NodePairs {
         self.spare = if most < self.spare { most } else { self.spare };
     }
 
-    /// How close to a wall a node is listed [m]; `size` [m] is that of its voxels.
+    /// Returns the distance from a wall within which a node is listed [m]; `size` is the voxel size [m].
     fn reach(&self, body: BodySlot, node: NodeId, size: f32) -> f32 {
         self.anchors[body][node][3] + MARGIN * size
     }
 
-    /// Makes the new list of those just found and those of the old ones that stay. Pairs that were
-    /// known keep their impulses.
+    /// Merges the found pairs with the old ones that stay. Known pairs keep their impulses.
     fn merge(&mut self, found: &[Key], stays: impl Fn(&NodePair) -> bool) {
         let old = std::mem::take(&mut self.list);
         let mut old = old.into_iter().peekable();
@@ -302,7 +300,7 @@ impl NodePairs {
     }
 }
 
-/// What a pair is known by, and sorted by: rigid thing, body and node.
+/// Sort key of a pair: rigid body, soft body and node.
 type Key = (RigidSlot, BodySlot, NodeId);
 
 impl NodePair {
@@ -310,12 +308,13 @@ impl NodePair {
         (self.rigid, self.body, self.node)
     }
 
-    /// Whether they touched in this tick, which is to be told when they are far apart too.
+    /// Returns whether the pair touched in this tick. Such a pair is kept for the events even if it is far
+    /// apart now.
     fn has_touched<D: Dim>(&self, bodies: &Bodies<D>) -> bool {
         self.impulse.total > 0.0 && bodies.at(self.body).truth.mesh.is_alive(self.node)
     }
 
-    /// The number of the piece; nothing when another body stands here since.
+    /// Returns the piece of the node; `None` if another body is in the slot now.
     pub fn piece<D: Dim>(&self, bodies: &Bodies<D>) -> Option<PieceId> {
         let body = bodies.find(self.body)?;
         let is_known = self.node.index() < body.truth.mesh.node_capacity();
@@ -323,16 +322,16 @@ impl NodePair {
     }
 }
 
-/// The nodes of a body that are awake, those in a square of space together: most squares are out of
-/// reach as a whole, however the body is torn.
+/// Awake nodes of a body, grouped in bins. Most bins are out of reach as a whole, however the body is torn.
 struct Squares {
-    /// By their numbers in the bins; each with how close to a wall it is listed [m].
+    /// Nodes by their numbers in the bins, and the distance within which each is listed [m].
     nodes: Vec<(NodeId, f32)>,
     bins: Bins,
     list: Vec<Square>,
 }
 
-/// The places of nodes in the bins, a ball around them, and how close the first of them are listed [m].
+/// Range of nodes in the bins, a ball around them, and the largest distance at which one of them is listed
+/// [m].
 struct Square {
     points: Range<usize>,
     centre: Row,
@@ -355,7 +354,7 @@ impl Squares {
         }
     }
 
-    /// Adds the nodes that are no further from a shape than their reach and `range` [m].
+    /// Adds the nodes within their reach plus `range` of a shape [m].
     fn within(&self, range: f32, shape: &Shape, near: &mut Vec<NodeId>) {
         let is_near = |at: Row, reach: f32| shape.distance(three(at)).0 <= reach;
         for square in &self.list {
@@ -401,10 +400,10 @@ mod tests {
     use crate::material::Material;
     use std::collections::BTreeSet;
 
-    /// A body is torn, and its nodes move, at random between two walls; the list against all nodes there are.
+    /// Tears a body and moves its nodes at random between two walls, and compares the list with all nodes.
     fn check<D: Dim>(n: usize) {
-        let grid = VoxelGrid::<D>::ball(n, 1.0).expect("a ball is not empty");
-        let body = Body::new(grid, &[Material::default()]).expect("the material is good");
+        let grid = VoxelGrid::<D>::ball(n, 1.0).expect("the ball has voxels");
+        let body = Body::new(grid, &[Material::default()]).expect("the default material is valid");
         let size = body.truth.grid.voxel_size();
         let mut bodies = Bodies::default();
         let ball = bodies.insert(body).slot();
@@ -445,7 +444,7 @@ mod tests {
             });
             let before = body.truth.mesh.node_count();
             let changes = body.tear(&sides.collect::<Vec<_>>());
-            let changes = changes.expect("a release leaves the mesh whole");
+            let changes = changes.expect("splitting a node keeps the mesh valid");
             let alive = |&&node: &&NodeId| body.truth.mesh.is_alive(node);
             new += changes.nodes.iter().filter(alive).count();
             gone += changes.nodes.len() - changes.nodes.iter().filter(alive).count();
@@ -467,7 +466,7 @@ mod tests {
     }
 
     #[test]
-    fn nodes_near_a_wall_are_known_however_they_move_and_tear() {
+    fn list_contains_all_nodes_near_walls_while_they_move_and_tear() {
         check::<Dim2>(16);
         check::<Dim3>(10);
     }

@@ -1,4 +1,4 @@
-//! Two contact spheres that may touch, and lists of such pairs.
+//! Pairs of contact spheres that may touch, and operations on their lists.
 
 use super::impulse::Impulse;
 use super::sphere::{ContactSphere, SphereId};
@@ -6,25 +6,25 @@ use crate::ids::Table;
 use crate::threads::{self, SHARE};
 use crate::vector::scaled;
 
-/// Contacts are looked for out to this many voxels, so that none comes as a surprise: what closes by up to a sixth of a
-/// voxel in a substep, (0.3 − CLOSE) / AHEAD, is known before it matters. That is a quarter as fast as waves; what is faster is
-/// pushed out again. Twice as much takes `diced` 7 to 17 % longer.
+/// Search margin of contacts [voxels]. Contacts that close by up to a sixth of a voxel in a substep, (0.3 −
+/// CLOSE) / AHEAD, are known in advance. That is a quarter of the wave speed; faster ones overlap and are
+/// pushed out.
 pub const MARGIN: f32 = 0.3;
 
-/// Two spheres that may touch.
+/// Pair of spheres that may touch.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SpherePair {
-    /// Ascending.
+    /// Spheres in ascending order.
     pub spheres: [SphereId; 2],
-    /// What passed between them.
+    /// Impulses of the contact.
     pub impulse: Impulse,
-    /// Whether they met face to face: if one is behind the other now, it was forced there.
+    /// Whether the spheres have met face to face. If one is behind the other now, it was forced there.
     pub met_in_front: bool,
 }
 
-/// Makes the new list of pairs from those just found and the old ones of which neither has changed, or
-/// which touched in this tick: that is to be told. Pairs that were known keep their impulses.
+/// Merges the found pairs with old ones that stay: those of unchanged spheres, and those that touched in this
+/// tick, which the events require. Known pairs keep their impulses.
 pub fn merge(
     list: &mut Vec<SpherePair>,
     found: &[Vec<[SphereId; 2]>],
@@ -58,7 +58,7 @@ pub fn merge(
     *list = merged.concat();
 }
 
-/// The spheres have new numbers: of each before it is told which it has now.
+/// Replaces the sphere numbers by new ones, given for each old number.
 pub fn renumber(list: &mut Vec<SpherePair>, numbers: &Table<SphereId, SphereId>) {
     list.retain_mut(|pair| {
         let number = |old: SphereId| numbers.get(old.index()).copied().unwrap_or(SphereId::NONE);
@@ -72,7 +72,7 @@ pub fn renumber(list: &mut Vec<SpherePair>, numbers: &Table<SphereId, SphereId>)
     list.sort_unstable_by_key(|pair| pair.spheres);
 }
 
-/// Both lists of pairs, which ascend by their first spheres, cut at the same ones.
+/// Splits both lists of pairs, ascending by their first spheres, at the same spheres.
 fn shares<'a>(
     mut found: &'a mut [[SphereId; 2]],
     mut old: &'a [SpherePair],
@@ -96,7 +96,7 @@ fn shares<'a>(
 }
 
 impl SpherePair {
-    /// Two that have not touched yet.
+    /// Returns a pair that has not touched yet.
     fn new(spheres: [SphereId; 2]) -> Self {
         Self {
             spheres,
@@ -105,13 +105,13 @@ impl SpherePair {
         }
     }
 
-    /// Its spheres among all of them.
+    /// Returns both spheres.
     pub fn both<'a>(&self, spheres: &'a Table<SphereId, ContactSphere>) -> [&'a ContactSphere; 2] {
         self.spheres.map(|sphere| &spheres[sphere])
     }
 }
 
-/// Pairs of spheres with numbers below `count`, ascending by the first.
+/// Returns the pairs ascending by their first sphere; sphere numbers are below `count`.
 fn by_first(pairs: &[Vec<[SphereId; 2]>], count: usize) -> Vec<[SphereId; 2]> {
     let mut end: Table<SphereId, u32> = vec![0; count].into();
     for pair in pairs.iter().flatten() {
@@ -135,7 +135,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_passed_between_two_is_known_when_they_have_new_numbers() {
+    fn renumber_keeps_impulses_and_drops_removed_spheres() {
         let pair = |spheres: [u32; 2], pressed| SpherePair {
             spheres: spheres.map(SphereId),
             impulse: Impulse {
@@ -147,13 +147,16 @@ mod tests {
             met_in_front: true,
         };
         let mut pairs = vec![pair([0, 1], 1.0), pair([0, 2], 2.0), pair([1, 3], 3.0)];
-        // The last one stands first now, and one is gone.
+        // Sphere 2 becomes the first, and sphere 1 is gone.
         let numbers = vec![SphereId(1), SphereId::NONE, SphereId(0)];
         renumber(&mut pairs, &numbers.into());
         assert_eq!(pairs.len(), 1);
         let kept = pairs[0];
         assert_eq!(kept.spheres, [0, 1].map(SphereId));
         assert_eq!(kept.impulse.pressed, 2.0);
-        assert_eq!(kept.impulse.dragged, [-2.0; 4], "on the other one now");
+        assert_eq!(
+            kept.impulse.dragged, [-2.0; 4],
+            "the order of the spheres is swapped"
+        );
     }
 }

@@ -1,12 +1,12 @@
-//! Which contact spheres may touch each other.
+//! Pairs of contact spheres that may touch.
 //!
-//! They are looked for along the way that each is going to take: a straight *path*, from which it may stray
-//! a little, and which holds the shorter the faster things are. Only those that have strayed further, woke or came to the surface
-//! are looked for again; so no pair can be missed, whatever moves as long as it is finite. A search
-//! for all leaves neighbours in one piece out: which of those are lips of a crack is known without it.
+//! Spheres are searched along their predicted motion: a straight *path*, from which they may deviate by a
+//! slack. The faster things move, the shorter the paths hold. Only spheres that exceed their slack, wake or
+//! appear at the surface are searched again. Therefore no pair is missed at any finite speed. A full search
+//! skips neighbours within a piece; those on opposite crack faces are listed separately.
 //!
 //! ```text
-//!    ●──────────┤        two paths make a pair when their spheres, widened by what they may stray,
+//!    ●──────────┤        two paths make a pair if their spheres, enlarged by their slack,
 //!      ╲                 come close enough at the same time
 //!    ●──╲───────┤
 //! ```
@@ -25,74 +25,75 @@ use crate::solve::Row;
 use crate::threads::{self, SHARE};
 use crate::vector::{dot, length, minus, plus, scaled};
 
-/// The share of spheres whose paths may be long, and half the length of the longest of the rest, as a share of the reach:
-/// where more is faster, paths end sooner. Short ones are looked for bin by bin, long ones look around for themselves. A 16th
-/// takes `tear-3d` 3 % longer, a 64th does not; half the length takes it and `diced` up to 8 % longer, twice up to 9.
+/// Share of the spheres that may have long paths, and half the length of the longest short path as a share of
+/// the reach. If speeds are higher, the paths end sooner. Short paths are searched bin by bin; each long path
+/// searches its own surroundings.
 const LONG_SHARE: usize = 32;
 const LONGEST_SHORT: f32 = 0.125;
-/// Paths hold for so long at the most [s]: what falls has strayed by 5 cm then. Half and twice as much take the same.
+/// Maximum duration of the paths [s]. A falling sphere exceeds its prediction by 5 cm in this time.
 const LONGEST_TIME: f32 = 0.1;
-/// Looking for all pairs is quicker than for those of this share of what is awake one by one; and sorting a sphere into bins
-/// takes as long as comparing so many. 2 to 16, and 3 to 48, take the same; with MANY 1 most ticks of `diced` take 10 % more.
+/// A full search is faster than separate searches for more than 1 / `MANY` of the awake spheres. Sorting a
+/// sphere into bins takes as long as `COMPARED` comparisons.
 const MANY: usize = 4;
 const COMPARED: usize = 12;
 
-/// The place among the loose of a sphere that the bins find.
+/// Marks a sphere that is found through the bins, in place of its index among the loose ones.
 const BINNED: u32 = u32::MAX;
 
-/// Spheres whose pairs one thread looks for at a time: fewer than are in a share, for each looks through bins of others.
+/// Number of spheres that a thread searches at a time; below `SHARE`, because each search visits several
+/// bins.
 const LOOKS: usize = SHARE / 8;
 
-/// The pairs of spheres that may touch while their paths hold.
+/// Pairs of spheres that may touch while their paths hold.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SpherePairs {
-    /// Ascending.
+    /// Pairs, ascending.
     pub list: Vec<SpherePair>,
     #[cfg_attr(feature = "serde", serde(skip))]
     paths: Table<SphereId, Path>,
-    /// Where they begin.
+    /// Starting points of the paths.
     #[cfg_attr(feature = "serde", serde(skip))]
     starts: Table<SphereId, Start>,
-    /// Where the middles of all paths are; nothing while all must be looked for.
+    /// Bins of the midpoints of all paths; `None` if a full search is due.
     #[cfg_attr(feature = "serde", serde(skip))]
     bins: Option<Bins>,
-    /// When they are there [s].
+    /// Time of the midpoints [s].
     #[cfg_attr(feature = "serde", serde(skip))]
     binned_at: f32,
-    /// The spheres in the order of the bins.
+    /// Swept spheres in bin order.
     #[cfg_attr(feature = "serde", serde(skip))]
     binned: Vec<Traveller>,
-    /// The mean velocity of what moves, as seen from which paths are short or long [m/s], and half the
-    /// length of the longest of the short ones [m].
+    /// Mean velocity of the moving spheres [m/s], relative to which paths are short or long, and half the
+    /// length of the longest short path [m].
     #[cfg_attr(feature = "serde", serde(skip))]
     frame: Row,
     #[cfg_attr(feature = "serde", serde(skip))]
     short: f32,
-    /// Spheres that bins do not find: with long paths, or with other ones than when they were sorted.
+    /// Spheres that are not found through the bins: those with long paths, or with paths newer than the bins.
     #[cfg_attr(feature = "serde", serde(skip))]
     loose: Vec<Traveller>,
-    /// The place of each sphere among them, or [`BINNED`].
+    /// Index of each sphere in `loose`, or [`BINNED`].
     #[cfg_attr(feature = "serde", serde(skip))]
     loose_at: Table<SphereId, u32>,
-    /// Whether the list is that of the last tick still.
+    /// Whether a tick has begun since the last update.
     #[cfg_attr(feature = "serde", serde(skip))]
     is_new_tick: bool,
-    /// Spheres to be looked for again, beside those that stray.
+    /// Spheres to search again, in addition to those that exceed their slack.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub changed: Vec<SphereId>,
-    /// Since all were looked for, and from then to the end of all paths [s].
+    /// Time since the last full search [s], and the duration of the paths from then on [s].
     #[cfg_attr(feature = "serde", serde(skip))]
     elapsed: f32,
     #[cfg_attr(feature = "serde", serde(skip))]
     duration: f32,
-    /// How close the largest spheres are looked for, and how far the smallest may stray [m].
+    /// Search distance of the largest spheres, and slack of the smallest ones [m].
     #[cfg_attr(feature = "serde", serde(skip))]
     reach: f32,
     #[cfg_attr(feature = "serde", serde(skip))]
     least_stray: f32,
-    /// How far anything may still come before one may have strayed [m], and the greatest speed along
-    /// a path [m/s].
+    /// Distance that all spheres may still deviate before one may exceed its slack [m], and the highest speed
+    /// along a path [m/s].
     #[cfg_attr(feature = "serde", serde(skip))]
     spare: f32,
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -100,7 +101,8 @@ pub struct SpherePairs {
 }
 
 impl SpherePairs {
-    /// What passed in the last tick is settled. Where spheres are listed anew, all pairs will be looked for.
+    /// Starts a tick: clears the sums of the last one. Requests a full search if the spheres were listed
+    /// again.
     pub fn start_tick(&mut self, is_listed_anew: bool) {
         if is_listed_anew {
             self.bins = None;
@@ -112,14 +114,13 @@ impl SpherePairs {
         }
     }
 
-    /// So much time has passed [s], in which no node came further than by `distance` [m].
+    /// Accounts for a substep [s] in which no node moved farther than `distance` [m].
     pub fn pass(&mut self, duration: f32, distance: f32) {
         self.elapsed += duration;
         self.spare -= distance + self.pace * duration;
     }
 
-    /// Follows the spheres, and brings the list up to date. Returns whether it changed, or is that of a new
-    /// tick.
+    /// Updates the spheres and the list. Returns whether the list changed or a new tick began.
     pub fn follow<D: Dim>(&mut self, spheres: &mut Spheres, bodies: &Bodies<D>) -> bool {
         let is_new_tick = std::mem::take(&mut self.is_new_tick);
         if spheres.awake.is_empty() {
@@ -152,8 +153,8 @@ impl SpherePairs {
         true
     }
 
-    /// Adds those that have strayed from their paths to the changed ones; notes what the others have
-    /// to spare.
+    /// Adds the spheres that have exceeded their slack to the changed ones, and updates the spare distance of
+    /// the others.
     fn find_strayed(&mut self, spheres: &Spheres) {
         let mut spare = f32::INFINITY;
         for &sphere in &spheres.awake {
@@ -172,13 +173,13 @@ impl SpherePairs {
         self.spare = spare;
     }
 
-    /// For so many spheres.
+    /// Resizes the tables for `count` spheres.
     fn make_room(&mut self, count: usize) {
         self.paths.resize(count, Path::default());
         self.starts.resize(count, Start::UNKNOWN);
     }
 
-    /// Lays the path of a sphere anew from where it is.
+    /// Starts a new path of a sphere at its present position.
     fn lay<D: Dim>(&mut self, sphere: SphereId, spheres: &Spheres, bodies: &Bodies<D>) {
         let now = spheres.centres[sphere];
         let start = &mut self.starts[sphere];
@@ -197,7 +198,7 @@ impl SpherePairs {
         self.pace = if speed > self.pace { speed } else { self.pace };
     }
 
-    /// A sphere on its path.
+    /// Returns a sphere with its path.
     fn traveller(&self, sphere: SphereId, spheres: &Spheres) -> Traveller {
         let ContactSphere { radius, asleep, .. } = spheres.list[sphere];
         Traveller {
@@ -209,7 +210,7 @@ impl SpherePairs {
         }
     }
 
-    /// Looks for all pairs.
+    /// Searches all pairs.
     fn find_all<D: Dim>(&mut self, spheres: &Spheres, bodies: &Bodies<D>) {
         let count = spheres.list.len();
         self.changed.clear();
@@ -230,7 +231,7 @@ impl SpherePairs {
         merge(&mut self.list, &found, &vec![true; count].into());
     }
 
-    /// Sorts all into bins, by the middle of what is left of their paths.
+    /// Sorts all spheres into bins, by the midpoint of the remaining path.
     fn bin<D: Dim>(&mut self, spheres: &Spheres) -> Bins {
         self.binned_at = self.remaining().middle;
         let middles = self.paths.iter().map(|path| path.at(self.binned_at));
@@ -251,8 +252,7 @@ impl SpherePairs {
         bins
     }
 
-    /// Works out how far is looked: how close spheres may come, how far they may stray, for how long their
-    /// paths hold, and how long the short ones are.
+    /// Computes the search distance, the slack, the duration of the paths and the length of short paths.
     fn measure(&mut self, spheres: &Spheres) {
         let radii = spheres.list.iter().map(|sphere| sphere.radius);
         let (smallest, largest) = radii.fold((f32::MAX, 0.0f32), |(low, high), radius| {
@@ -272,18 +272,19 @@ impl SpherePairs {
         self.short = most * self.span().half;
     }
 
-    /// How fast a path goes, as seen from the frame [m/s].
+    /// Returns the speed of a path relative to the frame [m/s].
     fn speed(&self, sphere: SphereId) -> f32 {
         length(minus(self.paths[sphere].velocity, self.frame))
     }
 
-    /// Whether the bins find it: its path is short, and the one that it had when it was sorted.
+    /// Returns whether a sphere is found through the bins: its path is short and as it was when the bins were
+    /// built.
     #[inline(always)]
     fn is_binned(&self, traveller: &Traveller) -> bool {
         self.loose_at[traveller.sphere] == BINNED
     }
 
-    /// The pairs of which both have short paths, but for neighbours in a piece.
+    /// Returns the pairs with two short paths, except neighbours in a piece.
     fn short_pairs<D: Dim>(&self, bins: &Bins, neighbours: &Neighbours) -> Vec<Vec<[SphereId; 2]>> {
         let (span, reach) = (self.span(), self.reach + 2.0 * self.short);
         threads::map(bins.shares(), |share| {
@@ -306,9 +307,9 @@ impl SpherePairs {
         })
     }
 
-    /// The pairs of lips of a crack.
+    /// Returns the pairs on opposite crack faces.
     fn lips(&self, spheres: &Spheres) -> Vec<Vec<[SphereId; 2]>> {
-        // The place of each sphere in the order of the bins.
+        // Index of each sphere in bin order.
         let mut order: Table<SphereId, u32> = vec![0; self.binned.len()].into();
         for (traveller, at) in self.binned.iter().zip(0..) {
             order[traveller.sphere] = at;
@@ -326,7 +327,7 @@ impl SpherePairs {
         })
     }
 
-    /// The pairs of those with long paths, but for neighbours in a piece.
+    /// Returns the pairs with a long path, except neighbours in a piece.
     fn long_pairs<D: Dim>(
         &self,
         bins: &Bins,
@@ -337,7 +338,7 @@ impl SpherePairs {
         let middles = self.loose.iter().map(|long| long.path.at(span.middle));
         let middles: Vec<Row> = middles.collect();
         let long = Bins::new::<D>(&middles, self.reach + 2.0 * self.short);
-        // Of two long paths the longer one looks for the other.
+        // Of two long paths the longer one searches the other.
         let rank = |long: &Traveller| (long.sweep, long.sphere);
         threads::map(self.loose.chunks(LOOKS), |share| {
             let (mut found, mut near) = (Vec::new(), Vec::new());
@@ -374,7 +375,7 @@ impl SpherePairs {
         })
     }
 
-    /// Looks again for the pairs of some, given in ascending order; those of the others stay.
+    /// Searches the pairs of the changed spheres again, given in ascending order; other pairs stay.
     fn find_again<D: Dim>(&mut self, changed: &[SphereId], spheres: &Spheres, bodies: &Bodies<D>) {
         let count = spheres.list.len();
         self.make_room(count);
@@ -386,7 +387,7 @@ impl SpherePairs {
         }
         if changed.len() * (self.loose.len() + changed.len()) > COMPARED * count {
             self.bins = Some(self.bin::<D>(spheres));
-            // Where too many are fast, paths have to end sooner.
+            // With too many fast spheres the paths must end sooner.
             if changed.len() * self.loose.len() > COMPARED * count {
                 self.find_all(spheres, bodies);
                 return;
@@ -397,7 +398,10 @@ impl SpherePairs {
                 .for_each(|&sphere| self.loosen(sphere, spheres));
         }
         let span = self.remaining();
-        let bins = self.bins.as_ref().expect("all were looked for before");
+        let bins = self
+            .bins
+            .as_ref()
+            .expect("a full search has built the bins");
         let this = &*self;
         let found = threads::map(changed.chunks(LOOKS), |share| {
             let (mut found, mut near) = (Vec::new(), Vec::new());
@@ -407,7 +411,7 @@ impl SpherePairs {
                     true => other.sphere > sphere,
                     false => true,
                 };
-                // In the frame, where the others hardly move.
+                // Moved back along the frame, in which the binned spheres hardly move.
                 let shift = scaled(this.frame, span.middle - this.binned_at);
                 let at = minus(own.path.at(span.middle), shift);
                 let reach = this.reach + this.short + own.sweep;
@@ -429,11 +433,11 @@ impl SpherePairs {
             found
         });
         merge(&mut self.list, &found, &is_changed);
-        // `find_strayed` found out about the others.
+        // `find_strayed` has updated the spare distance for the other spheres.
         self.spare = self.spare.min(self.least_stray);
     }
 
-    /// Takes a sphere out of the bins, for it has another path now.
+    /// Takes a sphere with a new path out of the bins.
     fn loosen(&mut self, sphere: SphereId, spheres: &Spheres) {
         let traveller = self.traveller(sphere, spheres);
         let at = &mut self.loose_at[sphere];
@@ -446,7 +450,7 @@ impl SpherePairs {
         }
     }
 
-    /// From now to the end of all paths.
+    /// Returns the time from now to the end of the paths.
     fn remaining(&self) -> Span {
         Span {
             middle: 0.5 * (self.elapsed + self.duration),
@@ -454,13 +458,13 @@ impl SpherePairs {
         }
     }
 
-    /// From when all were looked for to the end of all paths.
+    /// Returns the time from the last full search to the end of the paths.
     fn span(&self) -> Span {
         let half = 0.5 * self.duration;
         Span { middle: half, half }
     }
 
-    /// What all have in common does not count, while none sleeps.
+    /// Sets the frame to the mean velocity; 0 if any sphere sleeps.
     fn set_frame(&mut self, spheres: &Spheres) {
         self.frame = [0.0; 4];
         if spheres.awake.len() < spheres.list.len() {
@@ -468,26 +472,26 @@ impl SpherePairs {
         }
         let sum = { self.paths.iter() }.fold([0.0; 4], |sum, path| plus(sum, path.velocity));
         let mean = scaled(sum, 1.0 / self.paths.len() as f32);
-        // What is no velocity is quarantined after the tick.
+        // Non-finite velocities are quarantined after the tick.
         if mean.iter().all(|along| along.is_finite()) {
             self.frame = mean;
         }
     }
 }
 
-/// Two, ascending.
+/// Returns the ids of two spheres in ascending order.
 #[inline(always)]
 fn pair(a: &Traveller, b: &Traveller) -> [SphereId; 2] {
     [a.sphere.min(b.sphere), a.sphere.max(b.sphere)]
 }
 
-/// How far a sphere may stray from its path [m].
+/// Returns the slack of a sphere [m].
 #[inline(always)]
 fn most_stray(spheres: &Spheres, sphere: SphereId) -> f32 {
     STRAY * 2.0 * spheres.list[sphere].radius
 }
 
-/// What all of these but a few stay below, or are.
+/// Returns the speed that at most a share of 1 / `LONG_SHARE` of the spheres exceeds.
 fn usual(mut speeds: Vec<f32>) -> f32 {
     if speeds.is_empty() {
         return 0.0;

@@ -1,5 +1,4 @@
-//! What passes between rigid things where one of both is free: kept from one substep to the next, by the corners and edges
-//! that touch.
+//! Contact points between rigid bodies of which one is dynamic, kept between substeps by feature key.
 
 use super::impulse::Impulse;
 #[cfg(feature = "serde")]
@@ -9,40 +8,40 @@ use crate::handle::RigidSlot;
 use crate::rigid::Rigids;
 use crate::shape::Vector;
 
-/// A point at which two rigid things touch.
+/// Contact point between two rigid bodies.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RigidTouch {
-    /// The one that is free, and the other.
+    /// The dynamic body and the other one.
     pub both: [RigidSlot; 2],
-    /// Which corner or edge it is.
+    /// Key of the corner or edge.
     pub key: u32,
-    /// What passed between them.
+    /// Impulses of the point.
     pub impulse: Impulse,
 }
 
-/// What passed at a point in one substep.
+/// Contact at a point in one substep.
 #[derive(Copy, Clone, Debug)]
 pub struct Passed {
-    /// The one that is free, and the other.
+    /// The dynamic body and the other one.
     pub both: [RigidSlot; 2],
-    /// Along the normal [N s].
+    /// Normal impulse [N s].
     pub impulse: f32,
-    /// How fast they approached each other [m/s].
+    /// Approach speed [m/s].
     pub speed: f32,
-    /// Where [m].
+    /// Position [m].
     pub at: Vector,
-    /// Which way the first gets away from the other.
+    /// Unit normal from the second body to the first.
     pub normal: Vector,
 }
 
-/// All of those points, in ascending order.
+/// All contact points between rigid bodies.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RigidTouches {
-    /// By both, and by key.
+    /// Points, ascending by bodies and key.
     pub list: Vec<RigidTouch>,
-    /// What passed in this tick.
+    /// Contacts of this tick.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub passed: Vec<Passed>,
 }
@@ -54,12 +53,12 @@ impl RigidTouch {
 }
 
 impl RigidTouches {
-    /// What passed in the last tick is settled.
+    /// Starts a tick: clears the contacts of the last one.
     pub fn start_tick(&mut self) {
         self.passed.clear();
     }
 
-    /// What passed at a point so far.
+    /// Returns the impulses of a point in the last substep.
     pub fn known(&self, both: [RigidSlot; 2], key: u32) -> Impulse {
         let found = self
             .list
@@ -67,20 +66,20 @@ impl RigidTouches {
         found.map_or_else(|_| Impulse::default(), |place| self.list[place].impulse)
     }
 
-    /// What passes in this substep takes the place of it.
+    /// Replaces the points by those of this substep.
     pub fn renew(&mut self, touches: impl Iterator<Item = RigidTouch>) {
         self.list.clear();
         self.list.extend(touches);
         self.list.sort_by_key(RigidTouch::order);
     }
 
-    /// Something rigid was taken out.
+    /// Removes a rigid body.
     pub fn remove(&mut self, slot: RigidSlot) {
         self.list.retain(|touch| !touch.both.contains(&slot));
         self.passed.retain(|passed| !passed.both.contains(&slot));
     }
 
-    /// Forgets what is of nothing that is there; leaves each point once, in order.
+    /// Discards points of bodies that do not exist, and restores the order without duplicates.
     #[cfg(feature = "serde")]
     pub fn keep_known<D: Dim>(&mut self, rigids: &Rigids) {
         let is_known =

@@ -1,4 +1,4 @@
-//! The ball that stands for a surface element where bodies touch each other.
+//! Contact sphere of a surface element.
 
 use crate::body::{Bodies, Body};
 use crate::dim::{Dim, Point};
@@ -7,44 +7,45 @@ use crate::ids::{ElementId, Id, NodeId, PieceId, Table, id};
 use crate::solve::Row;
 use crate::vector::{plus, scaled};
 
-/// Neighbours are of one piece, and no more than so many voxels apart on any axis as it was built: as far as paths are looked
-/// for at rest, 1 + MARGIN + 2 STRAY widths of a voxel. With fewer a skin would be listed as close to itself all the time.
+/// Maximum distance of neighbours in a piece on each axis at rest [voxels]. It covers the search distance of
+/// paths at rest, 1 + MARGIN + 2 STRAY voxels. With less, adjacent surface elements would be listed as pairs
+/// all the time.
 pub const NEAR: u16 = 2;
 
 id! {
-    /// The number of a contact sphere among those of all bodies.
+    /// Number of a contact sphere among those of all bodies.
     pub SphereId
 }
 
 impl SphereId {
-    /// That of none.
+    /// Marks a missing sphere.
     pub const NONE: Self = Self(u32::MAX);
 }
 
-/// The ball around a surface element.
+/// Contact sphere of a surface element.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct ContactSphere {
-    /// The slot of its body.
+    /// Slot of the body.
     pub body: BodySlot,
     /// Element id.
     pub element: ElementId,
     /// Piece number.
     pub piece: PieceId,
-    /// Half a voxel [m].
+    /// Radius: half a voxel [m].
     pub radius: f32,
-    /// Whether its piece sleeps.
+    /// Whether the piece sleeps.
     pub asleep: bool,
-    /// Its bare faces: bit 2 · axis + side.
+    /// Bare faces: bit 2 · axis + side.
     bare: u8,
-    /// Its voxel.
+    /// Voxel of the element.
     voxel: [i16; 3],
-    /// The voxels around it that share a node with it: bit x + 3 y + 9 z, each from 0 to 2.
+    /// Neighbouring voxels that share a node with this one: bit x + 3 y + 9 z, with coordinates from 0 to 2.
     bound: u32,
-    /// Its corner nodes; the first four in 2D.
+    /// Corner nodes; only the first four in 2D.
     pub nodes: [NodeId; 8],
 }
 
-/// The mean of the rows of a sphere's corner nodes.
+/// Returns the mean of the rows of a sphere's corner nodes.
 #[inline(always)]
 pub fn mean<D: Dim, I: Id>(rows: &Table<I, Row>, nodes: &[I; 8]) -> Row {
     let mut sum = rows[nodes[0]];
@@ -55,7 +56,7 @@ pub fn mean<D: Dim, I: Id>(rows: &Table<I, Row>, nodes: &[I; 8]) -> Row {
 }
 
 impl ContactSphere {
-    /// That of an element of the body in a slot, if it is at the surface.
+    /// Returns the contact sphere of an element, if the element is at the surface.
     pub fn of<D: Dim>(slot: BodySlot, body: &Body<D>, id: ElementId) -> Option<Self> {
         let bare = *body.cache.bare.get(id.index())?;
         if bare == 0 {
@@ -78,17 +79,17 @@ impl ContactSphere {
         })
     }
 
-    /// Body and element.
+    /// Returns the stable key: body and element.
     pub fn key(&self) -> (BodySlot, ElementId) {
         (self.body, self.element)
     }
 
-    /// Its voxel.
+    /// Returns the voxel of the element.
     pub fn voxel(&self) -> Point {
         self.voxel.map(i32::from)
     }
 
-    /// Where in its body it is.
+    /// Returns the location of the sphere in its body.
     pub fn site(&self) -> Site {
         Site {
             body: self.body,
@@ -97,28 +98,28 @@ impl ContactSphere {
         }
     }
 
-    /// The mean of something at its corners.
+    /// Returns the mean of a quantity over the corner nodes.
     #[inline]
     pub fn mean<D: Dim>(&self, rows: &Table<NodeId, Row>) -> Row {
         mean::<D, _>(rows, &self.nodes)
     }
 
-    /// Whether it is a piece of its own.
+    /// Returns whether the sphere is a crumb, a piece of its own.
     pub fn is_crumb<D: Dim>(&self) -> bool {
         self.bare.count_ones() as usize == 2 * D::N
     }
 
-    /// Whether a bare face of it has none opposite.
+    /// Returns whether one of its bare faces has no bare face opposite.
     pub fn leads_out(&self) -> bool {
         (self.bare ^ self.bare >> 1) & 0b1_0101 != 0
     }
 
-    /// From its middle out of the body, through the bare faces; nothing for a crumb or a sheet.
+    /// Returns the vector from the centre out of the body through the bare faces; 0 for a crumb or a sheet.
     pub fn outward<D: Dim>(&self, position: &Table<NodeId, Row>) -> Row {
         let mut sum = [0.0; 4];
         for corner in 0..D::CORNERS {
             let is_bare = |axis: usize, side: usize| f32::from(self.bare >> (2 * axis + side) & 1);
-            // The middle of a face less that of all corners: half a step across.
+            // Centre of a face minus the centre of the element: half a step across.
             let weight: f32 = (0..D::N)
                 .map(|axis| {
                     let out = is_bare(axis, 1) - is_bare(axis, 0);
@@ -131,7 +132,7 @@ impl ContactSphere {
         sum
     }
 
-    /// One over the mass that a push on it meets [1/kg].
+    /// Returns the inverse effective mass of the sphere [1/kg].
     #[inline]
     pub fn inverse_mass<D: Dim>(&self, bodies: &Bodies<D>) -> f32 {
         let all = &bodies.at(self.body).state.inverse_mass;
@@ -141,22 +142,22 @@ impl ContactSphere {
     }
 }
 
-/// Where in its body the element of a sphere is, and what it hangs together with there.
+/// Location of a sphere's element in its body, and its connections to neighbouring voxels.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Site {
     pub body: BodySlot,
     pub voxel: [i16; 3],
-    /// As of the sphere.
+    /// Copy of [`ContactSphere::bound`].
     pub bound: u32,
 }
 
 impl Site {
-    /// Whether the body itself keeps the two at their distance, so that contact need not: neighbours
-    /// that share a node, and those one voxel apart that each share one with the same voxel between
-    /// them.
+    /// Returns whether the body itself keeps two spheres apart, so that no contact is required. This is true
+    /// for neighbours that share a node, and for spheres one voxel apart if each shares a node with the same
+    /// voxel between them.
     ///
     /// ```text
-    ///   a─u─b   held      a┃b   not held: the lips of a crack,      a┃ ┃b   not held: a slot
+    ///   a─u─b   held      a┃b   not held: opposite crack faces,     a┃ ┃b   not held: a slot
     ///                     u─u   though u holds both                 u───u
     /// ```
     #[inline(always)]
@@ -177,10 +178,10 @@ impl Site {
     }
 }
 
-/// For each way from a voxel to another one no more than two steps away on any axis, x + 5 y + 25 z from
-/// −2: the voxels around the first that can bind the two, which are also around the second, and by how much
-/// bits for the second are turned to stand where they do for the first. Of neighbours it is the second
-/// itself, which each has among those that it is bound to.
+/// For each offset of up to two voxels per axis, indexed x + 5 y + 25 z from −2: a mask and a rotation. The
+/// mask holds the voxels around the first sphere that can connect both, which are also around the second. The
+/// rotation aligns the bits of the second sphere with those of the first. For direct neighbours the mask is
+/// the second voxel itself, which each has in its own mask.
 const COMMON: [(u32, u32); 125] = common();
 
 const fn common() -> [(u32, u32); 125] {
@@ -207,5 +208,5 @@ const fn common() -> [(u32, u32); 125] {
     all
 }
 
-/// The bit of the voxel itself among those around it.
+/// Bit of the voxel itself in a mask.
 const MIDDLE: i32 = 13;

@@ -1,5 +1,5 @@
-//! The contact spheres of all bodies: in the order in which they came to the surface, so that a tear
-//! moves none; followed while they move.
+//! Contact spheres of all bodies and their motion. They are in the order in which they appeared at the
+//! surface, so that a tear moves none of them in the list.
 
 use super::sphere::{ContactSphere, NEAR, SphereId};
 use crate::body::{Bodies, Body};
@@ -10,59 +10,59 @@ use crate::ids::{ElementId, PieceId, Table};
 use crate::solve::Row;
 use crate::vector::{dot, minus};
 
-/// The contact spheres of all bodies.
+/// Contact spheres of all bodies.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Spheres {
-    /// Body and element of each: the order of the list, wherever it is made anew.
+    /// Body and element of each sphere. They define the order of the list when it is rebuilt.
     keys: Table<SphereId, Key>,
-    /// Those that were first by body and element, then those that came to the surface since.
+    /// Spheres: the first ones by body and element, then those that appeared at the surface later.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub list: Table<SphereId, ContactSphere>,
-    /// The sphere of each voxel, by body and place of the voxel; [`SphereId::NONE`] inside.
+    /// Sphere of each voxel, by body and voxel index; [`SphereId::NONE`] inside.
     #[cfg_attr(feature = "serde", serde(skip))]
     by_voxel: Table<BodySlot, Vec<SphereId>>,
-    /// The pairs that are lips of a crack: neighbours in one piece, and yet not held by it.
+    /// Pairs on opposite crack faces: neighbours in a piece that the piece does not keep apart.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub lips: Vec<[SphereId; 2]>,
-    /// Up to where each body has been followed.
+    /// Bookmark up to which the changes of each body have been applied.
     #[cfg_attr(feature = "serde", serde(skip))]
     followed: Table<BodySlot, Bookmark>,
-    /// Those awake.
+    /// Awake spheres.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub awake: Vec<SphereId>,
-    /// Where their middles are [m]; of sleepers as of the start of the tick.
+    /// Centres [m]; those of sleepers date from the start of the tick.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub centres: Table<SphereId, Row>,
-    /// Those that contact may ask for, and of each whether it is one of them.
+    /// Awake spheres in pairs or escape contacts, as a list and as a flag per sphere.
     #[cfg_attr(feature = "serde", serde(skip))]
     close: Vec<SphereId>,
     #[cfg_attr(feature = "serde", serde(skip))]
     is_close: Table<SphereId, bool>,
-    /// Of those: how fast they would go on if nothing touched them [m/s], and how far they came in the
-    /// last substep, squared [m²].
+    /// For close spheres: velocity without contacts in this substep [m/s], and squared distance moved in the
+    /// last substep [m²].
     #[cfg_attr(feature = "serde", serde(skip))]
     pub velocities: Table<SphereId, Row>,
     #[cfg_attr(feature = "serde", serde(skip))]
     pub moved: Table<SphereId, f32>,
 }
 
-/// What a sphere is known by from one list to the next: body and element.
+/// Stable key of a sphere: body and element.
 type Key = (BodySlot, ElementId);
 
 impl Spheres {
-    /// How many were known at the end of the last tick.
+    /// Returns the number of spheres at the end of the last tick.
     #[cfg(feature = "serde")]
     pub fn count_keys(&self) -> usize {
         self.keys.len()
     }
 
-    /// The slot of the body of a sphere; also while they are not listed.
+    /// Returns the body slot of a sphere, even before the list is rebuilt.
     pub fn body_of(&self, sphere: SphereId) -> BodySlot {
         self.keys[sphere].0
     }
 
-    /// A body was taken out: who comes to its slot is somebody else.
+    /// Removes a body; its slot may be reused.
     pub fn remove_body(&mut self, slot: BodySlot) {
         for key in self.keys.iter_mut().filter(|(body, _)| *body == slot) {
             *key = (BodySlot::NONE, ElementId(u32::MAX));
@@ -70,7 +70,7 @@ impl Spheres {
         self.followed.clear();
     }
 
-    /// Elements of a body, ascending, are gone: who has their ids next is another one.
+    /// Removes elements of a body, in ascending order; their ids may be reused.
     pub fn remove_elements(&mut self, slot: BodySlot, elements: &[ElementId]) {
         for key in self.keys.iter_mut().filter(|(body, _)| *body == slot) {
             if elements.binary_search(&key.1).is_ok() {
@@ -80,9 +80,9 @@ impl Spheres {
         self.followed.clear();
     }
 
-    /// A tick begins: keeps up with what tore since the last one, and adds who fell asleep to `changed`; where bodies
-    /// may be anything, lists the spheres anew, and returns then the number that each of those before has now, or
-    /// [`SphereId::NONE`].
+    /// Starts a tick: applies the tears since the last one and adds newly sleeping spheres to `changed`. If a
+    /// body may have changed in another way, rebuilds the list and returns the new number of each old sphere,
+    /// or [`SphereId::NONE`].
     pub fn start_tick<D: Dim>(
         &mut self,
         bodies: &Bodies<D>,
@@ -97,7 +97,7 @@ impl Spheres {
             let body = bodies.at(sphere.body);
             let was_asleep = sphere.asleep;
             sphere.asleep = body.truth.pieces.list[sphere.piece].asleep;
-            // Nobody looks after sleepers: this is where they stay.
+            // Sleepers are not updated during the tick, so their centres are computed here.
             if sphere.asleep != was_asleep {
                 changed.push(id);
             }
@@ -105,7 +105,7 @@ impl Spheres {
                 *centre = sphere.mean::<D>(&body.state.position);
             }
         }
-        // So that a world that was saved goes on as one that was not.
+        // Reset, so that a world read from a file behaves like the original.
         self.close.clear();
         self.is_close.fill(false);
         self.velocities.fill([0.0; 4]);
@@ -116,7 +116,7 @@ impl Spheres {
         numbers
     }
 
-    /// Keeps up with what tore between two ticks; returns false where that is not all that happened.
+    /// Applies the tears between two ticks; returns false if bodies changed in another way.
     fn catch_up<D: Dim>(&mut self, bodies: &Bodies<D>, changed: &mut Vec<SphereId>) -> bool {
         if self.followed.len() != bodies.slot_count() {
             return false;
@@ -131,7 +131,8 @@ impl Spheres {
         true
     }
 
-    /// Lists those known before that are there still, in their order, then the others by body and element.
+    /// Rebuilds the list: known spheres that still exist, in their order, then the others by body and
+    /// element.
     fn list_anew<D: Dim>(&mut self, bodies: &Bodies<D>) -> Table<SphereId, SphereId> {
         let known = std::mem::take(&mut self.keys);
         self.list.clear();
@@ -183,8 +184,8 @@ impl Spheres {
         numbers.map(|own| own.unwrap_or(SphereId::NONE)).collect()
     }
 
-    /// Keeps up with a tear of a body; adds the spheres whose elements are new, or have other
-    /// nodes or other bare faces, to `changed`.
+    /// Applies a tear of a body. Adds the spheres of elements that are new, or have other nodes or bare
+    /// faces, to `changed`.
     pub fn tear<D: Dim>(
         &mut self,
         slot: BodySlot,
@@ -198,7 +199,7 @@ impl Spheres {
             let Some(sphere) = ContactSphere::of(slot, body, id) else {
                 continue;
             };
-            // What has once come to the surface stays there.
+            // A voxel at the surface stays there for good.
             let own = &mut self.by_voxel[slot][body.truth.grid.index(sphere.voxel())];
             if *own == SphereId::NONE {
                 *own = self.list.next_id();
@@ -234,7 +235,7 @@ impl Spheres {
         }
     }
 
-    /// Adds the lips that a sphere is one of, with those others that a condition holds for.
+    /// Adds the crack-face pairs of a sphere with other spheres for which `applies` is true.
     fn find_lips<D: Dim>(
         &mut self,
         id: SphereId,
@@ -263,8 +264,7 @@ impl Spheres {
         }
     }
 
-    /// Wakes the spheres of pieces, given by body and number in ascending order; adds them to
-    /// `changed`.
+    /// Wakes the spheres of pieces, given by body and number in ascending order, and adds them to `changed`.
     pub fn wake(&mut self, pieces: &[(BodySlot, PieceId)], changed: &mut Vec<SphereId>) {
         for (id, sphere) in self.list.entries_mut() {
             if sphere.asleep && pieces.binary_search(&(sphere.body, sphere.piece)).is_ok() {
@@ -275,7 +275,7 @@ impl Spheres {
         }
     }
 
-    /// Notes which contact may ask for in the next substeps.
+    /// Sets the spheres that contacts may use in the next substeps.
     pub fn note_close(&mut self, close: impl Iterator<Item = SphereId>) {
         let was_close = self.is_close.clone();
         self.is_close.fill(false);
@@ -295,34 +295,34 @@ impl Spheres {
         }
     }
 
-    /// Moves all that are awake along with the bodies.
+    /// Updates the centres of all awake spheres.
     pub fn move_all<D: Dim>(&mut self, bodies: &Bodies<D>) {
         for at in 0..self.awake.len() {
             self.follow::<D>(self.awake[at], bodies);
         }
     }
 
-    /// Moves those that contact may ask for along with the bodies.
+    /// Updates the centres of the close spheres.
     pub fn move_close<D: Dim>(&mut self, bodies: &Bodies<D>) {
         for at in 0..self.close.len() {
             self.follow::<D>(self.close[at], bodies);
         }
     }
 
-    /// Takes the velocities of those that contact may ask for from the bodies.
+    /// Copies the velocities of the close spheres from the bodies.
     pub fn take_velocities<D: Dim>(&mut self, bodies: &Bodies<D>) {
         for &id in &self.close {
             self.velocities[id] = self.velocity(id, bodies);
         }
     }
 
-    /// How fast one moves [m/s].
+    /// Returns the velocity of a sphere [m/s].
     pub fn velocity<D: Dim>(&self, id: SphereId, bodies: &Bodies<D>) -> Row {
         let sphere = &self.list[id];
         sphere.mean::<D>(&bodies.at(sphere.body).state.velocity)
     }
 
-    /// Whether their body itself holds two at their distance.
+    /// Returns whether the body itself keeps two spheres apart.
     pub fn holds(&self, a: SphereId, b: SphereId) -> bool {
         let [a, b] = [a, b].map(|id| self.list[id].site());
         a.is_held_to(&b)

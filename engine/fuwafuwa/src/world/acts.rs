@@ -1,4 +1,4 @@
-//! What is done to bodies from outside: moved, turned, thrown, pushed, put to sleep.
+//! Actions on bodies from outside: translation, rotation, velocity, impulse, sleep.
 
 use super::{Refused, Settings, World};
 use crate::body::{Body, MOST_GRAVITY};
@@ -15,21 +15,22 @@ use crate::touch::{bounds_of, leaning_on_body, leaning_on_rigid};
 use crate::vector::minus;
 
 impl<D: Dim> World<D> {
-    /// Moves a body `by` [m] at once, through whatever is in between. It and what leant on it wake; who follows it by a
-    /// bookmark need not begin anew, since nothing in it changes but places.
+    /// Translates a body `by` [m] at once, through anything in between. The body and sleepers in contact with
+    /// it wake. Bookmarks stay valid, because only positions change.
     ///
     /// # Errors
-    /// [`Refused`] when there is no such body, or when one coordinate is more than 1e6 m or not finite.
+    /// [`Refused`] if the handle is stale, or a coordinate is not finite or beyond ±1e6 m.
     #[inline(never)]
     pub fn move_body(&mut self, body: BodyId, by: Vector) -> Result<(), Refused> {
         let by = within("distance", by, FARTHEST, "at most 1e6 m on each axis")?;
         self.displace(body, |body| body.shift(by))
     }
 
-    /// Turns a body about a place [m] at once, with its velocities; as [`World::move_body`] and [`Body::rotated`].
+    /// Rotates a body about a point [m] at once, its velocities included; otherwise like
+    /// [`World::move_body`]. See also [`Body::rotated`].
     ///
     /// # Errors
-    /// As [`World::move_body`].
+    /// As for [`World::move_body`].
     #[inline(never)]
     pub fn rotate_body(
         &mut self,
@@ -41,11 +42,11 @@ impl<D: Dim> World<D> {
         self.displace(body, |body| body.turn(rotation, about))
     }
 
-    /// Adds `linear` [m/s], and `angular` [rad/s] about the centre of mass, to the velocity of all of a body; in the plane
-    /// the third component of `angular` counts alone. It wakes.
+    /// Adds a linear velocity [m/s], and an angular velocity [rad/s] about the centre of mass, to all nodes
+    /// of a body. In 2D only the third component of `angular` counts. The body wakes.
     ///
     /// # Errors
-    /// [`Refused`] when there is no such body, or when a component is more than 1e6 or not finite.
+    /// [`Refused`] if the handle is stale, or a component is not finite or beyond ±1e6.
     #[inline(never)]
     pub fn add_velocity(
         &mut self,
@@ -60,9 +61,9 @@ impl<D: Dim> World<D> {
         Ok(())
     }
 
-    /// Gives a body an impulse [N s] at a place [m], spread over its nodes within `radius` [m] so that they gain the same
-    /// velocity: it is squashed or torn there if that is more than it bears. Where no node is within, the nearest one has
-    /// all of it. The body wakes.
+    /// Applies an impulse [N s] at a point [m]. It is distributed over the nodes within `radius` [m] so that
+    /// all gain the same velocity; without nodes in the radius the nearest node gets all of it. A strong
+    /// impulse can squash or tear the body there. The body wakes.
     ///
     /// ```
     /// use fuwafuwa::{Body, Dim2, Material, Settings, VoxelGrid, World};
@@ -77,7 +78,7 @@ impl<D: Dim> World<D> {
     /// ```
     ///
     /// # Errors
-    /// [`Refused`] when there is no such body, when a number is not finite or more than 1e6, or when the radius is negative.
+    /// [`Refused`] if the handle is stale, a number is not finite or beyond ±1e6, or the radius is negative.
     #[inline(never)]
     pub fn apply_impulse(
         &mut self,
@@ -94,11 +95,12 @@ impl<D: Dim> World<D> {
         Ok(())
     }
 
-    /// Puts something rigid somewhere [m] at once, turned from its form as `rotation` says, with the velocity that it has; a
-    /// hand with its goal. Everything wakes that leant on it, and all that is free.
+    /// Moves a rigid body to a position [m] and a rotation relative to its form, at once. Its velocity stays,
+    /// and a kinematic or coupled body gets the new pose as its target. The body and sleepers in contact with
+    /// it wake.
     ///
     /// # Errors
-    /// [`Refused`], and it stays where it was, when there is no such thing or the position is out of reach.
+    /// [`Refused`] if the handle is stale or the position is out of range. The body then stays unchanged.
     #[inline(never)]
     pub fn place_rigid(
         &mut self,
@@ -114,11 +116,12 @@ impl<D: Dim> World<D> {
         self.forget_rigid(rigid, was)
     }
 
-    /// Sets the velocity [m/s] and the angular velocity [rad/s] of something that is free; in the plane the third component
-    /// of that counts alone. It wakes.
+    /// Sets the linear velocity [m/s] and the angular velocity [rad/s] of a dynamic rigid body. In 2D only
+    /// the third component of `angular` counts. The body wakes.
     ///
     /// # Errors
-    /// [`Refused`] when there is no such thing, when it is not free, or when a component is more than 1e6 or not finite.
+    /// [`Refused`] if the handle is stale, the body is not dynamic, or a component is not finite or beyond
+    /// ±1e6.
     #[inline(never)]
     pub fn set_velocity(
         &mut self,
@@ -134,10 +137,10 @@ impl<D: Dim> World<D> {
         Ok(())
     }
 
-    /// Gives something that is free an impulse [N s] at a place [m]. It wakes.
+    /// Applies an impulse [N s] to a dynamic rigid body at a point [m]. The body wakes.
     ///
     /// # Errors
-    /// As [`World::set_velocity`].
+    /// As for [`World::set_velocity`].
     #[inline(never)]
     pub fn push_rigid(
         &mut self,
@@ -153,8 +156,8 @@ impl<D: Dim> World<D> {
         Ok(())
     }
 
-    /// Changes what may be changed of something rigid: friction, restitution, drive, layers, whether it is a sensor. What it
-    /// touched counts as new; it wakes, with all that leant on it.
+    /// Changes the public fields of a rigid body: friction, restitution, motion type, layers, sensor flag and
+    /// user data. Its contacts restart; the body and sleepers in contact with it wake.
     ///
     /// ```
     /// use fuwafuwa::{Dim2, Drive, Rigid, Settings, Shape, World};
@@ -170,7 +173,7 @@ impl<D: Dim> World<D> {
     /// ```
     ///
     /// # Errors
-    /// [`Refused`], and it stays as it was, when there is no such thing or a field is out of range.
+    /// [`Refused`] if the handle is stale or a field is out of range. The body then stays unchanged.
     #[inline(never)]
     pub fn change_rigid(
         &mut self,
@@ -190,10 +193,10 @@ impl<D: Dim> World<D> {
         self.forget_rigid(rigid, was)
     }
 
-    /// Says which layers a body is in and which it meets. It and what leant on it wake.
+    /// Sets the collision layers of a body. The body and sleepers in contact with it wake.
     ///
     /// # Errors
-    /// [`Refused::Gone`] when there is no such body.
+    /// [`Refused::Gone`] if the handle is stale.
     #[inline(never)]
     pub fn set_layers(&mut self, body: BodyId, layers: Layers) -> Result<(), Refused> {
         self.displace(body, |body| body.state.layers = layers)?;
@@ -201,20 +204,21 @@ impl<D: Dim> World<D> {
         Ok(())
     }
 
-    /// Keeps a number with a body: [`Body::user_data`].
+    /// Sets the [`Body::user_data`] of a body.
     ///
     /// # Errors
-    /// [`Refused::Gone`] when there is no such body.
+    /// [`Refused::Gone`] if the handle is stale.
     #[inline(never)]
     pub fn set_user_data(&mut self, body: BodyId, data: u64) -> Result<(), Refused> {
         self.bodies.get_mut(body)?.state.user_data = data;
         Ok(())
     }
 
-    /// Lets gravity pull on a body `scale` times as strongly as on others: 0 not at all, negative upwards. It wakes.
+    /// Sets the gravity scale of a body: 1 is normal, 0 is no gravity, negative values pull upwards. The body
+    /// wakes.
     ///
     /// # Errors
-    /// [`Refused`] when there is no such body, or when the scale is beyond ±100 or not finite.
+    /// [`Refused`] if the handle is stale, or the scale is not finite or beyond ±100.
     #[inline(never)]
     pub fn set_gravity_scale(&mut self, body: BodyId, scale: f32) -> Result<(), Refused> {
         require(scale.abs() <= MOST_GRAVITY, "gravity scale", "-100 to 100")?;
@@ -223,10 +227,11 @@ impl<D: Dim> World<D> {
         Ok(())
     }
 
-    /// Wakes a body, and keeps it awake for half a second at the least, however slow it is.
+    /// Wakes a body and restarts its sleep timers. It then stays awake for at least half a second, even if it
+    /// does not move.
     ///
     /// # Errors
-    /// [`Refused::Gone`] when there is no such body.
+    /// [`Refused::Gone`] if the handle is stale.
     #[inline(never)]
     pub fn wake_up(&mut self, body: BodyId) -> Result<(), Refused> {
         self.bodies.get(body)?;
@@ -235,11 +240,11 @@ impl<D: Dim> World<D> {
         Ok(())
     }
 
-    /// Puts a body to sleep where it is, at rest: it costs next to nothing, and stands like a wall until something moves
-    /// against it. Nodes that are [held](Body::hold) stop too.
+    /// Puts a body to sleep at its present position, at rest. A sleeping body costs next to nothing and acts
+    /// as a wall until something moves against it. Its [fixed](Body::hold) nodes stop, too.
     ///
     /// # Errors
-    /// [`Refused::Gone`] when there is no such body.
+    /// [`Refused::Gone`] if the handle is stale.
     #[inline(never)]
     pub fn put_to_sleep(&mut self, body: BodyId) -> Result<(), Refused> {
         let sleeper = self.bodies.get_mut(body)?;
@@ -253,11 +258,11 @@ impl<D: Dim> World<D> {
         Ok(())
     }
 
-    /// Changes what holds for the whole world, from the next tick on. Everything wakes. Bodies are softened or stiffened as
-    /// the most substeps ask for now: see [`Body::stiffness_scale`].
+    /// Changes the world settings from the next tick on. Everything wakes. Bodies are softened or stiffened
+    /// for the new maximum number of substeps, see [`Body::stiffness_scale`].
     ///
     /// # Errors
-    /// [`Refused::Setting`], and all stays as it was, when a setting is out of range.
+    /// [`Refused::Setting`] if a setting is out of range. Everything then stays unchanged.
     #[inline(never)]
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), Refused> {
         settings.check().map_err(Refused::setting)?;
@@ -276,7 +281,8 @@ impl<D: Dim> World<D> {
         Ok(())
     }
 
-    /// Changes where a body is: those that leant on it wake, as it does itself, and nothing of what pressed on it counts.
+    /// Changes the position or the layers of a body, discards its contacts, and wakes it together with
+    /// sleepers in contact with it.
     fn displace(&mut self, id: BodyId, change: impl FnOnce(&mut Body<D>)) -> Result<(), Refused> {
         let body = self.bodies.get(id)?;
         let own = id.slot();
@@ -291,7 +297,8 @@ impl<D: Dim> World<D> {
         Ok(())
     }
 
-    /// Something rigid is not what or where it was: nothing of what pressed on it counts, and who leans on it wakes.
+    /// Discards the contacts of a rigid body after a change of its pose or fields, and wakes sleepers in
+    /// contact with its old and its new bounds.
     fn forget_rigid(&mut self, id: RigidId, was: Bounds) -> Result<(), Refused> {
         let rigid = self.rigids.get(id)?;
         let is = rigid.shape().bounds();
@@ -302,18 +309,18 @@ impl<D: Dim> World<D> {
         Ok(())
     }
 
-    /// Something that is free, awake.
+    /// Returns a dynamic rigid body and wakes it.
     fn free_mut(&mut self, rigid: RigidId) -> Result<&mut Rigid, Refused> {
         require(
             self.rigids.get(rigid)?.is_free(),
-            "rigid thing",
-            "one that is free",
+            "rigid body",
+            "free (dynamic)",
         )?;
         self.wake_rigids(&[rigid.slot()]);
         Ok(self.rigids.get_mut(rigid)?)
     }
 
-    /// Counts anew for how long a body has been slow.
+    /// Restarts the sleep timers of a body.
     fn keep_awake(&mut self, body: BodyId) {
         if let Ok(body) = self.bodies.get_mut(body) {
             let pieces = body.truth.pieces.list.iter_mut();

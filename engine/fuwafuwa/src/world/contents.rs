@@ -1,4 +1,4 @@
-//! What stands in a world: put in, taken out, changed and looked at from outside.
+//! Contents of a world: insertion, removal, access and wake-up.
 
 use super::{Refused, Settings, World};
 use crate::blade::{Blade, CutReport};
@@ -18,26 +18,26 @@ use crate::rotation::Rotation;
 use crate::shape::{Bounds, Vector};
 use crate::touch::{bounds_of, leaning_on_body, leaning_on_rigid, sleeping_in};
 
-/// A world that was saved is no older than this: none lives for a thousand million years.
+/// Largest tick counter accepted from a saved world; some 6·10⁸ years of ticks.
 #[cfg(feature = "serde")]
 const MOST_TICKS: u64 = 1 << 60;
 
 impl<D: Dim> World<D> {
-    /// Puts a body into the world. One that is too stiff for the most substeps allowed is softened: see
+    /// Adds a body. A body too stiff for the maximum number of substeps is softened, see
     /// [`Body::stiffness_scale`].
     #[inline(never)]
     pub fn add_body(&mut self, mut body: Body<D>) -> BodyId {
         body.scale_stiffness_for(self.settings.shortest_substep());
         let id = self.bodies.insert(body);
-        // It may have fallen asleep elsewhere.
+        // The body may have fallen asleep in another world.
         self.wake_body(id);
         id
     }
 
-    /// Puts a hand, an obstacle or something free into the world. In the plane its third coordinates do not count.
+    /// Adds a rigid body. In 2D the third coordinates are ignored.
     ///
     /// # Errors
-    /// [`Refused::Rigid`] when a field of it is out of range.
+    /// [`Refused::Rigid`] if a parameter is out of range.
     #[inline(never)]
     pub fn add_rigid(&mut self, rigid: Rigid) -> Result<RigidId, Refused> {
         let rigid = rigid.seen_in::<D>();
@@ -45,35 +45,36 @@ impl<D: Dim> World<D> {
         Ok(self.rigids.insert(rigid))
     }
 
-    /// Sends a hand to a goal [m], where it is to be at the end of the next tick.
+    /// Sets the target position [m] that a kinematic or coupled rigid body moves to until the end of the next
+    /// tick.
     ///
     /// # Errors
-    /// [`Refused`], and the goal stays as it was, when that is not finite or beyond
-    /// [`FARTHEST`](crate::rigid::FARTHEST), or when there is no such hand.
+    /// [`Refused`] if the handle is stale, the body is fixed or dynamic, or the target is not finite or
+    /// beyond [`FARTHEST`](crate::rigid::FARTHEST). The target then stays unchanged.
     pub fn set_goal(&mut self, hand: RigidId, goal: Vector) -> Result<(), Refused> {
         Ok(self.rigids.get_mut(hand)?.send::<D>(goal)?)
     }
 
-    /// Lets what follows a goal turn, too, until it is at the end of the next tick as `rotation` says; in the plane about
-    /// the third axis alone.
+    /// Sets the target rotation that a kinematic or coupled rigid body turns to until the end of the next
+    /// tick. In 2D only the rotation about the third axis counts.
     ///
     /// # Errors
-    /// [`Refused`], and the goal stays as it was, when there is no such thing or its drive is another one.
+    /// [`Refused`] if the handle is stale, or the body is fixed or dynamic. The target then stays unchanged.
     pub fn set_goal_rotation(&mut self, rigid: RigidId, rotation: Rotation) -> Result<(), Refused> {
         Ok(self.rigids.get_mut(rigid)?.turn_to::<D>(rotation)?)
     }
 
-    /// Cuts a body along a blade at once, whatever it bears; returns how many nodes were released.
-    /// They and what came off stand among the events until the next tick.
+    /// Cuts a body along a blade at once, at any strength of the material, and returns the number of split
+    /// nodes. The splits and the detached pieces are among the events until the next tick.
     ///
     /// # Errors
-    /// [`Gone`] when there is no such body.
+    /// [`Gone`] if the handle is stale.
     #[inline(never)]
     pub fn cut(&mut self, body: BodyId, blade: &Blade) -> Result<usize, Gone> {
         self.bodies.get(body)?;
         self.wake_body(body);
         let cut = self.bodies.get_mut(body)?.cut(blade);
-        let CutReport { released, parted } = cut.expect("a release leaves the mesh whole");
+        let CutReport { released, parted } = cut.expect("splitting a node keeps the mesh valid");
         let energy = 0.0;
         let positions = released.iter();
         let releases = positions.map(|&at| Event::Released { body, at, energy });
@@ -82,26 +83,26 @@ impl<D: Dim> World<D> {
         Ok(released.len())
     }
 
-    /// A body, to be changed from outside: held, placed, cut. All of it wakes, and who follows it by a bookmark begins
-    /// anew. Another body in its
-    /// place would not be softened: remove the one and add the other.
+    /// Returns a body for changes from outside, such as fixing nodes, translating or cutting. The whole body
+    /// wakes, and its change history restarts, so that bookmarks become invalid. Do not assign another body
+    /// to the reference, because it would not be softened; remove the old body and add the new one.
     ///
     /// # Errors
-    /// [`Gone`] when there is no such body.
+    /// [`Gone`] if the handle is stale.
     #[inline(never)]
     pub fn body_mut(&mut self, body: BodyId) -> Result<&mut Body<D>, Gone> {
         self.bodies.get(body)?;
         self.wake_body(body);
         let body = self.bodies.get_mut(body)?;
-        // More may happen to it than tears.
+        // Changes from outside are not recorded in the history.
         body.cache.history = History::default();
         Ok(body)
     }
 
-    /// Takes a body out of the world. All others stay as and what they are; those that leant on it wake.
+    /// Removes a body. Other bodies keep their handles and state; sleepers in contact with it wake.
     ///
     /// # Errors
-    /// [`Gone`] when there is no such body.
+    /// [`Gone`] if the handle is stale.
     #[inline(never)]
     pub fn remove_body(&mut self, body: BodyId) -> Result<Body<D>, Gone> {
         let removed = self.bodies.remove(body)?;
@@ -111,10 +112,10 @@ impl<D: Dim> World<D> {
         Ok(removed)
     }
 
-    /// Takes a hand or an obstacle out of the world, as [`World::remove_body`].
+    /// Removes a rigid body. Others keep their handles and state; sleepers in contact with it wake.
     ///
     /// # Errors
-    /// [`Gone`] when there is no such thing.
+    /// [`Gone`] if the handle is stale.
     #[inline(never)]
     pub fn remove_rigid(&mut self, rigid: RigidId) -> Result<Rigid, Gone> {
         let removed = self.rigids.remove(rigid)?;
@@ -124,55 +125,55 @@ impl<D: Dim> World<D> {
         Ok(removed)
     }
 
-    /// Its settings.
+    /// Returns the settings.
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
 
-    /// Its bodies.
+    /// Returns the soft bodies.
     pub fn bodies(&self) -> &Bodies<D> {
         &self.bodies
     }
 
-    /// Everything rigid: obstacles and hands.
+    /// Returns the rigid bodies.
     pub fn rigids(&self) -> &Rigids {
         &self.rigids
     }
 
-    /// What is rigid and stands still.
+    /// Iterates over the fixed rigid bodies.
     pub fn obstacles(&self) -> impl Iterator<Item = &Rigid> + Clone {
         self.rigids
             .iter()
             .filter(|rigid| rigid.drive == Drive::Fixed)
     }
 
-    /// What is rigid and follows goals, by handle.
+    /// Iterates over the kinematic and coupled rigid bodies.
     pub fn hands(&self) -> impl Iterator<Item = (RigidId, &Rigid)> + Clone {
         self.rigids.entries().filter(|(_, rigid)| rigid.is_driven())
     }
 
-    /// The handle of the body that is so many after the first one.
+    /// Returns the handle of the `n`-th body in slot order, counted from 0.
     pub fn nth_body(&self, n: usize) -> Option<BodyId> {
         self.bodies.ids().nth(n)
     }
 
-    /// The handle of the hand that is so many after the first one.
+    /// Returns the handle of the `n`-th kinematic or coupled rigid body in slot order, counted from 0.
     pub fn nth_hand(&self, n: usize) -> Option<RigidId> {
         self.hands().map(|(id, _)| id).nth(n)
     }
 
-    /// What happened in the last tick.
+    /// Returns the events of the last tick, and of operations since then.
     pub fn events(&self) -> &[Event] {
         &self.events
     }
 
-    /// Ticks since the beginning.
+    /// Returns the number of ticks since the world was created.
     pub fn ticks(&self) -> u64 {
         self.ticks
     }
 
-    /// A number that two worlds share only when every node and hand of them is in the same state,
-    /// to the last bit.
+    /// Returns a hash of the simulation state. Except for hash collisions, two worlds have the same hash only
+    /// if their tick counters, nodes and moving rigid bodies are bit-identical.
     #[inline(never)]
     pub fn hash(&self) -> u64 {
         let mut hash = Hash::NONE;
@@ -204,7 +205,7 @@ impl<D: Dim> World<D> {
         hash.number()
     }
 
-    /// What could not have come about by [`World::new`] and by adding things, if anything.
+    /// Returns a description of an invalid part of a world that was read from a file.
     #[cfg(feature = "serde")]
     pub(crate) fn defect(&self) -> Option<&'static str> {
         let is_sound =
@@ -215,24 +216,27 @@ impl<D: Dim> World<D> {
                 Self::new(self.settings).is_ok(),
             ),
             (
-                "something rigid in it cannot be",
+                "a rigid body in it is invalid",
                 self.rigids.iter().all(is_sound),
             ),
             (
-                "a joint in it cannot be",
+                "a joint in it is invalid",
                 self.joints.iter().all(Joint::is_sound::<D>),
             ),
             (
-                "a knife in it cannot be",
+                "a knife in it is invalid",
                 self.knives.iter().all(Knife::is_sound::<D>),
             ),
-            ("it is older than can be", self.ticks <= MOST_TICKS),
+            (
+                "its tick counter is above the limit",
+                self.ticks <= MOST_TICKS,
+            ),
         ];
         let wrong = checks.into_iter().find(|(_, is_good)| !is_good);
         wrong.map(|(defect, _)| defect)
     }
 
-    /// Works out what is not saved.
+    /// Rebuilds everything that is not saved.
     #[cfg(feature = "serde")]
     pub(crate) fn rebuild(&mut self) {
         self.bodies.iter_mut().for_each(Body::restore);
@@ -243,8 +247,9 @@ impl<D: Dim> World<D> {
         self.inside.dedup();
     }
 
-    /// Wakes pieces that leant on something, given in ascending order, and what is free and rigid where it was or where they
-    /// are, and so on: of those the boxes tell, so that some may wake who only were near.
+    /// Wakes `leaning` pieces, given in ascending order, and the dynamic rigid bodies in the boxes `was`.
+    /// Continues with everything in contact with the woken bodies. The AABB test is conservative, so it may
+    /// wake rigid bodies that were only close.
     pub(super) fn wake_leaning(&mut self, leaning: Vec<Hit>, was: Vec<Bounds>) {
         let (mut pieces, mut places) = (leaning, was);
         loop {
@@ -268,12 +273,12 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Wakes whatever is free.
+    /// Wakes all dynamic rigid bodies.
     pub(super) fn wake_all_rigids(&mut self) {
         let sleepers = self.rigids.by_slot().filter(|(_, rigid)| rigid.is_asleep());
         let sleepers: Vec<RigidSlot> = sleepers.map(|(slot, _)| slot).collect();
         self.wake_rigids(&sleepers);
-        // What is soft and lies on them may be left hanging.
+        // Soft pieces resting on them wake too, because they may lose their support.
         for slot in sleepers {
             let leaning = leaning_on_rigid(self.rigids.at(slot), &self.bodies);
             self.wake(&leaning);

@@ -1,4 +1,4 @@
-//! Knives: put in, taken out, looked at, and their phases of a substep.
+//! Knives of a world: insertion, removal, access and simulation.
 
 use super::{Refused, World};
 use crate::contact::Hit;
@@ -8,35 +8,36 @@ use crate::handle::{Gone, KnifeId};
 use crate::knife::{Knife, Knives};
 
 impl<D: Dim> World<D> {
-    /// Gives something rigid that follows a goal an edge that cuts.
+    /// Attaches a knife to a kinematic or coupled rigid body.
     ///
     /// # Errors
-    /// [`Refused`] when it is not there or does not follow a goal, or when a number is out of range.
+    /// [`Refused`] if the handle of the rigid body is stale, the body is fixed or dynamic, or a parameter is
+    /// out of range.
     #[inline(never)]
     pub fn add_knife(&mut self, mut knife: Knife) -> Result<KnifeId, Refused> {
         self.rigids.get(knife.holder)?;
         let refused = |(field, expected)| Refused::Argument { field, expected };
         knife.check::<D>(&self.rigids).map_err(refused)?;
-        // It may have been in another world.
+        // Clears runtime state from another world.
         knife.forget();
         Ok(self.knives.insert(knife))
     }
 
-    /// Takes a knife out of the world; what holds it stays.
+    /// Removes a knife; the rigid body that holds it stays.
     ///
     /// # Errors
-    /// [`Gone`] when there is no such knife.
+    /// [`Gone`] if the handle is stale.
     #[inline(never)]
     pub fn remove_knife(&mut self, knife: KnifeId) -> Result<Knife, Gone> {
         self.knives.remove(knife)
     }
 
-    /// The edges that cut. One whose holder was taken out cuts nothing.
+    /// Returns the knives. A knife on a removed rigid body does not cut.
     pub fn knives(&self) -> &Knives {
         &self.knives
     }
 
-    /// Opens what edges went through.
+    /// Opens the faces that cutting edges have passed through.
     #[inline(never)]
     pub(super) fn cut_along_edges(&mut self, report: &mut StepReport) {
         let round = self.settings.round();
@@ -45,10 +46,13 @@ impl<D: Dim> World<D> {
                 continue;
             };
             for cut in knife.pass(&self.bodies, holder, round) {
-                let body = self.bodies.get_mut(cut.body).expect("it was looked at");
+                let body = self
+                    .bodies
+                    .get_mut(cut.body)
+                    .expect("the cut names a live body");
                 let (released, changes) = body
                     .open(&cut.faces)
-                    .expect("a release leaves the mesh whole");
+                    .expect("splitting a node keeps the mesh valid");
                 if released.is_empty() {
                     continue;
                 }
@@ -68,7 +72,7 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Lets edges hold what they are in. Returns the sleepers that they wake.
+    /// Solves the contacts between cutting edges and tissue. Returns the sleepers to wake.
     #[inline(never)]
     pub(super) fn hold_edges(&mut self, duration: f32) -> Vec<Hit> {
         let mut woken = Vec::new();

@@ -1,25 +1,24 @@
-//! What a program has to say while a tick passes.
+//! Callbacks during a tick.
 
 use crate::handle::{Gone, RigidId};
 use crate::rigid::{Reaction, Rigids};
 use crate::shape::Vector;
 
-/// What a program has to say while a tick passes; nothing by [`Default`]. See
-/// [`World::step_with`](crate::World::step_with).
+/// Callbacks during a tick; none by default. See [`World::step_with`](crate::World::step_with).
 #[derive(Default)]
 pub struct Hooks<'a> {
-    /// What pulls on all that is awake besides gravity: an acceleration [m/s²] for each place [m]. One that is not finite
-    /// pulls nothing.
+    /// External acceleration field, added to gravity: acceleration [m/s²] at a world-space position [m]. It
+    /// acts on everything that is awake. Non-finite values are ignored.
     pub field: Option<&'a dyn Fn(Vector) -> Vector>,
     /// Called at the end of each substep.
     pub after_substep: Option<&'a mut dyn FnMut(&Substep<'_>)>,
 }
 
-/// A substep that has passed.
+/// State of the world after a substep.
 pub struct Substep<'a> {
-    /// Which of the tick, from 0.
+    /// Index of the substep within the tick, from 0.
     pub number: u32,
-    /// How long it was [s].
+    /// Length of the substep [s].
     pub duration: f32,
     rigids: &'a Rigids,
 }
@@ -33,27 +32,29 @@ impl<'a> Substep<'a> {
         }
     }
 
-    /// What a hand felt in it: force and torque, for a stick that is told more often than once a tick.
+    /// Returns the force and torque on a rigid body in this substep, for force feedback at the substep rate.
+    /// Zero for fixed rigid bodies.
     ///
     /// # Errors
-    /// [`Gone`] when there is no such hand.
+    /// [`Gone`] if the handle is stale.
     pub fn reaction(&self, hand: RigidId) -> Result<Reaction, Gone> {
         let hand = self.rigids.get(hand)?;
         Ok(hand.reactions().last().copied().unwrap_or_default())
     }
 
-    /// Where a hand is now [m].
+    /// Returns the position of a rigid body [m].
     ///
     /// # Errors
-    /// [`Gone`] when there is no such hand.
+    /// [`Gone`] if the handle is stale.
     pub fn position(&self, hand: RigidId) -> Result<Vector, Gone> {
         Ok(self.rigids.get(hand)?.position())
     }
 }
 
-/// A field that pulls towards a place [m], or away from it where `strength` [m/s²] is negative: with that strength up to
-/// `reach` [m], and with the square of the distance less beyond; within a hundredth of the reach it fades to nothing. Where
-/// the reach is not positive and finite it pulls nothing.
+/// Returns a radial field around `centre` [m], for [`Hooks::field`]. It attracts with `strength` [m/s²] up to
+/// the distance `reach` [m], and falls with the square of the distance beyond. A negative strength repels.
+/// Within a hundredth of the reach the field fades to 0. A reach that is not positive and finite gives a zero
+/// field.
 ///
 /// ```
 /// use fuwafuwa::field_around;

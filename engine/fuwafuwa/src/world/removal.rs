@@ -1,4 +1,4 @@
-//! Pieces that are taken out of a world, and what left a region.
+//! Removal of pieces, and of everything that left a region.
 
 use super::{Refused, World};
 use crate::body::Body;
@@ -11,35 +11,35 @@ use crate::shape::Shape;
 use crate::touch::{bounds_of, leaning_on_pieces};
 use crate::vector::three;
 
-/// How large a piece is, to be compared with others.
+/// Size threshold for [`World::remove_small_pieces`].
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum PieceSize {
-    /// So many voxels.
+    /// Number of voxels.
     Voxels(usize),
-    /// A volume as it was built [m³]; in the plane that of a sheet 1 m deep.
+    /// Volume at rest [m³]; in 2D that of a sheet 1 m deep.
     Volume(f64),
-    /// A mass [kg].
+    /// Mass [kg].
     Mass(f64),
 }
 
-/// What was taken out of a world at once; the same stands among its [events](World::events) until the next tick.
+/// Result of a removal. The same removals are among the [events](World::events) until the next tick.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Removed {
-    /// The pieces, by body and number in ascending order.
+    /// Removed pieces, ascending by body and number.
     pub pieces: Vec<(BodyId, PieceId)>,
-    /// Bodies of which no piece is left: they are gone from the world.
+    /// Bodies without remaining pieces; they were removed, and their handles are stale.
     pub bodies: Vec<BodyId>,
-    /// What was free and rigid.
+    /// Removed dynamic rigid bodies.
     pub rigids: Vec<RigidId>,
-    /// Mass of the pieces together [kg].
+    /// Total mass of the removed pieces [kg].
     pub mass: f64,
 }
 
 impl<D: Dim> World<D> {
-    /// Takes a piece of a body out of the world for good: its voxels, elements and nodes are gone, what it touched is touched
-    /// no more, joints to it break. The rest of the body and all others stay as and where they are; those that leant on it
-    /// wake, and all that is free and rigid. A number of a piece is never given again. With its last piece a body leaves the
-    /// world, as by [`World::remove_body`]: its handle is stale from then on.
+    /// Removes a piece of a body with its voxels, elements and nodes. Its contacts end and its joints break.
+    /// Everything else keeps its position and state, but sleepers in contact with the piece wake. Piece
+    /// numbers are never reused. Removing the last piece removes the body, as [`World::remove_body`] does,
+    /// and makes its handle stale.
     ///
     /// ```
     /// use fuwafuwa::{Blade, Body, Dim2, Material, PieceId, Settings, VoxelGrid, World};
@@ -57,7 +57,7 @@ impl<D: Dim> World<D> {
     /// ```
     ///
     /// # Errors
-    /// [`Gone`] when there is no such body, or no such piece of it.
+    /// [`Gone`] if the body or the piece does not exist.
     #[inline(never)]
     pub fn remove_piece(&mut self, body: BodyId, piece: PieceId) -> Result<Removed, Gone> {
         match self.bodies.get(body)?.has_piece(piece) {
@@ -69,8 +69,8 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Takes all pieces below a size out of the world, as [`World::remove_piece`] does: the crumbs of a long game, which cost
-    /// time and hold nothing.
+    /// Removes all pieces below a size, as [`World::remove_piece`] does. In a long game this removes crumbs,
+    /// which cost time and carry nothing.
     ///
     /// ```
     /// use fuwafuwa::world::PieceSize;
@@ -87,7 +87,7 @@ impl<D: Dim> World<D> {
     /// ```
     ///
     /// # Errors
-    /// [`Refused::Argument`] when a volume or a mass is negative or not finite.
+    /// [`Refused::Argument`] if a volume or a mass is negative or not finite.
     #[inline(never)]
     pub fn remove_small_pieces(&mut self, below: PieceSize) -> Result<Removed, Refused> {
         let (PieceSize::Volume(least) | PieceSize::Mass(least)) = below else {
@@ -102,9 +102,9 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Takes out of the world what left a region: pieces, as [`World::remove_piece`] does, of which no node is in it, and what
-    /// is free and rigid and does not reach into it. Hands and obstacles stay. For what falls for ever, a half-space below
-    /// the lowest floor is no region to stay in; the one above it is:
+    /// Removes everything that is outside `region`: pieces without a node in it, as [`World::remove_piece`]
+    /// does, and dynamic rigid bodies that do not overlap it. Fixed, kinematic and coupled rigid bodies stay.
+    /// To remove objects that fall for ever, use the half-space above a plane that is below the lowest floor:
     ///
     /// ```
     /// use fuwafuwa::{Dim3, Rigid, Settings, Shape, World};
@@ -112,7 +112,7 @@ impl<D: Dim> World<D> {
     /// let mut world = World::<Dim3>::new(Settings::default())?;
     /// let ball = Shape::Ball { centre: [0.0; 3], radius: 0.1 };
     /// let ball = world.add_rigid(Rigid::free(ball, 1.0))?;
-    /// // Solid is what is above: its normal points down.
+    /// The solid side of this half-space is above the plane, because its normal points down.
     /// let above = Shape::half_space([0.0, -1.0, 0.0], [0.0, -2.0, 0.0]);
     /// let mut removed = world.remove_outside(&above)?;
     /// while removed.rigids.is_empty() && world.ticks() < 60 {
@@ -124,7 +124,7 @@ impl<D: Dim> World<D> {
     /// ```
     ///
     /// # Errors
-    /// [`Refused::Argument`] when the region is no [shape](Shape::check).
+    /// [`Refused::Argument`] if the region is not a valid [shape](Shape::check).
     #[inline(never)]
     pub fn remove_outside(&mut self, region: &Shape) -> Result<Removed, Refused> {
         let region = region.seen_in::<D>();
@@ -137,7 +137,7 @@ impl<D: Dim> World<D> {
             let mut outside: Vec<bool> = vec![true; body.truth.pieces.list.len()];
             for (id, _) in body.truth.mesh.nodes() {
                 let at = three(body.state.position[id]);
-                // What is nowhere is in no region.
+                // Comparisons with NaN are false, so a non-finite position is outside of every region.
                 let is_inside = region.distance(at).0 <= 0.0;
                 outside[body.truth.pieces.of_node(id).index()] &= !is_inside;
             }
@@ -154,7 +154,7 @@ impl<D: Dim> World<D> {
         Ok(removed)
     }
 
-    /// Takes out the pieces that are marked, for each body by number.
+    /// Removes the pieces that `marks` selects; it returns a flag per piece number for each body.
     fn take_out_where(&mut self, marks: impl Fn(&Body<D>) -> Vec<bool>) -> Removed {
         let mut pieces = Vec::new();
         for (id, body) in self.bodies.entries() {
@@ -165,7 +165,7 @@ impl<D: Dim> World<D> {
         self.take_out(&pieces)
     }
 
-    /// Takes out pieces that are there, given in ascending order.
+    /// Removes existing pieces, given in ascending order.
     fn take_out(&mut self, pieces: &[(BodyId, PieceId)]) -> Removed {
         let mut removed = Removed::default();
         if pieces.is_empty() {
@@ -185,7 +185,7 @@ impl<D: Dim> World<D> {
         removed
     }
 
-    /// Takes pieces out of a body, and the body out of the world when none is left.
+    /// Removes pieces of a body, and the body itself if none is left.
     fn take_out_of(&mut self, id: BodyId, pieces: &[PieceId], removed: &mut Removed) {
         let body = self.bodies.at_mut(id.slot());
         let whole = body.total_mass();
@@ -212,7 +212,7 @@ impl<D: Dim> World<D> {
     }
 }
 
-/// Which pieces of a body are below a size, by number.
+/// Returns for each piece number whether the piece is below a size.
 fn is_below<D: Dim>(body: &Body<D>, size: PieceSize) -> Vec<bool> {
     let (mesh, pieces) = (&body.truth.mesh, &body.truth.pieces);
     let mut found = vec![0.0; pieces.list.len()];

@@ -1,42 +1,42 @@
-//! What holds for the whole world: gravity, air, substeps, and how long a tick is.
+//! World settings: gravity, air drag, substeps and tick length.
 
 use crate::shape::Vector;
 
-/// The usual length of a tick [s]; [`Settings::tick`] chooses another.
+/// Default tick length [s]; see [`Settings::tick`].
 pub const TICK: f32 = 1.0 / 60.0;
-/// Substeps in a tick of 1/60 s at the least, where the settings allow as many: a force-feedback stick wants its
-/// force 960 times a second.
+/// Minimum number of substeps in 1/60 s, unless the settings allow only fewer. It gives a force-feedback
+/// device 960 force updates a second.
 pub const USUAL_SUBSTEPS: u32 = 16;
-/// The settings allow so many at the least: with them a soft ball is squashed as it is with 16.
+/// Smallest value of [`Settings::most_substeps`]. With 8 substeps a soft ball is squashed as much as with 16.
 pub const FEWEST_SUBSTEPS: u32 = 8;
-/// The shortest and the longest tick [s]: in a shorter one than between two rounds of cracks there would be too many of
-/// these; in a longer one hands, whose goals come once a tick, and captives and sleepers, which are looked for as often,
-/// would be late by what one sees.
+/// Shortest tick length [s], equal to the interval between two fracture rounds. Each tick has at least one
+/// round, so shorter ticks would mean more rounds per second.
 pub const SHORTEST_TICK: f32 = 1.0 / 240.0;
-/// See [`SHORTEST_TICK`].
+/// Longest tick length [s]. Kinematic targets, embedded spheres and sleep are updated once per tick, and a
+/// longer tick would delay them visibly.
 pub const LONGEST_TICK: f32 = 1.0 / 30.0;
-/// Cracks are looked for, and swings are damped, so often in a second: in every fourth of the usual substeps, once in the time
-/// that a node takes to give way. With half and twice as many bars bear the same load, to 0.2 %.
+/// Fracture and damping rounds per second: one in every four of the usual substeps, and one in the time that
+/// a node takes to give way.
 const ROUNDS: f64 = 240.0;
-/// What of the settings is out of range: which field, and what was expected.
+/// Name of an invalid setting, and the expected value.
 pub(super) type BadSetting = (&'static str, &'static str);
 
-/// What holds for the whole world.
+/// World settings.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Settings {
-    /// [m/s²]; the third component does not count in 2D.
+    /// Gravity [m/s²], default `[0.0, -9.81, 0.0]`. The third component is ignored in 2D.
     pub gravity: Vector,
-    /// Share of its speed that everything loses to the air in a second [1/s]; 0 to 10. With no
-    /// gravity and about 1, bodies float.
+    /// Air drag: decay rate of all velocities [1/s], 0 to 10, default 0. Without gravity and with a drag of
+    /// about 1, bodies float.
     pub drag: f32,
-    /// Substeps in 1/60 s at most, 8 to 1024, and as many in proportion in another tick; 64 if speed matters. A body too
-    /// stiff for so many is softened until it is not, see [`Body::stiffness_scale`](crate::Body::stiffness_scale). Fewer than 16 make large soft bodies
-    /// cheap.
+    /// Maximum number of substeps in 1/60 s, 8 to 1024, default 64; scaled in proportion for other tick
+    /// lengths. Bodies that require more are softened, see
+    /// [`Body::stiffness_scale`](crate::Body::stiffness_scale). Values below 16 make large soft bodies cheap.
     pub most_substeps: u32,
-    /// Length of a tick [s], 1/240 to 1/30; 1/60 as a rule. With it a program is told how often it has a say: goals of hands,
-    /// events, who touches whom. Substeps, cracks and damping come as often in a second whatever it is; shorter ticks
-    /// cost a little more. Worlds of two tick lengths go alike, and not to the same bits.
+    /// Tick length [s], 1/240 to 1/30, default 1/60. It sets how often targets, events and contact changes
+    /// are exchanged with the program. Substeps, fracture and damping keep their rates per second; shorter
+    /// ticks cost a little more. Worlds of different tick lengths behave alike but are not bit-identical.
     pub tick: f32,
 }
 
@@ -52,27 +52,27 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// How many of what comes so often in a second come in a tick, and one at the least.
+    /// Returns the number of occurrences per tick for a rate per second, at least 1.
     pub(super) fn in_tick(&self, per_second: f64) -> u32 {
         ((f64::from(self.tick) * per_second + 0.5) as u32).max(1)
     }
 
-    /// How often in a tick cracks are looked for.
+    /// Returns the number of fracture and damping rounds per tick.
     pub(super) fn rounds(&self) -> u32 {
         self.in_tick(ROUNDS)
     }
 
-    /// From one time that they are looked for to the next [s].
+    /// Returns the time between two rounds [s].
     pub(super) fn round(&self) -> f32 {
         self.tick / self.rounds() as f32
     }
 
-    /// Substeps in a tick at most.
+    /// Returns the maximum number of substeps per tick.
     pub(super) fn most_in_tick(&self) -> u32 {
         self.in_tick(60.0 * f64::from(self.most_substeps))
     }
 
-    /// The shortest substep that may be [s]: a body that needs a shorter one is softened.
+    /// Returns the shortest substep [s]; bodies that require a shorter one are softened.
     pub(super) fn shortest_substep(&self) -> f64 {
         f64::from(self.tick) / f64::from(self.most_in_tick())
     }

@@ -1,4 +1,4 @@
-//! What ties things together: put in, taken out, looked at.
+//! Joints of a world: insertion, removal, access.
 
 use super::{Refused, World};
 use crate::dim::Dim;
@@ -8,10 +8,10 @@ use crate::joint::{End, Joint, Joints};
 use crate::shape::Vector;
 
 impl<D: Dim> World<D> {
-    /// Ties two ends together as they are now. Both wake.
+    /// Adds a joint between two anchors at their present positions. Both attached bodies wake.
     ///
     /// # Errors
-    /// [`Refused`] when an end is not there, or when a number is out of range.
+    /// [`Refused`] if a handle is stale or a parameter is out of range.
     #[inline(never)]
     pub fn add_joint(&mut self, mut joint: Joint) -> Result<JointId, Refused> {
         let refused = |(field, expected)| Refused::Argument { field, expected };
@@ -21,10 +21,10 @@ impl<D: Dim> World<D> {
         Ok(self.joints.insert(joint))
     }
 
-    /// Takes a joint out of the world. Both ends wake.
+    /// Removes a joint. Both attached bodies wake.
     ///
     /// # Errors
-    /// [`Gone`] when there is no such joint.
+    /// [`Gone`] if the handle is stale.
     #[inline(never)]
     pub fn remove_joint(&mut self, joint: JointId) -> Result<Joint, Gone> {
         let joint = self.joints.remove(joint)?;
@@ -32,24 +32,25 @@ impl<D: Dim> World<D> {
         Ok(joint)
     }
 
-    /// What ties things together.
+    /// Returns the joints.
     pub fn joints(&self) -> &Joints {
         &self.joints
     }
 
-    /// Where the ends of a joint are [m]; nothing when one is gone, as in the tick in which it goes.
+    /// Returns the world-space positions of both anchors of a joint [m]. `None` if an attached body is gone,
+    /// which can happen in the tick in which the joint is removed.
     ///
     /// # Errors
-    /// [`Gone`] when there is no such joint.
+    /// [`Gone`] if the handle is stale.
     #[inline(never)]
     pub fn joint_places(&self, joint: JointId) -> Result<Option<[Vector; 2]>, Gone> {
         Ok(self.joints.get(joint)?.places(&self.bodies, &self.rigids))
     }
 
-    /// Takes out joints that broke, and tells of them.
+    /// Removes broken joints, and reports an event for each.
     pub(super) fn part_joints(&mut self, broken: Vec<JointId>) {
         for joint in broken {
-            // It may have been told of in this substep before.
+            // A joint can be in two lists of the same substep.
             if let Ok(parted) = self.joints.remove(joint) {
                 self.events.push(Event::JointBroke { joint });
                 self.wake_ends(&parted);

@@ -1,4 +1,4 @@
-//! What pressed on what in a tick, what of it began and ended, and who is in a sensor.
+//! Contact and sensor events of a tick.
 
 use super::World;
 use crate::body::Body;
@@ -11,21 +11,22 @@ use crate::shape::Vector;
 use crate::vector::{length, minus, scaled, three};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What passed between two over a tick.
+/// Contact between two participants, accumulated over a tick.
 #[derive(Copy, Clone, Debug, Default)]
 struct Press {
-    /// Over the whole tick, and at the strongest contact [N s].
+    /// Normal impulse: sum over the tick, and that of the strongest contact [N s].
     impulse: f32,
     strongest: f32,
-    /// Where that was [m], and which way the first got away from the second there.
+    /// Position of the strongest contact [m], and the normal from the second participant towards the first.
     at: Vector,
     normal: Vector,
-    /// How fast they approached each other at the most [m/s].
+    /// Highest approach speed [m/s].
     speed: f32,
 }
 
 impl Press {
-    /// One more contact; only where it is the strongest so far it is asked where it is, and for its normal.
+    /// Adds a contact. The closure for its position and normal is called only if the contact is the strongest
+    /// up to now.
     fn add(&mut self, impulse: f32, speed: f32, at_and_normal: impl FnOnce() -> [Vector; 2]) {
         self.impulse += impulse;
         self.speed = self.speed.max(speed);
@@ -35,13 +36,13 @@ impl Press {
         }
     }
 
-    /// The same as seen from the other side.
+    /// Returns the contact with the participants swapped.
     fn turned(mut self) -> Self {
         self.normal = scaled(self.normal, -1.0);
         self
     }
 
-    /// Both together.
+    /// Adds the contacts of `other` between the same participants.
     fn join(&mut self, other: Self) {
         self.impulse += other.impulse;
         self.speed = self.speed.max(other.speed);
@@ -51,7 +52,8 @@ impl Press {
     }
 }
 
-/// What passed, by some key. Of neighbours in a list most have the same.
+/// Accumulated contacts by key. Neighbours in a pair list mostly have the same key, so the last one is
+/// cached.
 struct Presses<K> {
     places: BTreeMap<K, usize>,
     list: Vec<Press>,
@@ -69,7 +71,7 @@ impl<K> Default for Presses<K> {
 }
 
 impl<K: Copy + Ord> Presses<K> {
-    /// What passed of this key so far.
+    /// Returns the contact of a key, inserting an empty one if it is new.
     fn of(&mut self, key: K) -> &mut Press {
         let place = match self.last {
             Some((last, place)) if last == key => place,
@@ -82,7 +84,7 @@ impl<K: Copy + Ord> Presses<K> {
         &mut self.list[place]
     }
 
-    /// All of it, in ascending order.
+    /// Returns all contacts, ascending by key.
     fn all(self) -> Vec<(K, Press)> {
         let of = |(key, place): (K, usize)| (key, self.list[place]);
         self.places.into_iter().map(of).collect()
@@ -90,7 +92,7 @@ impl<K: Copy + Ord> Presses<K> {
 }
 
 impl<D: Dim> World<D> {
-    /// Tells what pressed on what over the tick, what began and ended, and who came into a sensor and left it.
+    /// Reports the contact and sensor events of the tick.
     pub(super) fn note_touches(&mut self) {
         let soft = self.soft_presses();
         let rigid = self.rigid_presses();
@@ -107,7 +109,8 @@ impl<D: Dim> World<D> {
                 impulse: press.impulse,
             });
             let (first, second) = (Party::Piece { body, piece }, with.into());
-            // What is folded touches itself all the time. Two pieces press on each other from either side.
+            // Ignores contacts within a piece: a folded piece always touches itself. Two pieces can press on
+            // each other from either side of the pair, so the order is normalised.
             match (first, second) {
                 _ if first == second => {}
                 (_, Party::Piece { .. }) if second < first => {
@@ -137,7 +140,7 @@ impl<D: Dim> World<D> {
         self.note_sensors();
     }
 
-    /// By piece, and by what it pressed on.
+    /// Returns the contacts of soft pieces, by piece and by the object that it presses on.
     fn soft_presses(&self) -> Vec<((BodyId, PieceId, With), Press)> {
         let mut presses = Presses::default();
         let pairs = self.nearby.nodes.list.iter();
@@ -174,7 +177,7 @@ impl<D: Dim> World<D> {
         presses.all()
     }
 
-    /// By both.
+    /// Returns the contacts between rigid bodies, by handles.
     fn rigid_presses(&self) -> BTreeMap<[RigidId; 2], Press> {
         let mut presses: BTreeMap<_, Press> = BTreeMap::new();
         for touch in &self.nearby.rigids.passed {
@@ -185,7 +188,8 @@ impl<D: Dim> World<D> {
         presses
     }
 
-    /// Compares who touches whom, ascending, with the last tick. Two that rest side by side still touch.
+    /// Compares the contact pairs, in ascending order, with those of the last tick, and reports beginnings
+    /// and ends. Pairs at rest still touch.
     fn note_changes(&mut self, presses: &[([Party; 2], Press)]) {
         let mut before = std::mem::take(&mut self.touching).into_iter().peekable();
         let (mut touching, mut ended) = (Vec::with_capacity(presses.len()), Vec::new());
@@ -213,7 +217,7 @@ impl<D: Dim> World<D> {
         self.events.extend(began.into_iter().chain(ended));
     }
 
-    /// Whether both are there, and neither moves.
+    /// Returns whether both participants exist and neither moves.
     fn rest(&self, both: [Party; 2]) -> bool {
         both.into_iter().all(|party| self.rests(party))
     }
@@ -228,7 +232,7 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Compares who is in a sensor with the last tick.
+    /// Compares the contents of the sensors with those of the last tick, and reports entries and exits.
     fn note_sensors(&mut self) {
         let sensors = self.rigids.entries().filter(|(_, rigid)| rigid.is_sensor);
         let mut inside: BTreeSet<(RigidId, Party)> = BTreeSet::new();
@@ -246,7 +250,7 @@ impl<D: Dim> World<D> {
         self.inside = inside.into_iter().collect();
     }
 
-    /// Who is within a sensor, some more than once.
+    /// Returns the participants inside a sensor, possibly repeated.
     fn within(&self, own: RigidId, sensor: &Rigid) -> impl Iterator<Item = Party> {
         let shape = sensor.shape();
         let bodies = self.bodies.entries();

@@ -8,7 +8,7 @@ use crate::material::Material;
 use crate::touch::pair::{MARGIN, renumber};
 use crate::touch::sphere::ContactSphere;
 
-/// The slot of the only body.
+/// Slot of the only body.
 const BALL: BodySlot = BodySlot(0);
 const SUBSTEPS: u32 = 8;
 const SUBSTEP: f32 = 1.0 / 480.0;
@@ -18,7 +18,7 @@ fn random(seed: &mut u32) -> f32 {
     (*seed >> 8) as f32 / (1 << 24) as f32 - 0.5
 }
 
-/// A tick begins, as for a world.
+/// Starts a tick as a world does.
 fn start_tick<D: Dim>(spheres: &mut Spheres, pairs: &mut SpherePairs, bodies: &Bodies<D>) {
     let numbers = spheres.start_tick(bodies, &mut pairs.changed);
     pairs.start_tick(numbers.is_some());
@@ -27,7 +27,7 @@ fn start_tick<D: Dim>(spheres: &mut Spheres, pairs: &mut SpherePairs, bodies: &B
     }
 }
 
-/// The list against all pairs that there are.
+/// Compares the list with a test of all pairs of spheres.
 fn compare<D: Dim>(pairs: &SpherePairs, spheres: &Spheres, bodies: &Bodies<D>, when: &str) {
     assert!(pairs.list.is_sorted_by(|a, b| a.spheres < b.spheres));
     let all = &spheres.list;
@@ -49,32 +49,33 @@ fn compare<D: Dim>(pairs: &SpherePairs, spheres: &Spheres, bodies: &Bodies<D>, w
     }
 }
 
-/// A ball, by itself.
+/// Returns a set of bodies with a single ball.
 fn ball<D: Dim>(n: usize) -> Bodies<D> {
-    let grid = VoxelGrid::<D>::ball(n, 1.0).expect("a ball is not empty");
+    let grid = VoxelGrid::<D>::ball(n, 1.0).expect("the ball has voxels");
     let mut bodies = Bodies::default();
-    bodies.insert(Body::new(grid, &[Material::default()]).expect("the material is good"));
+    bodies.insert(Body::new(grid, &[Material::default()]).expect("the default material is valid"));
     bodies
 }
 
-/// Crumbs fly about, some much faster than others, turn round on their way, and wake.
+/// Moves crumbs at very different speeds, reverses some of them within a tick, and wakes some.
 fn check<D: Dim>(n: usize) {
     let mut bodies = ball::<D>(n);
     let body = bodies.at_mut(BALL);
-    body.crumble().expect("the mesh stays whole");
+    body.crumble()
+        .expect("splitting nodes keeps the mesh valid");
     let (size, count) = (body.truth.grid.voxel_size(), body.truth.pieces.list.len());
     let mut seed = 7;
     let (mut spheres, mut pairs) = (Spheres::default(), SpherePairs::default());
     let (mut again, mut whole) = (0, 0);
     for tick in 0..20 {
-        // A third, or nearly all.
+        // Alternately a third and nearly all of them sleep.
         let most = if tick % 2 == 0 { 0.2 } else { -0.45 };
         let sleepers: Vec<bool> = (0..count).map(|_| random(&mut seed) > most).collect();
         let sleepers = sleepers.into();
         let body = bodies.at_mut(BALL);
         body.set_asleep(&vec![true; count].into(), false);
         body.set_asleep(&sleepers, tick % 3 == 1);
-        // Up to 30 voxels a tick, most of them hardly one.
+        // Up to 30 voxels per tick, most of them hardly one.
         let speeds: Vec<_> = (0..count)
             .map(|_| {
                 let fast = if random(&mut seed) > 0.45 {
@@ -135,17 +136,17 @@ fn check<D: Dim>(n: usize) {
     }
     assert!(
         again > whole + 10,
-        "{again} lists: strays must have been looked for"
+        "{again} updates, {whole} of them full: partial searches are expected"
     );
 }
 
 #[test]
-fn no_pair_is_missed() {
+fn list_contains_all_close_pairs_of_moving_crumbs() {
     check::<Dim2>(14);
     check::<Dim3>(6);
 }
 
-/// The lips of cracks, by element.
+/// Returns the crack-face pairs by element.
 fn lips(spheres: &Spheres) -> Vec<[(BodySlot, ElementId); 2]> {
     let key = |sphere: SphereId| spheres.list[sphere].key();
     let ascending = |[a, b]: [(BodySlot, ElementId); 2]| [a.min(b), a.max(b)];
@@ -156,8 +157,8 @@ fn lips(spheres: &Spheres) -> Vec<[(BodySlot, ElementId); 2]> {
     lips
 }
 
-/// A body is torn at random; the spheres and lips kept up against those listed anew, and who is bound to whom
-/// against the nodes they have.
+/// Tears a body at random. Compares the updated spheres and crack-face pairs with rebuilt ones, and
+/// `is_held_to` with the shared nodes.
 fn check_tears<D: Dim>(n: usize) {
     let mut bodies = ball::<D>(n);
     let mut seed = 5;
@@ -182,7 +183,7 @@ fn check_tears<D: Dim>(n: usize) {
             });
             let body = bodies.at_mut(BALL);
             let torn = body.tear(&sides.collect::<Vec<_>>());
-            let torn = torn.expect("a release leaves the mesh whole");
+            let torn = torn.expect("splitting a node keeps the mesh valid");
             spheres.tear(BALL, body, &torn, &mut pairs.changed);
             let mut kept = spheres.list.clone();
             kept.sort_by_key(ContactSphere::key);
@@ -194,7 +195,7 @@ fn check_tears<D: Dim>(n: usize) {
             rebuilt.at_mut(BALL).rebuild();
             let mut anew = Spheres::default();
             anew.start_tick(&rebuilt, &mut Vec::new());
-            assert_eq!(kept, anew.list, "what tears kept up, and a fresh look");
+            assert_eq!(kept, anew.list, "updated and rebuilt spheres differ");
         }
         for (b, second) in spheres.list.entries() {
             for first in spheres.list.iter().take(b.index()) {
@@ -215,7 +216,7 @@ fn check_tears<D: Dim>(n: usize) {
 }
 
 #[test]
-fn spheres_and_their_neighbours_are_known_after_every_tear() {
+fn spheres_and_crack_faces_match_a_rebuild_after_each_tear() {
     check_tears::<Dim2>(14);
     check_tears::<Dim3>(8);
 }
