@@ -274,7 +274,7 @@ fn say(text: &str) {
 
 /// Parses a time limit [s].
 fn seconds(text: &str) -> Result<f32, String> {
-    let seconds: f32 = text.parse().map_err(|_| "expected a number of seconds".to_string())?;
+    let seconds: f32 = text.parse().map_err(|_| "expected a number".to_string())?;
     let good = (1.0..=3600.0).contains(&seconds);
     good.then_some(seconds)
         .ok_or("expected 1 to 3600 seconds".into())
