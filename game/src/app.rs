@@ -141,8 +141,7 @@ impl App {
                     continue;
                 }
                 if action == Action::CutForces && is_of_menus {
-                    // Without a button to cut forces, the operator of a menu could not go on after them:
-                    // these buttons stay menu buttons.
+                    // These buttons operate menus, which would be impossible if they cut forces.
                     continue;
                 }
                 self.game.controls.rebinding = None;
@@ -333,7 +332,7 @@ impl App {
                 game.settings.full_screen ^= true;
                 game.keep_settings();
             }
-            // In a menu these keys navigate, whatever their binding in a round. Cutting forces is the
+            // In a menu these keys navigate, regardless of their binding in a round. Cutting forces is the
             // exception: it works on every screen.
             let is_of_menu = game.screen() != Screen::Play && OF_MENUS.contains(&key);
             if let Some(action) =
@@ -401,8 +400,8 @@ impl eframe::App for App {
             .pass(&mut self.game, &self.presses, &ctx, seconds);
         self.game.pass(seconds);
         if let Some(attendant) = &mut self.attendant {
-            // Waiting times of the stand stay correct at low frame rates: this frame time has the higher
-            // limit.
+            // Uses a frame time with a higher limit, so that the waiting times of a stand stay correct at low
+            // frame rates.
             let seconds = ctx.input(|input| input.stable_dt).min(LONGEST);
             attendant.pass(&mut self.game, &ctx, seconds);
         }
@@ -476,7 +475,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn zoom_fits_window_and_takes_few_values() {
+    fn zoom_fits_window_and_has_few_values() {
         let mut zooms: Vec<f32> = Vec::new();
         for height in 200..1000u16 {
             let room = f32::from(height) / ROOM.y;

@@ -71,7 +71,7 @@ struct Print {
     is_captioned: bool,
 }
 
-/// Reason for which a film could not be made.
+/// Reason why a film could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum FilmError {
     /// Drawing without a GPU failed.

@@ -1,5 +1,5 @@
-//! State of the game between two frames, and the actions on it. The screens show only what is derived from
-//! this state.
+//! State of the game between two frames, and the actions on it. The screens are derived from this state
+//! alone.
 
 mod bout;
 mod controls;
@@ -167,7 +167,7 @@ impl Game {
         self.sound.is_off()
     }
 
-    /// Returns the reason for which sound does not work, if any.
+    /// Returns the reason why sound does not work, if any.
     pub fn sound_trouble(&self) -> Option<String> {
         self.trouble.clone()
     }
@@ -257,7 +257,7 @@ impl Game {
 
     /// Starts the level of a replay with the replay as ghost.
     pub fn race(&mut self, replay: Arc<Replay>) -> Result<(), ReplayError> {
-        // Uses the listed level if it is the same, whatever its name in the replay, so that a win counts.
+        // Uses the listed level if it is equal, even under another name, so that a win counts.
         let known = self
             .levels
             .iter()

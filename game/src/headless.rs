@@ -74,7 +74,7 @@ impl Options {
     }
 }
 
-/// Reason for which there is no report.
+/// Reason why there is no report.
 #[derive(Debug, thiserror::Error)]
 enum Trouble {
     #[error(transparent)]

@@ -31,7 +31,7 @@ mod console {
     }
 
     pub fn attach() {
-        // The call fails if there is no console; then nobody reads the output.
+        // The call fails if there is no console. Output is then discarded.
         let _attached = AttachConsole(PARENT);
     }
 }

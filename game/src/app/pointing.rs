@@ -21,8 +21,8 @@ const TURN: f32 = 1.5;
 /// Stores the position at which the mouse or the first finger points, until a tick has used it. Ignores a
 /// pointer that is on a button or that turns the camera.
 pub(super) fn point(game: &mut Game, ctx: &Context, fingers: &Fingers) {
-    // A finger on a button does not move a hand either (see `Fingers`), while another finger may still move
-    // one.
+    // Applies to the mouse alone: a finger on a button never counts as pointing (see `Fingers`), and another
+    // finger may still point.
     let is_on_button =
         !fingers.are_down() && ctx.interaction_snapshot(|seen| !seen.hovered.is_empty());
     let is_on = game.screen() == Screen::Play;

@@ -72,7 +72,7 @@ pub(super) fn play(file: &Path, mute: bool) -> ExitCode {
     };
     show(move || {
         let sound = if mute { Sound::none() } else { Sound::open() };
-        // Stick mounting is stored in the folder of the stand.
+        // The mounting of sticks is stored in the folder of the stand.
         let folder = StandFolder::of(stand.config.logbook.folder.as_deref());
         let mut game = Game::new(folder.files(), sound, Pads::open());
         let mut stand = stand;

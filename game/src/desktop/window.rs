@@ -1,4 +1,4 @@
-//! The window of a program: opening it, and the reason for which it ended.
+//! The window of a program: opening it, and the reason why it ended.
 
 use crate::app::{App, NoGpu};
 use crate::game::Game;
@@ -67,7 +67,7 @@ pub fn open(
     let gpu = Rc::new(RefCell::new(None::<GpuWatch>));
     let seen = gpu.clone();
     let began = Instant::now();
-    // winit panics if a library of the window system is missing, and wgpu may panic after the GPU was lost.
+    // The call panics if a library of the window system is missing, and may panic after the GPU was lost.
     let closed = catch_unwind(AssertUnwindSafe(|| run_window(name, viewport, seen, make)));
     let gpu = gpu.take();
     let is_open = gpu.is_some();
@@ -151,7 +151,7 @@ fn icon() -> egui::IconData {
     eframe::icon_data::from_png_bytes(picture).expect("web/icon-192.png is a valid PNG")
 }
 
-/// Returns the reason for which no window opens, as text for the player.
+/// Returns the reason why no window opens, as text for the player.
 fn trouble(error: &eframe::Error) -> String {
     let text = error.to_string();
     match error {

@@ -304,7 +304,7 @@ impl Change {
     /// it.
     ///
     /// # Errors
-    /// The problem in the file and its line, or the reason for which the change is invalid.
+    /// The problem in the file and its line, or the reason why the change is invalid.
     pub fn in_text(&self, text: &str) -> Result<String, String> {
         // The file may have been edited since it was read.
         Config::read(text)?;

@@ -74,7 +74,7 @@ pub struct Stand {
     pub entrance: Entrance,
     /// Frame times.
     pub frames: FrameTimes,
-    /// Message for staff: the result of the last change, or the reason for which it failed.
+    /// Message for staff: the result of the last change, or the reason why it failed.
     pub answer: Option<String>,
     /// Whether staff ended the stand.
     pub is_ended: bool,

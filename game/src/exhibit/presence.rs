@@ -5,7 +5,7 @@ use egui::{Context, Event};
 use std::collections::BTreeMap;
 use sticks::{Change, DeviceId, Snapshot};
 
-/// Smallest movement of a stick or trigger that counts, in units of its full range. Worn ones tremble.
+/// Smallest change of a stick or trigger axis that counts (full deflection = 1). Worn ones tremble.
 const MOVED: f32 = 0.15;
 /// Smallest distance of the mouse that counts [points], even if slow. Shocks to the table move it less.
 const PUSHED: f32 = 4.0;

@@ -40,7 +40,7 @@ pub enum Page {
 }
 
 impl Page {
-    /// Pages in the navigation bar.
+    /// Pages that link to each other.
     pub const ALL: [Self; 3] = [Self::Today, Self::Health, Self::Settings];
 }
 

@@ -168,7 +168,7 @@ mod tests {
 
     const SIZE: [u32; 2] = [480, 300];
 
-    /// Counts the pixels in a range of rows whose colour is close to `colour`.
+    /// Counts the pixels with nearly this colour in a range of rows.
     fn count(picture: &[u8], rows: std::ops::Range<usize>, colour: [u8; 3]) -> usize {
         let row = 4 * SIZE[0] as usize;
         let pixels = picture[rows.start * row..rows.end * row].chunks(4);

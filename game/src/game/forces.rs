@@ -17,7 +17,7 @@ const CALLS: f64 = 24.0;
 const GENTLE: f32 = 0.12;
 
 impl Game {
-    /// Sends force feedback to the devices, or the reason for which they get none.
+    /// Sends force feedback to the devices, or the reason why they get none.
     pub(super) fn drive_forces(&mut self, seconds: f32) {
         self.pass_trial(seconds);
         let (settings, trial) = (&self.settings, &self.trial);
@@ -77,7 +77,7 @@ impl Game {
         }
     }
 
-    /// Returns the feedback for the player who holds a device.
+    /// Returns the feedback for the player with this device.
     fn state(&self, id: DeviceId) -> Option<State> {
         if self.screen() == Screen::Title {
             return self.call();
@@ -116,7 +116,7 @@ impl Game {
         self.calls && self.time % CALLS < 2.0 * CALL
     }
 
-    /// Returns the reason for which no device gets feedback now, if any.
+    /// Returns the reason why no device gets feedback now, if any.
     pub fn silence(&self) -> Option<Stop> {
         match self.screen() {
             _ if self.is_away => Some(Stop::FocusLost),

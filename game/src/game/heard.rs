@@ -115,7 +115,7 @@ mod tests {
     use egui::{Rect, pos2};
 
     #[test]
-    fn sound_of_hand_comes_from_its_position_on_screen() {
+    fn hand_sound_is_panned_to_position_on_screen() {
         let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
         let mut heard = |level: &str, turn: f32| {
             let mut levels = game.levels.iter();

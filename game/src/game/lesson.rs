@@ -26,7 +26,7 @@ impl Lesson {
         self.seconds = 0.0;
     }
 
-    /// Which hints to show: move, raise, look around.
+    /// Returns whether to show each hint: move, raise, look around.
     pub(super) fn missing(&self) -> [bool; 3] {
         self.tried.map(|tried| !tried && self.seconds < LONG)
     }

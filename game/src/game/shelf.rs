@@ -77,7 +77,7 @@ impl Shelf {
         })
     }
 
-    /// Returns the levels of the rounds whose details are known.
+    /// Returns the levels of the rounds with known details.
     pub fn levels(&self) -> impl Iterator<Item = Arc<Level>> {
         let found = self
             .0

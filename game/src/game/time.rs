@@ -188,7 +188,7 @@ mod tests {
     use crate::platform::{Clock, Files, Pads, Sound};
     use std::cell::Cell;
 
-    /// Creates a game in its first level whose clock advances by `tick` [s] at each call.
+    /// Creates a game in its first level, with a clock that advances by `tick` [s] at each call.
     fn game(tick: f64) -> Game {
         let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
         let now = Cell::new(0.0);

@@ -132,7 +132,7 @@ impl fmt::Display for Report {
         let (median, worst) = (self.median_tick_ms, self.worst_tick_ms);
         row(
             "simulation",
-            format!("{median:.2} ms a tick (median), {worst:.2} ms at worst"),
+            format!("{median:.2} ms per tick (median), {worst:.2} ms (worst)"),
         )
     }
 }

@@ -3,7 +3,7 @@
 /// Disables the screen saver and power saving of an X server. Other systems are left as they are.
 ///
 /// # Errors
-/// The reason for which the request could not be sent.
+/// The reason why the request could not be sent.
 #[cfg(all(unix, not(target_os = "macos")))]
 pub fn keep_awake() -> Result<(), String> {
     use x11rb::connection::{Connection, RequestConnection};

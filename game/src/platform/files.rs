@@ -41,7 +41,7 @@ pub struct Files {
     is_failing: bool,
 }
 
-/// Data folder of the game according to the system. `None` if there is none.
+/// Data folder of the game according to the system, if any.
 #[cfg(not(target_family = "wasm"))]
 pub fn data_folder() -> Option<std::path::PathBuf> {
     let folders = directories::ProjectDirs::from("", "", "tamaire")?;

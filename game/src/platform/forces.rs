@@ -59,7 +59,7 @@ impl Forces {
         self.force.as_ref()
     }
 
-    /// Sends the wanted feedback to each device, or the reason for which there is none.
+    /// Sends the wanted feedback to each device, or the reason for its absence.
     pub fn tell(&self, wish: impl Fn(DeviceId) -> Result<State, Stop>) {
         for (&id, line) in &self.lines {
             match wish(id) {

@@ -15,7 +15,7 @@ pub struct Damage {
     pub aside: Option<String>,
 }
 
-/// Maximum length of the reason for which a level could not be read [characters].
+/// Maximum length of the reason why a level could not be read [characters].
 const LETTERS: usize = 200;
 
 /// Separator between the name of damaged data and the number of its copy.

@@ -2,7 +2,7 @@
 
 use tamaire_sound::{Cue, NoSound, Soundscape, Speaker, Volumes};
 
-/// Sound output, or the reason for which there is none; then the game runs silently.
+/// Sound output, or the reason for its absence. The game then runs silently.
 pub struct Sound {
     speaker: Option<Result<Speaker, NoSound>>,
 }
@@ -38,7 +38,7 @@ impl Sound {
         self.speaker.is_none()
     }
 
-    /// Returns the reason for which sound does not work, if any.
+    /// Returns the reason why sound does not work, if any.
     pub fn trouble(&self) -> Option<String> {
         let trouble = match self.speaker.as_ref()? {
             Ok(speaker) => speaker.trouble(),

@@ -63,7 +63,7 @@ impl Pads {
         }
     }
 
-    /// Returns the reason for which no devices can be read, if any.
+    /// Returns the reason why no devices can be read, if any.
     pub fn complaint(&self) -> Option<String> {
         match &self.0 {
             Source::Nothing(none) => Some(none.to_string()),

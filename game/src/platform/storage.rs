@@ -95,7 +95,7 @@ pub trait Storage: Send + Sync {
 
 /// Storage that stores nothing.
 pub struct Nowhere {
-    /// Reason for which nothing is stored. `None` = by choice.
+    /// Reason why nothing is stored. `None` = by choice.
     pub reason: Option<&'static str>,
 }
 

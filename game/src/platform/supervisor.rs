@@ -12,7 +12,7 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 use tamaire_logbook::{Entry, Event, Id, Kind, Logbook, Moment};
 
-/// Exit status of a game whose GPU or window was lost.
+/// Exit status of a game that lost its GPU or window.
 pub const LOST_GRAPHICS: u8 = 3;
 
 /// Signals to the supervisor: heartbeat, and the announcement of a regular end.
@@ -242,7 +242,7 @@ fn wait(child: &mut Child, began: Instant, signs: &Mutex<Signs>) -> (Option<Exit
             (None, None) => began.elapsed() > START,
         };
         if is_still {
-            // SIGKILL ends a stopped process, too.
+            // Killing works for a stopped process, too.
             let _gone = child.kill();
             return (child.wait().ok(), true);
         }
@@ -416,7 +416,7 @@ mod tests {
     }
 
     #[test]
-    fn game_survives_fifty_kills() {
+    fn supervisor_restarts_game_after_each_of_fifty_kills() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().to_path_buf();
         let script = format!(

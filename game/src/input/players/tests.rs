@@ -174,7 +174,7 @@ fn wanted_height_is_kept_when_goal_cannot_follow() {
         turn: Some(0.0),
         ..MANNER
     };
-    // The body holds the hand down, and the hand's distance limit holds its goal.
+    // The body holds the hand down, and the limited distance between hand and goal holds the goal.
     let here = [0.0, 0.5, 0.0];
     let mut players = Players::default();
     let mut goal = |devices: &Devices, manner: &Manner| {

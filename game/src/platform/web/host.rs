@@ -13,7 +13,7 @@ extern "C" {
     #[wasm_bindgen(method, getter)]
     pub fn language(this: &Host) -> String;
 
-    /// Reason for which nothing can be stored, if any.
+    /// Reason why nothing can be stored, if any.
     #[wasm_bindgen(method, getter)]
     pub(crate) fn refusal(this: &Host) -> Option<String>;
     /// Next stored entry that the game has not read yet.
@@ -27,7 +27,7 @@ extern "C" {
     pub(crate) fn keep(this: &Host, key: &str, bytes: &[u8], written: f64);
     #[wasm_bindgen(method)]
     pub(crate) fn remove(this: &Host, key: &str);
-    /// Returns once the reason for which a change outside of `alone` failed.
+    /// Returns once the reason why a change outside of `alone` failed.
     #[wasm_bindgen(method, js_name = takeFailure)]
     pub(crate) fn take_failure(this: &Host) -> Option<String>;
 

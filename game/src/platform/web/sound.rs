@@ -50,7 +50,7 @@ impl Sound {
         self.speaker.is_none()
     }
 
-    /// Returns the reason for which sound does not work, if any.
+    /// Returns the reason why sound does not work, if any.
     pub fn trouble(&self) -> Option<String> {
         self.speaker.as_ref()?.trouble()
     }
