@@ -174,7 +174,7 @@ impl Files {
         (value, Some(Damage { refused, aside }))
     }
 
-    /// Schedules settings to be written after [`REST`] without changes, or at the end of the program.
+    /// Schedules settings to be written after `REST` without changes, or at the end of the program.
     pub fn keep_settings(&mut self, settings: &Settings) {
         self.resting = Some((settings.text(), REST));
     }

@@ -33,7 +33,7 @@ const PULSE: Duration = Duration::from_millis(500);
 /// Time without a heartbeat after which the game counts as hung, and [`START`] before the first one.
 const STILL: Duration = Duration::from_millis(3500);
 const START: Duration = Duration::from_secs(60);
-/// Number of crashes within [`WHILE`] after which restarting is given up.
+/// Number of crashes within `WHILE` after which restarting is given up.
 pub const MOST: usize = 10;
 const WHILE: Duration = Duration::from_secs(600);
 /// Interval between checks of the game.

@@ -17,7 +17,7 @@ impl Default for Breath {
 }
 
 impl Breath {
-    /// Waits for the next frame if the last one was longer than [`LONGEST`] ago.
+    /// Waits for the next frame if the last one was longer than `LONGEST` ago.
     pub async fn take(&mut self) {
         if self.0.elapsed() > LONGEST {
             // The promise is never rejected.
