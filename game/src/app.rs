@@ -211,7 +211,8 @@ impl App {
         }
     }
 
-    /// Clicks the widget on which the mouse rests, if the player has turned dwell clicking on.
+    /// Clicks the widget on which the mouse has stayed for long enough, if the player has turned dwell
+    /// clicking on.
     fn press_by_resting(&mut self, ctx: &egui::Context, seconds: f32) {
         let on = screens::take_hovered(ctx).filter(|_| self.game.settings.dwell);
         let Some(at) = ctx.input(|input| input.pointer.latest_pos()) else {

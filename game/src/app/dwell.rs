@@ -1,21 +1,22 @@
-//! Dwell clicking: a mouse that rests on a button clicks it. For players who point with their eyes or head.
+//! Dwell clicking: a mouse that stays on a button clicks it. For players who point with their eyes or head.
 
 use crate::look::Theme;
 use egui::{Color32, Context, Id, LayerId, Order, Pos2, Shape, Stroke, vec2};
 use std::f32::consts::TAU;
 
-/// Time after which a resting mouse clicks [s].
+/// Time on a widget after which the mouse clicks it [s].
 const REST: f32 = 1.0;
 /// Radius of the progress ring around the mouse [points].
 const RADIUS: f32 = 20.0;
 
-/// Widget under the resting mouse, and the time since the mouse came to rest.
+/// Widget under the mouse, and the time for which the mouse has been on it.
 #[derive(Debug, Default)]
 pub(super) struct Dwell {
     on: Option<Id>,
     /// Time on this widget [s].
     seconds: f32,
-    /// Whether the mouse has ever moved. A widget that appears under an unmoved mouse is not clicked.
+    /// Whether the mouse has moved since the screen appeared. A widget that appears under an unmoved mouse is
+    /// not clicked.
     has_moved: bool,
 }
 

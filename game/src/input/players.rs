@@ -29,7 +29,8 @@ pub struct Players {
     /// Stick positions in the last tick. A stick that sets a position does so only when it moves, so that
     /// mouse and keys work while it is still.
     leans: BTreeMap<DeviceId, [f32; 2]>,
-    /// Device with which each player last moved the hand, and the time since then [s].
+    /// Device with which each player last moved the hand, and the time since the last movement by a stick or
+    /// pad [s].
     used: [Option<Seat>; PLAYERS],
     rested: [f32; PLAYERS],
 }
@@ -62,7 +63,7 @@ impl Players {
         }
     }
 
-    /// Time since a player last moved the hand [s].
+    /// Time since a player last moved the hand with a stick or pad [s].
     pub fn rested(&self, player: usize) -> f32 {
         self.rested[player]
     }
