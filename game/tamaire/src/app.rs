@@ -1,4 +1,4 @@
-//! The loop: devices → actions and wishes → time → picture and sound.
+//! The main loop: devices → actions and wishes → time → picture and sound.
 
 mod dwell;
 mod fingers;
@@ -21,16 +21,17 @@ use presses::Presses;
 use sticks::{Change, Control, Navigator, PadButton};
 use switch::Switch;
 
-/// Each screen has room enough in a window of this many points.
+/// Smallest window in which every screen fits at zoom 1 [points].
 const ROOM: egui::Vec2 = egui::vec2(900.0, 640.0);
-/// And in one of so many that is held upright.
+/// [`ROOM`] for a window in portrait orientation [points].
 const TALL_ROOM: egui::Vec2 = egui::vec2(600.0, 760.0);
-/// In so many steps a screen grows from nothing to its usual size.
+/// Number of zoom steps between 0 and 1.
 const STEPS: f32 = 32.0;
-/// A frame that took longer than this [s] counts as this long at a stand: a machine that was asleep has not waited.
+/// Longest frame time that an exhibit counts [s]. Longer frames count as this long, for example after the
+/// machine was suspended.
 const LONGEST: f32 = 1.0;
 
-/// Keys that menus understand.
+/// Keys that navigate menus.
 const OF_MENUS: [Key; 8] = [
     Key::Escape,
     Key::Tab,
@@ -44,11 +45,11 @@ const OF_MENUS: [Key; 8] = [
 
 /// The game in a window.
 pub struct App {
-    /// Its state.
+    /// State of the game.
     pub game: Game,
-    /// What leads it where visitors find no menus.
+    /// Controller of the game at a public stand, where visitors get no menus.
     pub attendant: Option<Box<dyn Attendant>>,
-    /// An eye on what it is drawn with.
+    /// Monitor that notices the loss of the GPU.
     pub gpu: GpuWatch,
     stage: Stage,
     navigators: Vec<(sticks::DeviceId, Navigator)>,
@@ -58,31 +59,32 @@ pub struct App {
     clipboard: Clipboard,
     switch: Switch,
     screen_before: Screen,
-    /// Whether the window ever had the focus, whether it was asked to fill the screen, and whether a page did.
+    /// Whether the window ever had the focus, whether it was told to be full screen, and whether the page was
+    /// full screen.
     had_focus: bool,
     is_full: bool,
     was_full: bool,
-    /// How large points are, as compared with those of the system.
+    /// Zoom factor: size of an egui point relative to a point of the system.
     pub zoom: f32,
 }
 
 /// The window has no GPU, not even one in software.
 #[derive(Copy, Clone, Debug, thiserror::Error)]
-#[error("there is nothing to draw with: neither Vulkan nor OpenGL, not even in software")]
+#[error("no graphics adapter: neither Vulkan nor OpenGL is available, not even in software")]
 pub struct NoGpu;
 
 impl App {
-    /// The game in a window of eframe's, which closes when its GPU is lost.
+    /// Creates the game in an eframe window, which closes when its GPU is lost.
     ///
     /// # Errors
-    /// When the window has no GPU, not even one in software.
+    /// If the window has no GPU, not even one in software.
     pub fn new(context: &eframe::CreationContext, mut game: Game) -> Result<Self, NoGpu> {
         dress(&context.egui_ctx);
         let state = context.wgpu_render_state.as_ref().ok_or(NoGpu)?;
         let (stage, gpu) = (Stage::new(state), GpuWatch::of(state));
         #[cfg(target_family = "wasm")]
         crate::film::lend(state);
-        // Browsers fill the screen only when they are asked by a press.
+        // Browsers allow full screen only in response to a press.
         game.settings.full_screen &= !cfg!(target_family = "wasm");
         let screen_before = game.screen();
         let navigators = Vec::new();
@@ -107,19 +109,20 @@ impl App {
         })
     }
 
-    /// What was drawn of worlds since this was asked last cost the GPU; what lies over them, egui draws.
+    /// Returns the GPU cost of drawing worlds since the last call. The interface, which egui draws, is not
+    /// included.
     pub fn take_cost(&self) -> fuwafuwa_render::Cost {
         self.stage.take_cost()
     }
 
-    /// Takes in sticks and pads: in a round they ask for actions, in a menu they move the focus.
+    /// Reads sticks and pads: in a round their buttons trigger actions, in a menu they move the focus.
     fn hear_sticks(&mut self, ctx: &egui::Context, seconds: f32) {
         let changes = self.game.hear_sticks();
         if self.game.is_away {
-            // They are used for something else, in another window.
+            // Another window has the focus, so the sticks are not meant for the game.
             return;
         }
-        // What is to get a meaning has none now.
+        // While a control is being rebound, buttons do not operate the menu.
         let in_menu = self.game.screen() != Screen::Play && self.game.controls.rebinding.is_none();
         for change in changes {
             let Change::Pressed { device, control } = change else {
@@ -138,7 +141,7 @@ impl App {
                     continue;
                 }
                 if action == Action::CutForces && is_of_menus {
-                    // Nobody could go on in a menu without cutting forces.
+                    // These buttons operate menus, which would be impossible if they cut forces.
                     continue;
                 }
                 self.game.controls.rebinding = None;
@@ -151,7 +154,7 @@ impl App {
             }
             let action = self.game.settings.bindings.of_button(control);
             match (control, action) {
-                // Whatever is on: it must not be looked for.
+                // Cutting forces works on every screen, so that the player need not look for the right one.
                 (_, Some(Action::CutForces)) => {
                     self.game.act(Action::CutForces, Seat::Stick(device))
                 }
@@ -177,7 +180,7 @@ impl App {
             for direction in self.navigators[index].1.step(device, seconds) {
                 screens::note_use_of_keys(ctx, true);
                 self.game.controls.note_stick(device.id);
-                // One that is tried is pushed about for its own sake.
+                // A stick on the trial screen moves for its own test and does not navigate the menu.
                 let is_tried = self
                     .game
                     .trial
@@ -194,10 +197,10 @@ impl App {
         }
     }
 
-    /// Makes the window as large as was chosen.
+    /// Applies the full-screen setting to the window.
     fn fill_screen(&mut self, ctx: &egui::Context) {
         if let Some(is_full) = is_full_by_itself().filter(|is_full| *is_full != self.was_full) {
-            // By a key or a gesture of the browser.
+            // The browser changed it by a key or a gesture.
             (self.was_full, self.is_full) = (is_full, is_full);
             self.game.settings.full_screen = is_full;
         }
@@ -208,7 +211,8 @@ impl App {
         }
     }
 
-    /// Presses what the mouse rests on, for whoever wants it so.
+    /// Clicks the widget on which the mouse has stayed for long enough, if the player has turned dwell
+    /// clicking on.
     fn press_by_resting(&mut self, ctx: &egui::Context, seconds: f32) {
         let on = screens::take_hovered(ctx).filter(|_| self.game.settings.dwell);
         let Some(at) = ctx.input(|input| input.pointer.latest_pos()) else {
@@ -221,12 +225,12 @@ impl App {
         self.dwell.draw(ctx, at, &self.game.theme());
     }
 
-    /// As if a key were pressed and let go in the next frame.
+    /// Presses and releases `key` in the next frame.
     fn press(&self, key: Key) {
         self.presses.waiting().keys.push(key);
     }
 
-    /// Takes in keys and the pointer.
+    /// Reads the keyboard and the pointer.
     fn hear_window(&mut self, ctx: &egui::Context) {
         let game = &mut self.game;
         let events = ctx.input(|input| input.events.clone());
@@ -250,13 +254,14 @@ impl App {
                 }
                 Event::PointerMoved(_) | Event::PointerButton { .. } => {
                     screens::note_use_of_keys(ctx, false);
-                    // A finger is told of as a mouse too, after it.
+                    // Each touch event is followed by an emulated mouse event, which does not count.
                     if !is_touched {
                         game.controls.means = Means::Mouse;
                     }
                 }
                 Event::Touch { .. } => game.controls.means = Means::Fingers,
-                // A window may never get the focus, and be played with the mouse: only losing it counts.
+                // A window may be played with the mouse without ever getting the focus, so only losing the
+                // focus counts.
                 Event::WindowFocused(focused) => {
                     game.is_away = self.had_focus && !focused;
                     self.had_focus |= focused;
@@ -298,7 +303,7 @@ impl App {
             };
             let is_switch = game.settings.scanning.is_on() && Switch::KEYS.contains(&key);
             if is_switch && game.controls.rebinding.take().is_some() {
-                // Who has nothing else could give nothing a key, nor leave what waits for one.
+                // A player with a single switch could otherwise never leave the screen that waits for a key.
                 taken.push(key);
                 continue;
             }
@@ -322,13 +327,14 @@ impl App {
             if is_playing && game.settings.toggle_keys {
                 game.controls.latch.press(key, &game.settings.bindings);
             }
-            // A browser has this key for itself.
+            // In a browser, F11 belongs to the browser.
             let fills = !cfg!(target_family = "wasm") && game.public.is_none();
             if key == Key::F11 && action.is_none() && fills {
                 game.settings.full_screen ^= true;
                 game.keep_settings();
             }
-            // In a menu these move about in it, whatever they mean in a round. But for what must not be looked for.
+            // In a menu these keys navigate, regardless of their binding in a round. Cutting forces is the
+            // exception: it works on every screen.
             let is_of_menu = game.screen() != Screen::Play && OF_MENUS.contains(&key);
             if let Some(action) =
                 action.filter(|action| !is_of_menu || *action == Action::CutForces)
@@ -337,7 +343,8 @@ impl App {
                 taken.push(key);
             }
         }
-        // A menu that has just come up must not take it for a click or for the way back.
+        // Removes the handled key presses, so that a menu that has just opened does not take them as a click
+        // or as "back".
         let is_taken = |event: &Event| match event {
             Event::Key { key, pressed, .. } => *pressed && taken.contains(key),
             _ => false,
@@ -360,7 +367,7 @@ impl App {
 }
 
 impl eframe::App for App {
-    /// Runs where nothing is drawn, too.
+    /// Runs even when nothing is drawn.
     fn logic(&mut self, ctx: &egui::Context, _: &mut eframe::Frame) {
         if let Some(attendant) = &mut self.attendant {
             attendant.live(ctx);
@@ -380,7 +387,7 @@ impl eframe::App for App {
             self.game.settings.language,
             self.game.has_strange_names(),
         );
-        // In public it is seen from afar.
+        // A public stand is seen from a distance, so its text is as large as fits.
         let text_size = match self.game.public {
             Some(_) => f32::INFINITY,
             None => self.game.settings.text_size,
@@ -394,12 +401,13 @@ impl eframe::App for App {
             .pass(&mut self.game, &self.presses, &ctx, seconds);
         self.game.pass(seconds);
         if let Some(attendant) = &mut self.attendant {
-            // However slow the frames are, who waits does so for as long as is said.
+            // Uses a frame time with a higher limit, so that the waiting times of a stand stay correct at low
+            // frame rates.
             let seconds = ctx.input(|input| input.stable_dt).min(LONGEST);
             attendant.pass(&mut self.game, &ctx, seconds);
         }
         if self.screen_before != self.game.screen() {
-            // What had the focus is gone.
+            // The focused widget belongs to the previous screen.
             self.screen_before = self.game.screen();
             self.dwell = Dwell::default();
             ctx.memory_mut(|memory| {
@@ -412,7 +420,7 @@ impl eframe::App for App {
             Some(attendant) => attendant.show(&mut self.game, &mut self.stage, ui),
             None => screens::show(&mut self.game, &mut self.stage, ui),
         }
-        // Some browsers take it only in the frame of the press.
+        // Some browsers allow copying only in the frame of the press.
         if let Some(copied) = self.game.copied.take() {
             self.clipboard.copy(&ctx, copied);
         }
@@ -420,7 +428,7 @@ impl eframe::App for App {
             self.game.tell_of_copy(took);
         }
         self.press_by_resting(&ctx, seconds);
-        // What stands in these is of many widths.
+        // The rows of these screens differ in width, so the arrow keys follow the order of the widgets.
         let is_list = matches!(
             self.game.screen(),
             Screen::Settings | Screen::Forces | Screen::Licences | Screen::Replays
@@ -429,13 +437,13 @@ impl eframe::App for App {
         ctx.request_repaint();
     }
 
-    /// Browsers hand it out so.
+    /// eframe's web runner gets the app through this.
     #[cfg(target_family = "wasm")]
     fn as_any_mut(&mut self) -> Option<&mut dyn std::any::Any> {
         Some(self)
     }
 
-    /// Some systems end the program with its last window, and nothing is dropped.
+    /// On some systems the program ends with its last window, without running destructors.
     fn on_exit(&mut self) {
         if let Some(attendant) = &mut self.attendant {
             attendant.close(&mut self.game);
@@ -444,19 +452,19 @@ impl eframe::App for App {
     }
 }
 
-/// Shows letters and all else at a size that was chosen, or smaller where the window lacks room.
+/// Sets the zoom of the interface: `text_size`, or less if the window is too small.
 fn fit(ctx: &egui::Context, text_size: f32) {
     let zoom = zoom(ctx.content_rect().size() * ctx.zoom_factor(), text_size);
-    // Nothing changes its size under the mouse that drags it.
+    // No zoom while a mouse button is down, so that a dragged widget keeps its size.
     if !ctx.input(|input| input.pointer.any_down()) {
         ctx.set_zoom_factor(zoom);
     }
 }
 
-/// The size that was chosen, or a smaller one for which a window has room. There are few of these: egui keeps the letters of
-/// each that it has ever shown.
+/// Returns `text_size`, or the largest zoom step with which every screen fits into `window`. There are only a
+/// few steps because egui keeps the glyphs of every zoom that it has ever shown.
 fn zoom(window: egui::Vec2, text_size: f32) -> f32 {
-    // What was multiplied and divided by the last zoom is not quite the same.
+    // The tolerance covers the rounding errors of multiplying and dividing by the previous zoom.
     let is_tall = window.x < window.y;
     let room = if is_tall { TALL_ROOM } else { ROOM };
     let room = (window / room).min_elem() + 1e-4;
@@ -468,7 +476,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_window_that_is_pulled_about_has_room_and_few_sizes() {
+    fn zoom_fits_window_and_has_few_values() {
         let mut zooms: Vec<f32> = Vec::new();
         for height in 200..1000u16 {
             let room = f32::from(height) / ROOM.y;

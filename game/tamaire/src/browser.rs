@@ -1,4 +1,4 @@
-//! The way in through a browser: the page hands over a canvas and itself, and says when it goes away.
+//! Entry point in a browser: the page passes a canvas and a host object, and says when it is closed.
 
 mod labels;
 
@@ -11,7 +11,7 @@ use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 use web_sys::HtmlCanvasElement;
 
-/// The game on a canvas.
+/// The game running on a canvas.
 #[wasm_bindgen]
 pub struct Running {
     runner: WebRunner,
@@ -21,10 +21,10 @@ pub struct Running {
 
 #[wasm_bindgen]
 impl Running {
-    /// Begins, and goes on until [`Running::end`].
+    /// Starts the game, which runs until [`Running::end`].
     ///
     /// # Errors
-    /// Why there is nothing to draw with.
+    /// If there is no graphics adapter.
     pub async fn start(canvas: HtmlCanvasElement, host: Host) -> Result<Running, JsValue> {
         set_host(host);
         let (runner, labels) = (WebRunner::new(), Labels::default());
@@ -32,7 +32,7 @@ impl Running {
         let (known, plugin) = (kept.clone(), labels.clone());
         let create = move |context: &eframe::CreationContext<'_>| {
             context.egui_ctx.add_plugin(plugin);
-            // It is made once.
+            // The closure runs once, so the cell is still empty.
             let _ = known.set(context.egui_ctx.clone());
             let game = Game::new(Files::usual(), Sound::open(), Pads::open());
             Ok(Box::new(App::new(context, game)?) as Box<dyn eframe::App>)
@@ -48,9 +48,9 @@ impl Running {
         })
     }
 
-    /// How things stand, for whoever looks on: a test, or an exhibit.
+    /// Returns the state of the game, for a test or an exhibit.
     pub fn report(&self) -> Option<Report> {
-        // From the next frame on what stands there has names.
+        // Labels are available from the next frame on.
         self.context.enable_accesskit();
         let app = self.runner.app_mut::<App>()?;
         let (game, round, seen) = (&app.game, app.game.bout.round(), self.labels.seen());
@@ -97,14 +97,14 @@ impl Running {
         })
     }
 
-    /// Writes what is still to be written: the page may not come back.
+    /// Writes pending data, because the page may not come back.
     pub fn flush(&self) {
         if let Some(mut app) = self.runner.app_mut::<App>() {
             app.game.finish_writing();
         }
     }
 
-    /// Ends it because its GPU is lost. The round may be watched later.
+    /// Ends the game after its GPU was lost. The round is kept and can be watched later.
     pub fn end(&self) {
         if let Some(mut app) = self.runner.app_mut::<App>() {
             app.game.rescue();
@@ -113,31 +113,31 @@ impl Running {
     }
 }
 
-/// How things stand. Places are in the pixels of the page.
+/// State of the game. Positions are in pixels of the page.
 #[wasm_bindgen(getter_with_clone)]
 pub struct Report {
-    /// What is seen.
+    /// Current screen.
     pub screen: String,
-    /// The level of the round that is on.
+    /// Level of the current round.
     pub level: String,
-    /// What the game speaks.
+    /// Language of the game.
     pub language: String,
-    /// How long the round has been going on [1/60 s].
+    /// Length of the round up to now [1/60 s].
     pub ticks: u32,
-    /// Whether it is won.
+    /// Whether the round is won.
     pub is_won: bool,
-    /// The levels in which there is a record.
+    /// Levels with a record.
     pub won: Vec<String>,
-    /// What can be pressed: where, and its name.
+    /// Widgets that can be pressed, each as "x y name".
     pub labels: Vec<String>,
-    /// What the player is being told.
+    /// Messages shown to the player.
     pub notices: Vec<String>,
-    /// How much memory the game has taken [bytes].
+    /// Memory of the game [bytes].
     pub memory: u32,
-    /// Where the first hand is.
+    /// Position of the first hand.
     pub hand: Vec<f32>,
-    /// Where the middle of the world is.
+    /// Position of the world origin.
     pub origin: Vec<f32>,
-    /// And a place 1 m to the right of it.
+    /// Position of the point 1 m to the right of the origin.
     pub right: Vec<f32>,
 }

@@ -1,4 +1,4 @@
-//! The way in on a desktop: the command line, a window, and what is done where none opens.
+//! Entry point on a desktop: the command line, a window, and a round without one where no display is found.
 
 mod exhibit;
 mod report;
@@ -21,40 +21,40 @@ use window::{Opened, has_display, open_game};
 struct Arguments {
     #[command(subcommand)]
     chore: Option<Chore>,
-    /// A level (.toml), a picture or a model to make a body of (.png, .vox), a replay (.tamaire), or a link to a round or a
-    /// level (https://…#r1…)
+    /// A level (.toml), a picture or a model to make a body of (.png, .vox), a replay (.tamaire), or a link
+    /// to a round or a level (https://…#r1…)
     #[arg(conflicts_with_all = ["level", "replay"])]
     file: Option<PathBuf>,
-    /// No sound
+    /// Turn the sound off
     #[arg(long)]
     mute: bool,
     /// List the levels
     #[arg(long)]
     list: bool,
-    /// Print what is inside this program, and under which licences
+    /// Print the third-party parts of this program and their licences
     #[arg(long)]
     licences: bool,
-    /// Play without a window, as fast as it goes, and tell how it went
+    /// Play a round without a window at full speed, and print the result
     #[arg(long)]
     headless: bool,
-    /// Set up a stand in public that runs by itself, as this file says; it is written where there is none
+    /// Run a public stand with this configuration file, which is created if it does not exist
     #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "exhibit.toml")]
     #[arg(conflicts_with_all = ["file", "list", "licences", "headless"])]
     exhibit: Option<PathBuf>,
-    /// The game of a stand, which its parent starts
+    /// Run the game of a stand (started by its supervisor)
     #[arg(long, hide = true)]
     stand: Option<PathBuf>,
-    /// The calm picture, likewise
+    /// Show the calm picture of a stand (started by its supervisor)
     #[arg(long, hide = true)]
     rest: Option<PathBuf>,
     #[command(flatten)]
     options: headless::Options,
 }
 
-/// What is done without playing.
+/// Subcommands, which do not play a round.
 #[derive(Subcommand)]
 enum Chore {
-    /// Write what visitors did, from the logbooks of any number of stands and days, as a page for a browser
+    /// Write an HTML report about visitors from the logbooks of one or more stands and days
     Report(report::Options),
     Manual(manual::Options),
 }
@@ -69,10 +69,10 @@ Examples:
   tamaire --exhibit stand.toml
   tamaire report visits.sqlite --out report --csv
 
-Exit status: 0 played to the end, won or not; 1 the replay is refused, or the window broke down;
-2 the arguments make no sense, or a file cannot be read or written";
+Exit status: 0 the round was played to its end, won or not; 1 the replay was rejected, or the window failed;
+2 invalid arguments, or a file could not be read or written";
 
-/// The program `tamaire`; its exit status.
+/// Runs the program `tamaire` and returns its exit status.
 pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
     match &arguments.chore {
@@ -98,7 +98,8 @@ pub fn main() -> ExitCode {
         Some(file) => arguments.options.with_file(file),
         None => arguments.options,
     };
-    // A file that was clicked on gets a window; a level that was typed gets an answer where it was typed.
+    // A file opened by a double click shows its errors in the window; a level typed on the command line
+    // reports them on the terminal.
     if let (None, Some(level)) = (&arguments.file, &options.level)
         && let Err(mistake) = level_at(level)
     {
@@ -112,7 +113,7 @@ pub fn main() -> ExitCode {
         return headless::play(&options);
     }
     if !has_display() {
-        return play_instead("there is no display here", &options);
+        return play_instead("no display was found", &options);
     }
     let opened = open_game(egui::ViewportBuilder::default(), move || {
         let sound = if mute { Sound::none() } else { Sound::open() };
@@ -125,7 +126,7 @@ pub fn main() -> ExitCode {
     match opened {
         Opened::Closed => ExitCode::SUCCESS,
         Opened::LostGpu => {
-            eprintln!("tamaire: the GPU was lost; the game begins anew");
+            eprintln!("tamaire: the GPU was lost; restarting the game");
             eprintln!("tamaire: {}", begin_anew());
             ExitCode::FAILURE
         }
@@ -138,14 +139,16 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// Puts the same program with the same arguments in the place of this one; returns why that cannot be.
+/// Replaces this process with a new instance with the same arguments. Returns only on failure, with the
+/// reason.
 #[cfg(unix)]
 fn begin_anew() -> std::io::Error {
     use std::os::unix::process::CommandExt;
     std::env::current_exe().map_or_else(|error| error, |program| again(&program).exec())
 }
 
-/// The same elsewhere: this one ends, another one begins.
+/// Starts a new instance with the same arguments and ends this process. Returns only on failure, with the
+/// reason.
 #[cfg(not(unix))]
 fn begin_anew() -> std::io::Error {
     let begun = std::env::current_exe().and_then(|program| again(&program).spawn());
@@ -159,16 +162,16 @@ fn again(program: &Path) -> Command {
 }
 
 fn print_licences() -> ExitCode {
-    // Who reads it through a pager may have read enough.
+    // Writing fails if a pager was closed early, which is no error.
     let _read = std::io::stdout().write_all(licences::TEXT.as_bytes());
     ExitCode::SUCCESS
 }
 
-/// Plays a round without a window, and says why.
+/// Prints `reason` and plays a round without a window.
 fn play_instead(reason: &str, options: &headless::Options) -> ExitCode {
     eprintln!(
-        "tamaire: {reason}, so it plays a round by itself; --headless with --level, --bot, --seed, \
-         --replay or --film lets you choose one, and --help tells more."
+        "tamaire: {reason}, so a bot plays a round without a window; choose one by --headless with --level, --bot, \
+         --seed, --replay or --film, and see --help."
     );
     headless::play(options)
 }

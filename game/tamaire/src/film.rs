@@ -1,7 +1,7 @@
-//! A round as a strip of moments, as an animation, as a clip of its last seconds or as a photo of its end.
+//! Films of rounds: a strip of moments, an animation, a clip of the last seconds, or a photo of the end.
 //!
-//! The round is played a second time: the same input gives the same world, and drawing disturbs
-//! no timing. It is drawn as in a window; where there is nothing to draw with, element by element.
+//! The round is simulated a second time from its recorded input, so drawing does not disturb its timing.
+//! Pictures look as in the window. Without a graphics adapter, the elements of the bodies are drawn instead.
 
 #[cfg(not(target_family = "wasm"))]
 mod device;
@@ -23,19 +23,19 @@ use studio::Moment;
 pub use studio::Studio;
 use tamaire_play::{AnyRound, Route};
 
-/// Moments in a strip, and how many stand side by side.
+/// Number of moments in a strip, and number of columns.
 const MOMENTS: usize = 12;
 const COLUMNS: usize = 4;
-/// Ticks between two frames of an animation, and how long each is shown [1/100 s].
+/// Ticks between two frames of an animation, and display time of each frame [1/100 s].
 const PACE: usize = 3;
 const HUNDREDTHS: u16 = 5;
-/// The last frame is shown for longer [1/100 s].
+/// Display time of the last frame [1/100 s].
 const LAST: u16 = 200;
-/// Ticks of a clip.
+/// Length of a clip [ticks].
 const LENGTH: usize = 240;
-/// Ticks that are shown after a win, so that the body can beam.
+/// Length of the celebration shown after a win [ticks].
 const CHEER: usize = 60;
-/// A moment of a film, and a photo.
+/// Print formats: moment of a strip or animation, frame of a clip, and photo.
 const MOMENT: Print = Print {
     size: [480, 300],
     is_captioned: true,
@@ -49,49 +49,50 @@ const PHOTO: Print = Print {
     is_captioned: false,
 };
 
-/// What kind of film is made.
+/// Kind of film.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Film {
-    /// Moments side by side.
+    /// Moments of the round side by side.
     Strip,
-    /// All of the round.
+    /// The whole round.
     Animation,
-    /// Its last seconds, over and over.
+    /// The last seconds of the round, in a loop.
     Clip,
-    /// Its end.
+    /// The end of the round.
     Photo,
 }
 
-/// How a picture is to come out.
+/// Format of a picture.
 #[derive(Copy, Clone)]
 struct Print {
-    /// Width and height without its caption [px].
+    /// Width and height without the caption [px].
     size: [u32; 2],
-    /// Whether it says below when it is and how it stands.
+    /// Whether a caption below the picture states the time and the progress.
     is_captioned: bool,
 }
 
-/// Why there is no film.
+/// Reason why a film could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum FilmError {
-    /// A picture without a GPU failed.
+    /// Drawing without a GPU failed.
     #[error(transparent)]
     Paint(#[from] PaintError),
-    /// A picture as in the window failed.
+    /// Drawing on the GPU failed.
     #[error(transparent)]
     Draw(#[from] ImageError),
-    /// A browser draws nothing without one.
+    /// There is no GPU. In a browser there is no drawing without one.
     #[cfg(target_family = "wasm")]
-    #[error("there is nothing to draw with")]
+    #[error("no graphics adapter to draw the film with")]
     NoGpu,
 }
 
 impl Film {
-    /// The film of a round, as the bytes of its file; `told` hears how many ticks of how many are done. The studio is opened
-    /// where there is none yet, and serves the next film too.
+    /// Makes the film of a round and returns the bytes of its file. `told` is called with the number of
+    /// finished ticks and the total. If `studio` is `None`, a studio is opened, which the next film can use,
+    /// too.
     ///
     /// # Errors
-    /// When something cannot be drawn.
+    /// If drawing or encoding fails.
     pub async fn shoot(
         &self,
         played: &AnyRound,
@@ -103,7 +104,7 @@ impl Film {
         match self {
             Self::Strip => {
                 let mut moments = Vec::new();
-                // The first is the start, the last the end.
+                // The first moment is the start, the last one the end.
                 let gaps = MOMENTS.min(ticks + 1) - 1;
                 let is_shown = |tick| moments_at(ticks, gaps).any(|moment| moment == tick);
                 let show = |pixels, _| {
@@ -141,12 +142,12 @@ impl Film {
     }
 }
 
-/// The ticks from the first to the last that are as far from each other as can be.
+/// Returns `gaps + 1` ticks from 0 to `ticks`, evenly spaced.
 fn moments_at(ticks: usize, gaps: usize) -> impl Iterator<Item = usize> {
     (0..=gaps).map(move |gap| gap * ticks / gaps.max(1))
 }
 
-/// Plays a round again for some ticks; those that are to be shown are.
+/// Simulates a round again for `ticks` ticks and passes pictures of the selected ticks to `show`.
 async fn pass(
     played: &AnyRound,
     ticks: usize,
@@ -159,7 +160,7 @@ async fn pass(
     *studio = studio.take().or_else(Studio::open);
     if studio.is_none() {
         eprintln!(
-            "tamaire: there is nothing to draw with, neither Vulkan nor OpenGL, not even in software, so bodies are shown element by element."
+            "tamaire: no graphics adapter: neither Vulkan nor OpenGL is available, not even in software, so bodies are drawn element by element"
         );
     }
     let mut round = AnyRound::new(played.level().clone());
@@ -192,7 +193,7 @@ async fn pass(
                 };
                 let drawn = opened.shoot(&moment, print.size).await;
                 if drawn.is_err() {
-                    // The next film may have more luck with another device.
+                    // The device may be lost, so the next film opens a new studio.
                     *studio = None;
                 }
                 pixels_of(&drawn?, Studio::size(&moment, print.size))?
@@ -210,7 +211,7 @@ async fn pass(
     Ok(())
 }
 
-/// What was drawn, as the films of the painter take it.
+/// Converts a drawn picture to the pixel format of the film encoder.
 fn pixels_of(drawn: &[u8], [width, height]: [u32; 2]) -> Result<Pixmap, PaintError> {
     let what = "a picture";
     let mut pixels = Pixmap::new(width, height).ok_or(PaintError::NoSize { what })?;
@@ -218,7 +219,7 @@ fn pixels_of(drawn: &[u8], [width, height]: [u32; 2]) -> Result<Pixmap, PaintErr
     Ok(pixels)
 }
 
-/// When it is, and how the round stands.
+/// Returns the caption of a picture: time and progress of the round.
 fn caption(round: &AnyRound, is_last: bool) -> String {
     let progress = round.progress();
     let seconds = round.frames().len() as f32 * TICK;
@@ -232,7 +233,7 @@ fn caption(round: &AnyRound, is_last: bool) -> String {
     }
 }
 
-/// How it was won, in words.
+/// Returns a phrase for the way in which a round was won.
 pub fn by_route(route: Route) -> &'static str {
     match route {
         Route::Squeeze => "squeezed in whole",

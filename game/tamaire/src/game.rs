@@ -1,5 +1,5 @@
-//! The state of the game between two frames, and what can happen to it. Everything that a screen
-//! shows is worked out from here.
+//! State of the game between two frames, and the actions on it. The screens are derived from this state
+//! alone.
 
 mod bout;
 mod controls;
@@ -38,57 +38,57 @@ use tamaire_play::{Level, Playback, Replay, ReplayError};
 use tamaire_sound::{Cue, Menu};
 use trial::Trial;
 
-/// The state of the game.
+/// State of the game.
 pub struct Game {
-    /// What is seen, and what below it.
+    /// Stack of open screens.
     pub screens: Screens,
-    /// What players chose.
+    /// The player's settings.
     pub settings: Settings,
-    /// What they reached.
+    /// Results of the player.
     pub records: Records,
-    /// Where that is kept.
+    /// Storage of settings, records and replays.
     pub files: Files,
-    /// The levels on offer.
+    /// Available levels.
     pub levels: Vec<Arc<Level>>,
-    /// Which of them is played.
+    /// Index of the chosen level in [`Self::levels`].
     pub chosen: usize,
-    /// The round that is on the screen.
+    /// Current round.
     pub bout: Bout,
-    /// With what it is played.
+    /// Input devices and players.
     pub controls: Controls,
-    /// What the player is asked to pick a file with.
+    /// File dialog.
     pub dialog: Dialog,
-    /// The rounds that were kept.
+    /// Saved rounds.
     pub shelf: Shelf,
-    /// The round that came by a link, and its level.
+    /// Round received by a link, and its level.
     pub offered: Option<(Arc<Replay>, Arc<Level>)>,
-    /// What is to be put on the clipboard.
+    /// Text to copy to the clipboard.
     pub copied: Option<String>,
-    /// What the player should know.
+    /// Messages to the player.
     pub notices: Notices,
-    /// Seconds since the game began.
+    /// Time since the start of the game [s].
     pub time: f64,
-    /// Tells how long ticks take.
+    /// Clock that measures the time of ticks.
     pub clock: Clock,
     /// Whether the window has lost the focus.
     pub is_away: bool,
-    /// What sticks and pads are made to do.
+    /// Force feedback and rumble of sticks and pads.
     pub forces: Forces,
-    /// The one that is tried or measured.
+    /// Running test or measurement of a device.
     pub trial: Option<Trial>,
-    /// What is different because it stands in public, if it does.
+    /// State of public mode. `None` outside of a stand.
     pub public: Option<Public>,
-    /// Whether sticks may stir gently while nobody plays.
+    /// Whether idle sticks may move gently to attract visitors.
     pub calls: bool,
     sound: Sound,
-    /// Why nothing is heard, as the player was told last.
+    /// Last sound problem that was shown to the player.
     trouble: Option<String>,
-    /// How many recorded rounds the title has shown.
+    /// Number of recorded rounds that the title screen has shown.
     attracted: usize,
 }
 
 impl Game {
-    /// The game at its start, with what is kept in `files`.
+    /// Starts the game with the data stored in `files`.
     pub fn new(mut files: Files, sound: Sound, pads: Pads) -> Self {
         let (settings, settings_damage) = files.settings();
         let (records, records_damage) = files.records();
@@ -97,7 +97,7 @@ impl Game {
             .iter()
             .chain(&NAMED_3D)
             .map(open)
-            .map(|level| Arc::new(level.expect("the tests open it")));
+            .map(|level| Arc::new(level.expect("built-in level opens")));
         let levels: Vec<Arc<Level>> = levels.collect();
         let mut game = Self {
             screens: Screens::default(),
@@ -131,7 +131,7 @@ impl Game {
             { damage.as_ref() }.is_some_and(|damage| damage.aside.is_some())
         };
         if is_aside(&settings_damage) {
-            // It is told once.
+            // The damaged file was moved aside. Writing a new one makes the message appear only once.
             game.keep_settings();
         }
         if is_aside(&records_damage) {
@@ -147,32 +147,32 @@ impl Game {
         game
     }
 
-    /// What the game says.
+    /// Returns the texts in the language of the player.
     pub fn words(&self) -> &'static Words {
         self.settings.language.words()
     }
 
-    /// Its colours.
+    /// Returns the colour theme.
     pub fn theme(&self) -> Theme {
         Theme::of(self.settings.colour_safe)
     }
 
-    /// Tells the player something; what is still to be read is not said twice.
+    /// Shows a message. A message with the same text that is still visible is replaced.
     pub fn notify(&mut self, text: String) {
         self.notices.tell(&text);
     }
 
-    /// Whether nothing is heard by choice.
+    /// Whether the player has turned the sound off.
     pub fn is_mute(&self) -> bool {
         self.sound.is_off()
     }
 
-    /// Why nothing is heard that should be, if so.
+    /// Returns the reason why sound does not work, if any.
     pub fn sound_trouble(&self) -> Option<String> {
         self.trouble.clone()
     }
 
-    /// A sound of the menus.
+    /// Plays a menu sound.
     pub fn blip(&self, menu: Menu) {
         self.sound.play(Cue::Menu(menu));
     }
@@ -186,30 +186,30 @@ impl Game {
         self.bout.session = shown.unwrap_or_else(|| attract(self.attracted));
     }
 
-    /// The screen that is seen.
+    /// Returns the visible screen.
     pub fn screen(&self) -> Screen {
         self.screens.top()
     }
 
-    /// Opens a screen, or goes back to it where it is open.
+    /// Opens a screen, or returns to it if it is open.
     pub fn go(&mut self, screen: Screen) {
         self.screens.go(screen);
         self.arrive();
     }
 
-    /// Goes back to where the screen that is seen was opened.
+    /// Closes the visible screen.
     pub fn go_back(&mut self) {
         self.screens.close(self.screen());
         self.arrive();
     }
 
-    /// Goes back to where the round was begun.
+    /// Leaves the round and returns to the screen from which it was started.
     pub fn leave_round(&mut self) {
         self.screens.close(Screen::Play);
         self.arrive();
     }
 
-    /// Another screen is seen than before.
+    /// Updates the state after a change of the visible screen.
     fn arrive(&mut self) {
         self.bout.slow &= self.screens.has(Screen::Play);
         self.bout.stepping = false;
@@ -222,20 +222,20 @@ impl Game {
         }
     }
 
-    /// Begins a level.
+    /// Starts a level.
     pub fn start(&mut self, level: usize) {
         let level = self.levels[level.min(self.levels.len() - 1)].clone();
         self.bout.camera.face_front();
         self.play(&level);
     }
 
-    /// Begins a level, as easy as it is wished, beside the fastest round that was won in it where that is wished.
+    /// Starts a level with the chosen assists, and with the ghost of the best round if the player wants it.
     fn play(&mut self, level: &Arc<Level>) {
         let level = self.eased(level);
         self.begin(self.with_best(Session::of_people(level)));
     }
 
-    /// A level with what is to be easier in it.
+    /// Returns the level with the chosen assists applied.
     fn eased(&mut self, level: &Arc<Level>) -> Arc<Level> {
         let assists = &self.settings.assists;
         if assists.is_empty() {
@@ -243,7 +243,7 @@ impl Game {
         }
         let current = self.bout.round().level();
         if current.game().assists == *assists && current.is_version_of(level) {
-            // It is built.
+            // Building a level takes long, so the current one is reused.
             return current.clone();
         }
         match level.assisted(assists) {
@@ -255,9 +255,9 @@ impl Game {
         }
     }
 
-    /// Begins the level again, against a round that somebody played in it.
+    /// Starts the level of a replay with the replay as ghost.
     pub fn race(&mut self, replay: Arc<Replay>) -> Result<(), ReplayError> {
-        // What is won in it counts, by whatever name it was kept.
+        // Uses the listed level if it is equal, even under another name, so that a win counts.
         let known = self
             .levels
             .iter()
@@ -270,18 +270,18 @@ impl Game {
         Ok(())
     }
 
-    /// Shows a round that somebody played.
+    /// Shows a replay.
     pub fn watch(&mut self, replay: Arc<Replay>) -> Result<(), ReplayError> {
         self.begin(Session::of_replay(replay)?);
         Ok(())
     }
 
-    /// The same again from its start.
+    /// Restarts the current round, or the current replay.
     pub fn retry(&mut self) {
         let (session, is_chosen) = (&self.bout.session, self.bout.is_ghost_chosen);
         if session.is_played() && !is_chosen {
             let level = session.round().level();
-            // What was wished to be easier may have changed.
+            // The assists may have changed since the round began.
             let level = self
                 .listed(level)
                 .map_or(level, |index| &self.levels[index]);
@@ -291,13 +291,13 @@ impl Game {
         self.bout.is_ghost_chosen = is_chosen;
     }
 
-    /// A round, beside the fastest one that was won in its level where that is wished.
+    /// Adds the ghost of the best round in this level, if the player wants it.
     fn with_best(&self, session: Session) -> Session {
         if !self.settings.race_best {
             return session;
         }
         let level = session.round().level();
-        // What was won by other rules, or in another level of this name, is raced no more.
+        // The saved round is ignored if the rules have changed or if another level has this name.
         let best = self.files.best(level).filter(|best| best.is_of(level));
         match best.and_then(|best| Playback::new(Arc::new(best)).ok()) {
             Some(ghost) => session.against(ghost),
@@ -315,7 +315,8 @@ impl Game {
         self.go(Screen::Play);
     }
 
-    /// Plays what was dropped onto the window or named on the command line: a level, a picture, a model or a replay.
+    /// Opens a file or link that was dropped onto the window or named on the command line: a level, a
+    /// picture, a model or a replay.
     pub fn open(&mut self, given: Given) {
         match given {
             Given::Level(Ok(level)) => self.offer(*level),
@@ -330,12 +331,12 @@ impl Game {
         }
     }
 
-    /// Lets the player pick a file, which is played as if it had been dropped onto the window.
+    /// Opens a file dialog. The chosen file is opened like one dropped onto the window.
     pub fn ask_for_file(&mut self) {
         self.dialog.ask(self.words().what_opens);
     }
 
-    /// Plays what was picked.
+    /// Opens the file chosen in the dialog.
     fn open_picked(&mut self) {
         match self.dialog.take() {
             Some(Picked::File(given)) => self.open(given),
@@ -344,7 +345,7 @@ impl Game {
         }
     }
 
-    /// Does something with a replay that is kept.
+    /// Loads a saved replay and calls `act` with it.
     pub fn open_kept(
         &mut self,
         name: &str,
@@ -375,7 +376,7 @@ impl Game {
         self.start(index);
     }
 
-    /// The levels that a little picture is made of: those that are seen in lists.
+    /// Returns the levels that lists show with a thumbnail.
     pub fn pictured(&self) -> Vec<Arc<Level>> {
         self.levels
             .iter()
@@ -385,24 +386,24 @@ impl Game {
             .collect()
     }
 
-    /// Which level of the list this is, if maybe an easier one.
+    /// Index of a level in the list. Assists are ignored in the comparison.
     fn listed(&self, level: &Level) -> Option<usize> {
         self.levels
             .iter()
             .position(|known| level.is_version_of(known))
     }
 
-    /// Whether there are names that somebody gave, in whatever letters.
+    /// Whether there are names given by other people, which may be in any script.
     pub fn has_strange_names(&self) -> bool {
         self.offered.is_some() || self.is_own(self.levels.len() - 1)
     }
 
-    /// Whether a level does not come along.
+    /// Whether a level of the list is not built in.
     pub fn is_own(&self, index: usize) -> bool {
         index >= NAMED.len() + NAMED_3D.len()
     }
 
-    /// Something was asked for with a key or button.
+    /// Performs an action requested by a key or button.
     pub fn act(&mut self, action: Action, seat: Seat) {
         match (self.screen(), action) {
             (_, Action::CutForces) => {
@@ -410,7 +411,7 @@ impl Game {
                 self.notify(self.words().cut_now.to_string());
             }
             (Screen::Play | Screen::Paused | Screen::Result, Action::Retry) => self.retry(),
-            // What is free there asks for the other language.
+            // The key for slow motion has no use at a stand, so there it changes the language.
             (_, Action::Slow) if self.public.is_some() => {
                 self.public.get_or_insert_default().asks_for_language = true;
             }
@@ -421,7 +422,7 @@ impl Game {
             }
             (Screen::Paused, Action::Pause) => self.go(Screen::Play),
             (Screen::Play | Screen::Title, Action::Elements) => self.bout.show_elements(self.time),
-            // Whoever takes single steps goes on with this.
+            // After single steps, this key resumes the round.
             (Screen::Play, Action::Slow) if self.bout.stepping => self.bout.stepping = false,
             (Screen::Play, Action::Slow) => self.bout.slow = !self.bout.slow,
             (Screen::Play, Action::Step) => {
@@ -435,21 +436,21 @@ impl Game {
         }
     }
 
-    /// Whether a second player can come in, and may.
+    /// Whether a second player can and may join.
     pub fn takes_two(&self) -> bool {
         let may = self.public.as_ref().is_none_or(|public| public.takes_two);
         may && self.bout.takes_two()
     }
 
-    /// Takes back that all forces were cut.
+    /// Turns forces on again after they were cut.
     pub fn restore_forces(&mut self) {
         self.forces.restore();
         self.notices.take_back(self.words().cut_now);
         self.notify(self.words().restored.to_string());
     }
 
-    /// Takes in what sticks and pads say; gives back what was pressed since. When one is unplugged
-    /// the round waits.
+    /// Reads sticks and pads, and returns their changes since the last call. Pauses the round when a device
+    /// is unplugged.
     pub fn hear_sticks(&mut self) -> Vec<sticks::Change> {
         let changes = self.controls.hear_sticks();
         let has_left = |change: &sticks::Change| matches!(change, sticks::Change::Disconnected(_));
@@ -459,7 +460,7 @@ impl Game {
         changes
     }
 
-    /// Whether the round is seen, if dimly: what is not goes on neither in time nor in sound.
+    /// Whether the round is visible, even if dimmed. An invisible round runs neither in time nor in sound.
     pub fn is_seen(&self) -> bool {
         use Screen::{Forces, Levels, Licences, Replays, Settings};
         !matches!(
@@ -468,13 +469,13 @@ impl Game {
         )
     }
 
-    /// Whether people are in the middle of a round.
+    /// Whether a round is being played and is not over.
     pub fn is_in_round(&self) -> bool {
         let is_on = self.screens.has(Screen::Play);
         is_on && self.bout.session.is_played() && !self.bout.session.is_over()
     }
 
-    /// Lets a round that people play stand still.
+    /// Pauses a round that is being played. Does nothing at a stand.
     pub fn pause_round(&mut self) {
         let goes_on = self.public.is_some();
         if self.screen() == Screen::Play && self.bout.session.is_played() && !goes_on {

@@ -1,4 +1,4 @@
-//! Playing without a window: a bot or a replay, as fast as it goes. Tells how it went, and films it.
+//! Rounds without a window: plays a bot or a replay at full speed, prints a report, and makes films.
 
 mod force_log;
 mod played;
@@ -18,53 +18,53 @@ use std::sync::Arc;
 use tamaire_play::level::{LevelError, NAMED, NAMED_3D};
 use tamaire_play::{Bot, BotKind, Level, ReplayError};
 
-/// Exit status when a replay is refused.
+/// Exit status for a rejected replay.
 const REFUSED: u8 = 1;
-/// Exit status when what was asked for cannot be done; clap's for bad arguments.
+/// Exit status for a request that cannot be carried out. Equal to clap's status for invalid arguments.
 pub const BAD_USAGE: u8 = 2;
-/// How the name of a replay's file ends.
+/// File extension of replays.
 const REPLAY: &str = "tamaire";
 
-/// What is played without a window, and what is told of it. The command line has a flag `headless`,
-/// without which only the level counts.
+/// Options of rounds without a window. The command line has a flag `headless`; without it, only the level is
+/// used.
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Without a window")]
 pub struct Options {
-    /// The level, by name (see --list) or in a file (.toml, .png or .vox); without a window classic if none is given
+    /// Level, by name (see --list) or by file (.toml, .png or .vox). Without a window the default is classic
     #[arg(long, help_heading = None::<&'static str>, value_name = "NAME or FILE")]
     pub level: Option<String>,
-    /// Which bot plays
+    /// Bot that plays
     #[arg(long, requires = "headless", default_value = "squeeze", value_parser = PossibleValuesParser::new(BotKind::NAMED.map(|(name, _)| name)))]
     pub bot: String,
-    /// Bots with different seeds play differently, with the same seed the same
+    /// Random seed of the bot. The same seed gives the same round
     #[arg(long, requires = "headless", default_value_t = 1)]
     pub seed: u64,
-    /// The bot gives up after so many seconds of the game
+    /// Time limit of the bot, in seconds of game time
     #[arg(long, requires = "headless", default_value_t = 60.0, value_parser = seconds, allow_negative_numbers = true)]
     pub seconds: f32,
-    /// Play a replay (.tamaire) instead, and say whether it is genuine
+    /// Play a replay (.tamaire) instead of a bot, and check whether it is genuine
     #[arg(long, requires = "headless", value_name = "FILE", conflicts_with_all = ["level", "bot", "seed", "seconds"])]
     pub replay: Option<PathBuf>,
-    /// Film it: a strip of moments (.png) or an animation (.gif)
+    /// Make a film: a strip of moments (.png) or an animation (.gif)
     #[arg(long, requires = "headless", value_name = "FILE", value_parser = film_path)]
     pub film: Option<PathBuf>,
-    /// Take a photo of its end (.png)
+    /// Make a photo of the end (.png)
     #[arg(long, requires = "headless", value_name = "FILE", value_parser = photo_path)]
     pub photo: Option<PathBuf>,
     /// Write a replay of the round (.tamaire)
     #[arg(long, requires = "headless", value_name = "FILE", conflicts_with = "replay", value_parser = replay_path)]
     pub save: Option<PathBuf>,
-    /// Write what would be felt (.csv): a row for each substep, and for each update of a stick that points at the hand's
-    /// goal and of a pad
+    /// Write the force feedback as a table (.csv): a row for each substep, and for each update of a pad and
+    /// of a stick that points at the goal of the hand
     #[arg(long, requires = "headless", value_name = "FILE", value_parser = table_path)]
     pub force_log: Option<PathBuf>,
-    /// Tell how it went as JSON
+    /// Print the result as JSON
     #[arg(long, requires = "headless")]
     pub json: bool,
 }
 
 impl Options {
-    /// The same with the level or the replay in a file.
+    /// Returns the options with the level or replay in `file`.
     pub fn with_file(mut self, file: &Path) -> Self {
         match file.extension() {
             Some(ending) if ending == REPLAY => self.replay = Some(file.into()),
@@ -74,7 +74,7 @@ impl Options {
     }
 }
 
-/// Why there is nothing to tell.
+/// Reason why there is no report.
 #[derive(Debug, thiserror::Error)]
 enum Trouble {
     #[error(transparent)]
@@ -83,11 +83,11 @@ enum Trouble {
     Replay { path: PathBuf, reason: ReplayError },
     #[error("{}: {reason}", path.display())]
     File { path: PathBuf, reason: io::Error },
-    #[error("the film: {0}")]
+    #[error("cannot make the film: {0}")]
     Film(#[from] FilmError),
 }
 
-/// Plays, and tells how it went.
+/// Plays a round and prints its report.
 pub fn play(options: &Options) -> ExitCode {
     let told = match &options.replay {
         Some(path) => check(path, options),
@@ -118,11 +118,11 @@ pub fn play(options: &Options) -> ExitCode {
     }
 }
 
-/// Prints the names of the levels.
+/// Prints ids and names of the levels.
 pub fn list() {
     let mut text = String::new();
     for (id, _) in NAMED.iter().chain(&NAMED_3D) {
-        let level = Level::open(id).expect("the tests open it");
+        let level = Level::open(id).expect("built-in level opens");
         let name = &level.game().name;
         let other = name.ja.as_deref().unwrap_or_default();
         text += &format!("{id:12}  {:20}  {other}\n", name.en);
@@ -130,7 +130,7 @@ pub fn list() {
     say(&text);
 }
 
-/// Lets a bot play.
+/// Plays a round by a bot.
 fn try_bot(options: &Options) -> Result<String, Trouble> {
     let level = options.level.as_deref().unwrap_or(NAMED[0].0);
     let level = Arc::new(level_at(level)?);
@@ -139,7 +139,7 @@ fn try_bot(options: &Options) -> Result<String, Trouble> {
     }
     let mut log = force_log(options)?;
     let named = BotKind::NAMED.iter().find(|(name, _)| *name == options.bot);
-    let (_, kind) = named.expect("the parser lets no other through");
+    let (_, kind) = named.expect("clap accepts only names in BotKind::NAMED");
     let most = (options.seconds * RATE) as u64;
     let played = of_bot(level, Bot::new(*kind, options.seed), most, &mut log);
     if let Some(path) = &options.save {
@@ -159,7 +159,7 @@ fn try_bot(options: &Options) -> Result<String, Trouble> {
     Ok(told)
 }
 
-/// Runs a replay.
+/// Plays a replay and checks it.
 fn check(path: &Path, options: &Options) -> Result<String, Trouble> {
     for path in pictures(options) {
         can_be_written(path)?;
@@ -207,7 +207,7 @@ fn tell(played: &Played, by: report::Player, options: &Options) -> Result<String
     })
 }
 
-/// A film of a round, with a bar for whoever waits.
+/// Makes a film of a round and shows a progress bar.
 fn shoot(film: Film, played: &Played) -> Result<Vec<u8>, FilmError> {
     let bar = progress("filming", 0);
     let told = |tick: usize, ticks: usize| {
@@ -217,12 +217,12 @@ fn shoot(film: Film, played: &Played) -> Result<Vec<u8>, FilmError> {
     pollster::block_on(film.shoot(&played.round, &mut None, &told))
 }
 
-/// Where films and photos are to go.
+/// Returns the paths of films and photos.
 fn pictures(options: &Options) -> impl Iterator<Item = &PathBuf> {
     options.film.iter().chain(&options.photo)
 }
 
-/// The table of forces, if it was asked for.
+/// Creates the table of forces, if requested.
 fn force_log(options: &Options) -> Result<Option<ForceLog>, Trouble> {
     let create = |path: &PathBuf| {
         ForceLog::create(path).map_err(|reason| Trouble::File {
@@ -244,7 +244,7 @@ fn finish(log: Option<ForceLog>, options: &Options) -> Result<(), Trouble> {
     Ok(())
 }
 
-/// Better to hear of a missing folder before a long round than after it.
+/// Checks that the folder of `path` exists, before a long round instead of after it.
 fn can_be_written(path: &Path) -> Result<(), Trouble> {
     let folder = path
         .parent()
@@ -252,7 +252,7 @@ fn can_be_written(path: &Path) -> Result<(), Trouble> {
     if folder.is_none_or(Path::is_dir) {
         return Ok(());
     }
-    let reason = io::Error::new(io::ErrorKind::NotFound, "there is no such folder");
+    let reason = io::Error::new(io::ErrorKind::NotFound, "the folder does not exist");
     let path = path.into();
     Err(Trouble::File { path, reason })
 }
@@ -267,12 +267,12 @@ fn write(path: &Path, bytes: &[u8]) -> Result<(), Trouble> {
     Ok(())
 }
 
-/// To whoever reads on; nobody has to.
+/// Prints to stdout. A closed pipe is no error.
 fn say(text: &str) {
     let _ = io::stdout().write_all(text.as_bytes());
 }
 
-/// A time to play for.
+/// Parses a time limit [s].
 fn seconds(text: &str) -> Result<f32, String> {
     let seconds: f32 = text.parse().map_err(|_| "expected a number".to_string())?;
     let good = (1.0..=3600.0).contains(&seconds);
@@ -280,22 +280,22 @@ fn seconds(text: &str) -> Result<f32, String> {
         .ok_or("expected 1 to 3600 seconds".into())
 }
 
-/// Where a film goes.
+/// Parses the path of a film.
 fn film_path(text: &str) -> Result<PathBuf, String> {
     ends_in(text, &["png", "gif"])
 }
 
-/// Where a photo goes.
+/// Parses the path of a photo.
 fn photo_path(text: &str) -> Result<PathBuf, String> {
     ends_in(text, &["png"])
 }
 
-/// Where a replay goes.
+/// Parses the path of a replay.
 fn replay_path(text: &str) -> Result<PathBuf, String> {
     ends_in(text, &[REPLAY])
 }
 
-/// Where a table goes.
+/// Parses the path of a table.
 fn table_path(text: &str) -> Result<PathBuf, String> {
     ends_in(text, &["csv"])
 }
@@ -307,7 +307,7 @@ fn ends_in(text: &str, endings: &[&str]) -> Result<PathBuf, String> {
         return Ok(path);
     }
     Err(format!(
-        "expected a name that ends in .{}",
+        "expected a file name with the extension .{}",
         endings.join(" or .")
     ))
 }

@@ -1,15 +1,31 @@
 //! Tamaire (玉入れ): push a soft body into a basket that is too small for it, whole or in pieces.
 //!
-//! The way through, each module using only those above it:
-//! [`input`] devices become wishes for the hands → [`words`] what is said, in each language → [`sift`] what can be used of a text → [`licences`] what is inside, and whose it is → [`settings`] what players chose → [`records`] what they reached
-//! → [`platform`] files, sound and sticks
-//! → [`pace`] how many ticks a frame plays → [`session`] a round in time, played or watched → [`haptics`] what there is to feel of it → [`attract`] what plays behind the title → [`look`] how it looks
-//! → [`film`] films and photos of it → [`headless`] a round without a window → [`game`] the state, and what can happen to it → [`exhibit`] a stand in public that leads it → [`screens`] what there is to see and to choose → [`app`] the loop → [`desktop`] and [`browser`] the ways in.
+//! Each module uses only the modules listed above it:
 //!
-//! The rules, levels, bots and replays are the crate `tamaire_play`, which knows no window.
+//! - [`input`]: device input as wishes for the hands
+//! - [`words`]: texts in each language
+//! - [`sift`]: filter for text from outside
+//! - [`licences`]: third-party parts and their licences
+//! - [`settings`]: the player's settings
+//! - [`records`]: the player's results
+//! - [`platform`]: files, sound and sticks
+//! - [`pace`]: number of ticks for each frame
+//! - [`session`]: playing or watching a round in real time
+//! - [`haptics`]: force feedback and rumble
+//! - [`attract`]: the round behind the title screen
+//! - [`look`]: rendering
+//! - [`film`]: films and photos of rounds
+//! - [`headless`]: rounds without a window
+//! - [`game`]: the state and the actions on it
+//! - [`exhibit`]: a public stand
+//! - [`screens`]: the screens and menus
+//! - [`app`]: the main loop
+//! - [`desktop`] and [`browser`]: entry points
+//!
+//! Rules, levels, bots and replays are in the crate `tamaire_play`, which does not depend on a window.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
-#![allow(rustdoc::broken_intra_doc_links)] // units stand in brackets: [m]
+#![allow(rustdoc::broken_intra_doc_links)] // units are written in brackets: [m]
 
 pub mod app;
 pub mod attract;

@@ -1,6 +1,7 @@
-//! The program. A browser has no command line: the page comes in through [`tamaire::browser`].
+//! Entry point of the desktop program. In a browser the page calls [`tamaire::browser`] instead, because
+//! there is no command line.
 
-// Who clicks on it sees the game, and no console beside it.
+// Without this, Windows opens a console window beside the game.
 #![cfg_attr(all(windows, not(debug_assertions)), windows_subsystem = "windows")]
 
 #[cfg(not(target_family = "wasm"))]
@@ -12,24 +13,25 @@ fn main() -> std::process::ExitCode {
 
 #[cfg(target_family = "wasm")]
 fn main() {
-    // What the page calls is linked in with this.
+    // Links the functions that the page calls.
     let _ = tamaire::browser::Running::start;
 }
 
-/// Where the program was typed into a console, it answers there.
+/// Output to the console of the parent process on Windows, if the program was started from one.
 #[cfg(all(windows, not(debug_assertions)))]
 mod console {
-    /// Whoever started this program.
+    /// `ATTACH_PARENT_PROCESS`: the console of the parent process.
     const PARENT: u32 = u32::MAX;
 
     #[link(name = "kernel32")]
     unsafe extern "system" {
-        // It takes a number, and does nothing where there is no console.
+        // Safe: the only argument is a number, and the call fails without effect if the parent has no
+        // console.
         safe fn AttachConsole(process: u32) -> i32;
     }
 
     pub fn attach() {
-        // Without a console nobody is there to read.
+        // The call fails if there is no console. Output is then discarded.
         let _attached = AttachConsole(PARENT);
     }
 }

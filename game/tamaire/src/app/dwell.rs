@@ -1,26 +1,27 @@
-//! A mouse that rests on a button presses it: for whoever points with eyes or head.
+//! Dwell clicking: a mouse that stays on a button clicks it. For players who point with their eyes or head.
 
 use crate::look::Theme;
 use egui::{Color32, Context, Id, LayerId, Order, Pos2, Shape, Stroke, vec2};
 use std::f32::consts::TAU;
 
-/// For how long it rests [s].
+/// Time on a widget after which the mouse clicks it [s].
 const REST: f32 = 1.0;
-/// The ring around it [points].
+/// Radius of the progress ring around the mouse [points].
 const RADIUS: f32 = 20.0;
 
-/// On what the mouse rests.
+/// Widget under the mouse, and the time for which the mouse has been on it.
 #[derive(Debug, Default)]
 pub(super) struct Dwell {
     on: Option<Id>,
-    /// For how long [s].
+    /// Time on this widget [s].
     seconds: f32,
-    /// Whether it came there by itself: what comes up under it is not meant.
+    /// Whether the mouse has moved since the screen appeared. A widget that appears under an unmoved mouse is
+    /// not clicked.
     has_moved: bool,
 }
 
 impl Dwell {
-    /// Lets time pass with the mouse on something; says whether that is pressed now, which happens once.
+    /// Advances the time with the mouse on `on`. Returns true once, when the widget is to be clicked.
     pub(super) fn pass(&mut self, on: Option<Id>, has_moved: bool, seconds: f32) -> bool {
         self.has_moved |= has_moved;
         let on = on.filter(|_| self.has_moved);
@@ -32,7 +33,7 @@ impl Dwell {
         before < REST && self.seconds >= REST
     }
 
-    /// Shows around the mouse how long it still has to rest.
+    /// Draws the progress ring around the mouse.
     pub(super) fn draw(&self, ctx: &Context, at: Pos2, theme: &Theme) {
         let share = self.seconds / REST;
         if self.on.is_none() || share >= 1.0 {
@@ -55,10 +56,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_the_mouse_rests_on_is_pressed_once() {
+    fn dwell_clicks_each_widget_once() {
         let [one, other] = ["one", "other"].map(|name| Some(Id::unique(name)));
         let mut dwell = Dwell::default();
-        assert!(!dwell.pass(one, false, 9.0), "it came up under the mouse");
+        assert!(!dwell.pass(one, false, 9.0), "the mouse has not moved");
         let mut pass = |on, seconds| dwell.pass(on, true, seconds);
         assert!(!pass(None, 9.0) && !pass(one, 0.6) && !pass(other, 0.6));
         assert!(pass(other, 0.6) && !pass(other, 9.0));

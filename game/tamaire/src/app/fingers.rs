@@ -1,23 +1,24 @@
-//! What is done with fingers: the first one points, others raise and turn, and any can press a button on the screen.
+//! Touch input: the first finger points, further fingers raise and turn, and any finger can press a button on
+//! the screen.
 
 use crate::game::ScreenButton;
 use crate::input::Action;
 use egui::{Event, Pos2, TouchDeviceId, TouchId, TouchPhase};
 use std::collections::BTreeMap;
 
-/// A finger has decided which way it goes once it has gone so far [points].
+/// Distance after which a finger's direction is decided [points].
 const DECIDED: f32 = 10.0;
 
-/// The fingers on a screen. egui takes the first one for a mouse; each further one goes either up and down or sideways,
-/// whichever it begins with.
+/// The fingers on a touch screen. egui treats the first one as a mouse. Each further finger moves either
+/// vertically or horizontally, depending on how it begins.
 #[derive(Debug, Default)]
 pub(super) struct Fingers {
-    /// The one that points, and where.
+    /// The pointing finger and its position.
     first: Option<(Finger, Pos2)>,
     others: BTreeMap<Finger, Drag>,
-    /// The one that egui takes for a mouse.
+    /// The finger that egui treats as a mouse.
     mouse: Option<Finger>,
-    /// Those that hold a button.
+    /// Fingers that hold a button on the screen.
     holding: BTreeMap<Finger, Action>,
     drawn: Drawn,
 }
@@ -26,7 +27,7 @@ type Finger = (TouchDeviceId, TouchId);
 
 #[derive(Debug)]
 struct Drag {
-    /// Where it is, and up to where it was drawn.
+    /// Current position, and the position up to which the movement was counted.
     now: Pos2,
     at: Pos2,
     way: Option<Way>,
@@ -38,23 +39,23 @@ enum Way {
     Sideways,
 }
 
-/// How far further fingers went [points].
+/// Distance that the further fingers moved [points].
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub(super) struct Drawn {
-    /// Upwards.
+    /// Distance upwards.
     pub(super) up: f32,
-    /// To the right.
+    /// Distance to the right.
     pub(super) right: f32,
 }
 
 impl Fingers {
-    /// Takes in what happened, where these buttons are on the screen; gives back which
-    /// were pressed by a further finger.
+    /// Reads the touch events of a frame. Returns those of `buttons` that were pressed by a finger other than
+    /// the emulated mouse.
     pub(super) fn hear(&mut self, events: &[Event], buttons: &[ScreenButton]) -> Vec<ScreenButton> {
         self.drawn = Drawn::default();
         let mut pressed: Vec<ScreenButton> = Vec::new();
         for event in events {
-            // What ends while the window is away is not heard of.
+            // Touches that end while the window has no focus are not reported.
             if let Event::WindowFocused(false) = event {
                 *self = Self::default();
             }
@@ -74,7 +75,7 @@ impl Fingers {
                 let button = buttons.iter().find(|button| button.rect.contains(pos));
                 match button.filter(|_| phase == TouchPhase::Start) {
                     Some(&button) => {
-                        // A mouse clicks, as it is let go.
+                        // The emulated mouse clicks by itself when the finger is lifted.
                         if !is_mouse {
                             pressed.push(button);
                         }
@@ -87,28 +88,28 @@ impl Fingers {
         pressed
     }
 
-    /// What the buttons mean that are held.
+    /// Returns the actions of the buttons that are held.
     pub(super) fn pressed(&self) -> impl Iterator<Item = Action> {
         self.holding.values().copied()
     }
 
-    /// Whether there is a finger. Then no mouse counts: of the fingers that are left when the first one lifts, a browser
-    /// takes one for the mouse.
+    /// Whether a finger is on the screen. Then mouse events are ignored: when the first finger lifts, a
+    /// browser treats one of the remaining ones as the mouse.
     pub(super) fn are_down(&self) -> bool {
         self.first.is_some() || !self.others.is_empty() || !self.holding.is_empty()
     }
 
-    /// Where the first one points.
+    /// Position of the pointing finger.
     pub(super) fn first(&self) -> Option<Pos2> {
         self.first.map(|(_, at)| at)
     }
 
-    /// Where the one after it is.
+    /// Position of the finger after the pointing one.
     pub(super) fn second(&self) -> Option<Pos2> {
         self.others.values().next().map(|drag| drag.now)
     }
 
-    /// How far they went since this was asked last.
+    /// Returns the distance that further fingers moved since the last call.
     pub(super) fn take(&mut self) -> Drawn {
         std::mem::take(&mut self.drawn)
     }
@@ -162,7 +163,7 @@ mod tests {
     use super::*;
     use egui::pos2;
 
-    /// What comes of fingers that do these things in one frame: which one, what, and where.
+    /// Returns the movement [up, right] after touches in one frame, each given as (finger, phase, position).
     fn drawn(fingers: &mut Fingers, touches: &[(u64, TouchPhase, [f32; 2])]) -> [f32; 2] {
         let events = touches.iter().map(|&(id, phase, [x, y])| Event::Touch {
             device_id: TouchDeviceId(0),
@@ -177,12 +178,12 @@ mod tests {
     }
 
     #[test]
-    fn a_second_finger_goes_up_and_down_or_sideways_and_the_first_does_neither() {
+    fn second_finger_moves_along_one_axis_and_first_finger_along_none() {
         use TouchPhase::{Cancel, End, Move, Start};
         let mut fingers = Fingers::default();
         let first = [(1, Start, [100.0, 100.0]), (1, Move, [300.0, 300.0])];
         assert_eq!(drawn(&mut fingers, &first), [0.0; 2]);
-        // It has decided itself only after a way, which then counts.
+        // The direction is decided only after a distance, which then counts.
         assert_eq!(
             drawn(
                 &mut fingers,
@@ -211,7 +212,7 @@ mod tests {
             (3, Move, [30.0, 90.0]),
         ];
         assert_eq!(drawn(&mut fingers, &sideways), [0.0, 30.0]);
-        // Once the first is gone, the next to come points.
+        // After the first finger is lifted, the next new finger points.
         drawn(
             &mut fingers,
             &[(1, Cancel, [0.0; 2]), (3, Cancel, [0.0; 2])],
@@ -226,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn a_finger_that_is_left_alone_does_not_point_and_the_next_one_does() {
+    fn remaining_finger_does_not_point_but_next_new_finger_does() {
         use TouchPhase::{End, Move, Start};
         let mut fingers = Fingers::default();
         assert!(!fingers.are_down());

@@ -1,4 +1,4 @@
-//! Where mouse and fingers point, how far they raise the hand in space, and how the camera turns.
+//! Pointing with mouse and fingers, raising the hand in space, and turning the camera.
 
 use super::fingers::Fingers;
 use crate::game::{Game, Screen};
@@ -6,22 +6,23 @@ use egui::{Context, PointerButton, Pos2};
 use fuwafuwa::Dim3;
 use tamaire_play::{AnyRound, Round};
 
-/// How far the wheel raises the hand [m/point].
+/// Height by which the wheel raises the hand [m/point].
 const WHEEL: f32 = 0.002;
-/// What share of a body it cuts off [1/point], and a key that is held [1/s].
+/// Fraction of a body that the wheel cuts off [1/point]; with a held key, [`CUTTING`] [1/s].
 const CUT: f32 = 0.0012;
 const CUTTING: f32 = 0.4;
-/// How far a mouse or a finger turns the camera [rad/point].
+/// Camera rotation by a mouse or finger drag [rad/point].
 const DRAG: f32 = 0.006;
-/// So near to an obstacle is on it [m].
+/// Distance below which a point counts as on an obstacle [m].
 const NEAR: f32 = 1e-3;
-/// How fast a key or a stick that leans fully turns it [rad/s].
+/// Camera rotation speed with a held key or a fully deflected stick [rad/s].
 const TURN: f32 = 1.5;
 
-/// Notes where the mouse or the first finger points, which counts until a tick has heard of it; on a button it does not
-/// mean the hand, nor while it turns the camera.
+/// Stores the position at which the mouse or the first finger points, until a tick has used it. Ignores a
+/// pointer that is on a button or that turns the camera.
 pub(super) fn point(game: &mut Game, ctx: &Context, fingers: &Fingers) {
-    // What a finger holds that presses a button is no place for a hand either, and another one may have a hand.
+    // Applies to the mouse alone: a finger on a button never counts as pointing (see `Fingers`), and another
+    // finger may still point.
     let is_on_button =
         !fingers.are_down() && ctx.interaction_snapshot(|seen| !seen.hovered.is_empty());
     let is_on = game.screen() == Screen::Play;
@@ -44,7 +45,8 @@ pub(super) fn point(game: &mut Game, ctx: &Context, fingers: &Fingers) {
     let round = game.bout.round();
     let position = match round {
         AnyRound::Plane(_) => view.in_world(at, 0.0),
-        // In space it points at the floor, where the hand's shadow is: so nothing jumps when the hand has risen.
+        // In space the pointer is projected onto the floor, at the shadow of the hand. So the hand does not
+        // jump when it has risen.
         AnyRound::Space(in_space) => {
             let goal = game
                 .controls
@@ -58,19 +60,19 @@ pub(super) fn point(game: &mut Game, ctx: &Context, fingers: &Fingers) {
     game.controls.devices.pointer = Some(position.map(in_steps));
 }
 
-/// A coordinate in steps of 1/1024 m [m]: finer than what a pixel shows, and half as long in a link.
+/// Rounds a coordinate to steps of 1/1024 m [m]: finer than a pixel, and half as long in a link.
 fn in_steps(at: f32) -> f32 {
     const STEPS: f32 = 1024.0;
     (at * STEPS).round() / STEPS
 }
 
-/// How high what the first hand begins above is [m]: the floor, or a shelf. It stays the same when the hand comes past
-/// an edge, so that nothing jumps there.
+/// Height of the surface below the start of the first hand [m]: the floor or a shelf. Does not change when
+/// the hand passes an edge, so that nothing jumps there.
 fn floor(round: &Round<Dim3>) -> f32 {
     let lowest = round.level().arena()[0][1];
     let mut at = round.start(0);
     while at[1] > lowest {
-        // So far down there is nothing.
+        // Nothing is closer than `free`, so stepping down by it is safe (sphere tracing).
         let obstacles = round.world().obstacles();
         let free = obstacles.map(|obstacle| obstacle.shape().distance(at).0);
         let free = free.fold(f32::MAX, f32::min);
@@ -82,11 +84,12 @@ fn floor(round: &Round<Dim3>) -> f32 {
     lowest
 }
 
-/// Where the mouse points, if it does.
+/// Position of the mouse, if it points: it moves or its primary button is down, and it does not turn the
+/// camera.
 fn mouse_at(ctx: &Context) -> Option<Pos2> {
     ctx.input(|input| {
         let pointer = &input.pointer;
-        // A window that opens under a mouse hears where it rests: that is no wish.
+        // A window that opens under a resting mouse is told its position, which is not the player's input.
         let has_moved = pointer.delta() != egui::Vec2::ZERO;
         let points = pointer.button_down(PointerButton::Primary) || has_moved;
         let turns = pointer.button_down(PointerButton::Secondary);
@@ -94,8 +97,12 @@ fn mouse_at(ctx: &Context) -> Option<Pos2> {
     })
 }
 
-/// In space the wheel and a second finger raise the hand; where elements are seen, the wheel, keys and pads cut bodies open;
-/// mouse, second finger, keys, sticks and pads turn the camera, a double click with the right button brings it back.
+/// Applies lifting, cutting and camera input.
+///
+/// - Lift (space): the wheel and a second finger.
+/// - Cut bodies open (element view): the wheel, keys and pads.
+/// - Camera: mouse, second finger, keys, sticks and pads turn it. A double click with the right button resets
+///   it.
 pub(super) fn look_around(game: &mut Game, ctx: &Context, fingers: &mut Fingers) {
     let (wheel, mouse, seconds) = ctx.input(|input| {
         let turns = input.pointer.button_down(PointerButton::Secondary);
@@ -112,7 +119,7 @@ pub(super) fn look_around(game: &mut Game, ctx: &Context, fingers: &mut Fingers)
             .button_double_clicked(PointerButton::Secondary)
     });
     let fingers = fingers.take();
-    // The hand rises as far as the finger does.
+    // The hand rises by the distance that the finger moved in the world.
     let metres = game.bout.view.map_or(0.0, |view| 1.0 / view.scale);
     game.controls.devices.lift += metres * fingers.up;
     let deeper =

@@ -1,27 +1,27 @@
-//! Keys on their way into egui: those that sticks and pads press in menus, and those that are held.
+//! Key events inserted into egui: keys that sticks and pads press in menus, and filtering of held keys.
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, RawInput};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Keys that count once however long they are held: what they lead to must not be left at once.
+/// Keys without auto-repeat, so that the screen that they open is not left at once.
 const ONCE: [Key; 3] = [Key::Escape, Key::Enter, Key::Space];
 
-/// Keys on their way into egui.
+/// egui plugin that inserts and filters input events.
 #[derive(Clone, Default)]
 pub(super) struct Presses(Arc<Mutex<Waiting>>);
 
-/// What was pressed and is not in egui yet.
+/// Input that has not yet been passed to egui.
 #[derive(Default)]
 pub(super) struct Waiting {
-    /// What sticks and pads press in menus.
+    /// Keys pressed by sticks and pads in menus.
     pub(super) keys: Vec<Key>,
-    /// Where a mouse that rests presses.
+    /// Position of a dwell click.
     pub(super) click: Option<Pos2>,
-    /// Whether there are such keys in this frame.
+    /// Whether this frame has keys pressed by sticks or pads.
     pub(super) is_by_stick: bool,
-    /// Whether up and down lead through everything in its order, and not to what lies above or below.
+    /// Whether up and down move through the widgets in order instead of to the widget above or below.
     pub(super) in_order: bool,
-    /// Which of [`ONCE`] are held.
+    /// The keys of [`ONCE`] that are held.
     held: Vec<Key>,
 }
 
@@ -89,7 +89,7 @@ impl egui::Plugin for Presses {
     }
 }
 
-/// A key is pressed and let go.
+/// Press and release of a key.
 fn stroke(key: Key, modifiers: Modifiers) -> [Event; 2] {
     [true, false].map(|pressed| Event::Key {
         key,

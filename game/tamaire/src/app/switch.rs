@@ -6,23 +6,24 @@ use crate::input::{Action, Seat};
 use egui::{Context, Key};
 use sticks::{Control, PadButton};
 
-/// Offers what can be done in turn.
+/// Scanning: offers the possible actions one after the other.
 #[derive(Debug, Default)]
 pub(super) struct Switch {
-    /// For how long the switch has been offered what has the focus in a menu [steps].
+    /// Time for which the focused widget of a menu has been offered [steps].
     offered_for: f32,
 }
 
 impl Switch {
-    /// The keys that are the switch.
+    /// Keys that act as the switch.
     pub(super) const KEYS: [Key; 2] = [Key::Space, Key::Enter];
 
-    /// Whether a button of a stick or pad is the switch.
+    /// Whether a button of a stick or pad acts as the switch.
     pub(super) fn is(control: Control) -> bool {
         matches!(control, Control::Pad(PadButton::South) | Control::Button(0))
     }
 
-    /// Lets time pass, for whoever plays so: in a round the hand is offered its ways, in menus the focus moves on.
+    /// Advances scanning: in a round it offers the moves of the hand, in a menu it moves the focus. Does
+    /// nothing if scanning is off.
     pub(super) fn pass(&mut self, game: &mut Game, presses: &Presses, ctx: &Context, seconds: f32) {
         game.controls.devices.taken = None;
         let step = game.settings.scanning.step();
@@ -44,7 +45,7 @@ impl Switch {
         let (is_played, controls) = (game.bout.session.is_played(), &mut game.controls);
         let rests = controls.scan.pass(is_pressed, stays, steps, is_space);
         let taken = controls.scan.taken(is_space);
-        // What is only watched can be left, and nothing else.
+        // While watching a replay, the only possible action is to leave it.
         if rests || !is_played && taken.is_some() {
             game.act(Action::Pause, Seat::Keys);
         } else {

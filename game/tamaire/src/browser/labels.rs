@@ -1,14 +1,15 @@
-//! What stands on the screen, by name: the tree that screen readers get elsewhere, for whoever looks on in a browser.
+//! Labels on the screen, read from the accessibility tree that screen readers use, for tests and exhibits in
+//! a browser.
 
 use egui::{Context, FullOutput, Pos2, Rect};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// The names of all that can be pressed, and where it is [points].
+/// Names and rectangles of all labelled widgets [points].
 #[derive(Clone, Default)]
 pub struct Labels(Arc<Mutex<Vec<(String, Rect)>>>);
 
 impl Labels {
-    /// Those of the last frame.
+    /// Labels of the last frame.
     pub fn seen(&self) -> MutexGuard<'_, Vec<(String, Rect)>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }

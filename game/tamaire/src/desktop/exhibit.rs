@@ -1,4 +1,4 @@
-//! The way in for a stand in public: a parent that keeps it running, and the game itself.
+//! Entry points of a public stand: the supervisor that keeps it running, and the game itself.
 
 use super::window::{Opened, has_display, open_game};
 use crate::exhibit::Stand;
@@ -15,7 +15,7 @@ use std::panic::resume_unwind;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// Keeps a stand running until staff ends it.
+/// Supervises a stand until staff ends it.
 pub(super) fn keep_running(file: &Path, mute: bool) -> ExitCode {
     let is_new = !file.exists();
     let text = TextFile(file.into()).read_or(USUAL);
@@ -28,12 +28,12 @@ pub(super) fn keep_running(file: &Path, mute: bool) -> ExitCode {
     };
     if is_new {
         eprintln!(
-            "tamaire: {} was written: it says what the stand is like",
+            "tamaire: created the stand's configuration file {}",
             file.display()
         );
     }
     if !has_display() {
-        return refused("there is no display to set a stand up on", 1);
+        return refused("a stand requires a display, and none was found", 1);
     }
     let program = match std::env::current_exe() {
         Ok(program) => program,
@@ -64,7 +64,7 @@ fn refused(reason: &str, code: u8) -> ExitCode {
     ExitCode::from(code)
 }
 
-/// The game of a stand, in a window that fills the screen.
+/// Runs the game of a stand in a full-screen window.
 pub(super) fn play(file: &Path, mute: bool) -> ExitCode {
     let stand = match Stand::open(TextFile(file.into())) {
         Ok(stand) => stand,
@@ -72,7 +72,7 @@ pub(super) fn play(file: &Path, mute: bool) -> ExitCode {
     };
     show(move || {
         let sound = if mute { Sound::none() } else { Sound::open() };
-        // How sticks are built in is kept there.
+        // The mounting of sticks is stored in the folder of the stand.
         let folder = StandFolder::of(stand.config.logbook.folder.as_deref());
         let mut game = Game::new(folder.files(), sound, Pads::open());
         let mut stand = stand;
@@ -81,7 +81,7 @@ pub(super) fn play(file: &Path, mute: bool) -> ExitCode {
     })
 }
 
-/// A calm picture instead of a game that breaks down.
+/// Shows a calm picture in place of a game that keeps failing.
 pub(super) fn rest(file: &Path) -> ExitCode {
     let text = TextFile(file.into()).read_or(USUAL);
     let config = text.and_then(|text| Config::read(&text));
@@ -90,7 +90,7 @@ pub(super) fn rest(file: &Path) -> ExitCode {
         let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
         game.settings = settings;
         game.public = Some(Public::default());
-        // Behind settings nothing plays.
+        // The settings screen has no round behind it.
         game.go(Screen::Settings);
         (game, Box::new(Calm::default()))
     })
@@ -115,7 +115,7 @@ fn show(make: impl FnOnce() -> (Game, Box<dyn Attendant>) + 'static) -> ExitCode
     }
 }
 
-/// One that tells its parent that it lives, and ends with it.
+/// Attendant that sends a heartbeat to the supervisor and ends when the supervisor has ended.
 struct Watched {
     attendant: Box<dyn Attendant>,
     pulse: Pulse,
@@ -149,7 +149,7 @@ impl Attendant for Watched {
     }
 }
 
-/// Without a window manager nobody makes a window as large as the screen.
+/// Makes the window as large as the screen, which does not happen by itself without a window manager.
 fn fill(ctx: &Context) {
     let (screen, window) = ctx.input(|input| {
         let viewport = input.viewport();

@@ -1,4 +1,4 @@
-//! The way in for who wants to know what visitors did: `tamaire report`.
+//! The subcommand `tamaire report`, which summarizes the logbooks of stands.
 
 use crate::headless::BAD_USAGE;
 use crate::platform::{Kind, Pictures};
@@ -12,40 +12,40 @@ use std::sync::Arc;
 use tamaire_play::Replay;
 use tamaire_report::{Day, Language, Progress, Stage, report};
 
-/// What is asked for.
+/// Arguments of `tamaire report`.
 #[derive(Args)]
 pub(super) struct Options {
     /// Logbooks of stands (visits.sqlite)
     #[arg(required = true)]
     files: Vec<PathBuf>,
-    /// The folder that the page is written into
+    /// Output folder for the report
     #[arg(long, value_name = "FOLDER", default_value = "report")]
     out: PathBuf,
-    /// The language of the page
+    /// Language of the report
     #[arg(long, default_value = "en", value_parser = PossibleValuesParser::new(Language::NAMED.map(|(name, _)| name)))]
     language: String,
-    /// The first day that counts, as 2026-11-23
+    /// First day to count, for example 2026-11-23
     #[arg(long, value_name = "DAY")]
     from: Option<Day>,
-    /// The last day that counts
+    /// Last day to count
     #[arg(long, value_name = "DAY")]
     to: Option<Day>,
-    /// Run all rounds again: what does not come out as it was written is listed and not counted, and where hands moved is
-    /// drawn. What is done is kept for a next time
+    /// Simulate all rounds again: rounds with a different result are listed and not counted, and the paths of
+    /// the hands are drawn. Results are cached for the next run
     #[arg(long)]
     rerun: bool,
-    /// Write all rows as tables (.csv), too
+    /// Also write all rows as tables (.csv)
     #[arg(long)]
     csv: bool,
-    /// Write all figures as JSON, too
+    /// Also write all figures as JSON
     #[arg(long)]
     json: bool,
-    /// Draw no clips of the day's best
+    /// Leave out the clips of the day's best rounds
     #[arg(long)]
     no_clips: bool,
 }
 
-/// Writes a report, and tells where it is.
+/// Writes a report and prints its path.
 pub(super) fn write(options: &Options) -> ExitCode {
     let mut languages = Language::NAMED.into_iter();
     let language = languages.find(|(name, _)| *name == options.language);
@@ -93,7 +93,7 @@ pub(super) fn write(options: &Options) -> ExitCode {
     }
 }
 
-/// A bar for what is done just now.
+/// Progress bar of the current stage.
 #[derive(Default)]
 struct Bar(Option<(Stage, ProgressBar)>);
 
@@ -122,7 +122,7 @@ impl Bar {
 fn bar(stage: Stage) -> ProgressBar {
     let name = match stage {
         Stage::Visits => "reading visits",
-        Stage::Rerun => "running rounds again",
+        Stage::Rerun => "simulating rounds",
         Stage::Rounds => "counting rounds",
         Stage::Clips => "drawing clips",
     };

@@ -1,4 +1,4 @@
-//! The window of a program, and what becomes of it.
+//! The window of a program: opening it, and the reason why it ended.
 
 use crate::app::{App, NoGpu};
 use crate::game::Game;
@@ -13,30 +13,31 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Whose GPU is lost so soon does not begin anew: it would be lost again and again.
+/// Shortest run after which a lost GPU leads to a restart. After a shorter run the GPU would probably be lost
+/// again and again.
 const LEAST_LIFE: Duration = Duration::from_secs(10);
 
-/// By this a desktop knows whose window it is: the name of its entry in the menu.
+/// Application id: the name of the desktop entry to which the window belongs.
 const APP: &str = "tamaire";
 
-/// What became of a window.
+/// Outcome of a window.
 pub enum Opened {
-    /// It was closed.
+    /// The window was closed.
     Closed,
-    /// What it was drawn with was lost. No window system lets go of a window that broke down: the program has to begin anew.
+    /// The GPU was lost. Window systems do not release a failed window, so the program has to restart.
     LostGpu,
-    /// It was open, and ended so.
+    /// The window opened and ended with this error.
     Failed(String),
-    /// It was open, and panicked.
+    /// The window opened and the program panicked.
     Broken(Box<dyn Any + Send>),
-    /// It never opened, for this reason.
+    /// The window never opened, for this reason.
     Never(String),
 }
 
-/// What a window shows, and an eye on what it is drawn with; or why there is nothing.
+/// App of a window with the monitor of its GPU, or an error if there is no GPU.
 pub type Made = Result<(Box<dyn eframe::App>, GpuWatch), NoGpu>;
 
-/// Opens a window for a game and what leads it, if anything; returns when it is closed.
+/// Opens a window for a game and its optional attendant. Returns when the window is closed.
 pub(super) fn open_game(
     viewport: egui::ViewportBuilder,
     make: impl FnOnce() -> (Game, Option<Box<dyn Attendant>>) + 'static,
@@ -57,7 +58,7 @@ pub(super) fn open_game(
     )
 }
 
-/// Opens a window of a program; returns when it is closed.
+/// Opens a window of a program. Returns when the window is closed.
 pub fn open(
     name: &str,
     viewport: egui::ViewportBuilder,
@@ -66,7 +67,7 @@ pub fn open(
     let gpu = Rc::new(RefCell::new(None::<GpuWatch>));
     let seen = gpu.clone();
     let began = Instant::now();
-    // A library of the window system that is not installed makes it panic, and so does what is left of a lost GPU.
+    // The call panics if a library of the window system is missing, and may panic after the GPU was lost.
     let closed = catch_unwind(AssertUnwindSafe(|| run_window(name, viewport, seen, make)));
     let gpu = gpu.take();
     let is_open = gpu.is_some();
@@ -81,7 +82,7 @@ pub fn open(
         Ok(Err(error)) if is_open => Opened::Failed(error.to_string()),
         Ok(Err(error)) => Opened::Never(trouble(&error)),
         Err(panic) if is_open => Opened::Broken(panic),
-        Err(_) => Opened::Never("no window opens".into()),
+        Err(_) => Opened::Never("opening a window failed".into()),
     }
 }
 
@@ -107,8 +108,8 @@ fn run_window(
     eframe::run_native(name, options, Box::new(create))
 }
 
-/// The same, on the best adapter whose device lives: one driver may be broken where the next is not, as that of
-/// Direct3D 12 beside Vulkan under Wine.
+/// Selects the best adapter on which a device can be created. One driver may be broken where the next one
+/// works, for example Direct3D 12 beside Vulkan under Wine.
 fn on_what_lives(mut setup: WgpuSetup) -> WgpuSetup {
     let WgpuSetup::CreateNew(new) = &mut setup else {
         return setup;
@@ -124,7 +125,7 @@ fn on_what_lives(mut setup: WgpuSetup) -> WgpuSetup {
         let lives = |adapter: &&&wgpu::Adapter| {
             block_on(adapter.request_device(&described(adapter))).is_ok()
         };
-        // The last needs no trial: where it does not live either, it says why.
+        // The last adapter is not tried here: if it fails, too, eframe reports its error.
         let (last, others) = fitting
             .split_last()
             .ok_or("no graphics adapter was found")?;
@@ -133,7 +134,7 @@ fn on_what_lives(mut setup: WgpuSetup) -> WgpuSetup {
     setup
 }
 
-/// How far behind the best a kind of adapter is, as wgpu ranks them.
+/// Rank of a kind of adapter, 0 is best; the order is that of wgpu.
 fn rank(kind: wgpu::DeviceType, saves_power: bool) -> u8 {
     match kind {
         wgpu::DeviceType::DiscreteGpu => u8::from(saves_power),
@@ -144,29 +145,30 @@ fn rank(kind: wgpu::DeviceType, saves_power: bool) -> u8 {
     }
 }
 
-/// What stands for the game in lists of windows.
+/// Icon of the window.
 fn icon() -> egui::IconData {
     let picture = include_bytes!("../../web/icon-192.png");
-    eframe::icon_data::from_png_bytes(picture).expect("a test looks at the picture")
+    eframe::icon_data::from_png_bytes(picture).expect("web/icon-192.png is a valid PNG")
 }
 
-/// Why no window opens.
+/// Returns the reason why no window opens, as text for the player.
 fn trouble(error: &eframe::Error) -> String {
     let text = error.to_string();
     match error {
         eframe::Error::Wgpu(_) => format!(
-            "there is nothing to draw with, neither Vulkan nor OpenGL, not even in software ({text})"
+            "no graphics adapter: neither Vulkan nor OpenGL is available, not even in software ({text})"
         ),
-        // Before its reason it names a line of its source.
+        // winit puts a line of its source code before the reason.
         eframe::Error::WinitEventLoop(_) | eframe::Error::Winit(_) => {
             let reason = text.rsplit(": ").next().unwrap_or(&text);
-            format!("no window opens ({reason})")
+            format!("opening a window failed ({reason})")
         }
-        _ => format!("no window opens ({text})"),
+        _ => format!("opening a window failed ({text})"),
     }
 }
 
-/// Whether there is a screen to open a window on: only some systems tell beforehand.
+/// Whether there is a display to open a window on. Only Unix systems with X11 or Wayland tell in advance;
+/// elsewhere returns true.
 pub fn has_display() -> bool {
     let says_so = cfg!(all(
         unix,
@@ -186,7 +188,7 @@ pub fn has_display() -> bool {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn the_window_has_a_picture() {
+    fn icon_is_valid_and_has_expected_width() {
         assert_eq!(super::icon().width, 192);
     }
 }

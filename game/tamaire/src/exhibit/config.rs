@@ -1,4 +1,4 @@
-//! What the operator of a stand chose: `exhibit.toml`.
+//! Configuration of a stand: `exhibit.toml`.
 
 use crate::settings::Settings;
 use crate::words::Language;
@@ -8,116 +8,117 @@ use std::sync::Arc;
 use tamaire_play::Level;
 use toml_edit::{DocumentMut, Item, Value};
 
-/// A file for a stand as it usually is, with a word on each line.
+/// Default configuration file, with a comment on each line.
 pub const USUAL: &str = include_str!("exhibit.toml");
 
-/// Most levels that a visitor can choose from.
+/// Maximum number of levels that a visitor can choose from.
 const MOST_LEVELS: usize = 3;
 
-/// What the operator of a stand chose.
+/// Configuration of a stand.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Config {
-    /// What the stand is called in the logbook.
+    /// Name of the stand in the logbook.
     pub stand: StandName,
-    /// What a fresh stand speaks.
+    /// Language of the stand before a visitor changes it.
     pub language: Language,
-    /// Whether visitors may change that.
+    /// Whether visitors may change the language.
     pub other_languages: bool,
-    /// What visitors play: one, or some that they choose from.
+    /// Levels to play: one, or several that visitors choose from.
     pub levels: Levels,
-    /// Whether a second player may come in.
+    /// Whether a second player may join.
     pub two_players: bool,
-    /// When visitors are taken to have left.
+    /// Times after which a visitor is considered gone.
     pub times: Times,
-    /// How loud it is.
+    /// Sound volume.
     pub sound: Loudness,
-    /// How strongly sticks push back.
+    /// Force feedback.
     pub force: Forces,
-    /// What visitors take home.
+    /// Souvenirs for visitors.
     #[serde(default)]
     pub take_home: TakeHome,
-    /// Who may look behind the stand.
+    /// Staff access.
     #[serde(default)]
     pub staff: Staff,
-    /// When it is open; always if it does not say.
+    /// Opening hours. `None` (default) = always open.
     #[serde(default)]
     pub hours: Option<Hours>,
-    /// What is kept.
+    /// Logbook and its retention.
     pub logbook: Kept,
 }
 
-/// When visitors are taken to have left [s].
+/// Times after which a visitor is considered gone [s].
 #[derive(Copy, Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Times {
-    /// After so long without any movement a ring counts down …
+    /// Time without input before the countdown ring appears.
     pub rest: Seconds,
-    /// … for so long, and then the stand is fresh.
+    /// Length of the countdown, after which the stand is reset.
     pub countdown: Seconds,
-    /// The mouse is hidden when it rested for so long.
+    /// Time without mouse movement after which the pointer is hidden.
     pub pointer: Seconds,
 }
 
-/// How loud it is, from 0 to 1.
+/// Sound volume.
 #[derive(Copy, Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Loudness {
-    /// All of it.
+    /// Master volume, 0 to 1.
     pub volume: Share,
 }
 
-/// How strongly sticks push back.
+/// Force feedback.
 #[derive(Copy, Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Forces {
-    /// From 0 to 1.
+    /// Strength with which sticks push back, 0 to 1.
     pub strength: Share,
-    /// Whether a stick may stir by itself, gently, to call visitors.
+    /// Whether an idle stick moves gently to attract visitors.
     pub calls: bool,
 }
 
-/// What visitors take home.
+/// Souvenirs for visitors.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct TakeHome {
-    /// The page that opens links to rounds; without one there is none to take home.
+    /// Address of the page that opens links to rounds. Without it, visitors are shown no code.
     pub page: Option<Page>,
-    /// How many clips of won rounds are kept for the operator.
+    /// Maximum number of clips of won rounds that are kept for the operator.
     pub clips: usize,
 }
 
-/// Who may look behind the stand.
+/// Staff access.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Staff {
-    /// Without one nobody may.
+    /// PIN of the staff pages. Without one they are not accessible.
     pub pin: Option<Pin>,
 }
 
-/// From when to when it is open, on the clock of the machine.
+/// Opening hours in the local time of the machine.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "StatedHours")]
 pub struct Hours {
-    /// From then …
+    /// Opening time.
     pub open: Hour,
-    /// … until then.
+    /// Closing time.
     pub close: Hour,
 }
 
-/// What is kept, and for how long.
+/// Logbook and its retention.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Kept {
-    /// Where; the folder of the game if it does not say.
+    /// Folder of the logbook. `None` = the folder of the game.
     pub folder: Option<String>,
-    /// For how many days.
+    /// Retention of visits and rounds [days].
     pub days: u32,
-    /// A PostgreSQL server that gets it too.
+    /// PostgreSQL server that receives a copy.
     pub server: Option<Server>,
 }
 
-/// Reads a value and checks it, so that a mistake is told with its line.
+/// Defines a checked configuration value. The check runs while the file is read, so that errors include the
+/// line.
 macro_rules! checked {
     ($(#[$doc:meta])* $name:ident($kind:ty), $read:ty, $check:expr) => {
         $(#[$doc])*
@@ -134,14 +135,14 @@ macro_rules! checked {
 }
 
 checked! {
-    /// A name of 1 to 40 letters.
+    /// Name of 1 to 40 characters.
     StandName(String), String, |name| match name.chars().count() {
         1..=40 if !name.contains(char::is_control) => Ok(name),
-        _ => Err(format!("expected a name of 1 to 40 letters, found {name:?}")),
+        _ => Err(format!("expected a name of 1 to 40 characters, found {name:?}")),
     }
 }
 checked! {
-    /// Levels that come along.
+    /// Built-in levels, chosen by id.
     Levels(Vec<Arc<Level>>), Vec<String>, |ids| {
         if !(1..=MOST_LEVELS).contains(&ids.len()) {
             return Err(format!("expected 1 to {MOST_LEVELS} levels, found {}", ids.len()));
@@ -155,35 +156,35 @@ checked! {
     }
 }
 checked! {
-    /// The address of a page, `https://…`.
+    /// Address of a page, `https://…`.
     Page(String), String, |page| match page.starts_with("https://") || page.starts_with("http://") {
         true if page.len() <= 200 && !page.contains(['#', ' ']) => Ok(page),
-        _ => Err(format!("expected the address of a page (https://…) of 200 letters at most, without #, found {page:?}")),
+        _ => Err(format!("expected the address of a page (https://…) of at most 200 bytes, without # and spaces, found {page:?}")),
     }
 }
 checked! {
-    /// Four to eight digits.
+    /// PIN of four to eight digits.
     Pin(String), toml::Value, |pin| match pin.as_str() {
         Some(pin) if (4..=8).contains(&pin.len()) && pin.bytes().all(|digit| digit.is_ascii_digit()) => Ok(pin.into()),
-        _ => Err("expected 4 to 8 digits in quotation marks, as in \"2004\"".into()),
+        _ => Err("expected 4 to 8 digits in quotation marks, for example \"2004\"".into()),
     }
 }
 
 checked! {
-    /// The address of a PostgreSQL server, where the program can send to one.
+    /// Address of a PostgreSQL server. Requires the feature `postgres`.
     Server(String), String, |address| match cfg!(feature = "postgres") {
         true => Ok(address),
-        false => Err("this program was built without the feature postgres, and sends nothing to a server".into()),
+        false => Err("a server requires the feature postgres, without which this program was built".into()),
     }
 }
 
-/// From 1 to 600 seconds.
+/// Duration of 1 to 600 s.
 #[derive(Copy, Clone, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "f32")]
 pub struct Seconds(pub f32);
 
 impl Seconds {
-    /// The longer one.
+    /// Returns the longer of two durations.
     pub fn max(self, other: Self) -> Self {
         Self(self.0.max(other.0))
     }
@@ -200,7 +201,7 @@ impl TryFrom<f32> for Seconds {
     }
 }
 
-/// From 0 to 1.
+/// Fraction, 0 to 1.
 #[derive(Copy, Clone, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "f32")]
 pub struct Share(pub f32);
@@ -216,7 +217,7 @@ impl TryFrom<f32> for Share {
     }
 }
 
-/// A time of day, `10:00`.
+/// Time of day, `10:00`.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "String")]
 pub struct Hour(pub Time);
@@ -230,7 +231,7 @@ impl TryFrom<String> for Hour {
     }
 }
 
-/// Hours as they are stated.
+/// Opening hours before validation.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct StatedHours {
@@ -244,14 +245,15 @@ impl TryFrom<StatedHours> for Hours {
     fn try_from(stated: StatedHours) -> Result<Self, String> {
         let StatedHours { open, close } = stated;
         match open == close {
-            true => Err("expected it to close at another time than it opens".into()),
+            true => Err("expected different times in open and close, found the same".into()),
             false => Ok(Self { open, close }),
         }
     }
 }
 
 impl Hours {
-    /// Whether it is open at a time of day. Who closes before it opens is open over midnight.
+    /// Whether the stand is open at `now`. With a closing time before the opening time, it is open over
+    /// midnight.
     pub fn is_open(&self, now: Time) -> bool {
         let (open, close) = (self.open.0, self.close.0);
         match open <= close {
@@ -262,15 +264,15 @@ impl Hours {
 }
 
 impl Config {
-    /// What a file says.
+    /// Parses a configuration file.
     ///
     /// # Errors
-    /// What is wrong, and in which line.
+    /// The problem and its line.
     pub fn read(text: &str) -> Result<Self, String> {
         toml::from_str(text).map_err(|error| error.to_string())
     }
 
-    /// The settings of a fresh stand.
+    /// Settings of the game after a reset of the stand.
     pub fn settings(&self) -> Settings {
         Settings {
             language: self.language,
@@ -282,28 +284,29 @@ impl Config {
     }
 }
 
-/// What staff can change at the stand.
+/// A configuration change that staff can make at the stand.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Change {
-    /// What a fresh stand speaks.
+    /// Default language of the stand.
     Language(Language),
-    /// How loud it is, 0 to 1.
+    /// Sound volume, 0 to 1.
     Volume(f32),
-    /// How strongly sticks push back, 0 to 1.
+    /// Force feedback strength, 0 to 1.
     Strength(f32),
-    /// The levels to choose from, by name.
+    /// Ids of the levels to choose from.
     Levels(Vec<String>),
-    /// From when to when it is open; always without.
+    /// Opening and closing time. `None` = always open.
     Hours(Option<(Time, Time)>),
 }
 
 impl Change {
-    /// A file with this in it: all else stays as the operator wrote it, with every word beside it.
+    /// Returns `text` with this change. The rest of the file, including comments, stays as the operator wrote
+    /// it.
     ///
     /// # Errors
-    /// What is wrong with the file, and in which line; or why it cannot be so.
+    /// The problem in the file and its line, or the reason why the change is invalid.
     pub fn in_text(&self, text: &str) -> Result<String, String> {
-        // What somebody wrote into it since it was read may be anything.
+        // The file may have been edited since it was read.
         Config::read(text)?;
         let mut file: DocumentMut = text.parse().map_err(|error| format!("{error}"))?;
         match self {
@@ -331,12 +334,12 @@ impl Change {
     }
 }
 
-/// Two digits are enough.
+/// Rounds to two decimal digits.
 fn rounded(share: f32) -> f64 {
     (f64::from(share) * 100.0).round() / 100.0
 }
 
-/// Changes a value and leaves what stands beside it.
+/// Replaces a value and keeps the comment beside it.
 fn put(item: &mut Item, value: impl Into<Value>) {
     let mut value = value.into();
     if let Some(old) = item.as_value() {
@@ -350,7 +353,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_usual_file_is_good_and_says_a_word_on_all() {
+    fn default_file_is_valid_and_comments_every_value() {
         let config = Config::read(USUAL).unwrap();
         assert_eq!(config.levels.0[0].id, "classic");
         for line in USUAL.lines().filter(|line| line.contains(" = ")) {
@@ -359,7 +362,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mistake_is_told_with_its_line_and_what_was_expected() {
+    fn invalid_value_is_reported_with_line_and_expectation() {
         for (right, wrong, told) in [
             (
                 "volume = 0.6",
@@ -404,7 +407,7 @@ mod tests {
     }
 
     #[test]
-    fn who_closes_after_midnight_is_open_over_it() {
+    fn closing_before_opening_means_open_over_midnight() {
         let hours = |open: &str, close: &str| Hours {
             open: Hour::try_from(open.to_string()).unwrap(),
             close: Hour::try_from(close.to_string()).unwrap(),
@@ -423,7 +426,7 @@ mod tests {
     }
 
     #[test]
-    fn a_change_leaves_all_else_as_it_was_written() {
+    fn change_keeps_rest_of_file() {
         let nine = Time::constant(9, 0, 0, 0);
         let changes = [
             Change::Volume(0.35),

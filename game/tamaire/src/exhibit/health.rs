@@ -1,16 +1,16 @@
-//! How smoothly a stand runs.
+//! Frame times of a stand.
 
 use std::collections::VecDeque;
 
-/// So many frames are remembered, a minute or so.
+/// Number of frames in the statistics: about one minute.
 const FRAMES: usize = 4040;
 
-/// How long the last frames took.
+/// Durations of the last frames.
 #[derive(Clone, Debug, Default)]
 pub struct FrameTimes(VecDeque<f32>);
 
 impl FrameTimes {
-    /// A frame took so long [s].
+    /// Adds a frame that took `seconds` [s].
     pub fn note(&mut self, seconds: f32) {
         if self.0.len() == FRAMES {
             self.0.pop_front();
@@ -18,7 +18,8 @@ impl FrameTimes {
         self.0.push_back(seconds);
     }
 
-    /// Of a hundred frames so many took no longer than this [s]; nothing before the first.
+    /// Returns the frame time that `percent` % of the frames did not exceed [s]. `None` before the first
+    /// frame.
     pub fn percentile(&self, percent: usize) -> Option<f32> {
         let mut all: Vec<f32> = self.0.iter().copied().collect();
         all.sort_by(f32::total_cmp);
@@ -32,7 +33,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn frames_are_told_by_their_share() {
+    fn percentiles_cover_recent_frames_only() {
         let mut times = FrameTimes::default();
         assert_eq!(times.percentile(50), None);
         (0..FRAMES).for_each(|_| times.note(7.0));

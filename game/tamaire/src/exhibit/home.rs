@@ -1,25 +1,26 @@
-//! The round that a visitor takes home: an address as a code that phones read.
+//! QR code of a round, which a visitor opens on a phone.
 
 use qrcode::{Color, EcLevel, QrCode};
 use tamaire_play::Replay;
 use tamaire_play::link::address;
 
-/// A code.
+/// A QR code.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Code {
-    /// What it says.
+    /// The encoded address.
     pub address: String,
     /// Number of modules on a side.
     pub side: usize,
-    /// Row by row from the upper left corner, whether each is dark.
+    /// Modules row by row from the upper left corner; true = dark.
     pub dark: Vec<bool>,
 }
 
 impl Code {
-    /// The address at which a page shows a round, unless it is too long for a code.
+    /// Creates the code of the address at which `page` shows a round. `None` if the address is too long for a
+    /// QR code.
     pub fn of(page: &str, replay: &Replay) -> Option<Self> {
         let address = address(page, &replay.code().ok()?);
-        // A screen has no stains, so little of it has to be there twice.
+        // A screen has no stains, so the lowest level of error correction is enough.
         let code = QrCode::with_error_correction_level(&address, EcLevel::L).ok()?;
         let dark = code.to_colors().into_iter();
         Some(Self {
@@ -43,7 +44,7 @@ mod tests {
     }
 
     #[test]
-    fn a_phone_reads_the_round_that_was_played() {
+    fn code_decodes_to_played_round() {
         const PIXELS: usize = 4;
         const QUIET: usize = 4;
         let replay = played(60);
@@ -67,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_too_long_for_a_code_has_none() {
+    fn code_is_none_for_too_long_address() {
         let page = format!("https://example.org/{}", "x".repeat(3000));
         assert!(Code::of(&page, &played(1)).is_none());
     }

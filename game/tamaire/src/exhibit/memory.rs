@@ -1,4 +1,4 @@
-//! What a stand remembers: the logbook, the best rounds of the day, and clips for the operator.
+//! Storage of a stand: the logbook, the best rounds of the day, and clips for the operator.
 
 use super::config::Config;
 use super::visit::Visit;
@@ -12,42 +12,44 @@ use tamaire_logbook::{
 };
 use tamaire_play::Replay;
 
-/// So many of the best rounds of a day are shown while nobody is there.
+/// Number of best rounds of the day shown while the stand is idle.
 const BEST: usize = 5;
-/// So often it is asked what came of the day [s]: it may be another one, and another level's best are shown.
+/// Interval between queries for the figures of the day and the best rounds [s]. Each query takes the next
+/// level, and the day may have changed.
 const ASKED: f32 = 60.0;
-/// So often it is looked whether there is an answer [s]: it is some rounds, whole.
+/// Interval between checks for the answer to a query [s]. An answer contains whole rounds, so checking each
+/// frame would be wasteful.
 const LOOKED: f32 = 1.0;
-/// Clips are made while so much room is left on the disk [bytes].
+/// Free disk space below which no clips are made [bytes].
 const ROOM: u64 = 500 << 20;
-/// So many rounds wait for their clip at most.
+/// Maximum number of rounds that wait for their clip.
 const WAITING: usize = 8;
-/// A clock that is set by less is not told [s].
+/// Smallest clock change that is logged [s].
 const LEAP: f64 = 60.0;
 
-/// What a stand remembers.
+/// Storage of a stand.
 pub struct Memory {
     recorder: Recorder,
     stand: String,
     folder: StandFolder,
     clips: Files,
-    /// Rounds of which a clip is to be made when nobody is there.
+    /// Rounds of which a clip is made when the stand is idle.
     waiting: VecDeque<Arc<Replay>>,
-    /// When it began, by the clock that is never set, and by the one on the wall.
+    /// Reference for clock changes: a monotonic and a wall-clock time of the same moment.
     began: (Instant, SystemTime),
-    /// What was known to be wrong.
+    /// Last known problem of the recorder.
     trouble: Option<String>,
     best: Vec<Id>,
-    /// How often it was asked for them.
+    /// Number of queries for best rounds, which selects the level of the next one.
     turn: usize,
-    /// How long ago it was asked what came of the day [s].
+    /// Time since the last query [s].
     asked: f32,
-    /// How long ago it was looked for the best rounds of the day [s].
+    /// Time since the last check for an answer [s].
     looked: f32,
 }
 
 impl Memory {
-    /// Begins to write down what happens.
+    /// Opens the logbook and logs the start of the stand.
     pub fn begin(config: &Config) -> Self {
         let folder = StandFolder::of(config.logbook.folder.as_deref());
         let server = config.logbook.server.clone();
@@ -74,7 +76,7 @@ impl Memory {
         memory
     }
 
-    /// Notes that something happened.
+    /// Logs an event.
     pub fn note(&self, kind: Kind, text: &str) {
         self.recorder.record(Entry::Event(Event {
             id: Id::random(),
@@ -85,7 +87,8 @@ impl Memory {
         }));
     }
 
-    /// Notes that somebody came, once it is known that this was no staff.
+    /// Logs the start of a visit, unless it is already logged. Called only after it is known that the visitor
+    /// is not staff.
     pub fn note_visit(&self, visit: &mut Visit, config: &Config) {
         if std::mem::replace(&mut visit.is_noted, true) {
             return;
@@ -100,7 +103,7 @@ impl Memory {
         self.recorder.record(Entry::VisitBegan(begun));
     }
 
-    /// Notes that whoever was there has gone, and in what they were spoken to last.
+    /// Logs the end of a visit and the language last used.
     pub fn end_visit(&self, visit: &Visit, spoken: Language) {
         self.recorder.record(Entry::VisitEnded {
             id: visit.id,
@@ -109,7 +112,7 @@ impl Memory {
         });
     }
 
-    /// Notes a round, and keeps one that was won in mind for a clip.
+    /// Logs a round, and queues a won round for a clip.
     pub fn note_round(&mut self, round: Round, replay: Replay) {
         if round.route.is_some() {
             self.waiting.truncate(WAITING - 1);
@@ -118,7 +121,7 @@ impl Memory {
         self.recorder.record(Entry::Round(round));
     }
 
-    /// Asks for the figures of the day, and for its best rounds of one level after the other.
+    /// Requests the figures of the day and the best rounds of the next level in turn.
     pub fn ask(&mut self, config: &Config) {
         self.asked = 0.0;
         let midnight = Moment::now().midnight();
@@ -130,7 +133,7 @@ impl Memory {
         self.recorder.ask_best(midnight, &level.id, hash, BEST);
     }
 
-    /// The best rounds of the day, where others are now.
+    /// Returns the best rounds of the day if they changed since the last call.
     pub fn take_best(&mut self) -> Option<Vec<Arc<Replay>>> {
         if self.looked < LOOKED {
             return None;
@@ -147,7 +150,7 @@ impl Memory {
         Some(replays.map(Arc::new).collect())
     }
 
-    /// Lets time pass [s]: looks for trouble, and makes clips while nobody is there.
+    /// Advances the time [s]: checks for problems, and makes clips while the stand is idle.
     pub fn pass(&mut self, config: &Config, is_idle: bool, seconds: f32) {
         for news in self.clips.pass(seconds) {
             match news {
@@ -168,9 +171,9 @@ impl Memory {
         self.look_at_clock();
         let trouble = self.recorder.health().trouble;
         if trouble != self.trouble {
-            // The recorder notes what is worth noting once it can.
+            // The recorder logs important problems itself as soon as it can write.
             if let Some(trouble) = &trouble {
-                eprintln!("tamaire: visits are not written down: {trouble}");
+                eprintln!("tamaire: visits are not being logged: {trouble}");
             }
             self.trouble = trouble;
         }
@@ -185,7 +188,7 @@ impl Memory {
         }
     }
 
-    /// Notes when somebody set the clock.
+    /// Logs changes of the system clock.
     fn look_at_clock(&mut self) {
         let (instant, wall) = self.began;
         let now = SystemTime::now();
@@ -199,27 +202,27 @@ impl Memory {
         }
     }
 
-    /// What visitors did today, as far as it is known.
+    /// Figures of the day, as of the last query.
     pub fn today(&self) -> Today {
         self.recorder.today().unwrap_or_default()
     }
 
-    /// How writing it down goes.
+    /// State of the recorder.
     pub fn health(&self) -> Health {
         self.recorder.health()
     }
 
-    /// How much room is left [bytes].
+    /// Free disk space [bytes]. `None` if unknown.
     pub fn room(&self) -> Option<u64> {
         self.folder.room()
     }
 
-    /// Puts a copy of the logbook beside it, named by the date.
+    /// Requests a copy of the logbook in its folder, named after the date.
     pub fn export(&self) {
         self.recorder.ask_export(self.folder.copy(Moment::now()));
     }
 
-    /// What became of that, once.
+    /// Returns the result of [`Self::export`] once: the path, or the error.
     pub fn take_exported(&self) -> Option<Result<String, String>> {
         let exported = self.recorder.exported()?;
         Some(exported.map(|path| path.display().to_string()))

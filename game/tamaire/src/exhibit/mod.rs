@@ -1,7 +1,12 @@
-//! A stand in public: visitors come, play and go, all day, and what they did is written down.
+//! A public stand: visitors come, play and leave all day, and the stand logs visits and rounds.
 //!
-//! The way through: [`config`] what the operator chose → [`presence`] whether somebody is there → [`home`] what a visitor takes
-//! home → [`staff`] who may look behind → [`health`] how it runs → the [`Stand`], which leads the game from one visit to the next.
+//! [`Stand`] leads the game from one visit to the next. Each module uses only those listed above it:
+//!
+//! - [`config`]: configuration by the operator
+//! - [`presence`]: detection of visitors
+//! - [`home`]: QR code of a round
+//! - [`staff`]: staff access
+//! - [`health`]: frame times
 
 pub mod config;
 pub mod health;
@@ -29,74 +34,75 @@ use tamaire_logbook::{End, Health, Kind, Today};
 use tamaire_play::Level;
 use visit::Visit;
 
-/// Side of the corner that is held to get behind the stand [points].
+/// Side of the hidden corner that opens the staff entrance when held [points].
 pub const CORNER: f32 = 90.0;
-/// What is pressed counts when this has passed since another screen came up [s].
+/// Time after a change of screen during which presses are ignored [s].
 const SETTLED: f32 = 0.4;
-/// A code may hide the body that is in: it comes up so much later than the result [s].
+/// Delay of the QR code after the result appears [s], because the code may cover the body in the basket.
 const BEAMING: f32 = 2.0;
-/// Staff may rest for so long [s].
+/// Minimum time without input before the countdown on staff pages [s].
 const STAFF: Seconds = Seconds(120.0);
 
-/// What the stand is at.
+/// State of a stand.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// Nobody is there, and rounds play by themselves.
+    /// Idle: rounds play by themselves.
     Attract,
     /// A visitor chooses a level.
     Choice,
-    /// A visitor plays, or looks at what came of it.
+    /// A visitor plays or looks at the result.
     Visit,
-    /// Somebody is asked for the number.
+    /// The stand waits for the PIN.
     Door,
-    /// Staff looks at this.
+    /// A staff page is shown.
     Staff(Page),
-    /// It is not open.
+    /// Closed by its opening hours.
     Closed,
 }
 
-/// A stand in public.
+/// A public stand.
 pub struct Stand {
-    /// What the operator chose.
+    /// Configuration by the operator.
     pub config: Config,
-    /// What it is at.
+    /// Current state.
     pub phase: Phase,
-    /// Whether somebody is there.
+    /// Detected attention of the visitor.
     pub attention: Attention,
-    /// What the last round that was won says to a phone.
+    /// QR code of the last round, if it was won.
     home: Option<home::Code>,
-    /// The way to what only staff sees.
+    /// Hidden entrance to the staff pages.
     pub entrance: Entrance,
-    /// How smoothly it runs.
+    /// Frame times.
     pub frames: FrameTimes,
-    /// Why what staff wished was not done, or what became of it.
+    /// Message for staff: the result of the last change, or the reason why it failed.
     pub answer: Option<String>,
-    /// Whether staff ended it.
+    /// Whether staff ended the stand.
     pub is_ended: bool,
-    /// All levels that come along.
+    /// All built-in levels.
     pub known: Vec<Arc<Level>>,
-    /// For how long it has been at what it is at [s].
+    /// Time in the current state [s].
     since: f32,
-    /// For how long a result has been seen [s].
+    /// Time for which the result has been shown [s].
     result_since: f32,
     file: TextFile,
     memory: Memory,
     presence: Presence,
     visit: Option<Visit>,
-    /// Runs while the machine's own clock may be set.
+    /// Clock that is not affected by changes of the system clock.
     clock: Clock,
     devices: Vec<(DeviceId, String)>,
-    /// When the last frame was.
+    /// Time of the last frame.
     last: Option<Instant>,
-    /// In a test, the time of day.
+    /// Time of day in tests.
     told_time: Option<Time>,
 }
 
 impl Stand {
-    /// A stand as a file says. The file is written where there is none yet.
+    /// Opens a stand with the configuration in `file`, which is created with default values if it does not
+    /// exist.
     ///
     /// # Errors
-    /// The file, and what is wrong with it: in which line, and what was expected.
+    /// The file, the problem and its line, and the expected value.
     pub fn open(file: TextFile) -> Result<Self, String> {
         let text = file.read_or(config::USUAL)?;
         let config = Config::read(&text);
@@ -124,13 +130,13 @@ impl Stand {
         })
     }
 
-    /// The same at a time of day that never passes.
+    /// Fixes the time of day, for tests.
     pub fn at(mut self, time: Time) -> Self {
         self.told_time = Some(time);
         self
     }
 
-    /// Makes a game one for the public, as fresh as if nobody had been there.
+    /// Puts a game into public mode and resets it.
     pub fn prepare(&mut self, game: &mut Game) {
         game.public.get_or_insert_default();
         self.known = game.levels.clone();
@@ -138,7 +144,7 @@ impl Stand {
         self.memory.ask(&self.config);
     }
 
-    /// Lets a frame pass that took so long [s]: who is there, and what is to come of it?
+    /// Advances a frame of `seconds` [s]: detects visitors and changes the state.
     pub fn pass(&mut self, game: &mut Game, ctx: &Context, seconds: f32) {
         let phase = self.phase;
         let now = Instant::now();
@@ -146,7 +152,7 @@ impl Stand {
         self.frames
             .note(last.map_or(seconds, |last| (now - last).as_secs_f32()));
         let sticks = &game.controls.devices.sticks;
-        // What stirs by itself was not touched.
+        // Movement of a stick that the game itself moves is not a touch.
         let is_touched = self.presence.is_touched(ctx, sticks, game.is_calling());
         self.collect(game, End::Retried);
         self.memory
@@ -158,7 +164,7 @@ impl Stand {
         self.knock(game, ctx, seconds);
         let mut times = self.config.times;
         if matches!(self.phase, Phase::Staff(_)) {
-            // Who reads figures moves nothing.
+            // Staff reading figures gives no input.
             times.rest = times.rest.max(STAFF);
         }
         let attention = self.presence.pass(seconds, is_touched, &times);
@@ -168,7 +174,7 @@ impl Stand {
         };
         match (self.phase, self.attention) {
             (Phase::Attract, _) if !self.is_open() => {
-                // Behind these nothing plays.
+                // The settings screen has no round behind it.
                 game.go(Screen::Settings);
                 self.phase = Phase::Closed;
             }
@@ -198,27 +204,27 @@ impl Stand {
         }
     }
 
-    /// Whether a result has been seen for long enough to be answered.
+    /// Whether the result has been shown for long enough to accept presses.
     pub fn is_result_settled(&self) -> bool {
         self.result_since > SETTLED
     }
 
-    /// What there is to take home, once the body was seen that is in.
+    /// QR code of the round. `None` while the body in the basket is to be visible.
     pub fn to_take_home(&self) -> Option<&home::Code> {
         self.home.as_ref().filter(|_| self.result_since > BEAMING)
     }
 
-    /// Whether what is pressed is meant for what is seen now: the press that called it up is not.
+    /// Whether presses are accepted. The press that opened the current screen is still ignored.
     pub fn is_settled(&self) -> bool {
         self.since > SETTLED
     }
 
-    /// Whether the mouse is where somebody left it.
+    /// Whether the mouse has not moved for long, so that the pointer is hidden.
     pub fn is_pointer_left(&self) -> bool {
         self.presence.is_pointer_left(&self.config.times)
     }
 
-    /// Somebody has come.
+    /// Begins a visit.
     fn welcome(&mut self, game: &mut Game) {
         self.presence.begin();
         self.attention = Attention::There;
@@ -230,7 +236,7 @@ impl Stand {
         }
     }
 
-    /// Begins a level of those to choose from.
+    /// Starts one of the configured levels.
     pub fn choose(&mut self, game: &mut Game, index: usize) {
         self.phase = Phase::Visit;
         self.home = None;
@@ -238,7 +244,7 @@ impl Stand {
         game.start(index);
     }
 
-    /// Begins the level again; `route` is how it is to be won this time, if that was suggested.
+    /// Starts the level again. `route` is the suggested way to win, if any.
     pub fn try_again(&mut self, game: &mut Game, route: Option<tamaire_play::Route>) {
         self.home = None;
         game.retry();
@@ -246,13 +252,13 @@ impl Stand {
         self.dare(route);
     }
 
-    /// Goes back to the levels to choose from.
+    /// Returns to the choice of levels.
     pub fn choose_again(&mut self, game: &mut Game) {
         game.go(Screen::Title);
         self.phase = Phase::Choice;
     }
 
-    /// Whoever was there has gone: the next one finds it as if nobody had been there.
+    /// Ends the visit and resets the stand for the next visitor.
     fn part(&mut self, game: &mut Game) {
         self.end_visit(game, End::Left);
         self.freshen(game);
@@ -287,7 +293,7 @@ impl Stand {
         self.answer = None;
     }
 
-    /// From whatever else, a visitor is led back to the round.
+    /// Returns the visitor to the round from any other screen, and updates the state of the result.
     fn lead_back(&mut self, game: &mut Game, seconds: f32) {
         self.result_since = match game.screen() {
             Screen::Result => self.result_since + seconds,
@@ -302,7 +308,7 @@ impl Stand {
         game.notices.clear();
     }
 
-    /// Notes what ended since the last time, in this way where it was not won.
+    /// Logs the rounds that ended since the last call. `end` is the reason for rounds that were not won.
     fn collect(&mut self, game: &mut Game, end: End) {
         let ended = game.public.as_mut();
         let ended = ended.map(|public| std::mem::take(&mut public.ended));
@@ -340,16 +346,16 @@ impl Stand {
         self.devices = now;
     }
 
-    /// Whether it is open now.
+    /// Whether the stand is open now.
     fn is_open(&self) -> bool {
         let now = || self.told_time.unwrap_or_else(|| Zoned::now().time());
         self.config.hours.is_none_or(|hours| hours.is_open(now()))
     }
 
-    /// Whether the hidden entrance is held; it opens after a while.
+    /// Opens the PIN page if the hidden corner or the chord has been held for long enough.
     fn knock(&mut self, game: &mut Game, ctx: &Context, seconds: f32) {
         let is_chord = { game.controls.devices.sticks.devices.iter() }.any(staff::is_chord);
-        // Visitors press nothing there.
+        // Upper right corner: visitors have nothing to press there.
         let edge = ctx.content_rect().right_top() - egui::vec2(CORNER, 0.0);
         let corner = egui::Rect::from_min_size(edge, egui::Vec2::splat(CORNER));
         let is_corner = ctx.input(|input| {
@@ -362,7 +368,7 @@ impl Stand {
             game.go(Screen::Title);
             match self.since > 2.0 * staff::HELD {
                 true => self.collect(game, End::Left),
-                // What was begun by holding it was no round.
+                // A round begun by holding the entrance does not count.
                 false => game.public.get_or_insert_default().ended.clear(),
             }
             self.presence.begin();
@@ -370,7 +376,7 @@ impl Stand {
         }
     }
 
-    /// A digit was entered at the door.
+    /// Enters a digit of the PIN.
     pub fn enter(&mut self, game: &mut Game, digit: char) {
         let Some(pin) = &self.config.staff.pin else {
             return;
@@ -387,17 +393,17 @@ impl Stand {
         }
     }
 
-    /// For how long no number is looked at at the door [s].
+    /// Remaining time in which the PIN page ignores input [s].
     pub fn pause(&self) -> f64 {
         self.entrance.pause(self.clock.now())
     }
 
-    /// Staff, or whoever stood at the door, leaves.
+    /// Leaves the PIN page or the staff pages.
     pub fn leave(&mut self, game: &mut Game) {
         self.part(game);
     }
 
-    /// Staff changes what the stand is like, here and in its file.
+    /// Applies a change by staff to the stand and to its configuration file.
     pub fn change(&mut self, game: &mut Game, change: &Change) {
         let changed = self.file.read_or(config::USUAL);
         let changed = changed.and_then(|text| change.in_text(&text));
@@ -416,32 +422,32 @@ impl Stand {
         }
     }
 
-    /// Puts a copy of the logbook beside it.
+    /// Requests a copy of the logbook in its folder.
     pub fn export(&mut self) {
         self.memory.export();
     }
 
-    /// What became of that, told once.
+    /// Returns the result of [`Self::export`] once: the path, or the error.
     pub fn take_exported(&mut self) -> Option<Result<String, String>> {
         self.memory.take_exported()
     }
 
-    /// What visitors did today, as far as it is known.
+    /// Figures of the day, as of the last query.
     pub fn today(&self) -> Today {
         self.memory.today()
     }
 
-    /// How writing it down goes.
+    /// State of the logbook recorder.
     pub fn logbook(&self) -> Health {
         self.memory.health()
     }
 
-    /// How much room is left where it is kept [bytes].
+    /// Free disk space in the folder of the logbook [bytes]. `None` if unknown.
     pub fn room(&self) -> Option<u64> {
         self.memory.room()
     }
 
-    /// The program ends, as staff wished or not. What is still to be written is written when this is dropped.
+    /// Ends the stand, whether staff ended it or not. Pending entries are written when `self` is dropped.
     pub fn close(&mut self, game: &mut Game) {
         self.end_visit(game, End::Cut);
         if self.is_ended {

@@ -1,46 +1,46 @@
-//! Whether somebody stands there.
+//! Detection of visitors from their input.
 
 use super::config::Times;
 use egui::{Context, Event};
 use std::collections::BTreeMap;
 use sticks::{Change, DeviceId, Snapshot};
 
-/// A stick or trigger has to move by so much: those that are worn tremble.
+/// Smallest change of a stick or trigger axis that counts (full deflection = 1). Worn ones tremble.
 const MOVED: f32 = 0.15;
-/// And a mouse by so many points, if slowly: tables are knocked against.
+/// Smallest distance of the mouse that counts [points], even if slow. Shocks to the table move it less.
 const PUSHED: f32 = 4.0;
-/// What it moved before a rest of so long counts no more [s].
+/// Time without mouse movement after which its distance is reset [s].
 const KNOCKED: f32 = 1.0;
 
-/// What is known of whoever stands there.
+/// Attention of a visitor.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub enum Attention {
-    /// Somebody does something, or did not long ago.
+    /// A visitor gave input recently.
     #[default]
     There,
-    /// Nobody did anything for long; such a share of the countdown is left.
+    /// There was no input for long. The value is the remaining fraction of the countdown.
     Leaving(f32),
-    /// Nobody is there.
+    /// The countdown has ended.
     Gone,
 }
 
-/// Watches whether anything is touched.
+/// Detector of input.
 #[derive(Default)]
 pub struct Presence {
-    /// Nothing was touched for so long [s].
+    /// Time since the last input [s].
     rest: f32,
-    /// The mouse was not, for so long [s].
+    /// Time since the last mouse movement [s].
     pointer_rest: f32,
-    /// How far it moved since that counted [points].
+    /// Distance of the mouse since its movement last counted [points].
     pushed: f32,
     before: Snapshot,
-    /// Where the sticks and triggers of devices were when they moved last.
+    /// Positions of sticks and triggers at their last movement that counted.
     axes: BTreeMap<DeviceId, [f32; 6]>,
 }
 
 impl Presence {
-    /// Whether anything was touched since this was asked last. Sticks may stir by themselves: then how they lean does not
-    /// count.
+    /// Whether there was input since the last call. If `they_stir`, the game itself moves the sticks, and
+    /// their position does not count.
     pub fn is_touched(&mut self, ctx: &Context, sticks: &Snapshot, they_stir: bool) -> bool {
         let by_hand = ctx.input(|input| input.events.iter().any(is_deed));
         let way = ctx.input(|input| input.pointer.delta().length());
@@ -48,7 +48,7 @@ impl Presence {
         by_hand || self.is_pushed(way) || by_stick
     }
 
-    /// Whether a mouse that moved so far [points] has moved far enough.
+    /// Whether the mouse has moved far enough, including its latest distance `way` [points].
     fn is_pushed(&mut self, way: f32) -> bool {
         if self.pointer_rest > KNOCKED {
             self.pushed = 0.0;
@@ -64,7 +64,7 @@ impl Presence {
         is_pushed
     }
 
-    /// Whether a stick or pad was, since the last time.
+    /// Whether a stick or pad was used since the last call.
     fn is_moved(&mut self, now: &Snapshot, they_stir: bool) -> bool {
         let changes = now.since(&self.before);
         let mut is_moved = changes
@@ -91,7 +91,7 @@ impl Presence {
         is_moved
     }
 
-    /// Lets time pass [s], in which something was touched or not.
+    /// Advances the time by `seconds` [s], in which there was input or not.
     pub fn pass(&mut self, seconds: f32, is_touched: bool, times: &Times) -> Attention {
         self.pointer_rest += seconds;
         self.rest = if is_touched { 0.0 } else { self.rest + seconds };
@@ -103,18 +103,18 @@ impl Presence {
         }
     }
 
-    /// Somebody has just come, or it is as if.
+    /// Restarts the time without input, as at the beginning of a visit.
     pub fn begin(&mut self) {
         self.rest = 0.0;
     }
 
-    /// Whether the mouse is where somebody left it.
+    /// Whether the mouse has not moved for long.
     pub fn is_pointer_left(&self, times: &Times) -> bool {
         self.pointer_rest > times.pointer.0
     }
 }
 
-/// Whether it takes a hand to make this happen. A key that something lies on does not count again and again.
+/// Whether an event is caused by a person. Key repeats do not count, because an object may lie on the key.
 fn is_deed(event: &Event) -> bool {
     match event {
         Event::Key {
@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn who_rests_is_counted_down_and_any_touch_stays() {
+    fn pause_counts_down_until_input_stops_it() {
         let mut presence = Presence::default();
         let mut pass = |seconds, touched| presence.pass(seconds, touched, &TIMES);
         assert_eq!(pass(19.0, false), Attention::There);
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stick_that_trembles_or_leans_for_ever_is_nobody() {
+    fn trembling_or_leaning_stick_is_no_input() {
         let mut presence = Presence::default();
         presence.is_moved(&stick(0.0), false);
         assert!(presence.is_moved(&stick(0.9), false));
@@ -175,16 +175,16 @@ mod tests {
     }
 
     #[test]
-    fn a_stick_that_stirs_by_itself_is_nobody() {
+    fn stick_moved_by_game_is_no_input() {
         let mut presence = Presence::default();
         presence.is_moved(&stick(0.0), true);
         assert!(!presence.is_moved(&stick(0.9), true));
-        assert!(!presence.is_moved(&stick(0.9), false), "it is left there");
+        assert!(!presence.is_moved(&stick(0.9), false), "position unchanged");
         assert!(presence.is_moved(&stick(0.0), false));
     }
 
     #[test]
-    fn a_mouse_that_moves_slowly_is_somebody_and_a_knock_is_not() {
+    fn slow_mouse_movement_is_input_and_shock_is_not() {
         let mut presence = Presence::default();
         let pushes = (0..20).filter(|_| presence.is_pushed(0.5)).count();
         assert_eq!(pushes, 2);

@@ -1,77 +1,79 @@
-//! Who may look behind the stand: a hidden entrance, a number, and no guessing.
+//! Staff access: a hidden entrance, and a PIN protected against guessing.
 
 use super::config::Pin;
 use sticks::{Device, PadButton};
 
-/// The entrance opens when it is held for so long [s].
+/// Time for which the entrance must be held [s].
 pub const HELD: f32 = 3.0;
-/// Who only touched it is shown nothing: it is hidden for such a share of that time.
+/// Fraction of [`HELD`] after which progress is shown, so that an accidental touch reveals nothing.
 const HESITATION: f32 = 0.3;
-/// So many wrong numbers are taken for slips of a finger; then there is a pause, twice as long after each further one.
+/// Number of wrong PINs before the first pause, [`PAUSE`] [s]. Each further one doubles the pause, up to
+/// [`LONGEST`] [s].
 const SLIPS: u32 = 3;
 const PAUSE: f64 = 30.0;
 const LONGEST: f64 = 3600.0;
-/// After a quiet time of so long wrong ones are forgiven [s].
+/// Time after the last wrong PIN after which wrong PINs are forgotten [s].
 const FORGIVEN: f64 = 6.0 * 3600.0;
 
-/// The buttons of a pad that open the entrance together.
+/// Pad buttons that open the entrance when held together.
 const CHORD: [PadButton; 3] = [
     PadButton::LeftShoulder,
     PadButton::RightShoulder,
     PadButton::Start,
 ];
-/// Those of a plain stick, counted from 0: not the two that every hand finds.
+/// Buttons of a plain stick, counted from 0, that open the entrance when held together. The first two are
+/// left out: visitors find them at once.
 const STICK_CHORD: [usize; 2] = [2, 3];
 
-/// What staff can look at.
+/// Staff pages.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub enum Page {
-    /// What visitors did today.
+    /// Figures of the day.
     #[default]
     Today,
-    /// How the stand is.
+    /// Health of the stand.
     Health,
-    /// What the stand is like.
+    /// Configuration of the stand.
     Settings,
-    /// Whether it is to end.
+    /// Confirmation to end the stand.
     End,
 }
 
 impl Page {
-    /// Those that there is a way to from each other.
+    /// Pages that link to each other.
     pub const ALL: [Self; 3] = [Self::Today, Self::Health, Self::Settings];
 }
 
-/// The entrance.
+/// State of the hidden entrance and the PIN entry.
 #[derive(Debug, Default)]
 pub struct Entrance {
-    /// For how long it was held [s].
+    /// Time for which the entrance has been held [s].
     held: f32,
-    /// The digits that were entered.
+    /// Entered digits.
     pub entered: String,
-    /// How many numbers were wrong since the last right one.
+    /// Number of wrong PINs since the last right one.
     wrong: u32,
-    /// When the last one was [s on the stand's clock].
+    /// Time of the last wrong PIN [s on the stand's clock].
     wrong_at: f64,
-    /// Until when no number is looked at [s on the stand's clock].
+    /// End of the pause [s on the stand's clock].
     closed_until: f64,
 }
 
-/// What comes of a number.
+/// Result of entering a digit.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum Answer {
-    /// It is not all there yet.
+    /// The PIN is not complete yet.
     GoesOn,
-    /// It was right.
+    /// The PIN was right.
     Right,
-    /// It was wrong.
+    /// The PIN was wrong.
     Wrong,
-    /// It came in a pause.
+    /// The digit came during a pause and was ignored.
     TooEarly,
 }
 
 impl Entrance {
-    /// Lets time pass [s] in which it was held or not; whether it opens.
+    /// Advances the time by `seconds` [s], with the entrance held or not. Returns whether it opens.
     pub fn pass(&mut self, is_held: bool, seconds: f32) -> bool {
         self.held = if is_held { self.held + seconds } else { 0.0 };
         let opens = self.held > HELD;
@@ -82,23 +84,23 @@ impl Entrance {
         opens
     }
 
-    /// Which share of the time it has been held, once it is clear that it is held on purpose.
+    /// Fraction of the holding time that has passed. `None` until the hold is clearly intended.
     pub fn held(&self) -> Option<f32> {
         let share = self.held / HELD;
         (share > HESITATION).then_some(share)
     }
 
-    /// For how long no number is looked at [s], at a time on the stand's clock [s].
+    /// Remaining pause [s] at `now` [s on the stand's clock].
     pub fn pause(&self, now: f64) -> f64 {
         (self.closed_until - now).max(0.0)
     }
 
-    /// Whether the last number was wrong, and none is being entered since.
+    /// Whether the last PIN was wrong and no new one has been begun.
     pub fn was_wrong(&self) -> bool {
         self.wrong > 0 && self.entered.is_empty()
     }
 
-    /// A digit was entered, at a time on the stand's clock [s].
+    /// Enters a digit at `now` [s on the stand's clock].
     pub fn enter(&mut self, digit: char, pin: &Pin, now: f64) -> Answer {
         if self.pause(now) > 0.0 {
             return Answer::TooEarly;
@@ -124,7 +126,7 @@ impl Entrance {
     }
 }
 
-/// Whether the chord is held that opens the entrance.
+/// Whether the buttons that open the entrance are held.
 pub fn is_chord(device: &Device) -> bool {
     let is_down = |index: &usize| device.buttons.get(*index).is_some_and(|button| button.down);
     match &device.pad {
@@ -149,24 +151,24 @@ mod tests {
     }
 
     #[test]
-    fn the_entrance_opens_when_it_is_held_for_long_without_a_break() {
+    fn entrance_opens_after_uninterrupted_hold() {
         let mut entrance = Entrance::default();
         for _ in 0..10 {
             assert!(!entrance.pass(true, 2.9));
             assert!(!entrance.pass(false, 0.1));
         }
         assert!(!entrance.pass(true, 0.5));
-        assert_eq!(entrance.held(), None, "a touch shows nothing");
+        assert_eq!(entrance.held(), None, "a short touch reveals nothing");
         assert!(!entrance.pass(true, 2.4));
         assert!(entrance.held().is_some_and(|share| share > 0.9));
         assert!(entrance.pass(true, 0.2));
     }
 
     #[test]
-    fn nobody_gets_in_by_guessing() {
+    fn pauses_limit_guesses_to_40_a_day() {
         let mut entrance = Entrance::default();
         let (mut now, mut tried) = (0.0, 0);
-        // Who sits there for a day, as fast as it goes.
+        // An attacker tries for a whole day at full speed.
         while now < 86_400.0 {
             now += 1.0 + entrance.pause(now);
             assert_eq!(enter(&mut entrance, "1234", now), Answer::Wrong);
@@ -180,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn staff_may_slip() {
+    fn one_wrong_pin_causes_no_pause() {
         let mut entrance = Entrance::default();
         assert_eq!(enter(&mut entrance, "200", 0.0), Answer::GoesOn);
         assert_eq!(enter(&mut entrance, "5", 0.0), Answer::Wrong);

@@ -1,4 +1,4 @@
-//! What happens between two times at which nobody is there.
+//! A visit: the time between two idle phases of a stand.
 
 use super::config::Config;
 use crate::game::Ended;
@@ -6,22 +6,22 @@ use fuwafuwa::world::TICK;
 use tamaire_logbook::{End, Id, Moment, Round};
 use tamaire_play::Route;
 
-/// A visit that goes on.
+/// A visit in progress.
 #[derive(Clone, Debug)]
 pub struct Visit {
-    /// By what it is known.
+    /// Unique identifier.
     pub id: Id,
-    /// When it began.
+    /// Start time.
     pub began: Moment,
-    /// Whether it stands in the logbook.
+    /// Whether the visit is in the logbook.
     pub is_noted: bool,
-    /// How the round is to be won that is played, if that was suggested.
+    /// Suggested way to win the current round, if any.
     pub dare: Option<Route>,
     rounds: u32,
 }
 
 impl Visit {
-    /// One that begins now.
+    /// Begins a visit now.
     pub fn begin() -> Self {
         Self {
             id: Id::random(),
@@ -32,7 +32,7 @@ impl Visit {
         }
     }
 
-    /// A round of it, as it is written down; `end` is how it ended if it was not won.
+    /// Returns the logbook entry of a round. `end` is the reason if the round was not won.
     pub fn round(&mut self, config: &Config, ended: &Ended, end: End) -> Round {
         self.rounds += 1;
         let (progress, won) = (&ended.progress, ended.progress.outcome);
@@ -54,7 +54,7 @@ impl Visit {
             pieces: won.map_or(progress.pieces, |won| won.pieces) as u32,
             lost: won.map_or(0, |won| won.lost) as u32,
             dare: self.dare.take(),
-            // What was just played can be told.
+            // A round that was just played can be encoded.
             replay: ended.replay.fragment().unwrap_or_default(),
         }
     }

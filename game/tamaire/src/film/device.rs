@@ -1,4 +1,4 @@
-//! What pictures are drawn with: a device of their own.
+//! GPU device of films on a desktop, separate from that of the window.
 
 use crate::platform::in_small_blocks;
 use eframe::egui_wgpu::{
@@ -7,18 +7,18 @@ use eframe::egui_wgpu::{
 use pollster::block_on;
 use wgpu::Backends;
 
-/// What egui needs to draw; none where there is nothing to draw with, not even software.
+/// Opens a GPU device for egui. `None` if there is no graphics adapter, not even in software.
 pub fn open(options: RendererOptions) -> Option<RenderState> {
-    // OpenGL comes last: where there is no display its driver complains to the terminal.
+    // OpenGL comes last because its driver prints warnings to the terminal if there is no display.
     [Backends::PRIMARY, Backends::GL]
         .into_iter()
         .find_map(|backends| state_of(backends, options))
 }
 
-/// What egui needs to draw with one of some interfaces; none where there is no adapter for any.
+/// Opens a GPU device for egui with one of `backends`. `None` if they have no adapter.
 fn state_of(backends: Backends, options: RendererOptions) -> Option<RenderState> {
     let mut setup = WgpuSetupCreateNew::without_display_handle();
-    // Somebody may have chosen by `WGPU_BACKEND`.
+    // The user may have restricted the backends by `WGPU_BACKEND`.
     setup.instance_descriptor.backends &= backends;
     if setup.instance_descriptor.backends.is_empty() {
         return None;

@@ -1,4 +1,4 @@
-//! What pictures are drawn with in a browser: what the page is drawn with, since there is no other.
+//! GPU device of films in a browser, which is that of the page, because a page has only one.
 
 use eframe::egui_wgpu::{RenderState, Renderer, RendererOptions};
 use egui::mutex::RwLock;
@@ -9,12 +9,13 @@ thread_local! {
     static LENT: RefCell<Option<RenderState>> = const { RefCell::new(None) };
 }
 
-/// Lends what the page is drawn with.
+/// Stores the device of the page for later films.
 pub fn lend(page: &RenderState) {
     LENT.replace(Some(page.clone()));
 }
 
-/// What egui needs to draw: its images and letters are its own. None before the page has begun.
+/// Returns the device of the page with a separate egui renderer, so that images and glyphs are not shared.
+/// `None` before [`lend`] was called.
 pub fn open(options: RendererOptions) -> Option<RenderState> {
     let page = LENT.with_borrow(Option::clone)?;
     let renderer = Renderer::new(&page.device, page.target_format, options);

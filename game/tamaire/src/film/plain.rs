@@ -1,11 +1,11 @@
-//! A round without anything to draw with: the elements of its bodies, as the engine's command line paints them.
+//! Pictures of a round without a GPU: draws the elements of its bodies, as the engine's command line does.
 
 use fuwafuwa::vector::{plus, scaled};
 use fuwafuwa_painter::solid::{Camera, Solid};
 use fuwafuwa_painter::{Frame, PaintError, Painter, Pixmap, worlds};
 use tamaire_play::AnyRound;
 
-/// A picture of a round as it is now that is so large without its caption [px].
+/// Draws a picture of the current state of a round. The size [px] excludes the caption.
 pub fn picture(
     round: &AnyRound,
     [width, height]: [u32; 2],

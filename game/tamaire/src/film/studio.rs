@@ -1,4 +1,4 @@
-//! The window's own pictures without a window: egui, the stage and both renderers, drawn into images.
+//! Off-screen rendering of the window's pictures: egui, the stage and both renderers draw into images.
 
 use super::device;
 use crate::look::{CameraRig, Effects, Hint, Look, Stage, Theme, dress};
@@ -8,11 +8,11 @@ use fuwafuwa_render::{ImageError, Step};
 use tamaire_play::AnyRound;
 use wgpu::PollType;
 
-/// Height of the paper below a picture that has a caption, and of the letters on it [px].
+/// Height of the caption strip below a picture, and its font size [px].
 const CAPTION: f32 = 34.0;
 const LETTERS: f32 = 17.0;
 
-/// Draws rounds as the window does.
+/// Off-screen renderer of rounds, which look as in the window.
 pub struct Studio {
     state: RenderState,
     context: egui::Context,
@@ -20,23 +20,23 @@ pub struct Studio {
     theme: Theme,
 }
 
-/// A moment of a round, and from where it is seen.
+/// A moment of a round, with its camera.
 #[derive(Copy, Clone)]
 pub struct Moment<'a> {
-    /// The round as it is now.
+    /// The round in its current state.
     pub round: &'a AnyRound,
-    /// What flies about, and how bodies feel.
+    /// Particles, and facial expressions of bodies.
     pub effects: &'a Effects,
-    /// From where.
+    /// Camera.
     pub camera: &'a CameraRig,
-    /// Seconds since the film began.
+    /// Time since the film began [s].
     pub time: f64,
-    /// What stands below it, if anything does.
+    /// Caption below the picture.
     pub caption: Option<&'a str>,
 }
 
 impl Studio {
-    /// A studio; none where there is nothing to draw with, not even software.
+    /// Opens a studio. `None` if there is no graphics adapter, not even in software.
     pub fn open() -> Option<Self> {
         let options = RendererOptions {
             dithering: false,
@@ -56,7 +56,7 @@ impl Studio {
         }
     }
 
-    /// The size of the picture of a moment that is so large without its caption [px].
+    /// Size of the picture of a moment [px]: the given size, plus the caption strip if it has a caption.
     pub fn size(moment: &Moment, [width, height]: [u32; 2]) -> [u32; 2] {
         let below = if moment.caption.is_some() {
             CAPTION
@@ -66,10 +66,11 @@ impl Studio {
         [width, height + below as u32]
     }
 
-    /// A picture of [`Studio::size`]: red, green, blue and opacity of each pixel, row by row from the upper left corner.
+    /// Draws a picture of [`Studio::size`]. Returns red, green, blue and opacity of each pixel, row by row
+    /// from the upper left corner.
     ///
     /// # Errors
-    /// When it is too large for the device, or when that fails.
+    /// If the picture is too large for the device, or if drawing fails.
     pub async fn shoot(
         &mut self,
         moment: &Moment<'_>,
@@ -123,15 +124,15 @@ impl Studio {
         drawn
     }
 
-    /// Gives back the images that it draws into until the next picture: after a photo of the plane they take 20 MB.
+    /// Releases the render targets until the next picture: after a photo of a plane world they take 20 MB.
     pub fn rest(&self) {
         self.stage.forget_images();
-        // What is no longer used goes when the device is asked how it does. One that has failed tells so at the next picture.
+        // Polling the device frees unused resources. A failed device reports its error at the next picture.
         let _polled = self.state.device.poll(PollType::Poll);
     }
 }
 
-/// Draws a moment, and below `rect` what is said of it.
+/// Draws a moment into `rect`, and its caption below.
 fn draw(ui: &Ui, rect: Rect, moment: &Moment, stage: &mut Stage, theme: &Theme) {
     let look = Look {
         view: moment.camera.view(rect, moment.round.level()),
@@ -167,7 +168,7 @@ mod tests {
 
     const SIZE: [u32; 2] = [480, 300];
 
-    /// How many pixels from one row up to another are nearly of a colour.
+    /// Counts the pixels with nearly this colour in a range of rows.
     fn count(picture: &[u8], rows: std::ops::Range<usize>, colour: [u8; 3]) -> usize {
         let row = 4 * SIZE[0] as usize;
         let pixels = picture[rows.start * row..rows.end * row].chunks(4);
@@ -176,14 +177,14 @@ mod tests {
     }
 
     #[test]
-    fn a_moment_has_a_face_a_basket_and_its_caption_in_both_dimensions() {
+    fn picture_shows_face_basket_and_caption_in_both_dimensions() {
         let Some(mut studio) = Studio::open() else {
             let is_ci = std::env::var("CI").is_ok_and(|value| value == "1" || value == "true");
-            assert!(!is_ci, "mesa-vulkan-drivers brings an adapter");
+            assert!(!is_ci, "CI requires mesa-vulkan-drivers");
             return;
         };
         for id in ["classic", "classic-3d"] {
-            let round = AnyRound::new(Arc::new(Level::open(id).expect("it comes along")));
+            let round = AnyRound::new(Arc::new(Level::open(id).expect("built-in level opens")));
             let moment = Moment {
                 round: &round,
                 effects: &Effects::default(),
@@ -192,7 +193,7 @@ mod tests {
                 caption: Some("hello"),
             };
             let [width, height] = Studio::size(&moment, SIZE);
-            let picture = pollster::block_on(studio.shoot(&moment, SIZE)).expect("it is small");
+            let picture = pollster::block_on(studio.shoot(&moment, SIZE)).expect("drawing works");
             assert_eq!(picture.len() as u32, 4 * width * height);
             assert!(picture.chunks(4).all(|pixel| pixel[3] == 255), "{id}");
             let (world, below) = (0..300, 300..height as usize);

@@ -1,4 +1,4 @@
-//! The round that is on the screen, behind whatever menu: who plays it, and how it is seen.
+//! The current round, which stays visible behind menus: its session, camera and display state.
 
 use super::lesson::Lesson;
 use crate::look::{CameraRig, Effects, Opening, View};
@@ -6,42 +6,42 @@ use crate::session::Session;
 use fuwafuwa_render::frame::ElementColour;
 use tamaire_play::{AnyRound, Outcome};
 
-/// After a win the round goes on for so long before the result is shown [s].
+/// Time between a win and the result screen [s].
 const CHEER: f32 = 1.4;
 
-/// The round that is on the screen.
+/// The current round.
 pub struct Bout {
-    /// It in time.
+    /// Round with its progress in time.
     pub session: Session,
-    /// Whether the ghost beside it, if any, is one that the player chose.
+    /// Whether the ghost was chosen by the player.
     pub(super) is_ghost_chosen: bool,
-    /// What flies about.
+    /// Particles and other effects.
     pub effects: Effects,
-    /// From where it is seen.
+    /// Camera.
     pub camera: CameraRig,
-    /// What that saw in the last frame.
+    /// View of the last frame.
     pub view: Option<View>,
-    /// What the colours of elements tell, when they are seen instead of the skin.
+    /// Meaning of the element colours. `None` = the skin is shown instead.
     pub elements: Option<ElementColour>,
-    /// How far bodies in space are opened for that.
+    /// Depth to which bodies are cut open in the element view (space only).
     pub opening: Opening,
-    /// Whether time goes slowly.
+    /// Whether slow motion is on.
     pub slow: bool,
-    /// Whether time stands still, but for single steps.
+    /// Whether the round advances by single steps only.
     pub stepping: bool,
-    /// The win: how, and whether it was the best by its route.
+    /// Outcome of a won round, and whether it is the best of its route.
     pub won: Option<(Outcome, bool)>,
     pub(super) lesson: Lesson,
-    /// Whether it was collected by whoever collects rounds.
+    /// Whether the round has been added to [`Public::ended`](super::Public::ended).
     pub(super) is_noted: bool,
-    /// Whether it was told that this machine cannot bear it at its speed.
+    /// Whether the player was told that this machine is too slow for the round.
     pub(super) is_known_slow: bool,
-    /// How long it has been over [s].
+    /// Time since the round was won [s].
     pub(super) cheered: f32,
 }
 
 impl Bout {
-    /// A round that nobody has looked at.
+    /// Creates the state of a new round.
     pub(super) fn new(session: Session) -> Self {
         Self {
             session,
@@ -61,14 +61,14 @@ impl Bout {
         }
     }
 
-    /// Another round, seen from where the last one was seen; the game is so old [s].
+    /// Replaces the round and keeps the camera. `time` is the time since the start of the game [s].
     pub(super) fn begin(&mut self, session: Session, time: f64) {
         self.session = session;
         self.is_ghost_chosen = false;
         self.opening = Opening::begin(time);
         self.effects = Effects::default();
         self.lesson.begin();
-        // It means places of the round before.
+        // The view refers to the previous round.
         self.view = None;
         self.won = None;
         self.is_noted = false;
@@ -76,33 +76,34 @@ impl Bout {
         self.cheered = 0.0;
     }
 
-    /// The round as it is now.
+    /// Returns the round in its current state.
     pub fn round(&self) -> &AnyRound {
         self.session.round()
     }
 
-    /// Whether people play it, in space.
+    /// Whether the round is in space and is being played.
     pub fn is_played_in_space(&self) -> bool {
         self.session.is_played() && self.turn().is_some()
     }
 
-    /// Whether a second player can come in.
+    /// Whether a second player can join.
     pub fn takes_two(&self) -> bool {
         self.session.is_played() && self.round().level().scene().hand.len() > 1
     }
 
-    /// In space by how much the camera went around to the right [rad].
+    /// Rotation of the camera around the vertical axis, to the right [rad]. `None` in the plane.
     pub fn turn(&self) -> Option<f32> {
         let is_space = matches!(self.round(), AnyRound::Space(_));
         is_space.then(|| self.camera.turn())
     }
 
-    /// Whether a body that is in has beamed for long enough.
+    /// Whether the celebration of a win is over.
     pub fn has_cheered(&self) -> bool {
         self.cheered >= CHEER
     }
 
-    /// Shows elements instead of the skin, then what strains them, then the skin again; the game is so old [s].
+    /// Switches from the skin to elements by level, to elements by strain, and back. `time` is the time since
+    /// the start of the game [s].
     pub(super) fn show_elements(&mut self, time: f64) {
         if self.elements.is_none() {
             self.opening = Opening::begin(time);

@@ -1,54 +1,54 @@
-//! With what the game is played: what devices say, and who holds which.
+//! Input devices, and the assignment of devices to players.
 
 use crate::input::{Action, Devices, Latch, Means, Players, Scan, Seat};
 use crate::platform::Pads;
 use egui::Rect;
 use sticks::{Change, DeviceId, Labels};
 
-/// A button that is on the screen over a round.
+/// A button on the screen during a round.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct ScreenButton {
-    /// What it asks for.
+    /// Action of the button.
     pub action: Action,
-    /// Where fingers press it [points].
+    /// Touch area [points].
     pub rect: Rect,
 }
 
 impl ScreenButton {
-    /// Who presses it.
+    /// Returns the seat for which the button acts.
     pub fn seat(&self) -> Seat {
         match self.action {
-            // The first finger has a hand already.
+            // The first finger has a hand already, so joining is for the second one.
             Action::Join => Seat::Finger,
             _ => Seat::Pointer,
         }
     }
 }
 
-/// With what the game is played.
+/// Input devices and players.
 pub struct Controls {
-    /// The sticks and pads that are listened to.
+    /// Source of stick and pad input.
     pub pads: Pads,
-    /// What all devices say.
+    /// Current input of all devices.
     pub devices: Devices,
-    /// Who plays.
+    /// Players and their seats.
     pub players: Players,
-    /// With what something was done last.
+    /// Input method used last.
     pub means: Means,
-    /// The stick or pad with which something was done last.
+    /// Stick or pad used last.
     in_hand: Option<DeviceId>,
-    /// Keys that stay down, where that is wished.
+    /// Sticky keys, if the player has turned them on.
     pub latch: Latch,
-    /// What is offered to whoever plays with one switch.
+    /// Scanning, for play with one switch.
     pub scan: Scan,
-    /// What fingers can press, as it was seen last.
+    /// Buttons on the screen in the last frame.
     pub buttons: Vec<ScreenButton>,
-    /// An action whose key or button the next one pressed becomes.
+    /// Action that the next pressed key or button is bound to.
     pub rebinding: Option<Action>,
 }
 
 impl Controls {
-    /// Nothing was done yet.
+    /// Creates the state at the start of the game.
     pub(super) fn new(pads: Pads) -> Self {
         Self {
             pads,
@@ -63,13 +63,13 @@ impl Controls {
         }
     }
 
-    /// Another round begins: what pointed at places of the last one counts no more.
+    /// Prepares for a new round: input that refers to positions in the last round is cleared.
     pub(super) fn begin(&mut self, is_space: bool) {
         self.players.start();
         self.latch.release();
         self.scan.start();
         self.devices.taken = None;
-        // In space a second finger raises the hand of the first.
+        // In space the second finger raises the hand of the first one, so it cannot be a player.
         if is_space && self.players.second() == Some(Seat::Finger) {
             self.players.join(Seat::Finger);
         }
@@ -77,7 +77,7 @@ impl Controls {
         self.devices.lift = 0.0;
     }
 
-    /// Takes in what sticks and pads say; gives back what was pressed since.
+    /// Reads sticks and pads, and returns their changes since the last call.
     pub(super) fn hear_sticks(&mut self) -> Vec<Change> {
         let now = self.pads.snapshot();
         let changes = now.since(&self.devices.sticks);
@@ -85,7 +85,7 @@ impl Controls {
         changes
     }
 
-    /// Something was done with a stick or pad.
+    /// Notes that a stick or pad was used.
     pub fn note_stick(&mut self, id: DeviceId) {
         self.in_hand = Some(id);
         let device = self.devices.sticks.device(id);
@@ -95,7 +95,7 @@ impl Controls {
         };
     }
 
-    /// What is printed on the pad in hand, or on whichever there is.
+    /// Button labels of the pad used last, or of any connected pad.
     pub fn labels(&self) -> Labels {
         let sticks = &self.devices.sticks;
         let in_hand = self.in_hand.and_then(|id| sticks.device(id)).into_iter();

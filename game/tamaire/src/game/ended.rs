@@ -1,10 +1,10 @@
-//! Rounds that ended, for whoever collects them.
+//! Collection of ended rounds in public mode.
 
 use super::Game;
 use super::public::Ended;
 
 impl Game {
-    /// Collects the round on the screen, once, where somebody collects rounds and people played in it.
+    /// Adds the current round to the collection in public mode, once, if it has been played.
     pub(super) fn note_end(&mut self) {
         let (bout, round) = (&self.bout, self.bout.round());
         let is_begun = round.ticks() > 0 && bout.session.is_played();

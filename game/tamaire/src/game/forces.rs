@@ -1,4 +1,4 @@
-//! Tells devices what there is to feel.
+//! Force feedback of a frame.
 
 use super::trial::{Outcome, Trial};
 use super::{Game, Screen};
@@ -8,16 +8,16 @@ use force_feedback::{Ability, Calibration, Manner, State, Stop};
 use sticks::DeviceId;
 use tamaire_play::PLAYERS;
 
-/// A device that was not used for so long is not felt [s].
+/// Idle time after which a device gets no feedback [s].
 const RESTED: f32 = 1.5;
 
-/// A stick that calls somebody stirs for so long, as often as this [s], and with such a share of full force.
+/// Movement of an idle stick that attracts visitors: duration [s], period [s], and fraction of full force.
 const CALL: f64 = 1.6;
 const CALLS: f64 = 24.0;
 const GENTLE: f32 = 0.12;
 
 impl Game {
-    /// Tells devices what there is to feel, and those that feel nothing why.
+    /// Sends force feedback to the devices, or the reason why they get none.
     pub(super) fn drive_forces(&mut self, seconds: f32) {
         self.pass_trial(seconds);
         let (settings, trial) = (&self.settings, &self.trial);
@@ -66,7 +66,7 @@ impl Game {
             (Outcome::Known(Some(found)), Some(device)) => {
                 let known = self.settings.calibrations.entry(device.about.guid.clone());
                 let known = known.or_default();
-                // Gains are not measured.
+                // The measurement does not determine the gain, so the old one is kept.
                 let gain = known.gain;
                 *known = Calibration { gain, ..found };
                 self.keep_settings();
@@ -77,7 +77,7 @@ impl Game {
         }
     }
 
-    /// What the player who holds a device feels.
+    /// Returns the feedback for the player with this device.
     fn state(&self, id: DeviceId) -> Option<State> {
         if self.screen() == Screen::Title {
             return self.call();
@@ -87,7 +87,8 @@ impl Game {
         let hands = self.bout.round().hands();
         let contact = haptics::on_stick(haptics::contact(hands.get(player)?), self.bout.turn());
         let pushes_back = self.controls.devices.pushing.contains(&id);
-        // What was put down hums no more, though the hand still presses. A stick that pushes back may be held still.
+        // A device that was put down stops rumbling, even if the hand still presses. A force-feedback stick
+        // is excluded, since it may be held still.
         if !pushes_back && self.controls.players.rested(player) > RESTED {
             return None;
         }
@@ -98,7 +99,8 @@ impl Game {
         Some(State { contact, manner })
     }
 
-    /// What a stick is made to do that calls somebody: it goes around once, slowly, every now and then.
+    /// Movement of an idle stick that attracts visitors: one slow circle in each period. `None` in the rest
+    /// of the period.
     fn call(&self) -> Option<State> {
         let share = self.time % CALLS / CALL;
         let (sin, cos) = (std::f64::consts::TAU * share).sin_cos();
@@ -109,12 +111,12 @@ impl Game {
         })
     }
 
-    /// Whether sticks stir by themselves, or did a moment ago.
+    /// Whether the game moves idle sticks now, or did a moment ago.
     pub fn is_calling(&self) -> bool {
         self.calls && self.time % CALLS < 2.0 * CALL
     }
 
-    /// Why nobody feels anything now, if so.
+    /// Returns the reason why no device gets feedback now, if any.
     pub fn silence(&self) -> Option<Stop> {
         match self.screen() {
             _ if self.is_away => Some(Stop::FocusLost),

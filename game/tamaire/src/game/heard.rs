@@ -1,4 +1,4 @@
-//! What is heard: of a tick, and for as long as it lasts.
+//! Sounds of a tick, and continuous sounds.
 
 use super::{Game, Screen};
 use crate::look::View;
@@ -8,10 +8,10 @@ use tamaire_play::rules::CRUMB;
 use tamaire_play::{AnyRound, Round};
 use tamaire_sound::{Cue, Hush, Press, Soundscape};
 
-/// What is slower than this is heard no more when it lands [m/s].
+/// Speed below which the impact of a crumb is silent [m/s].
 const LANDING: f32 = 0.3;
 
-/// What there is to hear now.
+/// Returns the current continuous sounds.
 pub(super) fn soundscape(game: &Game) -> Soundscape {
     let round = game.bout.round();
     let hold = round.level().game().hold.max(0.1);
@@ -40,7 +40,7 @@ pub(super) fn soundscape(game: &Game) -> Soundscape {
     }
 }
 
-/// What there is to hear of a tick of a round that is seen so.
+/// Returns the sounds of the last tick of a round. `view` gives their stereo position.
 pub(super) fn cues(round: &AnyRound, view: Option<View>) -> Vec<Cue> {
     match round {
         AnyRound::Plane(round) => cues_of(round, view),
@@ -50,7 +50,7 @@ pub(super) fn cues(round: &AnyRound, view: Option<View>) -> Vec<Cue> {
 
 fn cues_of<D: Dim>(round: &Round<D>, view: Option<View>) -> Vec<Cue> {
     let bodies = round.world().bodies();
-    // The masses of the pieces of each body, looked up once they are asked for [kg].
+    // Masses of the pieces of each body [kg], computed when first used.
     let mut masses: BTreeMap<BodyId, Vec<f32>> = BTreeMap::new();
     let mut mass_of = |body: BodyId, piece: PieceId| {
         let views = || bodies[body].piece_views().into_iter();
@@ -99,7 +99,7 @@ fn cues_of<D: Dim>(round: &Round<D>, view: Option<View>) -> Vec<Cue> {
     cues
 }
 
-/// Where a position is seen, from -1 at the left to 1 at the right; before anything is seen, in the middle.
+/// Horizontal position on the screen, from -1 (left) to 1 (right). 0 before the first frame.
 fn across(view: Option<View>, at: Vector) -> f32 {
     view.map_or(0.0, |view| view.across(at))
 }
@@ -115,13 +115,13 @@ mod tests {
     use egui::{Rect, pos2};
 
     #[test]
-    fn a_hand_is_heard_where_it_is_seen() {
+    fn hand_sound_is_panned_to_position_on_screen() {
         let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
         let mut heard = |level: &str, turn: f32| {
             let mut levels = game.levels.iter();
             let index = levels.position(|known| known.id == level);
-            game.start(index.expect("it comes along"));
-            assert_eq!(soundscape(&game).presses[0].x, 0.0, "nothing is seen yet");
+            game.start(index.expect("built-in level exists"));
+            assert_eq!(soundscape(&game).presses[0].x, 0.0, "there is no view yet");
             game.bout.camera.orbit(turn, 0.0);
             let screen = Rect::from_min_max(pos2(0.0, 0.0), pos2(900.0, 600.0));
             game.bout.view = Some(game.bout.camera.view(screen, game.bout.round().level()));

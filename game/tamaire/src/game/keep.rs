@@ -1,4 +1,4 @@
-//! What is kept, and what is told of it.
+//! Saving and loading, and the messages about them.
 
 use super::{Game, Screen};
 use crate::platform::{Damage, Entry, Kind, News};
@@ -6,17 +6,19 @@ use std::sync::Arc;
 use tamaire_play::{Replay, ReplayError};
 
 impl Game {
-    /// Keeps the settings, once they rest; what cannot be written is said and lost only at the end of the game.
+    /// Schedules the settings to be saved once they no longer change. If writing fails, the player is told,
+    /// and the settings stay in effect until the game ends.
     pub fn keep_settings(&mut self) {
         self.files.keep_settings(&self.settings);
     }
 
-    /// Keeps the round as it was played so far.
+    /// Saves a replay of the round up to now.
     pub fn keep_replay(&mut self) {
         self.files.save_replay(self.bout.round().replay());
     }
 
-    /// Nothing is drawn any more: a round that is played is kept, to be watched later, and all else is written.
+    /// Saves a replay of a round that is being played, and writes all pending data. For the case that the GPU
+    /// is lost.
     pub fn rescue(&mut self) {
         if self.is_in_round() {
             self.keep_replay();
@@ -25,25 +27,25 @@ impl Game {
         }
     }
 
-    /// Takes a photo of how the round ended.
+    /// Saves a photo of the end of the round.
     pub fn keep_photo(&mut self) {
         let replay = self.bout.round().replay();
         self.files.save_picture(Kind::Photo, Arc::new(replay));
     }
 
-    /// Keeps the last seconds of the round as an animation.
+    /// Saves the last seconds of the round as an animation.
     pub fn keep_clip(&mut self) {
         let replay = self.bout.round().replay();
         self.files.save_picture(Kind::Clip, Arc::new(replay));
     }
 
-    /// The same of a round that was kept: fit for [`Game::open_kept`].
+    /// Saves the last seconds of a saved round as an animation. For use with [`Game::open_kept`].
     pub fn keep_clip_of(&mut self, replay: Arc<Replay>) -> Result<(), ReplayError> {
         self.files.save_picture(Kind::Clip, replay);
         Ok(())
     }
 
-    /// Takes a level that does not come along out of the list. What was reached in it stays.
+    /// Removes a level that is not built in from the list. Its records stay.
     pub fn take_out(&mut self, index: usize) {
         let level = self.levels.remove(index);
         self.files.remove_level(&level.id);
@@ -52,14 +54,14 @@ impl Game {
         }
     }
 
-    /// Hands a round that was kept to the player as a file.
+    /// Gives a saved round to the player as a file.
     pub fn hand_out(&mut self, saved: &Entry) {
         if let Err(error) = self.files.hand_out(&saved.name) {
             self.tell(News::Failed(error.to_string()));
         }
     }
 
-    /// Deletes a round that was kept.
+    /// Deletes a saved round.
     pub fn delete(&mut self, saved: &Entry) {
         if let Err(error) = self.files.delete(&saved.name) {
             self.tell(News::Failed(error.to_string()));
@@ -67,17 +69,17 @@ impl Game {
         self.shelf.look(&self.files);
     }
 
-    /// Writes what is still to be written, and waits until it is.
+    /// Writes all pending data and waits until it is written.
     pub fn finish_writing(&mut self) {
         for news in self.files.finish() {
             self.tell(news);
         }
     }
 
-    /// Tells what became of what was to be written.
+    /// Shows the result of a file operation to the player.
     pub(super) fn tell(&mut self, news: News) {
         match news {
-            // One that was opened in the meantime is newer.
+            // A level that was opened in the meantime is newer.
             News::Level(level) if self.levels.iter().any(|known| known.id == level.id) => {}
             News::Level(level) => self.levels.push(level),
             News::Damaged(damage) => self.tell_of(damage),
@@ -92,7 +94,7 @@ impl Game {
         }
     }
 
-    /// Names what of what was kept could not be used.
+    /// Tells the player which stored data could not be used.
     pub(super) fn tell_of(&mut self, damage: Damage) {
         const MOST: usize = 4;
         let refused = damage.refused.iter().take(MOST);

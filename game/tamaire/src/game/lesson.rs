@@ -1,36 +1,38 @@
-//! What somebody who is new to space has not tried yet.
+//! Tutorial for players who are new to space.
 
 use fuwafuwa::Vector;
 
-/// Who has gone this far along the floor has moved, who this far up or down has risen [m], and who has gone this far
-/// around has looked around [rad].
+/// Movement after which a hint counts as tried: hand along the floor [m], hand up or down [m], camera around
+/// the scene [rad].
 const MOVED: f32 = 0.2;
 const RAISED: f32 = 0.12;
 const TURNED: f32 = 0.2;
-/// In a round it is told for so long [s].
+/// Time for which hints are shown in a round [s].
 const LONG: f32 = 45.0;
 
-/// What somebody who is new to space has not tried yet.
+/// Progress of the tutorial.
 #[derive(Clone, Debug, Default)]
 pub struct Lesson {
-    /// Whether the hand was moved, was raised, and the camera went around; from then on it is known.
+    /// Whether the player has tried to move the hand, to raise it, and to turn the camera. Kept across
+    /// rounds.
     tried: [bool; 3],
-    /// For how long it has been told in this round [s].
+    /// Time for which hints have been shown in this round [s].
     seconds: f32,
 }
 
 impl Lesson {
-    /// A new round.
+    /// Restarts the hint time for a new round.
     pub(super) fn begin(&mut self) {
         self.seconds = 0.0;
     }
 
-    /// Which of the three are to be told of: how to move, to rise, to look around.
+    /// Returns whether to show each hint: move, raise, look around.
     pub(super) fn missing(&self) -> [bool; 3] {
         self.tried.map(|tried| !tried && self.seconds < LONG)
     }
 
-    /// A player wants to be so far from where the hand began [m], and the camera is so far from where it began [rad].
+    /// Updates the progress with the offset of the hand from its start [m] and the rotation of the camera
+    /// from its start [rad].
     pub(super) fn see(&mut self, gone: Vector, turned: f32, seconds: f32) {
         let along = (gone[0] * gone[0] + gone[2] * gone[2]).sqrt();
         let now = [along > MOVED, gone[1].abs() > RAISED, turned > TURNED];
@@ -46,14 +48,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_thing_is_told_until_it_was_tried_and_none_for_ever() {
+    fn hint_disappears_when_tried_or_after_its_time() {
         let mut lesson = Lesson::default();
         lesson.see([0.1, 0.05, 0.1], 0.1, 1.0);
         assert_eq!(lesson.missing(), [true; 3]);
         lesson.see([0.0, -0.2, 0.0], 0.0, 1.0);
         assert_eq!(lesson.missing(), [true, false, true]);
         lesson.see([0.2, 0.0, 0.2], 0.0, LONG);
-        assert_eq!(lesson.missing(), [false; 3], "it was told for long enough");
+        assert_eq!(lesson.missing(), [false; 3], "the hint time is over");
         lesson.begin();
         assert_eq!(lesson.missing(), [false, false, true]);
         lesson.see([0.0; 3], 0.3, 1.0);

@@ -1,4 +1,4 @@
-//! Rounds and levels that travel as the end of an address.
+//! Links to rounds and levels, which are the fragment of a web address.
 
 use super::{Game, Screen};
 use crate::platform::address_of_page;
@@ -7,19 +7,19 @@ use tamaire_play::link::{Link, LinkError, address};
 use tamaire_play::{Replay, ReplayError};
 
 impl Game {
-    /// Puts a link to the round as it was played so far on the clipboard.
+    /// Copies a link to the round up to now to the clipboard.
     pub fn copy_link(&mut self) {
         let link = self.bout.round().replay().link();
         self.copy(link);
     }
 
-    /// The same of a round that was kept: fit for [`Game::open_kept`].
+    /// Copies a link to a saved round to the clipboard. For use with [`Game::open_kept`].
     pub fn copy_link_of(&mut self, replay: Arc<Replay>) -> Result<(), ReplayError> {
         self.copy(replay.link());
         Ok(())
     }
 
-    /// Puts a link to the level that is played on the clipboard.
+    /// Copies a link to the current level to the clipboard.
     pub fn copy_link_to_level(&mut self) {
         let link = self.bout.round().level().link();
         self.copy(link);
@@ -32,7 +32,7 @@ impl Game {
         }
     }
 
-    /// Tells whether the clipboard took what was put on it.
+    /// Tells the player whether copying to the clipboard worked.
     pub fn tell_of_copy(&mut self, took: bool) {
         self.notify(match took {
             true => self.words().link_copied.to_string(),
@@ -40,7 +40,7 @@ impl Game {
         });
     }
 
-    /// Opens what a link brings: a level is played, a round is offered to be watched or raced.
+    /// Opens a link: a level is started, a round is offered to watch or race.
     pub fn open_link(&mut self, link: &str) {
         match Link::read(link) {
             Ok(Link::Level(level)) => self.offer(level),

@@ -1,29 +1,29 @@
-//! What the player is told in passing.
+//! Short messages to the player.
 
 use tamaire_play::shortened;
 
-/// How long a notice stays at least [s].
+/// Minimum display time of a message [s].
 const LEAST: f32 = 6.0;
-/// How fast it can be read, at leisure [letters/s].
+/// Reading speed that determines longer display times [characters/s].
 const READING: f32 = 15.0;
-/// Most letters of a notice: what it quotes may be as long as a file.
+/// Maximum length of a message [characters]. Messages may quote files of any length.
 const LETTERS: usize = 600;
 
-/// What is told, and for how long still.
+/// A visible message.
 #[derive(Clone, Debug)]
 pub struct Notice {
-    /// What.
+    /// Text of the message.
     pub text: String,
-    /// How long it stays [s].
+    /// Remaining display time [s].
     pub seconds: f32,
 }
 
-/// All that is told now, the newest last.
+/// All visible messages, the newest last.
 #[derive(Clone, Debug, Default)]
 pub struct Notices(Vec<Notice>);
 
 impl Notices {
-    /// Tells something; what is still to be read is not said twice.
+    /// Adds a message. A visible message with the same text is replaced.
     pub(super) fn tell(&mut self, text: &str) {
         let text = shortened(text, LETTERS);
         self.take_back(&text);
@@ -32,12 +32,12 @@ impl Notices {
         self.0.push(Notice { text, seconds });
     }
 
-    /// What was told holds no more.
+    /// Removes the message with this text.
     pub(super) fn take_back(&mut self, text: &str) {
         self.0.retain(|notice| notice.text != text);
     }
 
-    /// Lets time pass [s].
+    /// Advances the time by `seconds` [s].
     pub(super) fn pass(&mut self, seconds: f32) {
         self.0
             .iter_mut()
@@ -45,12 +45,12 @@ impl Notices {
         self.0.retain(|notice| notice.seconds > 0.0);
     }
 
-    /// What is told now.
+    /// Returns the visible messages.
     pub fn iter(&self) -> impl Iterator<Item = &Notice> {
         self.0.iter()
     }
 
-    /// Forgets all.
+    /// Removes all messages.
     pub fn clear(&mut self) {
         self.0.clear();
     }

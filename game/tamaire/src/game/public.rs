@@ -1,19 +1,20 @@
-//! What is different where the game stands in public: rounds are collected, and what visitors reached is shown to others.
+//! Public mode of the game at a stand: ended rounds are collected, and rounds of visitors are shown to
+//! others.
 
 use crate::session::Session;
 use std::sync::Arc;
 use tamaire_play::{Level, Progress, Replay};
 
-/// What is different in public. No round can be paused there, slowed down or left behind.
+/// State of public mode, in which no round can be paused, slowed down or left.
 #[derive(Default)]
 pub struct Public {
-    /// Rounds of people that ended since somebody took them.
+    /// Rounds that ended since the stand last took them.
     pub ended: Vec<Ended>,
-    /// Rounds that are shown while nobody plays, beside those that come along.
+    /// Rounds shown while the stand is idle, in addition to the built-in ones.
     pub attractions: Vec<Arc<Replay>>,
-    /// Whether a second player may come in.
+    /// Whether a second player may join.
     pub takes_two: bool,
-    /// Whether whoever played seems to have gone: then nothing is felt.
+    /// Whether the visitor seems to have left, so that force feedback is off.
     pub is_left: bool,
     /// Whether a visitor asked for the other language.
     pub asks_for_language: bool,
@@ -21,18 +22,19 @@ pub struct Public {
 
 /// A round that ended, won or not.
 pub struct Ended {
-    /// The level.
+    /// Level of the round.
     pub level: Arc<Level>,
-    /// How far it came.
+    /// Progress of the round.
     pub progress: Progress,
-    /// How many played.
+    /// Number of players.
     pub players: usize,
-    /// The round.
+    /// Recording of the round.
     pub replay: Replay,
 }
 
 impl Public {
-    /// Every other time one of those that are shown beside those that come along, if it still goes as it went.
+    /// Returns one of [`Self::attractions`] for every odd `number`, unless its replay is no longer valid.
+    /// `None` = show a built-in round.
     pub(super) fn attraction(&self, number: usize) -> Option<Session> {
         let index = number / 2 % self.attractions.len().max(1);
         let replay = self.attractions.get(index).filter(|_| number % 2 == 1)?;

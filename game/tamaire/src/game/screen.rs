@@ -1,32 +1,32 @@
-//! Which screens lie over each other: the topmost is seen, and behind it is where the player came from.
+//! Stack of screens: the top one is visible, and below it is the screen from which it was opened.
 
-/// What there is to see.
+/// A screen of the game.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Screen {
-    /// The name of the game, and a body that plays by itself. It lies below all others.
+    /// Title of the game with a round that plays by itself. Always at the bottom of the stack.
     Title,
-    /// Which level?
+    /// Choice of levels.
     Levels,
-    /// Rounds that were kept.
+    /// Saved rounds.
     Replays,
     /// The round.
     Play,
-    /// The round, standing still.
+    /// The paused round.
     Paused,
-    /// How it went.
+    /// Result of the round.
     Result,
-    /// A round that came by a link: to watch or to race?
+    /// A round received by a link, to watch or to race.
     Offered,
-    /// What players choose.
+    /// Settings.
     Settings,
-    /// What sticks and pads can do and what they are made to do.
+    /// Settings of sticks and pads, and their force feedback.
     Forces,
-    /// What is inside, and under which licences.
+    /// Third-party parts and their licences.
     Licences,
 }
 
 impl Screen {
-    /// Whether it is opened from another, and goes back to it.
+    /// Whether this screen is opened from `other` and returns to it.
     fn opens_over(self, other: Self) -> bool {
         use Screen::*;
         match self {
@@ -40,7 +40,7 @@ impl Screen {
     }
 }
 
-/// The screens that are open, the one that is seen last. There is always one.
+/// Open screens, the visible one last. Never empty.
 #[derive(Clone, Debug)]
 pub struct Screens(Vec<Screen>);
 
@@ -51,17 +51,17 @@ impl Default for Screens {
 }
 
 impl Screens {
-    /// The one that is seen.
+    /// Returns the visible screen.
     pub fn top(&self) -> Screen {
-        *self.0.last().expect("one is always left")
+        *self.0.last().expect("the title screen is never closed")
     }
 
-    /// Whether a screen is open, if below others.
+    /// Whether a screen is open, even below others.
     pub fn has(&self, screen: Screen) -> bool {
         self.0.contains(&screen)
     }
 
-    /// Goes back to a screen that is open, or opens it over the topmost one from which it can be.
+    /// Returns to an open screen, or opens it over the topmost screen from which it can be opened.
     pub(super) fn go(&mut self, screen: Screen) {
         let index = self.0.iter().rposition(|&open| open == screen);
         let index = index.or_else(|| self.0.iter().rposition(|&open| screen.opens_over(open)));
@@ -71,7 +71,7 @@ impl Screens {
         }
     }
 
-    /// Closes a screen and whatever is open over it; the title stays.
+    /// Closes a screen and all screens above it. The title stays open.
     pub(super) fn close(&mut self, screen: Screen) {
         let index = self.0.iter().position(|&open| open == screen);
         self.0.truncate(index.unwrap_or(self.0.len()).max(1));
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn each_screen_goes_back_to_where_it_was_opened() {
+    fn closing_screen_returns_to_where_it_was_opened() {
         for (way, below) in [
             (&[Settings][..], Title),
             (&[Levels, Play, Paused, Settings], Paused),
@@ -99,7 +99,7 @@ mod tests {
             (&[Levels, Play], Levels),
             (&[Replays, Play], Replays),
             (&[Play], Title),
-            // What is dropped onto settings is played at once.
+            // A file dropped onto the settings is played at once.
             (&[Levels, Play, Paused, Settings, Play], Levels),
             (&[Settings, Play], Title),
             (&[Replays, Play, Paused, Levels], Title),
@@ -113,13 +113,13 @@ mod tests {
     }
 
     #[test]
-    fn a_round_is_left_with_all_that_is_open_over_it() {
+    fn closing_round_closes_screens_above_it() {
         let mut screens = after(&[Levels, Play, Paused, Settings, Forces]);
         assert!(screens.has(Play));
         screens.close(Play);
         assert_eq!(screens.top(), Levels);
         screens.go(Title);
         screens.close(Title);
-        assert_eq!(screens.top(), Title, "one is always left");
+        assert_eq!(screens.top(), Title, "the title screen is never closed");
     }
 }

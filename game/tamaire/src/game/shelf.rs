@@ -1,44 +1,44 @@
-//! The rounds that were kept, and what is known of each: read one by one, since each takes a moment.
+//! List of saved rounds with their details, which are read one round at a time because each takes a moment.
 
 use crate::platform::{Entry, Files};
 use std::sync::Arc;
 use tamaire_play::{Level, Outcome, Replay, ReplayError};
 
-/// The rounds that were kept, the newest first.
+/// Saved rounds, the newest first.
 #[derive(Default)]
 pub struct Shelf(Vec<Kept>);
 
-/// A round that was kept.
+/// A saved round.
 pub struct Kept {
-    /// By which it is read.
+    /// Entry in the storage.
     pub entry: Entry,
-    /// What was found in it, once it was looked into; nothing where it cannot be played.
+    /// Details of the round: outer `None` before it was read, inner `None` if it cannot be played.
     pub found: Option<Option<Found>>,
 }
 
-/// What was found in a round that was kept.
+/// Details of a saved round.
 #[derive(Clone)]
 pub struct Found {
-    /// Where it was played.
+    /// Level of the round.
     pub level: Arc<Level>,
-    /// How it was won, if it was.
+    /// Outcome, if the round was won.
     pub outcome: Option<Outcome>,
-    /// How long it is [s].
+    /// Length [s].
     pub seconds: f32,
 }
 
 impl Shelf {
-    /// All of them.
+    /// Returns all saved rounds.
     pub fn iter(&self) -> impl Iterator<Item = &Kept> {
         self.0.iter()
     }
 
-    /// Whether there is none.
+    /// Whether there are no saved rounds.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Looks again which there are.
+    /// Reads the list of saved rounds again and keeps known details.
     pub(super) fn look(&mut self, files: &Files) {
         let before = std::mem::take(&mut self.0);
         let known = |entry: &Entry| before.iter().find(|kept| kept.entry == *entry);
@@ -49,7 +49,7 @@ impl Shelf {
         self.0 = kept.collect();
     }
 
-    /// Looks into one that is not known yet. A level that is known, here or among `levels`, is the same one.
+    /// Reads the details of one round that has none. Equal levels in the list or in `levels` are shared.
     pub(super) fn look_into_one(&mut self, files: &Files, levels: &[Arc<Level>]) {
         let Some(index) = self.0.iter().position(|kept| kept.found.is_none()) else {
             return;
@@ -60,7 +60,7 @@ impl Shelf {
     }
 
     fn found(&self, replay: &Replay, levels: &[Arc<Level>]) -> Result<Found, ReplayError> {
-        // To build a level takes long: the same one is not built again.
+        // Building a level takes long, so a known one is reused.
         let known = levels
             .iter()
             .cloned()
@@ -77,7 +77,7 @@ impl Shelf {
         })
     }
 
-    /// The levels of those that were looked into.
+    /// Returns the levels of the rounds with known details.
     pub fn levels(&self) -> impl Iterator<Item = Arc<Level>> {
         let found = self
             .0

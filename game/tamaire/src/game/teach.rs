@@ -1,20 +1,20 @@
-//! Telling somebody who is new to space what to try.
+//! Hints for players who are new to space.
 
 use super::{Game, Screen};
 use crate::input::{Action, Means};
 use fuwafuwa::vector::minus;
 
 impl Game {
-    /// How the hand moves and rises and the camera turns, with what was used last; each with whether it is still to be
-    /// told. Nothing in the plane, where nobody plays, and to those who have won in space. Who plays with one switch is told
-    /// what that does.
+    /// Returns the hints about moving, raising and turning for the input method used last, each with whether
+    /// it is still to be shown. There are none in the plane, outside of play, and for players who have won in
+    /// space. With scanning on, the only hint explains the switch.
     pub fn lesson(&self) -> Vec<(String, bool)> {
         if self.settings.scanning.is_on() {
             let is_played = self.screen() == Screen::Play && self.bout.session.is_played();
             let told = self.words().how_by_switch.to_string();
             return Vec::from_iter(is_played.then_some((told, !self.controls.scan.is_known())));
         }
-        // Where elements are seen, the wheel looks deeper.
+        // In the element view the wheel cuts deeper, so the hints would be wrong.
         if !self.is_played_in_space() || self.has_won_in_space() || self.bout.elements.is_some() {
             return Vec::new();
         }
@@ -30,7 +30,7 @@ impl Game {
         lines.into_iter().zip(self.bout.lesson.missing()).collect()
     }
 
-    /// Notes what was tried.
+    /// Updates the tutorial with the movements of this frame.
     pub(super) fn learn(&mut self, seconds: f32) {
         if !self.is_played_in_space() {
             return;

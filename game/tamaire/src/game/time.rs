@@ -1,4 +1,4 @@
-//! What happens as time passes: ticks, wins, the end of what is watched.
+//! Progress of time: ticks, wins, and the end of replays.
 
 use super::{Bout, Controls, Game, Screen, heard};
 use crate::haptics;
@@ -6,11 +6,11 @@ use crate::input::Manner;
 use tamaire_play::{InputFrame, PLAYERS};
 use tamaire_sound::Cue;
 
-/// Slow motion is this share of the usual speed.
+/// Speed of slow motion, relative to normal speed.
 const SLOW: f32 = 0.2;
 
 impl Game {
-    /// Lets `seconds` pass.
+    /// Advances the game by `seconds` [s].
     pub fn pass(&mut self, seconds: f32) {
         self.time += f64::from(seconds);
         self.notices.pass(seconds);
@@ -71,7 +71,8 @@ impl Game {
             turn: self.bout.turn(),
         };
         let still = self.settings.reduced_motion;
-        // In menus the same keys and sticks move the focus; what is won is not torn any more.
+        // In menus the same keys and sticks move the focus. After a win the hands stop, so that the body is
+        // not torn any more.
         let is_won = self.bout.round().progress().outcome.is_some();
         let in_round = self.screen() == Screen::Play && !is_won;
         let view = self.bout.view;
@@ -102,14 +103,14 @@ impl Game {
                 if !in_round {
                     return InputFrame::default();
                 }
-                // Who comes in only now begins where the level says.
+                // A player who joins now begins at the start position of the level.
                 let mut hands = round.level().scene().goals(0);
                 for (goal, hand) in hands.iter_mut().zip(round.hands()) {
                     *goal = hand.goal();
                 }
                 let tick = fuwafuwa::world::TICK;
                 let frame = players.frame(devices, &settings.bindings, &manner, &hands, tick);
-                // The wheel was turned once, however many ticks there are.
+                // A turn of the wheel counts once, however many ticks are played.
                 devices.lift = 0.0;
                 frame
             },
@@ -137,7 +138,7 @@ impl Game {
         }
     }
 
-    /// After two seconds of a round it is known whether this machine can bear it; if not that is told, once.
+    /// Tells the player once if the machine is too slow for the round, which is known after two seconds.
     fn tell_if_slow(&mut self) {
         const LEAST_TICKS: u64 = 120;
         const LEAST: f64 = 0.8;
@@ -149,7 +150,7 @@ impl Game {
         }
     }
 
-    /// Notes a win once, lets the body beam for a moment, then shows the result.
+    /// Records a win once, lets the body celebrate for a moment, and then shows the result.
     fn celebrate(&mut self, seconds: f32) {
         let Some(outcome) = self.bout.round().progress().outcome else {
             return;
@@ -160,7 +161,7 @@ impl Game {
         self.bout.cheered += seconds;
         if self.bout.session.is_played() && self.bout.won.is_none() {
             let level = self.bout.round().level().clone();
-            // A round that somebody shared may have another level under a known name.
+            // A shared round may have a different level under a known name.
             let is_known = self.listed(&level).is_some();
             let is_best = is_known && self.records.note(&level, &outcome);
             self.bout.won = Some((outcome, is_best));
@@ -187,7 +188,7 @@ mod tests {
     use crate::platform::{Clock, Files, Pads, Sound};
     use std::cell::Cell;
 
-    /// A game in its first level, on a machine that takes so long for a tick [s].
+    /// Creates a game in its first level, with a clock that advances by `tick` [s] at each call.
     fn game(tick: f64) -> Game {
         let mut game = Game::new(Files::nowhere(), Sound::none(), Pads::none());
         let now = Cell::new(0.0);
@@ -206,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slow_machine_plays_a_tick_a_frame() {
+    fn slow_machine_plays_one_tick_per_frame() {
         let mut quick = game(0.001);
         assert_eq!(ticks_in(&mut quick, 0.051), 3);
         let mut slow = game(0.04);
@@ -216,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn a_machine_that_cannot_bear_a_level_is_told_of_once() {
+    fn player_is_told_once_about_slow_machine() {
         for (tick, expect) in [(0.001, 0), (0.015, 0), (0.03, 1)] {
             let mut game = game(tick);
             (0..400).for_each(|_| game.pass(0.02));
@@ -227,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_seen_stands_still() {
+    fn hidden_or_paused_round_stands_still() {
         for screen in [
             Screen::Levels,
             Screen::Replays,
@@ -238,14 +239,14 @@ mod tests {
         ] {
             let mut game = game(0.001);
             game.go(Screen::Title);
-            assert_eq!(ticks_in(&mut game, 0.02), 1, "what plays by itself is seen");
+            assert_eq!(ticks_in(&mut game, 0.02), 1, "the title shows a round");
             game.go(screen);
             assert_eq!(ticks_in(&mut game, 0.05), 0, "{screen:?}");
         }
     }
 
     #[test]
-    fn after_weeks_time_passes_as_on_the_first_day() {
+    fn time_stays_precise_after_weeks() {
         let mut game = game(0.001);
         game.time = 60.0 * 86_400.0;
         let before = game.time;

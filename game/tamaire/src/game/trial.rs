@@ -1,18 +1,18 @@
-//! What a device is made to do on the screen where people try it.
+//! Test and measurement of a device on the force-feedback screen.
 
 use crate::settings::FULL;
 use force_feedback::{Calibration, Manner, Measured, Measurement, Settings, State};
 use sticks::{DeviceId, Snapshot};
 
-/// A stick that leans so far is at its rim, where it tears.
+/// Deflection beyond which a stick counts as at its rim, where it gets a tear impulse.
 const RIM: f32 = 0.95;
-/// And has left it again when it leans less than this.
+/// Deflection below which the stick has left the rim again.
 const BACK: f32 = 0.85;
 
-/// A device that is tried or measured.
+/// A device under test or measurement.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial {
-    /// Which.
+    /// Id of the device.
     pub device: DeviceId,
     act: Act,
     state: State,
@@ -22,29 +22,29 @@ pub struct Trial {
 
 #[derive(Clone, Copy, Debug)]
 enum Act {
-    /// It pushes back the further it is pushed, and tears at its rim.
+    /// Spring force that grows with the deflection, and a tear impulse at the rim.
     Spring,
     Measure(Measurement),
 }
 
-/// What came of a trial.
+/// Result of a step of a trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
-    /// It goes on.
+    /// The trial continues.
     GoesOn,
-    /// The device has gone.
+    /// The device was disconnected.
     Gone,
-    /// It is known how it is built in, or it could not be found out.
+    /// The measurement has ended. `None` = the mounting of the stick could not be determined.
     Known(Option<Calibration>),
 }
 
 impl Trial {
-    /// A device that pushes back, and tears when it is pushed to its rim.
+    /// Creates a test in which the device acts as a spring and tears at its rim.
     pub fn spring(device: DeviceId) -> Self {
         Self::of(device, Act::Spring)
     }
 
-    /// A device of which is found out how it is built in.
+    /// Creates a measurement of the mounting of the device.
     pub fn measure(device: DeviceId) -> Self {
         Self::of(device, Act::Measure(Measurement::default()))
     }
@@ -63,7 +63,7 @@ impl Trial {
         }
     }
 
-    /// Lets time pass [s].
+    /// Advances the trial by `seconds` [s].
     pub fn pass(&mut self, sticks: &Snapshot, seconds: f32) -> Outcome {
         let Some(device) = sticks.device(self.device) else {
             return Outcome::Gone;
@@ -89,23 +89,23 @@ impl Trial {
         Outcome::GoesOn
     }
 
-    /// What its device feels now.
+    /// Returns the feedback for a device, if it is the one under trial.
     pub fn state(&self, device: DeviceId) -> Option<State> {
         (device == self.device).then_some(self.state)
     }
 
-    /// A tear that it has not felt yet.
+    /// Returns the tear impulse that has not been sent yet, once.
     pub fn take_tear(&mut self) -> Option<(DeviceId, f32)> {
         Some((self.device, self.tear.take()?))
     }
 
-    /// How a device is to be felt, if not as usual.
+    /// Returns the force settings during a measurement. `None` = the usual ones.
     pub fn settings(&self, device: DeviceId) -> Option<Settings> {
         let is_measured = device == self.device && matches!(self.act, Act::Measure(_));
         is_measured.then_some(Measurement::SETTINGS)
     }
 
-    /// How much of a measurement is over, 0 to 1; None if it is none.
+    /// Progress of a measurement, 0 to 1. `None` for a test.
     pub fn progress(&self) -> Option<f32> {
         match &self.act {
             Act::Spring => None,

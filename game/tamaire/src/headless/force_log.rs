@@ -1,5 +1,5 @@
-//! What a round would be felt like: the forces on each hand in every substep, and what a stick and a pad would be told.
-//! `docs/force-log.md` tells what the columns are.
+//! Table of force feedback: the forces on each hand in every substep, and the output of a stick and of a pad.
+//! `docs/force-log.md` describes the columns.
 
 use crate::haptics;
 use crate::settings::Settings;
@@ -12,34 +12,35 @@ use std::path::Path;
 use std::time::Duration;
 use tamaire_play::{AnyRound, PLAYERS};
 
-/// From one update of a device to the next [s].
+/// Time between two updates of a device [s].
 const PERIOD: f64 = 0.004;
 
-/// The first line: what stands below it.
+/// First line of the table, with the names of the columns.
 const COLUMNS: &str = "seconds,row,player,\
     contact_x_N,contact_y_N,contact_z_N,coupling_x_N,coupling_y_N,coupling_z_N,\
     aim_x,aim_y,felt_x_N,felt_y_N,stick_x,stick_y,pad_slow,pad_fast,silent";
 
-/// A table that grows tick by tick: the substeps of a tick, then the updates from its end to that of the next. Sticks in it
-/// point at the goals of the hands, as those do that push back.
+/// Table that grows tick by tick: the substeps of a tick, then the updates from its end to the end of the
+/// next one. The simulated sticks point at the goals of the hands, as force-feedback sticks do.
 pub struct ForceLog {
     file: File,
-    /// Those of a tick, which go into the file at once: of a run that is killed there is all up to a tick.
+    /// Rows of the current tick. They are written at once, so that a killed run leaves complete ticks in the
+    /// file.
     rows: Vec<u8>,
-    /// Each player's stick and pad.
+    /// Stick and pad of each player.
     feels: [[Feel; 2]; PLAYERS],
-    /// Where each stick pointed at the end of the tick before.
+    /// Position of each stick at the end of the previous tick.
     aims: [Option<[f32; 2]>; PLAYERS],
-    /// As a new player finds them.
+    /// Default force settings.
     settings: force_feedback::Settings,
-    /// Updates so far.
+    /// Number of updates.
     updates: u64,
-    /// The first thing that could not be written.
+    /// First write error, if any.
     written: io::Result<()>,
 }
 
 impl ForceLog {
-    /// An empty table in a new file.
+    /// Creates a file with an empty table.
     pub fn create(path: &Path) -> io::Result<Self> {
         let mut file = File::create(path)?;
         writeln!(file, "{COLUMNS}")?;
@@ -54,7 +55,7 @@ impl ForceLog {
         })
     }
 
-    /// Adds the last tick of a round, and the updates from its end to that of the next.
+    /// Adds the last tick of a round, and the updates from its end to the end of the next tick.
     pub fn note(&mut self, round: &AnyRound) {
         if self.written.is_ok() {
             self.written = self.write(round);
@@ -62,7 +63,7 @@ impl ForceLog {
         }
     }
 
-    /// Whether all of it is in the file.
+    /// Returns the first write error, if any.
     pub fn finish(self) -> io::Result<()> {
         self.written
     }
@@ -110,7 +111,7 @@ impl ForceLog {
                 continue;
             }
             for (player, before) in before.iter().enumerate().take(hands.len()) {
-                // A stick is on its way for all of a tick.
+                // The stick moves to its new position during the whole tick.
                 let share = ((seconds - end) / tick) as f32;
                 let now = self.aims[player].unwrap_or_default();
                 let before = before.unwrap_or(now);
@@ -120,7 +121,8 @@ impl ForceLog {
         }
     }
 
-    /// One update of one player's devices, `seconds` after the start, when the game said something last at `end`.
+    /// Adds an update of the devices of a player at `seconds` after the start. `end` is the time of the
+    /// game's last message.
     fn update(
         &mut self,
         round: &AnyRound,
@@ -165,7 +167,7 @@ impl ForceLog {
     }
 }
 
-/// Side by side, to five places: what is less is nothing.
+/// Joins numbers with commas, rounded to five decimal places.
 fn numbers(all: &[f32]) -> String {
     let rounded = all
         .iter()
@@ -173,12 +175,12 @@ fn numbers(all: &[f32]) -> String {
     rounded.map(|k| k.to_string()).collect::<Vec<_>>().join(",")
 }
 
-/// In space the camera looks from the front.
+/// Rotation of the camera: in space it looks from the front.
 fn turn(round: &AnyRound) -> Option<f32> {
     matches!(round, AnyRound::Space(_)).then_some(0.0)
 }
 
-/// Where a stick points that points at a position in the arena [m].
+/// Returns the stick position for a position in the arena [m].
 fn aim_at(position: Vector, round: &AnyRound) -> [f32; 2] {
     let [low, high] = round.level().arena();
     let share = [0, 1, 2].map(|axis: usize| {
@@ -196,7 +198,7 @@ mod tests {
     use tamaire_play::{InputFrame, Level};
 
     #[test]
-    fn after_each_tick_all_of_it_is_in_the_file() {
+    fn file_contains_whole_ticks_after_each_tick() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("forces.csv");
         let mut log = ForceLog::create(&path).unwrap();
@@ -204,7 +206,7 @@ mod tests {
         for tick in 1..=3 {
             round.step(InputFrame::default());
             log.note(&round);
-            // Nobody gets to say that this is the end.
+            // Read before `finish`, as if the run were killed now.
             let table = std::fs::read_to_string(&path).unwrap();
             let last = format!("\n{:.6},substep,0,", f64::from(tick) * f64::from(TICK));
             assert!(table.contains(&last), "tick {tick}: {table}");

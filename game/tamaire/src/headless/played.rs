@@ -1,4 +1,4 @@
-//! Playing a round, as fast as it goes.
+//! Playing rounds at full speed.
 
 use super::force_log::ForceLog;
 use indicatif::{ProgressBar, ProgressFinish, ProgressStyle};
@@ -6,16 +6,16 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use tamaire_play::{AnyRound, Bot, Level, Playback, Replay, ReplayError};
 
-/// Ticks in a second.
+/// Ticks per second.
 pub const RATE: f32 = 60.0;
 
-/// A round that was played, and how long each tick took.
+/// A finished round, and the computing time of each tick.
 pub struct Played {
     pub round: AnyRound,
     pub times: Vec<Duration>,
 }
 
-/// A round that a bot plays for so many ticks at most, unless it wins.
+/// Plays a round by a bot until it wins or `most_ticks` have passed.
 pub fn of_bot(
     level: Arc<Level>,
     mut bot: Bot,
@@ -38,7 +38,7 @@ pub fn of_bot(
     Played { round, times }
 }
 
-/// A round as it was recorded.
+/// Plays a recorded round and checks it.
 pub fn of_replay(replay: Arc<Replay>, log: &mut Option<ForceLog>) -> Result<Played, ReplayError> {
     let bar = progress("playing", replay.ticks() as u64);
     let mut playback = Playback::new(replay)?;
@@ -56,11 +56,11 @@ pub fn of_replay(replay: Arc<Replay>, log: &mut Option<ForceLog>) -> Result<Play
     Ok(Played { round, times })
 }
 
-/// A bar for whoever waits at a terminal, until it is dropped; into a file or a pipe it writes nothing.
+/// Creates a progress bar that disappears when dropped. It is shown only on a terminal.
 pub fn progress(what: &'static str, ticks: u64) -> ProgressBar {
     let style = ProgressStyle::with_template("{msg} {wide_bar} {percent} %  {elapsed}");
     ProgressBar::new(ticks)
-        .with_style(style.expect("the template is well formed"))
+        .with_style(style.expect("template is valid"))
         .with_message(what)
         .with_finish(ProgressFinish::AndClear)
 }

@@ -1,4 +1,4 @@
-//! How a round went, for people and for programs.
+//! Report on a round, as text and as JSON.
 
 use super::played::{Played, RATE};
 use crate::film::by_route;
@@ -7,49 +7,49 @@ use std::fmt;
 use std::time::Duration;
 use tamaire_play::{Outcome, Route};
 
-/// How a round went. Its fields are those of the JSON.
+/// Report on a round. The fields are those of the JSON.
 #[derive(Debug, Serialize)]
 pub struct Report {
     /// Version of the game.
     game: &'static str,
-    /// By which the level is called up.
+    /// Id of the level.
     level: String,
-    /// Its name in English.
+    /// Name of the level in English.
     name: String,
     #[serde(flatten)]
     by: Player,
     won: bool,
     route: Option<Route>,
-    /// Of the game, until it was won or given up [s].
+    /// Game time until the round was won or given up [s].
     seconds: f32,
     ticks: u64,
-    /// Share of the mass in the largest piece of each body.
+    /// Fraction of the mass in the largest piece of each body.
     kept: f32,
-    /// Share of the mass in the basket.
+    /// Fraction of the mass in the basket.
     inside: f32,
-    /// Share that is enough.
+    /// Fraction of the mass that is required in the basket.
     needed: f32,
     pieces: usize,
-    /// For each wish of the level whether it came true.
+    /// Whether each wish of the level is fulfilled.
     wishes: Vec<bool>,
-    /// The world's at the end, in hexadecimal.
+    /// Hash of the final state of the world, in hexadecimal.
     hash: String,
-    /// How long the simulation of a tick took [ms].
+    /// Computing time of a tick [ms].
     median_tick_ms: f64,
     worst_tick_ms: f64,
 }
 
-/// Who played.
+/// Player of the round.
 #[derive(Clone, Debug, Serialize)]
 #[serde(untagged)]
 pub enum Player {
-    /// A bot, by its name.
+    /// A bot.
     Bot { bot: String, seed: u64 },
-    /// Whoever made the replay in a file.
+    /// A replay file.
     Replay { replay: String, genuine: bool },
 }
 
-/// Why a replay does not count.
+/// Report on a rejected replay.
 #[derive(Debug, Serialize)]
 pub struct Refusal {
     pub replay: String,
@@ -58,7 +58,7 @@ pub struct Refusal {
 }
 
 impl Report {
-    /// How a round went that someone played.
+    /// Creates the report on a round.
     pub fn of(played: &Played, by: Player) -> Self {
         let (round, level) = (&played.round, played.round.level());
         let progress = round.progress();
@@ -80,7 +80,7 @@ impl Report {
             seconds: round.frames().len() as f32 / RATE,
             ticks: round.frames().len() as u64,
             kept: progress.kept,
-            // The sum of nothing is -0.
+            // Turns -0, the sum of an empty iterator, into 0.
             inside: progress.inside + 0.0,
             needed: level.game().share,
             pieces: progress.pieces,
@@ -92,10 +92,10 @@ impl Report {
     }
 }
 
-/// As JSON, with a line end.
+/// Formats a value as JSON with a line end.
 pub fn json(value: &impl Serialize) -> String {
     let text = serde_json::to_string_pretty(value);
-    text.expect("it has no maps but those with names") + "\n"
+    text.expect("maps have string keys") + "\n"
 }
 
 impl fmt::Display for Report {
@@ -121,7 +121,7 @@ impl fmt::Display for Report {
         row("mass kept", percent(self.kept))?;
         row(
             "in basket",
-            format!("{} ({needed} is enough)", percent(self.inside)),
+            format!("{} ({needed} required)", percent(self.inside)),
         )?;
         row("pieces", self.pieces.to_string())?;
         if !self.wishes.is_empty() {
@@ -132,7 +132,7 @@ impl fmt::Display for Report {
         let (median, worst) = (self.median_tick_ms, self.worst_tick_ms);
         row(
             "simulation",
-            format!("{median:.2} ms a tick (median), {worst:.2} ms at worst"),
+            format!("{median:.2} ms per tick (median), {worst:.2} ms (worst)"),
         )
     }
 }

@@ -1,4 +1,4 @@
-//! Which key and which button mean what.
+//! Key and button bindings.
 
 use super::Action;
 use egui::Key;
@@ -6,23 +6,23 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use sticks::{Control, Direction, Labels, PadButton};
 
-/// Keys and buttons by action. No key and no button means two actions at once.
+/// Keys and buttons by action. Each key and button is bound to at most one action.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Bindings {
-    /// Keys.
+    /// Keyboard keys.
     pub keys: BTreeMap<Action, Vec<Key>>,
     /// Buttons of pads and sticks.
     pub buttons: BTreeMap<Action, Vec<PadKey>>,
 }
 
-/// A button as it is written down: `south` of a pad, `3` of a plain stick, `hat up`.
+/// Button in the notation of the settings file: `south` of a pad, `3` of a plain stick, `hat up`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct PadKey(pub String);
 
 impl PadKey {
-    /// The button that was pressed.
+    /// Returns the name of a control.
     pub fn of(control: Control) -> Self {
         Self(match control {
             Control::Button(index) => (index + 1).to_string(),
@@ -31,7 +31,8 @@ impl PadKey {
         })
     }
 
-    /// The same for people to read: as it is printed on a pad with such labels, else `left shoulder` for `leftshoulder`.
+    /// Display name: the label printed on a pad of this kind if known, otherwise the name in words, such as
+    /// `left shoulder` for `leftshoulder`.
     fn in_words(&self, labels: Labels) -> String {
         let mut all = PadButton::ALL.into_iter();
         let button = all.find(|&button| *self == Self::of(Control::Pad(button)));
@@ -46,7 +47,7 @@ impl PadKey {
         }
     }
 
-    /// Whether it is on a plain stick: who holds a pad has none of those.
+    /// Whether the button is on a plain stick rather than a pad.
     fn is_of_stick(&self) -> bool {
         self.0.starts_with("hat ") || self.0.parse::<u8>().is_ok()
     }
@@ -93,11 +94,11 @@ impl Default for Bindings {
             (Action::Raise, vec![stick(9)]),
             (Action::Lower, vec![stick(10)]),
             (Action::Join, vec![pad(PadButton::Back), stick(11)]),
-            // Few sticks have more than twelve: what one can play without comes last.
+            // Few sticks have more than twelve buttons, so actions that a round does not require come last.
             (Action::Step, vec![pad(PadButton::LeftShoulder), stick(12)]),
             (Action::Deeper, vec![pad(PadButton::RightStick)]),
             (Action::Shallower, vec![pad(PadButton::LeftStick)]),
-            // On a pad a child would press it by accident, and a pad does nothing worse than hum.
+            // Not on pads: a child could press it by accident, and a pad only rumbles.
             (Action::CutForces, vec![stick(8)]),
         ];
         Self {
@@ -108,17 +109,18 @@ impl Default for Bindings {
 }
 
 impl Bindings {
-    /// What a key means.
+    /// Returns the action of a key.
     pub fn of_key(&self, key: Key) -> Option<Action> {
         find(&self.keys, &key)
     }
 
-    /// What a button means.
+    /// Returns the action of a button.
     pub fn of_button(&self, control: Control) -> Option<Action> {
         find(&self.buttons, &PadKey::of(control))
     }
 
-    /// The keys and buttons of an action as they are printed, those of the keyboard first; pads have such labels.
+    /// Display names of the keys and of the buttons of an action. `labels` is the kind of labels printed on
+    /// the pad.
     pub fn names(&self, action: Action, labels: Labels) -> [String; 2] {
         let keys = self.keys.get(&action).into_iter().flatten();
         let buttons = self.buttons.get(&action).into_iter().flatten();
@@ -133,7 +135,7 @@ impl Bindings {
         ]
     }
 
-    /// The first key, or button of a plain stick, of each of these actions.
+    /// Display names of the first key, or of the first button of a plain stick, of each action.
     pub fn first_names(&self, actions: &[Action], on_stick: bool) -> String {
         let first = |action| match on_stick {
             true => {
@@ -151,13 +153,14 @@ impl Bindings {
             .join(" ")
     }
 
-    /// Makes a key mean an action, and nothing else. An action that loses its only key takes the old
-    /// one of this action in exchange, so that nothing gets out of reach.
+    /// Binds a key to an action and removes its old binding. An action that loses its only key gets the old
+    /// key of `action` in exchange, so that every action stays reachable.
     pub fn bind_key(&mut self, action: Action, key: Key) {
         bind(&mut self.keys, action, key, |_| true);
     }
 
-    /// The same for a button; those of pads and those of plain sticks do not know of each other.
+    /// Binds a button to an action in the same way. Buttons of pads and of plain sticks are exchanged only
+    /// among themselves.
     pub fn bind_button(&mut self, action: Action, control: Control) {
         let button = PadKey::of(control);
         let kind = button.is_of_stick();
@@ -166,10 +169,10 @@ impl Bindings {
         });
     }
 
-    /// The same with the usual keys and buttons for actions that have none.
+    /// Returns the bindings with default keys and buttons for actions that have none.
     pub fn complete(mut self) -> Self {
         let usual = Self::default();
-        // There must be a key for this one, whatever it meant before.
+        // Cutting forces always needs a key, even if its default key was bound to another action.
         complete(&mut self.keys, &usual.keys, Action::CutForces);
         if self.keys[&Action::CutForces].is_empty() {
             self.bind_key(Action::CutForces, usual.keys[&Action::CutForces][0]);
@@ -182,7 +185,7 @@ impl Bindings {
     }
 }
 
-/// A key as it is written: egui's arrows are in no font of ours.
+/// Display name of a key. The fonts of the game do not contain egui's arrow symbols.
 fn name_of(key: Key) -> &'static str {
     match key {
         Key::ArrowUp => "↑",
@@ -210,7 +213,7 @@ fn find<K: PartialEq>(map: &BTreeMap<Action, Vec<K>>, key: &K) -> Option<Action>
     found.map(|(&action, _)| action)
 }
 
-/// Gives an action a key, in place of those it had of the same kind.
+/// Replaces the keys of an action that are of the same kind as `key`.
 fn bind<K: PartialEq + Clone>(
     map: &mut BTreeMap<Action, Vec<K>>,
     action: Action,
@@ -236,18 +239,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_key_means_one_thing_and_no_action_loses_its_last_key() {
+    fn rebinding_keeps_bindings_unique_and_every_action_reachable() {
         let mut bindings = Bindings::default();
         bindings.bind_key(Action::Retry, Key::F);
         assert_eq!(bindings.of_key(Key::F), Some(Action::Retry));
-        // Slow motion had F alone: it takes over what was given up.
+        // Slow motion had only F, so it gets the old key of the other action.
         assert_eq!(bindings.of_key(Key::R), Some(Action::Slow));
         bindings.bind_button(Action::Pause, Control::Pad(PadButton::North));
         assert_eq!(
             bindings.of_button(Control::Pad(PadButton::North)),
             Some(Action::Pause)
         );
-        // Who holds a pad takes over a button of it, and plain sticks stay as they were.
+        // Only the pad button is exchanged, and plain sticks keep their bindings.
         let start = Control::Pad(PadButton::Start);
         assert_eq!(bindings.of_button(start), Some(Action::Retry));
         assert_eq!(bindings.of_button(Control::Button(3)), Some(Action::Retry));
@@ -255,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn names_of_buttons_can_be_read() {
+    fn button_names_are_readable() {
         let bindings = Bindings::default();
         let name = |action, labels| bindings.names(action, labels)[1].clone();
         let nobody_knows = Labels::Unknown;
@@ -274,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stick_with_twelve_buttons_can_do_all_that_a_round_needs() {
+    fn stick_with_twelve_buttons_covers_all_actions_of_round() {
         let bindings = Bindings::default();
         let is_there = |action: &Action| {
             let buttons = bindings.buttons[action].iter();
@@ -284,11 +287,11 @@ mod tests {
         };
         let missing: Vec<Action> = Action::ALL.into_iter().filter(|k| !is_there(k)).collect();
         let rest = [Action::Step, Action::Deeper, Action::Shallower];
-        assert_eq!(missing, rest, "what one looks at bodies with");
+        assert_eq!(missing, rest, "only display actions may be missing");
     }
 
     #[test]
-    fn what_a_file_leaves_out_is_as_usual_unless_it_means_something_else_there() {
+    fn missing_bindings_are_default_unless_taken() {
         let text = "[keys]\nretry = [\"P\"]\n[buttons]\nnonsense = []\n";
         assert!(toml::from_str::<Bindings>(text).is_err(), "no such action");
         let text = "[keys]\nretry = [\"P\"]\nfuture = 1\n";
@@ -301,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn there_is_always_a_key_that_cuts_forces() {
+    fn cutting_forces_always_has_key() {
         let text = "[keys]\nretry = [\"F12\"]\n";
         let bindings = toml::from_str::<Bindings>(text).unwrap().complete();
         assert_eq!(bindings.of_key(Key::F12), Some(Action::CutForces));
@@ -313,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn bindings_are_written_in_words_and_read_again() {
+    fn bindings_survive_writing_and_reading() {
         let bindings = Bindings::default();
         let text = toml::to_string(&bindings).unwrap();
         assert!(text.contains("retry = [\"north\", \"4\"]"), "{text}");

@@ -1,4 +1,4 @@
-//! What devices say at a moment, and which way that leads.
+//! Input of all devices at a moment, and the directions derived from it.
 
 use super::{Action, Bindings, Offer};
 use egui::{Key, Vec2};
@@ -6,47 +6,49 @@ use fuwafuwa::Vector;
 use std::collections::BTreeSet;
 use sticks::{Device, DeviceId, Snapshot};
 
-/// A stick that leans less than this does nothing, and one that leans more than `RIM` leans fully.
+/// Deflection below which a stick counts as centred; above `RIM` it counts as fully deflected.
 pub(super) const DEAD: f32 = 0.15;
 pub(super) const RIM: f32 = 0.95;
 
-/// A place at the table: what a player holds.
+/// Input source of a player.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Seat {
-    /// Mouse or touch.
+    /// Mouse or first finger.
     Pointer,
-    /// A second finger.
+    /// Second finger.
     Finger,
-    /// Keys.
+    /// Keyboard.
     Keys,
-    /// A stick or pad.
+    /// Stick or pad.
     Stick(DeviceId),
 }
 
-/// What the devices say at a moment.
+/// Input of all devices at a moment.
 #[derive(Clone, Debug, Default)]
 pub struct Devices {
-    /// Where the mouse or a finger points in the world [m], when it moved or is down.
+    /// Position of the mouse or finger in the world [m], if it moved or is down.
     pub pointer: Option<Vector>,
-    /// Where a second finger points, likewise: it is the hand of a second player who joined with it.
+    /// Position of the second finger in the world [m]. It moves the hand of a second player who joined by
+    /// touch.
     pub second: Option<Vector>,
-    /// What the buttons on the screen mean that fingers hold.
+    /// Actions of the screen buttons held by fingers.
     pub pressed: BTreeSet<Action>,
-    /// What the one switch has taken of what was offered.
+    /// Action selected by the switch in scanning.
     pub taken: Option<Offer>,
     /// Keys that are held.
     pub keys: BTreeSet<Key>,
-    /// How far the wheel or a second finger was turned or drawn, for the hand to rise in space [m].
+    /// Lift of the hand in space by the wheel or a second finger [m].
     pub lift: f32,
     /// Sticks and pads.
     pub sticks: Snapshot,
-    /// Those of them that push back. They have no spring to the middle, so they point at places.
+    /// Devices with force feedback. They have no centring spring, so their position sets the position of the
+    /// hand.
     pub pushing: BTreeSet<DeviceId>,
 }
 
 impl Devices {
-    /// How fast the camera is to go around what it looks at, to the right and up, from -1 to 1. There is one
-    /// camera: of all who ask, it obeys the one who asks for most.
+    /// Requested rotation speed of the camera, to the right and up, -1 to 1. There is one camera for all
+    /// players, which follows the largest request.
     pub fn turn(&self, bindings: &Bindings) -> Vec2 {
         let turn =
             |held: &dyn Fn(Action) -> bool| opposed(held, Action::TurnRight, Action::TurnLeft);
@@ -67,7 +69,7 @@ impl Devices {
         most.clamp(Vec2::splat(-1.0), Vec2::splat(1.0))
     }
 
-    /// How fast bodies whose elements are seen are to be opened further, from -1 to 1.
+    /// Requested speed of cutting bodies open in the element view, -1 to 1.
     pub fn deeper(&self, bindings: &Bindings) -> f32 {
         let deeper =
             |held: &dyn Fn(Action) -> bool| opposed(held, Action::Deeper, Action::Shallower);
@@ -79,38 +81,38 @@ impl Devices {
         (keys + sticks.sum::<f32>()).clamp(-1.0, 1.0)
     }
 
-    /// Whether a key that means this is held.
+    /// Whether a key with this action is held.
     pub(super) fn holds_key(&self, bindings: &Bindings, action: Action) -> bool {
         let means = |&key| bindings.of_key(key) == Some(action);
         self.keys.iter().any(means)
     }
 
-    /// Whether a key that means this, or a button on the screen, is held.
+    /// Whether a key or screen button with this action is held.
     fn holds(&self, bindings: &Bindings, action: Action) -> bool {
         self.pressed.contains(&action) || self.holds_key(bindings, action)
     }
 }
 
-/// What the buttons mean that are held on a device.
+/// Returns the actions of the held buttons of a device.
 pub(super) fn held_on(device: &Device, bindings: &Bindings) -> Vec<Action> {
     let held = device.controls().filter(|(_, button)| button.down);
     held.filter_map(|(control, _)| bindings.of_button(control))
         .collect()
 }
 
-/// How far the triggers of a pad are pulled, for the hand to rise: the right one up, the left one down.
+/// Lift by the triggers of a pad, -1 to 1: the right one raises the hand, the left one lowers it.
 pub(super) fn rise_of(device: &Device) -> f32 {
     let pulls = device.pad.map_or([0.0; 2], |pad| pad.triggers);
     let [left, right] = pulls.map(|pull| sticks::radial_dead_zone([pull, 0.0], DEAD, RIM)[0]);
     right - left
 }
 
-/// 1, -1 or 0.
+/// Returns 1 if only `more` is held, -1 if only `less` is held, otherwise 0.
 pub(super) fn opposed(held: impl Fn(Action) -> bool, more: Action, less: Action) -> f32 {
     f32::from(i8::from(held(more)) - i8::from(held(less)))
 }
 
-/// The way in which the four ways that are held lead together.
+/// Sum of the directions that are held.
 pub(super) fn direction(held: impl Fn(Action) -> bool) -> Vec2 {
     Vec2::new(
         opposed(&held, Action::Right, Action::Left),
@@ -146,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn one_camera_obeys_the_one_who_asks_for_most() {
+    fn camera_follows_largest_request() {
         let rest = || pad(1, [0.1, -0.1], [1.0, 1.0]);
         assert_eq!(turn(vec![rest()], &[]), [0.0; 2]);
         assert_eq!(
@@ -154,7 +156,8 @@ mod tests {
             [0.0, 1.0]
         );
         assert_eq!(turn(vec![rest()], &[Key::OpenBracket]), [-1.0, 0.0]);
-        // Two who lean alike are no faster than one, and who leans further is not held back.
+        // Two equal requests are no faster than one, and an opposite request does not slow the largest one
+        // down.
         let both = vec![pad(1, [1.0, 0.0], [0.0; 2]), pad(2, [1.0, 0.0], [0.0; 2])];
         assert_eq!(turn(both, &[]), [1.0, 0.0]);
         let against = vec![pad(1, [-0.5, 0.0], [0.0; 2]), pad(2, [1.0, 0.0], [0.0; 2])];
@@ -171,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn the_right_trigger_lifts_the_left_one_lowers_and_the_right_stick_does_neither() {
+    fn triggers_lift_and_lower_and_right_stick_does_not() {
         assert_eq!(rise_of(&pad(1, [1.0, 1.0], [0.0, 0.05])), 0.0);
         assert_eq!(rise_of(&pad(1, [0.0; 2], [0.0, 1.0])), 1.0);
         assert_eq!(rise_of(&pad(1, [0.0; 2], [1.0, 0.0])), -1.0);

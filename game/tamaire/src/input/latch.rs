@@ -1,4 +1,4 @@
-//! Keys that stay down until they are pressed again: for hands that cannot hold them.
+//! Sticky keys: a key stays down until it is pressed again, for players who cannot hold keys.
 
 use super::{Action, Bindings};
 use egui::Key;
@@ -9,10 +9,10 @@ use std::collections::BTreeSet;
 pub struct Latch(BTreeSet<Key>);
 
 impl Latch {
-    /// A key is pressed: it stays down, or comes up again where it was down. What means the opposite comes up.
+    /// Presses a key: it stays down, or is released if it was down. Keys of the opposite action are released.
     pub fn press(&mut self, key: Key, bindings: &Bindings) {
         let Some(opposite) = bindings.of_key(key).and_then(opposite) else {
-            // What it means happens once.
+            // The action is not continuous.
             return;
         };
         self.0
@@ -22,18 +22,18 @@ impl Latch {
         }
     }
 
-    /// All come up.
+    /// Releases all keys.
     pub fn release(&mut self) {
         self.0.clear();
     }
 
-    /// Those that are down.
+    /// Returns the keys that are down.
     pub fn keys(&self) -> BTreeSet<Key> {
         self.0.clone()
     }
 }
 
-/// What ends an action that lasts, if it is one.
+/// Returns the opposite of a continuous action. `None` for other actions.
 fn opposite(action: Action) -> Option<Action> {
     let pairs = [
         (Action::Up, Action::Down),
@@ -54,7 +54,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_key_stays_down_until_it_or_its_opposite_is_pressed() {
+    fn key_stays_down_until_it_or_its_opposite_is_pressed() {
         let (mut latch, bindings) = (Latch::default(), Bindings::default());
         let mut press = |key| {
             latch.press(key, &bindings);
@@ -62,7 +62,7 @@ mod tests {
         };
         assert_eq!(press(Key::ArrowRight), [Key::ArrowRight]);
         assert_eq!(press(Key::ArrowUp).len(), 2);
-        assert_eq!(press(Key::R).len(), 2, "it happens once");
+        assert_eq!(press(Key::R).len(), 2, "the action is not continuous");
         assert_eq!(press(Key::A), [Key::ArrowUp, Key::A]);
         assert_eq!(press(Key::ArrowUp), [Key::A]);
         assert_eq!(press(Key::A), []);

@@ -1,25 +1,25 @@
-//! How the devices of a player are taken: what is meant by right and away, and where hands may be.
+//! Interpretation of a player's input: sensitivity, directions, and limits of the hands.
 
 use egui::Vec2;
 use fuwafuwa::Vector;
 
-/// How the devices of a player are taken.
+/// Interpretation of a player's input.
 #[derive(Copy, Clone, Debug)]
 pub struct Manner {
-    /// 1 = usual.
+    /// Sensitivity, 1 = default.
     pub sensitivity: f32,
-    /// Whether a stick points at a position in the arena, instead of saying how fast to go.
+    /// Whether the position of a stick sets the position of the hand, instead of its speed.
     pub stick_places: bool,
-    /// Low and high corner of where goals may be [m].
+    /// Low and high corner of the box to which goals are limited [m].
     pub arena: [Vector; 2],
-    /// In space by how much the camera went around to the right [rad]: what is away from the player goes along the floor,
-    /// away from the camera.
+    /// In space: rotation of the camera to the right [rad]. "Away from the player" then means along the
+    /// floor, away from the camera. `None` in the plane.
     pub turn: Option<f32>,
 }
 
 impl Manner {
-    /// Which way in the world it is when somebody leans to the right and away; in space, where the camera went around to the
-    /// right by `turn` [rad].
+    /// Converts a direction of the player (right, away) to a direction in the world. `turn` is the rotation
+    /// of the camera to the right [rad], `None` in the plane.
     pub fn along(turn: Option<f32>, lean: Vec2) -> Vector {
         let Some(turn) = turn else {
             return [lean.x, lean.y, 0.0];
@@ -32,7 +32,7 @@ impl Manner {
         ]
     }
 
-    /// The nearest position in the arena. A level in the plane says nothing about the third axis.
+    /// Clamps a position to the arena. In the plane the third axis is ignored.
     pub(super) fn within(&self, mut position: Vector) -> Vector {
         let [low, high] = self.arena;
         let axes = if self.turn.is_some() { 3 } else { 2 };
@@ -42,7 +42,7 @@ impl Manner {
         position
     }
 
-    /// The position in the arena at which a stick points, in space at a height [m].
+    /// Converts a stick position to a position in the arena [m]. In space the height is `height` [m].
     pub(super) fn position_of(&self, stick: [f32; 2], height: f32) -> Vector {
         let [low, high] = self.arena;
         let way = Self::along(self.turn, Vec2::from(stick));

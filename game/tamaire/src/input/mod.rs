@@ -1,4 +1,4 @@
-//! What devices say becomes what players want: places for their hands, and actions.
+//! Input: converts the state of devices to goals of hands and to actions.
 
 mod bindings;
 mod devices;
@@ -16,64 +16,64 @@ pub use scan::{Offer, Scan, Scanning};
 
 use serde::{Deserialize, Serialize};
 
-/// With what the game is played: what an explanation has to name.
+/// Input method, which hints refer to.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub enum Means {
-    /// A mouse.
+    /// Mouse.
     #[default]
     Mouse,
-    /// Fingers on the screen.
+    /// Touch.
     Fingers,
-    /// Keys alone.
+    /// Keyboard only.
     Keys,
-    /// A pad.
+    /// Pad.
     Pad,
-    /// A plain stick.
+    /// Plain stick.
     Stick,
 }
 
-/// Something that a player can want, beside moving about with a mouse or a stick.
+/// An action of a player, apart from pointing with a mouse or stick.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Action {
-    /// The hand upwards.
+    /// Moves the hand upwards.
     Up,
-    /// The hand downwards.
+    /// Moves the hand downwards.
     Down,
-    /// The hand to the left.
+    /// Moves the hand to the left.
     Left,
-    /// The hand to the right.
+    /// Moves the hand to the right.
     Right,
-    /// The round from its start.
+    /// Restarts the round.
     Retry,
-    /// A rest.
+    /// Pauses the round.
     Pause,
-    /// The elements instead of the skin.
+    /// Switches between the skin and the elements.
     Elements,
-    /// A fifth of the speed.
+    /// Switches slow motion: a fifth of the normal speed.
     Slow,
-    /// One tick.
+    /// Advances by one tick.
     Step,
-    /// A second player comes in on this device, or leaves.
+    /// Lets a second player join or leave with this device.
     Join,
-    /// In space the hand upwards, off the floor.
+    /// In space: raises the hand off the floor.
     Raise,
-    /// In space the hand downwards.
+    /// In space: lowers the hand.
     Lower,
-    /// In space the camera around to the left.
+    /// In space: turns the camera to the left.
     TurnLeft,
-    /// In space the camera around to the right.
+    /// In space: turns the camera to the right.
     TurnRight,
-    /// In space, where elements are seen, further into bodies.
+    /// In space: cuts bodies open further in the element view.
     Deeper,
-    /// Less far into them.
+    /// In space: cuts bodies open less far in the element view.
     Shallower,
-    /// An end to all that sticks and pads do to hands.
+    /// Stops all force feedback and rumble.
     CutForces,
 }
 
 impl Action {
-    /// All of them, in the order in which settings list them.
+    /// All actions, in the order of the settings.
     pub const ALL: [Self; 17] = [
         Self::Up,
         Self::Down,

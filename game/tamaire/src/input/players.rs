@@ -1,4 +1,4 @@
-//! Who plays which hand with which device, and where they want it to be.
+//! Assignment of devices to players, and the goals of their hands.
 
 use super::devices::{DEAD, RIM, direction, held_on, opposed, rise_of};
 use super::{Action, Bindings, Devices, Manner, Offer, Seat};
@@ -9,50 +9,53 @@ use std::collections::BTreeMap;
 use sticks::DeviceId;
 use tamaire_play::{InputFrame, PLAYERS};
 
-/// A stick that moves by less than this does not move.
+/// Stick movement below which a stick counts as still.
 const NOISE: f32 = 0.01;
-/// How fast a key or a stick that leans fully moves the goal at the usual sensitivity [m/s].
+/// Speed of the goal with a key or a fully deflected stick at default sensitivity [m/s].
 const PACE: f32 = 2.0;
-/// The share of that at which one switch moves it, which cannot push now harder, now less: so a body gives way and stays whole.
+/// Speed factor for play with one switch. A switch cannot vary the force, and at this speed a body yields
+/// without tearing.
 const SWITCHED: f32 = 0.4;
-/// How fast it rises in space [m/s].
+/// Speed of raising and lowering the goal in space [m/s].
 const RISE: f32 = 1.2;
 
-/// Who plays, and where they want their hands to be.
+/// Players and the goals of their hands.
 #[derive(Clone, Debug, Default)]
 pub struct Players {
-    /// What the second player holds, while there is one; the first has all the rest.
+    /// Input source of the second player. `None` = one player. The first player has all other devices.
     second: Option<Seat>,
-    /// Where each wants to be [m]. The hand may be far from there, and its goal as well.
+    /// Position that each player wants [m]. The hand and its goal may be far from it.
     goals: [Option<Vector>; PLAYERS],
-    /// How sticks leaned in the last tick. One that points at a position does so when it moves; while
-    /// it is still, be it at rest, mouse and keys have their say.
+    /// Stick positions in the last tick. A stick that sets a position does so only when it moves, so that
+    /// mouse and keys work while it is still.
     leans: BTreeMap<DeviceId, [f32; 2]>,
-    /// With what each moved the hand last, and how long ago [s].
+    /// Device with which each player last moved the hand, and the time since the last movement by a stick or
+    /// pad [s].
     used: [Option<Seat>; PLAYERS],
     rested: [f32; PLAYERS],
 }
 
-/// What the devices of a player ask for in a tick.
+/// Requests of a player's devices in a tick.
 #[derive(Default)]
 struct Asked {
-    /// To be somewhere [m].
+    /// Requested position [m].
     position: Option<Vector>,
-    /// To go to the right and away, at full pace where this is 1 long.
+    /// Requested movement to the right and away, full speed at length 1.
     lean: Vec2,
-    /// To rise, at full pace where this is 1.
+    /// Requested lift, full speed at 1.
     lift: f32,
-    /// To be higher at once [m].
+    /// Requested change of height by the wheel [m].
     wheel: f32,
 }
 
 impl Players {
-    /// What the second player holds.
+    /// Returns the input source of the second player.
     pub fn second(&self) -> Option<Seat> {
         self.second
     }
 
-    /// The stick or pad with which a player moved the hand last, unless it was something else. Who has several feels one.
+    /// Returns the stick or pad with which a player last moved the hand. `None` if it was another device.
+    /// Only this device gets force feedback.
     pub fn device_of(&self, player: usize) -> Option<DeviceId> {
         match self.used[player] {
             Some(Seat::Stick(id)) => Some(id),
@@ -60,31 +63,31 @@ impl Players {
         }
     }
 
-    /// For how long a player has left the hand alone [s].
+    /// Time since a player last moved the hand with a stick or pad [s].
     pub fn rested(&self, player: usize) -> f32 {
         self.rested[player]
     }
 
-    /// Where a player wants to be [m], when that was ever said.
+    /// Position that a player wants [m]. `None` before the first input.
     pub fn wanted(&self, player: usize) -> Option<Vector> {
         self.goals[player]
     }
 
-    /// A device asks to join, or to leave again.
+    /// Lets a second player join with a device, or leave if it is the same device.
     pub fn join(&mut self, seat: Seat) {
         self.second = match self.second {
             Some(taken) if taken == seat => None,
-            // The mouse cannot press a button that the keyboard has: a keyboard that joins twice
-            // leaves, and one that is alone keeps the mouse for the first player.
+            // A keyboard that joins twice leaves. Joining with the keyboard leaves the mouse to the first
+            // player.
             _ => Some(seat),
         };
         self.goals[1] = None;
         self.used = [self.used[0].filter(|used| *used != seat), self.second];
     }
 
-    /// A new round: everybody wants to be where the hand is.
+    /// Prepares for a new round: the goals follow the hands until there is input.
     pub fn start(&mut self) {
-        // A stick that leans from before means nothing until it moves.
+        // A stick that is still deflected from the last round counts only when it moves.
         *self = Self {
             second: self.second,
             leans: std::mem::take(&mut self.leans),
@@ -92,8 +95,8 @@ impl Players {
         };
     }
 
-    /// What they want in the next tick, `seconds` long; `hands` are where the hands' goals are now,
-    /// or where they will come in [m].
+    /// Returns the goals of the hands for the next tick, which is `seconds` long. `hands` are the current
+    /// goals of the hands, or their start positions [m].
     pub fn frame(
         &mut self,
         devices: &Devices,
@@ -116,7 +119,7 @@ impl Players {
                 self.goals[1] = None;
                 continue;
             }
-            // A level may have one hand only.
+            // The level may have only one hand.
             let Some(&here) = hands.get(player) else {
                 continue;
             };
@@ -142,7 +145,8 @@ impl Players {
         let asked = self.asked(player, devices, bindings, manner, wanted[1]);
         let mut goal = asked.position.or(self.goals[player]);
         if asked.lean != Vec2::ZERO {
-            // From where the goal is now: what pushes in vain winds nothing up.
+            // Starts from the current goal of the hand, so that pushing against an obstacle does not
+            // accumulate.
             let lean = asked.lean * (1.0 / asked.lean.length().max(1.0));
             let step = Manner::along(manner.turn, lean * PACE * manner.sensitivity * seconds);
             let mut position = manner.within(plus(here, step));
@@ -160,7 +164,7 @@ impl Players {
         self.goals[player] = goal;
     }
 
-    /// What the devices of a player, who wants to be at a height [m], ask for.
+    /// Collects the requests of a player's devices. `height` is the height that the player wants [m].
     fn asked(
         &mut self,
         player: usize,
@@ -213,7 +217,7 @@ impl Players {
             let rise = rises * rise;
             asked.lean += hat;
             asked.lift += rise;
-            // One that pushes back stays where it is put, in a hand or not.
+            // A force-feedback stick keeps its position after it is let go, so its deflection shows no use.
             let leans = stick != [0.0; 2] && !pushes_back;
             if moved || leans || hat != Vec2::ZERO || rise != 0.0 {
                 self.used[player] = Some(Seat::Stick(device.id));
@@ -240,8 +244,9 @@ impl Players {
     }
 }
 
-/// A height that is wanted, after the wheel was turned and something leaned [m]; the goal is at the height `here`. Whoever
-/// turns back does so from there, and what leans in vain winds nothing up; but nobody who goes up comes down for it.
+/// Returns the wanted height after wheel and lift input [m]; `here` is the height of the current goal. A
+/// change of direction starts from `here`, and lifting against an obstacle does not accumulate. Input upwards
+/// never lowers the hand, and vice versa.
 fn raised(mut wanted: f32, here: f32, wheel: f32, lift: f32) -> f32 {
     let further = |by: f32| if by > 0.0 { f32::max } else { f32::min };
     if wheel != 0.0 {

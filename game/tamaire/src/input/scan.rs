@@ -1,34 +1,34 @@
-//! Play with one switch: what it can do is offered in turn, and pressing it takes what is offered.
+//! Scanning for play with one switch: actions are offered in turn, and a press selects the current one.
 
 use egui::Vec2;
 use serde::{Deserialize, Serialize};
 use std::f32::consts::TAU;
 
-/// For how many steps the arrow goes around once.
+/// Number of steps in which the direction arrow goes around once.
 const TURN: f32 = 5.0;
 
-/// How fast one offer follows the other.
+/// Speed of scanning.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Scanning {
-    /// Nothing is offered: there is more than a switch.
+    /// No scanning.
     #[default]
     Off,
-    /// Every two seconds.
+    /// One step every 2 s.
     Slow,
-    /// Every 1.2 s.
+    /// One step every 1.2 s.
     Medium,
-    /// Every 0.7 s.
+    /// One step every 0.7 s.
     Quick,
 }
 
 impl Scanning {
-    /// Whether anything is offered.
+    /// Whether scanning is on.
     pub fn is_on(self) -> bool {
         self != Self::Off
     }
 
-    /// How long an offer lasts [s], if there are any.
+    /// Duration of a step [s], if scanning is on.
     pub fn step(self) -> Option<f32> {
         match self {
             Self::Off => None,
@@ -39,33 +39,33 @@ impl Scanning {
     }
 }
 
-/// What the switch does when it is pressed.
+/// An action that a press of the switch selects.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum Offer {
-    /// The hand goes this way for as long as it is pressed: to the right and away, 1 long.
+    /// Moves the hand in a direction (right, away; unit length) while the switch is pressed.
     Way(Vec2),
-    /// In space the hand rises for as long.
+    /// In space: raises the hand while the switch is pressed.
     Raise,
-    /// It sinks.
+    /// In space: lowers the hand while the switch is pressed.
     Lower,
-    /// A rest.
+    /// Pauses the round.
     Pause,
 }
 
-/// What is offered in a round.
+/// State of scanning in a round.
 #[derive(Clone, Debug, Default)]
 pub struct Scan {
-    /// How far it has come around [steps].
+    /// Position in the cycle of offers [steps].
     at: f32,
-    /// Whether the switch was up: what brought the round up takes nothing in it.
+    /// Whether the switch was up. The press that started the round must not select anything in it.
     was_up: bool,
     is_taken: bool,
     is_known: bool,
 }
 
 impl Scan {
-    /// Lets time pass with the switch pressed or not; one that stays is taken by one press and left by the next. Says
-    /// whether a rest is asked for.
+    /// Advances scanning with the switch pressed or not. With `stays`, one press selects and the next one
+    /// ends the action. Returns whether a pause is requested.
     pub fn pass(&mut self, is_pressed: bool, stays: bool, steps: f32, is_space: bool) -> bool {
         let is_new = is_pressed && self.was_up;
         self.was_up = !is_pressed;
@@ -81,7 +81,7 @@ impl Scan {
         is_new && self.is_taken && self.offer(is_space) == Offer::Pause
     }
 
-    /// What is offered: each way around, beginning at the right, then whatever else there is.
+    /// Returns the current offer: first all directions, beginning at the right, then the other actions.
     pub fn offer(&self, is_space: bool) -> Offer {
         match (self.at - TURN, is_space) {
             (after, _) if after < 0.0 => Offer::Way(Vec2::angled(TAU * self.at / TURN)),
@@ -91,12 +91,12 @@ impl Scan {
         }
     }
 
-    /// Whether anything was taken yet.
+    /// Whether the player has ever selected an offer.
     pub fn is_known(&self) -> bool {
         self.is_known
     }
 
-    /// Begins with the first offer, once the switch was up; what is known stays so.
+    /// Restarts with the first offer. Selecting works only after the switch was up.
     pub fn start(&mut self) {
         *self = Self {
             is_known: self.is_known,
@@ -104,7 +104,7 @@ impl Scan {
         };
     }
 
-    /// What of it is taken.
+    /// Returns the selected offer.
     pub fn taken(&self, is_space: bool) -> Option<Offer> {
         self.is_taken.then(|| self.offer(is_space))
     }
@@ -115,7 +115,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn everything_is_offered_in_turn() {
+    fn all_actions_are_offered_in_turn() {
         for (is_space, others) in [
             (false, vec![Offer::Pause]),
             (true, vec![Offer::Raise, Offer::Lower, Offer::Pause]),
@@ -132,12 +132,12 @@ mod tests {
             for quarter in [Vec2::X, Vec2::Y, -Vec2::X, -Vec2::Y] {
                 assert!(seen.iter().any(|way| way.dot(quarter) > 0.99), "{quarter}");
             }
-            assert!(scan.at < 0.1 || scan.at > TURN, "it begins again");
+            assert!(scan.at < 0.1 || scan.at > TURN, "the cycle restarts");
         }
     }
 
     #[test]
-    fn what_is_taken_lasts_as_long_as_the_switch_is_pressed() {
+    fn selected_action_lasts_while_switch_is_pressed() {
         let mut scan = Scan::default();
         scan.pass(false, false, 2.0, false);
         let offer = scan.offer(false);
@@ -151,19 +151,19 @@ mod tests {
     }
 
     #[test]
-    fn a_switch_that_stays_is_left_by_the_next_press() {
+    fn next_press_ends_sticky_action() {
         let mut scan = Scan::default();
         let mut taken = Vec::new();
         for is_pressed in [true, false, true, false, false, true, true, false] {
             scan.pass(is_pressed, true, 0.1, false);
             taken.push(scan.is_taken);
         }
-        // The first press brought the round up.
+        // The first press started the round.
         assert_eq!(taken, [false, false, true, true, true, false, false, false]);
     }
 
     #[test]
-    fn a_rest_is_asked_for_once() {
+    fn pause_is_requested_once() {
         let mut scan = Scan::default();
         scan.pass(false, false, TURN + 0.5, false);
         assert!(scan.pass(true, false, 0.0, false));

@@ -1,9 +1,9 @@
 //! Keeps the screen on.
 
-/// Asks an X server neither to blank the screen nor to switch it off; others do neither by themselves.
+/// Disables the screen saver and power saving of an X server. Other systems are left as they are.
 ///
 /// # Errors
-/// Why it was not asked.
+/// The reason why the request could not be sent.
 #[cfg(all(unix, not(target_os = "macos")))]
 pub fn keep_awake() -> Result<(), String> {
     use x11rb::connection::{Connection, RequestConnection};
@@ -16,7 +16,7 @@ pub fn keep_awake() -> Result<(), String> {
     let (server, _) = x11rb::connect(None).map_err(|error| why(&error))?;
     let quiet = server.set_screen_saver(0, 0, Blanking::NOT_PREFERRED, Exposures::NOT_ALLOWED);
     quiet.map_err(|error| why(&error))?;
-    // A server without it does not switch off.
+    // A server without this extension does not switch the screen off.
     if server
         .extension_information(dpms::X11_EXTENSION_NAME)
         .is_ok_and(|found| found.is_some())
@@ -26,7 +26,7 @@ pub fn keep_awake() -> Result<(), String> {
     server.flush().map_err(|error| why(&error))
 }
 
-/// Elsewhere the system is told in its own settings.
+/// Does nothing: elsewhere the screen is configured in the system settings.
 #[cfg(not(all(unix, not(target_os = "macos"))))]
 pub fn keep_awake() -> Result<(), String> {
     Ok(())

@@ -1,10 +1,10 @@
-//! Where long work has a thread of its own.
+//! Yielding during long work on a desktop, where such work has its own thread.
 
-/// Lets others go on.
+/// Yields to other work. Does nothing on a desktop.
 #[derive(Default)]
 pub struct Breath(());
 
 impl Breath {
-    /// They do anyway.
+    /// Returns at once.
     pub async fn take(&mut self) {}
 }

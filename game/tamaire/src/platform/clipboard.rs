@@ -1,4 +1,4 @@
-//! Where texts are put for other programs.
+//! Clipboard of the system.
 
 /// The clipboard.
 #[derive(Default)]
@@ -7,13 +7,13 @@ pub struct Clipboard {
 }
 
 impl Clipboard {
-    /// Puts a text on it.
+    /// Copies a text to the clipboard.
     pub fn copy(&mut self, context: &egui::Context, text: String) {
         context.copy_text(text);
         self.is_told = true;
     }
 
-    /// Whether it took what was put on it, told once. Systems do not refuse it.
+    /// Returns once whether the last copy succeeded. Desktop systems never refuse.
     pub fn took(&mut self) -> Option<bool> {
         std::mem::take(&mut self.is_told).then_some(true)
     }

@@ -1,25 +1,25 @@
-//! What time it is, for what must be done in time.
+//! Monotonic clock.
 
 use std::rc::Rc;
 use web_time::Instant;
 
-/// A clock that runs evenly, whatever the time of day is set to.
+/// Monotonic clock, which changes of the system time do not affect.
 #[derive(Clone)]
 pub struct Clock(Rc<dyn Fn() -> f64>);
 
 impl Clock {
-    /// That of the machine.
+    /// Returns the monotonic clock of the machine.
     pub fn of_machine() -> Self {
         let start = Instant::now();
         Self::of(move || start.elapsed().as_secs_f64())
     }
 
-    /// Another one, which tells seconds.
+    /// Returns a clock that calls `tell` for the time [s], for tests.
     pub fn of(tell: impl Fn() -> f64 + 'static) -> Self {
         Self(Rc::new(tell))
     }
 
-    /// Seconds since some moment before.
+    /// Time since an arbitrary moment in the past [s].
     pub fn now(&self) -> f64 {
         (self.0)()
     }

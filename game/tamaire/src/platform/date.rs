@@ -1,8 +1,8 @@
-//! When something was, as people here write it.
+//! Local date and time as text.
 
 use std::time::SystemTime;
 
-/// A time of day where the machine stands: year, month, day, hour, minute.
+/// Formats a time in the local time zone as year, month, day, hour and minute.
 pub fn local(time: SystemTime) -> String {
     let Ok(time) = jiff::Timestamp::try_from(time) else {
         return String::new();
@@ -17,7 +17,7 @@ mod tests {
     use std::time::Duration;
 
     #[test]
-    fn a_date_is_written_from_year_to_minute() {
+    fn date_has_year_to_minute() {
         let text = local(SystemTime::UNIX_EPOCH + Duration::from_secs(86_400 * 400));
         assert!(text.starts_with("1971-02-0") && text.len() == 16, "{text}");
     }

@@ -1,28 +1,28 @@
-//! The system's dialog in which a file is picked.
+//! File dialog of the system.
 
 use super::given::{Given, Picked};
 use std::sync::mpsc::{self, Receiver, TryRecvError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Whether there is one here.
+/// Whether file dialogs are supported.
 pub const IS_THERE: bool = true;
 
-/// A dialog that ends sooner than this never came up.
+/// Shortest time for which a real dialog is open. A dialog that ends sooner never appeared.
 const SOON: Duration = Duration::from_millis(400);
 
-/// The dialog, which the game goes on behind.
+/// File dialog, which does not block the game.
 #[derive(Default)]
 pub struct Dialog(Option<Receiver<Picked>>);
 
 impl Dialog {
-    /// Asks for a file, unless one is being asked for; `kind` says of what kind, to the player.
+    /// Opens the dialog unless it is open. `kind` describes the files to the player.
     pub fn ask(&mut self, kind: &str) {
         if self.0.is_some() {
             return;
         }
         let endings = ["toml", "tamaire", "png", "vox"];
-        // It is made on the thread of the window, which some systems ask for, and waited for on another.
+        // The dialog is created on the window's thread, as some systems require, and awaited on another one.
         let asked = rfd::AsyncFileDialog::new().add_filter(kind, &endings);
         let (asked, began) = (asked.pick_file(), Instant::now());
         let (tell, told) = mpsc::channel();
@@ -32,14 +32,14 @@ impl Dialog {
                 None if began.elapsed() < SOON => Picked::NoDialog,
                 None => Picked::Nothing,
             };
-            // The game may have ended.
+            // Sending fails if the game has ended.
             let _ = tell.send(picked);
         };
         let thread = thread::Builder::new().name("dialog".into()).spawn(wait);
         self.0 = thread.is_ok().then_some(told);
     }
 
-    /// What was picked since this was asked last.
+    /// Returns the result of the dialog, once.
     pub fn take(&mut self) -> Option<Picked> {
         let picked = match self.0.as_ref()?.try_recv() {
             Ok(picked) => picked,

@@ -1,4 +1,5 @@
-//! What is kept between two evenings: settings, records, replays. All is written on a thread of its own, and pictures are made on another.
+//! Stored data: settings, records, levels, replays and pictures. One thread writes all data, another one
+//! makes the pictures.
 
 pub use super::keeping::Damage;
 use super::keeping::{
@@ -16,38 +17,38 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use tamaire_play::{Level, Replay, ReplayError};
 
-/// Most levels that are read at the start: those that were kept last.
+/// Maximum number of levels read at the start, the latest ones.
 const MOST_LEVELS: usize = 100;
 
 const SETTINGS: &str = "settings";
-/// Settings are written when they were not changed for so long [s]: a slider that is dragged changes them in each frame.
+/// Time without changes after which settings are written [s]. A dragged slider changes them in each frame.
 const REST: f32 = 1.0;
 
-/// What is kept, and where.
+/// Stored data and its storage.
 pub struct Files {
     storage: Arc<dyn Storage>,
     writer: Writer<Done>,
-    /// Photos and clips take seconds, for which nothing else has to wait.
+    /// Makes photos and clips on a separate thread, because each takes seconds.
     darkroom: Writer<Done>,
-    /// What settings are where none were kept.
+    /// Settings used if none are stored.
     usual: Settings,
-    /// Settings that are still to be written, and in how long [s].
+    /// Settings to be written, and the time until then [s].
     resting: Option<(String, f32)>,
-    /// How much of the picture that is being made is done [%].
+    /// Progress of the current picture [%].
     developed: Option<Arc<AtomicU32>>,
     pictures: Pictures,
-    /// Whether it was told that something failed, and nothing was written since.
+    /// Whether a failure was reported and no write has succeeded since.
     is_failing: bool,
 }
 
-/// The folder that the system means for what the game keeps, if it names one.
+/// Data folder of the game according to the system, if any.
 #[cfg(not(target_family = "wasm"))]
 pub fn data_folder() -> Option<std::path::PathBuf> {
     let folders = directories::ProjectDirs::from("", "", "tamaire")?;
     Some(folders.data_dir().into())
 }
 
-/// What became of something that was to be written.
+/// Result of a job.
 enum Done {
     Note(io::Result<()>),
     Level(io::Result<Result<Arc<Level>, Damage>>),
@@ -55,35 +56,35 @@ enum Done {
     Picture(io::Result<String>),
 }
 
-/// What there is to tell of what was written.
+/// Message about stored data.
 #[derive(Clone, Debug, PartialEq)]
 pub enum News {
-    /// A level was kept, and here it is.
+    /// A level was read.
     Level(Arc<Level>),
-    /// Of what was kept something cannot be used.
+    /// Stored data could not be used.
     Damaged(Damage),
-    /// A replay is kept, here.
+    /// A replay or picture was saved at this location.
     Saved(String),
-    /// What was to be kept could not be written. Of settings and records this is told once.
+    /// Writing failed. For settings and records this is reported once.
     Failed(String),
-    /// The same, because there is no room.
+    /// Writing failed because the storage is full.
     Full,
 }
 
 impl Files {
-    /// The folder that the system means for this.
+    /// Uses the data folder of the system.
     #[cfg(not(target_family = "wasm"))]
     pub fn usual() -> Self {
         let files = match data_folder() {
             Some(folder) => Self::in_folder(folder),
             None => Self::on(Nowhere {
-                reason: Some("the system names no folder to keep things in"),
+                reason: Some("the system has no data folder for the game"),
             }),
         };
         files.speaking(&sys_locale::get_locale().unwrap_or_default())
     }
 
-    /// What the browser keeps for this page, and nothing where it refuses to.
+    /// Uses the browser's storage for this page, or stores nothing if the browser refuses.
     #[cfg(target_family = "wasm")]
     pub fn usual() -> Self {
         let host = super::here::host();
@@ -96,18 +97,18 @@ impl Files {
         files.speaking(&host.language())
     }
 
-    /// A folder of one's own.
+    /// Uses the given folder.
     #[cfg(not(target_family = "wasm"))]
     pub fn in_folder(folder: impl Into<std::path::PathBuf>) -> Self {
         Self::on(super::folder::Folder(folder.into()))
     }
 
-    /// Nothing is kept, by choice.
+    /// Stores nothing, by choice.
     pub fn nowhere() -> Self {
         Self::on(Nowhere { reason: None })
     }
 
-    /// All is kept there.
+    /// Uses the given storage.
     pub fn on(storage: impl Storage + 'static) -> Self {
         Self {
             storage: Arc::new(storage),
@@ -121,15 +122,15 @@ impl Files {
         }
     }
 
-    /// The same; who has no settings yet is spoken to as the system speaks, which is named as in `ja-JP`.
+    /// Sets the language of players without stored settings, from a locale such as `ja-JP`.
     pub fn speaking(mut self, locale: &str) -> Self {
         self.usual.language = Language::of_locale(locale);
         self
     }
 
-    /// The settings that were kept, the usual for what cannot be used of them.
+    /// Reads the settings, with default values for those that cannot be used.
     pub fn settings(&mut self) -> (Settings, Option<Damage>) {
-        // Nobody knows how strong forces were to be.
+        // If the settings are unreadable, the chosen force is unknown, so force feedback starts at zero.
         let lost = Settings {
             haptics: 0.0,
             ..self.usual.clone()
@@ -137,13 +138,13 @@ impl Files {
         self.read(SETTINGS, Settings::read, self.usual.clone(), lost)
     }
 
-    /// The records that were kept.
+    /// Reads the records.
     pub fn records(&mut self) -> (Records, Option<Damage>) {
         let none = Records::default();
         self.read(RECORDS, Records::read, none.clone(), none)
     }
 
-    /// What was kept under a name, `usual` where nothing was, and `lost` where that cannot be read at all.
+    /// Reads a note. Returns `usual` if it does not exist, and `lost` if it cannot be read.
     fn read<T>(
         &mut self,
         name: &str,
@@ -173,12 +174,12 @@ impl Files {
         (value, Some(Damage { refused, aside }))
     }
 
-    /// Keeps these settings, once they rest and at the end of the program.
+    /// Schedules settings to be written after `REST` without changes, or at the end of the program.
     pub fn keep_settings(&mut self, settings: &Settings) {
         self.resting = Some((settings.text(), REST));
     }
 
-    /// Keeps these records of these levels, and those that another program wrote in the meantime.
+    /// Writes records and merges those that another program wrote in the meantime.
     pub fn keep_records(&mut self, records: &Records, levels: &[Arc<Level>]) {
         let (storage, records) = (self.storage.clone(), records.clone());
         let levels = levels.to_vec();
@@ -188,7 +189,7 @@ impl Files {
         );
     }
 
-    /// Reads the levels that were kept. They come one by one as [`News::Level`], those that were kept first first.
+    /// Reads the stored levels. They arrive one by one as [`News::Level`], the oldest first.
     pub fn read_levels(&mut self) {
         let mut found = self.storage.list(Kind::Level).unwrap_or_default();
         found.retain(|entry| !is_aside(&entry.name));
@@ -201,7 +202,7 @@ impl Files {
         }
     }
 
-    /// Keeps a level, in place of one with the same name.
+    /// Stores a level and replaces one with the same id.
     pub fn keep_level(&mut self, level: Arc<Level>) {
         let storage = self.storage.clone();
         let job = move || {
@@ -212,7 +213,7 @@ impl Files {
         self.writer.write(job, Done::Note);
     }
 
-    /// Keeps a level no longer. What was reached in it stays.
+    /// Deletes a stored level. Its records stay.
     pub fn remove_level(&mut self, name: &str) {
         let (storage, name) = (self.storage.clone(), name.to_string());
         let job = move || match storage.remove(Kind::Level, &name) {
@@ -222,14 +223,14 @@ impl Files {
         self.writer.write(job, Done::Note);
     }
 
-    /// Keeps a replay.
+    /// Saves a replay.
     pub fn save_replay(&mut self, replay: Replay) {
         let storage = self.storage.clone();
         self.writer
             .write(move || save_replay(&*storage, &replay), Done::Replay);
     }
 
-    /// Makes a photo or a clip of a round and keeps it, unless another one is being made.
+    /// Makes and saves a photo or clip of a round, unless another one is in progress.
     pub fn save_picture(&mut self, kind: Kind, replay: Arc<Replay>) {
         if self.developed.is_some() {
             return;
@@ -246,7 +247,7 @@ impl Files {
         });
     }
 
-    /// Keeps of a kind only so many, those that were written last.
+    /// Deletes the oldest entries of a kind, so that at most `most` remain.
     pub fn thin_out(&mut self, kind: Kind, most: usize) {
         let storage = self.storage.clone();
         let job = move || {
@@ -259,13 +260,13 @@ impl Files {
         self.writer.write(job, Done::Note);
     }
 
-    /// How much of a photo or clip is done that is being made, 0 to 1.
+    /// Progress of the current photo or clip, 0 to 1. `None` if none is in progress.
     pub fn developed(&self) -> Option<f32> {
         let developed = self.developed.as_ref()?;
         Some(developed.load(Ordering::Relaxed) as f32 / 100.0)
     }
 
-    /// Lets `seconds` pass; tells what became of what was to be written.
+    /// Advances the time by `seconds` [s]. Returns the results of finished jobs.
     pub fn pass(&mut self, seconds: f32) -> Vec<News> {
         if let Some((_, left)) = &mut self.resting {
             *left -= seconds;
@@ -283,7 +284,7 @@ impl Files {
         self.news(done)
     }
 
-    /// Writes what is still to be written, and waits until it is.
+    /// Writes all pending data and waits until it is written.
     pub fn finish(&mut self) -> Vec<News> {
         self.write_settings();
         let mut done = self.writer.finish();
@@ -291,19 +292,19 @@ impl Files {
         self.news(done)
     }
 
-    /// Writes what is still to be written at the end of the program.
+    /// Writes all pending data at the end of the program.
     pub fn close(&mut self) {
         for news in self.finish() {
-            // There is no window any more.
+            // There is no window any more, so errors go to the terminal.
             match news {
-                News::Failed(reason) => eprintln!("tamaire: this could not be written: {reason}"),
-                News::Full => eprintln!("tamaire: there is no room to write what was to be kept"),
+                News::Failed(reason) => eprintln!("tamaire: cannot save data: {reason}"),
+                News::Full => eprintln!("tamaire: cannot save data: the storage is full"),
                 _ => {}
             }
         }
     }
 
-    /// Whether something is still to be written.
+    /// Whether data is still to be written.
     pub fn is_busy(&self) -> bool {
         self.resting.is_some() || self.writer.is_busy() || self.darkroom.is_busy()
     }
@@ -343,56 +344,56 @@ impl Files {
         news
     }
 
-    /// Keeps a win as the round to race in its level, unless one that was won faster is kept.
+    /// Stores a won round as the one to race in its level, unless a faster one is stored.
     pub fn keep_best(&mut self, level: &Level, replay: Replay) {
         let (storage, name) = (self.storage.clone(), name_of_best(level));
         self.writer
             .write(move || keep_best(&*storage, &name, &replay), Done::Note);
     }
 
-    /// The fastest win that was kept of a level.
+    /// Returns the fastest stored win of a level.
     pub fn best(&self, level: &Level) -> Option<Replay> {
         self.round(Kind::Best, &name_of_best(level)).ok()
     }
 
-    /// Whether replays can be handed to the player as files.
+    /// Whether replays can be given to the player as files.
     pub fn hands_out(&self) -> bool {
         self.storage.hands_out()
     }
 
-    /// Hands a replay to the player as a file.
+    /// Gives a replay to the player as a file.
     ///
     /// # Errors
-    /// What the system says.
+    /// The error of the system.
     pub fn hand_out(&self, name: &str) -> io::Result<()> {
         self.storage.hand_out(Kind::Replay, name)
     }
 
-    /// The replays that are kept, the newest first.
+    /// Returns the saved replays, the newest first.
     pub fn replays(&self) -> Vec<Entry> {
         let mut found = self.storage.list(Kind::Replay).unwrap_or_default();
         found.sort_by(|a, b| b.written.cmp(&a.written).then(a.name.cmp(&b.name)));
         found
     }
 
-    /// The replay of a name.
+    /// Reads a saved replay.
     ///
     /// # Errors
-    /// [`ReplayError`] when it cannot be read or is none.
+    /// [`ReplayError`] if it cannot be read or is not a replay.
     pub fn replay(&self, name: &str) -> Result<Replay, ReplayError> {
         self.round(Kind::Replay, name)
     }
 
-    /// The round of a kind and a name.
+    /// Reads a round of a kind.
     fn round(&self, kind: Kind, name: &str) -> Result<Replay, ReplayError> {
         let unreadable = |reason: String| ReplayError::Unreadable(reason);
         let read = self.storage.read(kind, name);
         let bytes = read.map_err(|error| unreadable(error.to_string()))?;
-        let bytes = bytes.ok_or_else(|| unreadable("it is no longer there".into()))?;
+        let bytes = bytes.ok_or_else(|| unreadable("the file no longer exists".into()))?;
         Replay::of_bytes(&bytes)
     }
 
-    /// Where a replay is kept, for people to read.
+    /// Location of a replay, as text for the player.
     pub fn location(&self, name: &str) -> String {
         self.storage.location(Kind::Replay, name)
     }
@@ -400,7 +401,7 @@ impl Files {
     /// Deletes a replay.
     ///
     /// # Errors
-    /// What the system says when it cannot.
+    /// The error of the system.
     pub fn delete(&self, name: &str) -> io::Result<()> {
         self.storage.remove(Kind::Replay, name)
     }

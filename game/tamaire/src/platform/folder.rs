@@ -1,4 +1,4 @@
-//! What the game keeps, as files of a folder.
+//! Storage in a folder: one file for each entry.
 
 use super::storage::{Change, Entry, Kind, Storage};
 use fuwafuwa_scenes::disk::bytes_of;
@@ -8,20 +8,21 @@ use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// How long another program is waited for that changes something; it takes some milliseconds.
+/// Maximum time to wait for the lock of another program, which usually holds it for a few milliseconds.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// How the names of files begin that take the place of others once they are whole: no name of what is kept begins so.
+/// Prefix of draft files, which replace the real file once they are complete. Names of entries never begin
+/// with a dot.
 const DRAFT: &str = ".draft-";
 
-/// Drafts that are older were left behind.
+/// Age after which a draft counts as abandoned.
 const FORGOTTEN: Duration = Duration::from_secs(600);
 
-/// A folder for all that the game keeps.
+/// Storage in a folder.
 pub struct Folder(pub PathBuf);
 
 impl Folder {
-    /// The folder of a kind, and the ending of its files.
+    /// Returns the subfolder and the file extension of a kind.
     fn of(&self, kind: Kind) -> (PathBuf, &'static str) {
         match kind {
             Kind::Note => (self.0.clone(), "toml"),
@@ -37,14 +38,15 @@ impl Folder {
         let parts = if cfg!(windows) { "/\\:" } else { "/" };
         let leads_away = |letter: char| letter.is_control() || parts.contains(letter);
         if name.is_empty() || name.starts_with('.') || name.contains(leads_away) {
-            let reason = "expected a name that is no path";
+            let reason = "expected a plain name without path separators";
             return Err(io::Error::new(ErrorKind::InvalidInput, reason));
         }
         let (folder, ending) = self.of(kind);
         Ok(folder.join(format!("{name}.{ending}")))
     }
 
-    /// Keeps other programs from changing anything until it is dropped; the system takes it back from one that dies.
+    /// Locks the folder against changes by other programs until the lock is dropped. The system releases the
+    /// lock of a killed program.
     fn lock(&self) -> io::Result<File> {
         let mut options = File::options();
         let options = options.write(true).create(true).truncate(false);
@@ -60,7 +62,8 @@ impl Folder {
                     let reason = format!("{}: in use by another program", self.0.display());
                     return Err(io::Error::new(ErrorKind::WouldBlock, reason));
                 }
-                // Not every file system has locks, and most evenings one game is played.
+                // Some file systems have no locks. Usually only one game runs, so the change goes on without
+                // one.
                 Err(TryLockError::Error(_)) => return Ok(lock),
             }
         }
@@ -119,13 +122,13 @@ fn is_missing(error: &io::Error) -> bool {
     [ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&error.kind())
 }
 
-/// Writes a file so that it is never half there: as a draft that nobody else writes, which then takes its place.
+/// Replaces a file atomically: writes a draft and renames it.
 fn write_whole(folder: &Path, path: &Path, bytes: &[u8]) -> io::Result<()> {
-    // Those of a game that was killed while it wrote.
+    // Removes abandoned drafts of games that were killed while writing.
     for file in fs::read_dir(folder)?.flatten() {
         let is_draft = file.file_name().to_string_lossy().starts_with(DRAFT);
         if is_draft && is_forgotten(&file).unwrap_or(false) {
-            // One that cannot be removed is in nobody's way.
+            // A draft that cannot be removed does no harm.
             let _removed = fs::remove_file(file.path());
         }
     }
@@ -147,9 +150,9 @@ mod tests {
     use std::sync::Arc;
 
     #[test]
-    fn two_who_change_the_same_at_once_lose_nothing() {
+    fn concurrent_changes_are_not_lost() {
         let folder = tempfile::tempdir().unwrap();
-        // Each has a folder of its own to go through, as two programs have.
+        // Separate storages, as in two programs.
         let counts = [0, 1].map(|_| {
             let storage = Arc::new(Folder(folder.path().join("new")));
             thread::spawn(move || {
@@ -176,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_killed_game_left_half_written_is_removed() {
+    fn abandoned_draft_is_removed() {
         let folder = tempfile::tempdir().unwrap();
         let (left, open) = (".draft-1a2b", ".draft-3c4d");
         for draft in [left, open] {
@@ -195,12 +198,12 @@ mod tests {
         assert_eq!(
             names,
             [open, "it.toml", "lock"],
-            "another game may still write one"
+            "a recent draft may belong to another game"
         );
     }
 
     #[test]
-    fn what_is_no_name_leads_nowhere_else() {
+    fn invalid_name_is_rejected() {
         let folder = tempfile::tempdir().unwrap();
         let storage = Folder(folder.path().join("inside"));
         for name in ["", "..", "../out", "/etc/hosts", "a/b", ".draft-1"] {
@@ -214,7 +217,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn pipes_devices_and_what_has_no_end_are_not_read() {
+    fn pipe_and_too_long_file_are_not_read() {
         let folder = tempfile::tempdir().unwrap();
         let pipe = folder.path().join("settings.toml");
         let made = std::process::Command::new("mkfifo").arg(&pipe).status();

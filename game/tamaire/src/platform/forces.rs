@@ -1,25 +1,25 @@
-//! What the hands that hold sticks and pads are made to feel.
+//! Force feedback and rumble of sticks and pads.
 
 use super::Pads;
 use force_feedback::{Force, Line, Report, Settings, State, Stop};
 use std::collections::BTreeMap;
 use sticks::{Device, DeviceId, Snapshot};
 
-/// How often a second devices are told what to do.
+/// Update rate of devices [Hz].
 const RATE: u32 = 250;
 
-/// Leads to all devices that can be felt. Nothing is taken hold of before it is asked for, and dropping this lets go of all.
+/// Connections to all devices with feedback. Devices are opened on first use and released when dropped.
 #[derive(Default)]
 pub struct Forces {
     lines: BTreeMap<DeviceId, Line>,
-    /// None while there is no device.
+    /// Feedback thread. `None` while there is no device.
     force: Option<Force>,
     is_cut: bool,
 }
 
 impl Forces {
-    /// Takes hold of devices that came and lets go of those that left. `settings` says how each is to be felt; those of which
-    /// it says nothing are let go too.
+    /// Opens new devices and releases disconnected ones. `settings` returns the feedback settings of a
+    /// device; a device without settings is released, too.
     pub fn attend(
         &mut self,
         devices: &Snapshot,
@@ -44,7 +44,8 @@ impl Forces {
         }
     }
 
-    /// The thread, unless the system has none to give: then nothing is felt. A browser does without.
+    /// Returns the feedback thread and starts it if necessary. `None` if the system cannot start a thread;
+    /// then there is no feedback. In a browser, updates run without a thread.
     fn force(&mut self) -> Option<&Force> {
         if self.force.is_none() {
             self.force = match cfg!(target_family = "wasm") {
@@ -58,7 +59,7 @@ impl Forces {
         self.force.as_ref()
     }
 
-    /// Tells each device what there is to feel, or why there is nothing.
+    /// Sends the wanted feedback to each device, or the reason for its absence.
     pub fn tell(&self, wish: impl Fn(DeviceId) -> Result<State, Stop>) {
         for (&id, line) in &self.lines {
             match wish(id) {
@@ -68,21 +69,21 @@ impl Forces {
         }
     }
 
-    /// Passes on what was told, where no thread does.
+    /// Updates the devices in a browser, where no thread does so.
     pub fn update(&mut self) {
         if let Some(force) = &mut self.force {
             force.update();
         }
     }
 
-    /// Something tore that a device is to feel; 1 is as large as a tear gets.
+    /// Sends a tear impulse to a device; size 1 is the maximum.
     pub fn tear(&self, device: DeviceId, size: f32) {
         if let Some(line) = self.lines.get(&device) {
             line.tear(size);
         }
     }
 
-    /// Ends all forces at once, and for as long as this is not taken back.
+    /// Stops all feedback at once, until [`Self::restore`].
     pub fn cut(&mut self) {
         self.is_cut = true;
         if let Some(force) = &self.force {
@@ -90,7 +91,7 @@ impl Forces {
         }
     }
 
-    /// Takes back that.
+    /// Allows feedback again after [`Self::cut`].
     pub fn restore(&mut self) {
         self.is_cut = false;
         if let Some(force) = &self.force {
@@ -98,12 +99,12 @@ impl Forces {
         }
     }
 
-    /// Whether all forces were cut.
+    /// Whether all feedback is stopped.
     pub fn is_cut(&self) -> bool {
         self.is_cut
     }
 
-    /// What a device can do, and what it does.
+    /// Capabilities and current state of a device.
     pub fn report(&self, device: DeviceId) -> Option<Report> {
         let mut report = self.lines.get(&device)?.report();
         if self.is_cut {

@@ -1,31 +1,32 @@
-//! What somebody named on the command line, dropped onto the window or the page, or picked.
+//! Files and links from the command line, from drag and drop, or from the file dialog.
 
 use fuwafuwa_scenes::scene::{Fetch, ending_of};
 use tamaire_play::level::LevelError;
 use tamaire_play::{Level, Replay, ReplayError};
 
-/// Something to play or to watch, or why it is none. From here on nobody knows where it came from.
+/// A level, replay or link to open, or the error of reading it. Its origin no longer matters.
 pub enum Given {
-    /// A level, or a picture or a model as one.
+    /// A level, or a picture or model converted to one.
     Level(Result<Box<Level>, LevelError>),
-    /// A replay, and where it lies, for people to read.
+    /// A replay and its location, as text for the player.
     Replay(String, Result<Box<Replay>, ReplayError>),
-    /// The address of a round or a level.
+    /// Link to a round or a level.
     Link(String),
 }
 
-/// What came of asking for a file.
+/// Result of a file dialog.
 pub enum Picked {
-    /// This was picked.
+    /// A file was chosen.
     File(Given),
-    /// Nothing was.
+    /// The dialog was cancelled.
     Nothing,
-    /// The system has no such dialog.
+    /// The system has no file dialog.
     NoDialog,
 }
 
 impl Given {
-    /// The replay, level, picture or model in the bytes of a file of this name. What a level names is fetched.
+    /// Reads a replay, level, picture or model from the bytes of a file. `name` decides the type. Files that
+    /// a level refers to are loaded by `fetch`.
     pub fn read(name: &str, bytes: &[u8], fetch: Fetch) -> Self {
         match is_replay(name) {
             true => Self::Replay(name.into(), Replay::of_bytes(bytes).map(Box::new)),
@@ -52,7 +53,7 @@ mod on_disk {
     use tamaire_play::{Level, Replay, ReplayError};
 
     impl Given {
-        /// A replay, a level, a picture or a model in a file, or a level that comes along, by its name.
+        /// Opens a file with a replay, level, picture or model, a built-in level by its name, or a link.
         pub fn at(path: &Path) -> Self {
             let location = path.to_string_lossy();
             if location.contains('#') && !path.exists() {
@@ -65,10 +66,10 @@ mod on_disk {
         }
     }
 
-    /// The level of a name, or in a file.
+    /// Opens a built-in level by its name, or a level in a file.
     ///
     /// # Errors
-    /// [`LevelError`] says what is wrong with it.
+    /// [`LevelError`] states the problem.
     pub fn level_at(location: &str) -> Result<Level, LevelError> {
         let path = Path::new(location);
         let known = Level::open(location);
@@ -78,13 +79,13 @@ mod on_disk {
         let unreadable = |reason: String| LevelError::Unreadable(location.into(), reason);
         let bytes =
             bytes_of(path, MAX_FILE_BYTES).map_err(|error| unreadable(error.to_string()))?;
-        // Its records stay when its folder is moved.
+        // The id does not contain the folder, so records stay valid when the folder is moved.
         let id = id_of(&path.file_name().unwrap_or_default().to_string_lossy());
         Level::read(&id, &bytes, &beside(path.parent().unwrap_or(Path::new(""))))
     }
 
-    /// The id of a level in a file of this name: a name that can be kept. One without an ending is not taken for one
-    /// that comes along.
+    /// Returns the id of a level in a file: a name that the storage accepts. A name without an extension gets
+    /// one, so that it differs from built-in levels.
     fn id_of(name: &str) -> String {
         let name = name.trim_start_matches('.');
         let name: String = name.chars().filter(|letter| !letter.is_control()).collect();
@@ -94,17 +95,17 @@ mod on_disk {
         }
     }
 
-    /// The replay in a file.
+    /// Reads a replay from a file.
     ///
     /// # Errors
-    /// [`ReplayError`] when it cannot be read or is none.
+    /// [`ReplayError`] if it cannot be read or is not a replay.
     pub fn replay_in(path: &Path) -> Result<Replay, ReplayError> {
         let bytes = bytes_of(path, Kind::Replay.most_bytes());
         let unreadable = |error: std::io::Error| ReplayError::Unreadable(error.to_string());
         Replay::of_bytes(&bytes.map_err(unreadable)?)
     }
 
-    /// What was dropped onto the window.
+    /// Returns the files dropped onto the window.
     pub fn dropped(ctx: &egui::Context) -> Vec<Given> {
         let files = ctx.input(|input| input.raw.dropped_files.clone());
         files.iter().map(|file| Given::at(file.path())).collect()
@@ -124,7 +125,7 @@ mod on_page {
     use tamaire_play::level::LevelError;
     use wasm_bindgen::JsCast;
 
-    /// What was dropped onto the page, or stands behind its address.
+    /// Returns the files dropped onto the page, and the link in its address.
     pub fn dropped(_: &egui::Context) -> Vec<Given> {
         let host = host();
         let files = host.take_dropped();
@@ -133,8 +134,8 @@ mod on_page {
         given
     }
 
-    /// What can be played of files that came together. A level finds what it names among them; pictures and models that
-    /// came with levels are for those.
+    /// Reads files that were dropped or chosen together. A level finds the files that it refers to among
+    /// them. If there is a level, pictures and models are its parts and not opened themselves.
     pub fn read_together(files: &Array) -> Vec<Given> {
         let files = files.iter().map(JsCast::unchecked_into::<GivenFile>);
         let files = files.map(|file| (file.name(), (file.contents(), file.length())));
@@ -152,7 +153,7 @@ mod on_page {
         own.map(|(name, (bytes, length))| match bytes {
             Some(bytes) => Given::read(name, bytes, &fetch),
             None => {
-                let reason = format!("it cannot be read, or is too long ({length} bytes)");
+                let reason = format!("cannot read the file, or it is too long ({length} bytes)");
                 Given::Level(Err(LevelError::Unreadable(name.to_string(), reason)))
             }
         })

@@ -1,12 +1,13 @@
-//! Whether the GPU is still there: a driver that starts anew, a laptop that wakes or a card that is pulled takes all
-//! that was on it along.
+//! Detection of a lost GPU. A driver restart, a laptop that wakes up or a removed card destroys all GPU
+//! resources.
 
 use eframe::egui_wgpu::{RenderState, WgpuSetup};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The same, but for memory that is asked for as it is needed: in blocks of 64 MB and more, of which each is kept once it was
-/// touched, what a stand needs would go up and down by as much all day, where the GPU is in software or shares its memory.
+/// Makes wgpu allocate memory in small blocks. By default it uses blocks of 64 MB and more, each of which
+/// stays allocated once used. On a GPU in software or with shared memory, the memory of a stand would vary by
+/// such steps all day.
 pub fn in_small_blocks(mut setup: WgpuSetup) -> WgpuSetup {
     if let WgpuSetup::CreateNew(new) = &mut setup {
         let described = new.device_descriptor.clone();
@@ -18,18 +19,18 @@ pub fn in_small_blocks(mut setup: WgpuSetup) -> WgpuSetup {
     setup
 }
 
-/// An eye on a GPU.
+/// Monitor of a GPU.
 #[derive(Clone)]
 pub struct GpuWatch {
     queue: wgpu::Queue,
-    /// Four bytes that tell whether anything can still be written.
+    /// Buffer of four bytes that tests whether writing still works.
     probe: wgpu::Buffer,
     is_lost: Arc<AtomicBool>,
 }
 
 impl GpuWatch {
-    /// On that of a window. What fails on it is told once, and does not end the game where it happens: to begin anew in
-    /// another window is all that helps.
+    /// Creates the monitor of a window's GPU. The first error is printed and does not end the game, because
+    /// the only remedy is to restart in a new window.
     pub fn of(state: &RenderState) -> Self {
         let is_lost = Arc::new(AtomicBool::new(false));
         let lost = is_lost.clone();
@@ -54,12 +55,12 @@ impl GpuWatch {
         }
     }
 
-    /// Whether it is gone, as far as was told.
+    /// Whether the loss of the GPU has been reported.
     pub fn is_lost(&self) -> bool {
         self.is_lost.load(Ordering::Relaxed)
     }
 
-    /// Whether it is gone, by trying.
+    /// Whether the GPU is lost, tested by a write.
     pub fn tried_is_lost(&self) -> bool {
         let size = wgpu::BufferSize::new(wgpu::COPY_BUFFER_ALIGNMENT);
         let written = size.and_then(|size| self.queue.write_buffer_with(&self.probe, 0, size));
@@ -73,7 +74,7 @@ mod tests {
     use egui_kittest::wgpu::{create_render_state, default_wgpu_setup};
 
     #[test]
-    fn a_gpu_that_goes_is_noticed() {
+    fn loss_of_gpu_is_noticed() {
         let state = create_render_state(default_wgpu_setup(), Default::default());
         let watch = GpuWatch::of(&state);
         assert!(!watch.is_lost() && !watch.tried_is_lost());

@@ -1,4 +1,4 @@
-//! How single things are kept, whatever the storage: under which names, beside what was there, or set aside.
+//! Rules for stored entries, independent of the storage: names, merging, and setting damaged data aside.
 
 use super::storage::{Kind, Storage};
 use crate::records::Records;
@@ -6,27 +6,27 @@ use std::io;
 use std::sync::Arc;
 use tamaire_play::{Assist, Level, Replay, shortened};
 
-/// What could not be used of what was kept.
+/// Stored data that could not be used.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Damage {
-    /// Each thing: where it stands, and why.
+    /// Location and reason of each rejected item.
     pub refused: Vec<String>,
-    /// Where all is kept as it was, if it could be.
+    /// Location of the unchanged copy, if it could be made.
     pub aside: Option<String>,
 }
 
-/// Most letters of why a level could not be read.
+/// Maximum length of the reason why a level could not be read [characters].
 const LETTERS: usize = 200;
 
-/// Between the name of what could not be used and the number of its copy.
+/// Separator between the name of damaged data and the number of its copy.
 const ASIDE: &str = ".broken-";
 
-/// Names that are tried for what is kept.
+/// Maximum number of names tried for a new entry.
 const TRIES: usize = 8;
 
 pub(super) const RECORDS: &str = "records";
 
-/// Keeps bytes that cannot be used for whoever wrote them; says where.
+/// Stores a copy of damaged data for the player. Returns its location.
 pub(super) fn put_aside(
     storage: &dyn Storage,
     kind: Kind,
@@ -53,7 +53,7 @@ pub(super) fn is_aside(name: &str) -> bool {
     number.is_some_and(|number| number.parse::<u32>().is_ok())
 }
 
-/// The level of a name; one that cannot be used is put aside.
+/// Reads a stored level. A damaged one is moved aside.
 pub(super) fn read_level(storage: &dyn Storage, name: &str) -> Result<Arc<Level>, Damage> {
     let location = storage.location(Kind::Level, name);
     let refused = |reason: &str, aside| {
@@ -65,12 +65,12 @@ pub(super) fn read_level(storage: &dyn Storage, name: &str) -> Result<Arc<Level>
     let bytes = storage.read(Kind::Level, name).map_err(unreadable)?;
     let bytes = bytes.ok_or_else(|| unreadable(io::ErrorKind::NotFound.into()))?;
     let level = match Level::open(name) {
-        Ok(_) => Err("a level of this name comes along".to_string()),
+        Ok(_) => Err("the name belongs to a built-in level".to_string()),
         Err(_) => Level::read_kept(name, &bytes).map_err(|error| error.to_string()),
     };
     level.map(Arc::new).map_err(|reason| {
         let aside = put_aside(storage, Kind::Level, name, &bytes);
-        // What cannot be removed is told again the next time.
+        // If removing fails, the message appears again at the next start.
         let aside = aside.and_then(|aside| storage.remove(Kind::Level, name).map(|()| aside));
         refused(&reason, aside.ok())
     })
@@ -90,25 +90,25 @@ pub(super) fn merge_records(
     })
 }
 
-/// Keeps a replay; says where, or why not.
+/// Saves a replay and returns its location.
 pub(super) fn save_replay(storage: &dyn Storage, replay: &Replay) -> io::Result<String> {
-    // One that could not be watched is none.
+    // Fails if the replay cannot be encoded, since it could not be watched.
     let text = replay.text_to_keep().map_err(io::Error::other)?;
     save(storage, Kind::Replay, &stem_of(replay), text.as_bytes())
 }
 
-/// How the names begin of what is kept of a round.
+/// Returns the beginning of the names of a round's files.
 pub(super) fn stem_of(replay: &Replay) -> String {
     plain(&replay.level)
 }
 
-/// A name that any system takes.
+/// Removes all characters from a name that some file system rejects.
 pub(super) fn plain(name: &str) -> String {
     let is_plain = |letter: &char| letter.is_alphanumeric() || *letter == '-';
     name.chars().filter(is_plain).take(60).collect()
 }
 
-/// By which the fastest win in a level is kept: one for the level as it is, one for each way of making it easier.
+/// Returns the name of the fastest win in a level. Each combination of assists has its own.
 pub(super) fn name_of_best(level: &Level) -> String {
     let assists = level.game().assists.iter().map(|assist| match assist {
         Assist::WiderBasket => "-wider",
@@ -117,10 +117,10 @@ pub(super) fn name_of_best(level: &Level) -> String {
     plain(&level.id) + &assists.collect::<String>()
 }
 
-/// Keeps a win, unless one in the same level that took no longer is kept.
+/// Stores a win, unless an equally fast or faster one of the same level is stored.
 pub(super) fn keep_best(storage: &dyn Storage, name: &str, replay: &Replay) -> io::Result<()> {
     let Ok(text) = replay.text_to_keep() else {
-        // One that could not be watched is none.
+        // A replay that cannot be encoded could not be watched.
         return Ok(());
     };
     storage.change(Kind::Best, name, &mut |found| {
@@ -132,7 +132,7 @@ pub(super) fn keep_best(storage: &dyn Storage, name: &str, replay: &Replay) -> i
     })
 }
 
-/// Keeps something under a name that is free; says where, or why not.
+/// Saves an entry under an unused name and returns its location.
 pub(super) fn save(
     storage: &dyn Storage,
     kind: Kind,
@@ -143,7 +143,8 @@ pub(super) fn save(
     let is_listed = |name: &String| names.iter().any(|entry| entry.name == *name);
     let numbered = (1..).map(|number| format!("{stem}-{number}"));
     let mut last = None;
-    // What stands there and is not listed is no file, or of another program that was quicker.
+    // A name may be taken although it is not listed: by something that is not a file, or by another program
+    // that was faster.
     for name in numbered.filter(|name| !is_listed(name)).take(TRIES) {
         let mut is_free = false;
         let written = storage.change(kind, &name, &mut |found| {
@@ -156,5 +157,5 @@ pub(super) fn save(
             Err(error) => last = Some(error),
         }
     }
-    Err(last.unwrap_or_else(|| io::Error::other("no name is free")))
+    Err(last.unwrap_or_else(|| io::Error::other("all tried names are taken")))
 }

@@ -1,4 +1,4 @@
-//! How the machine is on which a stand runs, and the file that says what the stand is like.
+//! Machine of a stand: memory, folders, and the configuration file.
 
 use super::files::{Files, data_folder};
 use std::fs;
@@ -6,59 +6,59 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tamaire_logbook::Moment;
 
-/// How much memory the program takes [bytes], where the system tells.
+/// Memory of the program [bytes]. `None` if the system does not tell.
 pub fn memory() -> Option<u64> {
     memory_stats::memory_stats().map(|stats| stats.physical_mem as u64)
 }
 
-/// Where a stand keeps things: the folder that its operator chose, or one in that of the game.
+/// Data folder of a stand: the one chosen by its operator, or a subfolder of the game's data folder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StandFolder(pub PathBuf);
 
 impl StandFolder {
-    /// The one that was chosen, if any.
+    /// Returns the chosen folder, or the default one.
     pub fn of(chosen: Option<&str>) -> Self {
-        // Where the system names no folder it is the one that the program was started in.
+        // If the system has no data folder, the current directory is used.
         let usual = || data_folder().unwrap_or_else(|| ".".into()).join("exhibit");
         Self(chosen.map_or_else(usual, PathBuf::from))
     }
 
-    /// Its logbook.
+    /// Path of the logbook.
     pub fn logbook(&self) -> PathBuf {
         self.0.join("visits.sqlite")
     }
 
-    /// A copy of that, as of a moment.
+    /// Path of a copy of the logbook made at a moment.
     pub fn copy(&self, at: Moment) -> PathBuf {
         self.0.join(format!("visits-{}.sqlite", digits(at)))
     }
 
-    /// What the game itself keeps there: clips, and how sticks are built in.
+    /// Storage of the game in this folder: clips, and the mounting of sticks.
     pub fn files(&self) -> Files {
         Files::in_folder(&self.0)
     }
 
-    /// How much room is left there [bytes], where the system tells.
+    /// Free disk space [bytes]. `None` if the system does not tell.
     pub fn room(&self) -> Option<u64> {
         fs4::available_space(&self.0).ok()
     }
 }
 
-/// A moment in the name of a file.
+/// Formats a moment for use in a file name.
 pub fn digits(at: Moment) -> String {
     let text = at.to_string();
     text.chars().filter(char::is_ascii_alphanumeric).collect()
 }
 
-/// A text file that an operator writes, and that is changed now and then.
+/// Text file that the operator edits and the program changes occasionally.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextFile(pub PathBuf);
 
 impl TextFile {
-    /// What it says; `usual`, which is written, where there is none yet.
+    /// Reads the file. If it does not exist, writes and returns `usual`.
     ///
     /// # Errors
-    /// The file, and what the system says.
+    /// The path and the error of the system.
     pub fn read_or(&self, usual: &str) -> Result<String, String> {
         match fs::read_to_string(&self.0) {
             Ok(text) => Ok(text),
@@ -70,10 +70,10 @@ impl TextFile {
         }
     }
 
-    /// Writes it, whole or not at all.
+    /// Replaces the file atomically.
     ///
     /// # Errors
-    /// The file, and what the system says.
+    /// The path and the error of the system.
     pub fn write(&self, text: &str) -> Result<(), String> {
         let folder = self.0.parent().filter(|folder| *folder != Path::new(""));
         let folder = folder.unwrap_or(Path::new("."));
@@ -82,7 +82,7 @@ impl TextFile {
             draft.write_all(text.as_bytes())?;
             draft.as_file().sync_all()?;
             if let Ok(old) = fs::metadata(&self.0) {
-                // Others may have to read it.
+                // Keeps the permissions, because other users may have to read the file.
                 draft.as_file().set_permissions(old.permissions())?;
             }
             draft.persist(&self.0).map_err(|error| error.error)?;
@@ -101,7 +101,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_file_that_is_missing_is_written_as_it_usually_is() {
+    fn missing_text_file_is_created_with_default() {
         let folder = tempfile::tempdir().unwrap();
         let file = TextFile(folder.path().join("new/exhibit.toml"));
         assert_eq!(file.read_or("a = 1").unwrap(), "a = 1");

@@ -1,5 +1,5 @@
-//! What differs between a desktop and a browser: where things are kept, how sound comes out, which
-//! sticks can be read and felt. Nothing else in the game knows on which it runs.
+//! Differences between a desktop and a browser: storage, sound output, sticks, screen and dialogs. The rest
+//! of the game does not depend on the platform.
 
 #[cfg(not(target_family = "wasm"))]
 mod awake;

@@ -1,4 +1,4 @@
-//! Photos and clips of rounds that were played.
+//! Photos and clips of finished rounds.
 
 use super::breath::Breath;
 use super::storage::Kind;
@@ -6,13 +6,14 @@ use crate::film::{Film, Studio};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tamaire_play::{Playback, Replay};
 
-/// Makes pictures. What they are drawn with is opened for the first one and kept: a device that is closed leaves something
-/// behind in drivers and allocators.
+/// Maker of photos and clips. The studio is opened for the first picture and kept, because closing a GPU
+/// device leaks memory in drivers and allocators.
 #[derive(Clone, Default)]
 pub struct Pictures(Arc<Mutex<Option<Studio>>>);
 
 impl Pictures {
-    /// A picture of a round, as the bytes of its file; `told` hears the share that is done.
+    /// Makes a picture of a round and returns the bytes of its file. `told` is called with the finished
+    /// fraction.
     pub async fn shoot(
         &self,
         kind: Kind,
@@ -31,12 +32,12 @@ impl Pictures {
             breath.take().await;
         }
         let share = |tick: usize, ticks: usize| told(tick as f32 / ticks.max(1) as f32);
-        // One picture is made at a time.
+        // Only one picture is made at a time, so the studio can be taken out.
         let mut studio = self.studio().take();
         let was_open = studio.is_some();
         let mut shot = film.shoot(playback.round(), &mut studio, &share).await;
         if shot.is_err() && was_open && studio.is_none() {
-            // Its device was lost since the last picture.
+            // The device was lost since the last picture. Tries again with a new one.
             shot = film.shoot(playback.round(), &mut studio, &share).await;
         }
         *self.studio() = studio;

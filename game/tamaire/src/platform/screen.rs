@@ -1,24 +1,24 @@
-//! What the system does to what is seen.
+//! Window and screen functions that differ between desktop and browser.
 
 use crate::words::Language;
 
-/// Makes the window as large as was chosen.
+/// Switches full screen on or off.
 pub fn fill_screen(context: &egui::Context, wanted: bool) {
     context.send_viewport_cmd(egui::ViewportCommand::Fullscreen(wanted));
 }
 
-/// A window closes where its GPU is lost, and the program begins anew.
+/// Does nothing: on a desktop the window closes when its GPU is lost, and the program restarts.
 pub fn begin_anew() {}
 
-/// A window is as large as it was told.
+/// Returns `None`: on a desktop only the program changes the window's full-screen state.
 pub fn is_full_by_itself() -> Option<bool> {
     None
 }
 
-/// The address of the page that opens links; a program has none, and opens what stands behind it.
+/// Returns an empty address. A desktop program has no page, and opens links by their fragment alone.
 pub fn address_of_page() -> String {
     String::new()
 }
 
-/// Every language can be written.
+/// Does nothing: the desktop program contains the fonts of all languages.
 pub fn speak(_: &egui::Context, _: Language, _: bool) {}

@@ -1,44 +1,44 @@
-//! How sound comes out.
+//! Sound output.
 
 use tamaire_sound::{Cue, NoSound, Soundscape, Speaker, Volumes};
 
-/// The loudspeaker, or the reason why there is none: then everything goes on in silence.
+/// Sound output, or the reason for its absence. The game then runs silently.
 pub struct Sound {
     speaker: Option<Result<Speaker, NoSound>>,
 }
 
 impl Sound {
-    /// Opens the device that the system prefers.
+    /// Opens the default output device of the system.
     pub fn open() -> Self {
         let speaker = Some(Speaker::open());
         Self { speaker }
     }
 
-    /// No sound, by choice.
+    /// Turns sound off, by choice.
     pub fn none() -> Self {
         Self { speaker: None }
     }
 
-    /// Tells what lasts, each frame.
+    /// Updates continuous sounds, once per frame.
     pub fn update(&self, soundscape: &Soundscape, volumes: &Volumes) {
         if let Some(Ok(speaker)) = &self.speaker {
             speaker.update(soundscape, volumes);
         }
     }
 
-    /// Begins what sounds once.
+    /// Starts a sound effect.
     pub fn play(&self, cue: Cue) {
         if let Some(Ok(speaker)) = &self.speaker {
             speaker.play(cue);
         }
     }
 
-    /// Whether nothing is heard by choice.
+    /// Whether sound is off by choice.
     pub fn is_off(&self) -> bool {
         self.speaker.is_none()
     }
 
-    /// Why nothing is heard that should be, if so.
+    /// Returns the reason why sound does not work, if any.
     pub fn trouble(&self) -> Option<String> {
         let trouble = match self.speaker.as_ref()? {
             Ok(speaker) => speaker.trouble(),

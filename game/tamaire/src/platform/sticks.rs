@@ -4,7 +4,7 @@ use force_feedback::{Nothing, Recording, Sink};
 use std::collections::BTreeMap;
 use sticks::{DeviceId, NoSticks, Snapshot, Sticks};
 
-/// The sticks and pads that can be read here.
+/// Source of stick and pad input.
 pub struct Pads(Source);
 
 enum Source {
@@ -14,27 +14,27 @@ enum Source {
 }
 
 impl Pads {
-    /// Starts to listen to them.
+    /// Opens all connected devices.
     pub fn open() -> Self {
         Self(Sticks::open().map_or_else(Source::Nothing, Source::Sticks))
     }
 
-    /// Listens to these.
+    /// Uses an existing source.
     pub fn through(sticks: Sticks) -> Self {
         Self(Source::Sticks(sticks))
     }
 
-    /// None, by choice.
+    /// Uses no devices, by choice.
     pub fn none() -> Self {
         Self::of(Snapshot::default())
     }
 
-    /// Made up ones that say this.
+    /// Simulates devices with this input, for tests.
     pub fn of(snapshot: Snapshot) -> Self {
         Self(Source::Told(snapshot, BTreeMap::new()))
     }
 
-    /// The same with notes of what some of the made up ones are made to do.
+    /// Records the feedback sent to simulated devices.
     pub fn noting(self, notes: BTreeMap<DeviceId, Recording>) -> Self {
         Self(match self.0 {
             Source::Told(snapshot, _) => Source::Told(snapshot, notes),
@@ -42,7 +42,7 @@ impl Pads {
         })
     }
 
-    /// What they say now.
+    /// Returns the current input.
     pub fn snapshot(&self) -> Snapshot {
         match &self.0 {
             Source::Sticks(sticks) => Snapshot::clone(&sticks.snapshot()),
@@ -51,7 +51,7 @@ impl Pads {
         }
     }
 
-    /// Takes hold of one to be felt; nothing where that was left out of the build.
+    /// Opens a device for feedback. Without the feature `haptic` the returned sink does nothing.
     pub fn haptic(&self, device: DeviceId) -> Box<dyn Sink> {
         match &self.0 {
             #[cfg(feature = "haptic")]
@@ -63,7 +63,7 @@ impl Pads {
         }
     }
 
-    /// Why none can be read, if so.
+    /// Returns the reason why no devices can be read, if any.
     pub fn complaint(&self) -> Option<String> {
         match &self.0 {
             Source::Nothing(none) => Some(none.to_string()),

@@ -1,28 +1,28 @@
-//! Where the game keeps things: bytes by kind and name. On a desktop that is a folder; a browser has a place of its own
-//! for them. Nothing else in the game knows of files.
+//! Storage of the game: bytes by kind and name. On a desktop it is a folder, in a browser its own storage.
+//! The rest of the game does not access files.
 
 use std::io;
 use std::time::SystemTime;
 
-/// What kind of thing is kept.
+/// Kind of a stored entry.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
-    /// What the game itself notes down: settings, records.
+    /// Settings or records.
     Note,
-    /// A level that does not come along, with all that it is made from.
+    /// A level that is not built in, with all its parts.
     Level,
-    /// A round as it was played.
+    /// Recording of a round.
     Replay,
-    /// The fastest one of a level.
+    /// Recording of the fastest win in a level.
     Best,
-    /// A picture of the end of one.
+    /// Picture of the end of a round.
     Photo,
-    /// Its last seconds, as an animation.
+    /// Animation of the last seconds of a round.
     Clip,
 }
 
 impl Kind {
-    /// Most bytes of one: what is longer is not ours, and not read.
+    /// Maximum size of an entry [bytes]. A longer one was not written by the game and is not read.
     pub fn most_bytes(self) -> u64 {
         match self {
             Self::Note => 1 << 20,
@@ -33,53 +33,53 @@ impl Kind {
     }
 }
 
-/// Something that is kept.
+/// A stored entry.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// By which it is read again.
+    /// Name of the entry.
     pub name: String,
-    /// When it was written.
+    /// Time of the last write.
     pub written: SystemTime,
 }
 
-/// Works out what is to be kept from what is kept so far; none leaves it as it is.
+/// Computes the new bytes of an entry from the stored ones. `None` leaves the entry unchanged.
 pub type Change<'a> = dyn FnMut(Option<&[u8]>) -> Option<Vec<u8>> + 'a;
 
-/// A place where bytes are kept by kind and name. It is used from the thread that writes too.
+/// Storage of bytes by kind and name. Also used from the writer's thread.
 pub trait Storage: Send + Sync {
-    /// All of a kind, in any order.
+    /// Returns all entries of a kind, in any order.
     ///
     /// # Errors
-    /// What the system says.
+    /// The error of the system.
     fn list(&self, kind: Kind) -> io::Result<Vec<Entry>>;
 
-    /// What is kept under a name, if anything.
+    /// Reads an entry. `None` if it does not exist.
     ///
     /// # Errors
-    /// What the system says; also when it is longer than [`Kind::most_bytes`].
+    /// The error of the system, also for an entry longer than [`Kind::most_bytes`].
     fn read(&self, kind: Kind, name: &str) -> io::Result<Option<Vec<u8>>>;
 
-    /// Changes what is kept under a name, whole or not at all, while nobody else does: not even another program.
+    /// Changes an entry atomically, while no other thread or program changes it.
     ///
     /// # Errors
-    /// What the system says; then it is as it was.
+    /// The error of the system. The entry is then unchanged.
     fn change(&self, kind: Kind, name: &str, change: &mut Change) -> io::Result<()>;
 
-    /// Keeps it no longer.
+    /// Deletes an entry.
     ///
     /// # Errors
-    /// What the system says.
+    /// The error of the system.
     fn remove(&self, kind: Kind, name: &str) -> io::Result<()>;
 
-    /// Where that is, for people to read.
+    /// Location of an entry, as text for the player.
     fn location(&self, kind: Kind, name: &str) -> String;
 
-    /// Whether what is kept can be handed to the player as a file: where it is no file already.
+    /// Whether entries can be given to the player as files. False if they are files already.
     fn hands_out(&self) -> bool {
         false
     }
 
-    /// Hands it to the player as a file, where that can be done.
+    /// Gives an entry to the player as a file, if supported.
     ///
     /// # Errors
     /// As [`Storage::read`].
@@ -87,15 +87,15 @@ pub trait Storage: Send + Sync {
         Err(io::ErrorKind::Unsupported.into())
     }
 
-    /// Why something is not kept that was changed before, where that is known only later; told once.
+    /// Returns once the error of an earlier change that the storage learned of only later.
     fn take_failure(&self) -> Option<io::Error> {
         None
     }
 }
 
-/// Keeps nothing.
+/// Storage that stores nothing.
 pub struct Nowhere {
-    /// Why, unless it is by choice.
+    /// Reason why nothing is stored. `None` = by choice.
     pub reason: Option<&'static str>,
 }
 

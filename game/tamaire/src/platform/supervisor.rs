@@ -1,5 +1,4 @@
-//! Keeps a stand running: the same program as a parent, which starts the game anew when it breaks down, stands still or loses
-//! what it draws with.
+//! Supervisor of a stand. A parent process restarts the game when it crashes, hangs or loses its GPU.
 
 use super::machine::{StandFolder, digits};
 use std::collections::VecDeque;
@@ -13,52 +12,52 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 use tamaire_logbook::{Entry, Event, Id, Kind, Logbook, Moment};
 
-/// The exit status of a game whose GPU or window was lost.
+/// Exit status of a game that lost its GPU or window.
 pub const LOST_GRAPHICS: u8 = 3;
 
-/// Signs to the parent: it lives, and it is ending as it was told to.
+/// Signals to the supervisor: heartbeat, and the announcement of a regular end.
 const LIVES: u8 = b'.';
 const ENDS: u8 = b'e';
-/// One that is ending may write for so long what is still to be written.
+/// Maximum time for pending writes after the announcement of the end.
 const ENDING: Duration = Duration::from_secs(30);
-/// One that lived for less is not begun anew at once: what is wrong may pass.
+/// Run time below which a restart is delayed, because the cause of the crash may pass.
 const BRIEFLY: Duration = Duration::from_secs(5);
 const SHORT_PAUSE: Duration = Duration::from_millis(250);
-/// The longest such pause.
+/// Longest delay of a restart.
 pub const PAUSE: Duration = Duration::from_secs(8);
-/// So many crash records are kept.
+/// Maximum number of stored crash records.
 const RECORDS: usize = 100;
 
-/// Between two signs of life [s].
+/// Time between two heartbeats.
 const PULSE: Duration = Duration::from_millis(500);
-/// A game that gives none for so long stands still; at its start it may take longer.
+/// Time without a heartbeat after which the game counts as hung, and [`START`] before the first one.
 const STILL: Duration = Duration::from_millis(3500);
 const START: Duration = Duration::from_secs(60);
-/// After so many breakdowns in such a time starting anew does not help.
+/// Number of crashes within `WHILE` after which restarting is given up.
 pub const MOST: usize = 10;
 const WHILE: Duration = Duration::from_secs(600);
-/// How often the parent looks.
+/// Interval between checks of the game.
 const LOOK: Duration = Duration::from_millis(50);
-/// What the game told last is waited for so long.
+/// Maximum time to wait for the last output of the game.
 const LAST_WORDS: Duration = Duration::from_millis(300);
-/// So many of the last lines that the game told are kept.
+/// Number of output lines of the game that are kept for a crash record.
 const LINES: usize = 60;
 
-/// Signs of life to the parent, told on the thread that draws.
+/// Sender of heartbeats to the supervisor, used on the drawing thread.
 pub struct Pulse {
     told: Option<Instant>,
 }
 
 impl Pulse {
-    /// None was given yet.
+    /// Creates a sender; the first heartbeat is due at once.
     pub fn begin() -> Self {
         Self { told: None }
     }
 
-    /// Gives one when it is time.
+    /// Sends a heartbeat if it is due.
     ///
     /// # Errors
-    /// When nobody listens any more.
+    /// If the supervisor has ended.
     pub fn beat(&mut self) -> io::Result<()> {
         if self.told.is_some_and(|told| told.elapsed() < PULSE) {
             return Ok(());
@@ -67,9 +66,9 @@ impl Pulse {
         tell(LIVES)
     }
 
-    /// Says that the program ends as it was told to, which may take a while.
+    /// Announces a regular end of the program, which may take a while.
     pub fn end(&self) {
-        // Who does not listen need not know.
+        // Without a supervisor the signal is not needed.
         let _heard = tell(ENDS);
     }
 }
@@ -80,40 +79,41 @@ fn tell(sign: u8) -> io::Result<()> {
     out.flush()
 }
 
-/// Says something where anybody may listen, or nobody.
+/// Prints to stderr. A closed stderr is no error.
 fn say(text: &str) {
     let _heard = writeln!(io::stderr(), "{text}");
 }
 
-/// What a game is started with.
+/// Parameters of the supervisor.
 pub struct Plan {
-    /// The program.
+    /// Path of the program.
     pub program: PathBuf,
-    /// What it is told to be the game.
+    /// Arguments that start the game.
     pub game: Vec<OsString>,
-    /// What it is told to show a calm picture.
+    /// Arguments that show a calm picture.
     pub calm: Vec<OsString>,
-    /// Where the logbook is.
+    /// Folder of the logbook.
     pub folder: StandFolder,
-    /// What the stand is called.
+    /// Name of the stand.
     pub stand: String,
-    /// After so many breakdowns within ten minutes it is given up; [`MOST`] usually.
+    /// Number of crashes within ten minutes after which restarting is given up. Usually [`MOST`].
     pub most: usize,
-    /// The longest pause before it is begun anew; [`PAUSE`] usually.
+    /// Longest delay of a restart. Usually [`PAUSE`].
     pub pause: Duration,
 }
 
-/// How a game ended.
+/// The way in which a game ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum End {
     Meant,
     Failed(Kind),
 }
 
-/// Runs the game until it ends as it was told to.
+/// Runs the game until its regular end.
 ///
 /// # Errors
-/// When it cannot be started, or broke down again and again: then the calm picture was shown for as long as that went.
+/// If the game cannot be started or crashes repeatedly. In that case the calm picture was shown before the
+/// return.
 pub fn supervise(plan: &Plan) -> Result<(), String> {
     let mut failures: VecDeque<Instant> = VecDeque::new();
     let mut pause = SHORT_PAUSE;
@@ -124,10 +124,7 @@ pub fn supervise(plan: &Plan) -> Result<(), String> {
         let End::Failed(kind) = end else {
             break;
         };
-        say(&format!(
-            "tamaire: the game {}: it begins anew",
-            kind.text()
-        ));
+        say(&format!("tamaire: the game {}; restarting it", kind.text()));
         notes.push(note(plan, kind, record));
         notes.retain(|note: &JoinHandle<()>| !note.is_finished());
         let now = Instant::now();
@@ -152,15 +149,15 @@ pub fn supervise(plan: &Plan) -> Result<(), String> {
 
 fn join(notes: Vec<JoinHandle<()>>) {
     for note in notes {
-        // One that panicked has told so itself.
+        // A thread that panicked has printed its message.
         let _ended = note.join();
     }
 }
 
-/// Shows the calm picture for as long as that can be shown; what there is to tell.
+/// Shows the calm picture for as long as possible. Returns the reason for giving up.
 fn give_up(plan: &Plan) -> String {
     let reason = format!(
-        "the game broke down {} times within {} minutes; see {}",
+        "the game failed {} times within {} minutes; see {}",
         plan.most,
         WHILE.as_secs() / 60,
         plan.folder.0.join("crashes").display()
@@ -168,7 +165,7 @@ fn give_up(plan: &Plan) -> String {
     say(&format!("tamaire: {reason}"));
     join(vec![note(plan, Kind::GaveUp, reason.clone())]);
     for _ in 0..MOST {
-        // It draws next to nothing. Where even that breaks down for good there is no picture to show.
+        // The calm picture needs almost no drawing. If it fails, too, no picture is shown.
         if run(plan, &plan.calm).0 == End::Meant {
             break;
         }
@@ -177,7 +174,7 @@ fn give_up(plan: &Plan) -> String {
     reason
 }
 
-/// Runs the program once; how it ended, and what there is to know of it.
+/// Runs the program once. Returns how it ended, and its record.
 fn run(plan: &Plan, words: &[OsString]) -> (End, String) {
     let mut command = Command::new(&plan.program);
     command.args(words).stdin(Stdio::null());
@@ -199,7 +196,7 @@ fn run(plan: &Plan, words: &[OsString]) -> (End, String) {
     let (status, is_still) = wait(&mut child, began, &signs);
     let gone = Instant::now();
     for listener in listeners.into_iter().flatten() {
-        // What it began itself may go on, and hold what it told to.
+        // A child of the game may outlive it and hold the pipe open, so waiting is limited.
         while !listener.is_finished() && gone.elapsed() < LAST_WORDS {
             thread::sleep(LOOK);
         }
@@ -214,23 +211,23 @@ fn run(plan: &Plan, words: &[OsString]) -> (End, String) {
     };
     let told = lines.lock().unwrap_or_else(PoisonError::into_inner);
     let told: Vec<String> = told.iter().cloned().collect();
-    let unknown = || "it could not be waited for".to_string();
+    let unknown = || "the exit status is unknown".to_string();
     let status = status.map_or_else(unknown, |status| status.to_string());
     let seconds = began.elapsed().as_secs_f32();
     let record = format!("{status} after {seconds:.1} s\n{}", told.join("\n"));
     (end, record)
 }
 
-/// What the game told of itself.
+/// Signals received from the game.
 #[derive(Clone, Copy, Debug, Default)]
 struct Signs {
-    /// When it gave the last sign of life.
+    /// Time of the last heartbeat.
     last: Option<Instant>,
-    /// When it said that it ends.
+    /// Time of the announcement of the end.
     ends: Option<Instant>,
 }
 
-/// Waits for the end, and ends what stands still.
+/// Waits for the end of the game, and kills it if it hangs. Returns the exit status and whether it hung.
 fn wait(child: &mut Child, began: Instant, signs: &Mutex<Signs>) -> (Option<ExitStatus>, bool) {
     loop {
         match child.try_wait() {
@@ -245,7 +242,7 @@ fn wait(child: &mut Child, began: Instant, signs: &Mutex<Signs>) -> (Option<Exit
             (None, None) => began.elapsed() > START,
         };
         if is_still {
-            // One that was stopped ends too.
+            // Killing works for a stopped process, too.
             let _gone = child.kill();
             return (child.wait().ok(), true);
         }
@@ -253,7 +250,7 @@ fn wait(child: &mut Child, began: Instant, signs: &Mutex<Signs>) -> (Option<Exit
     }
 }
 
-/// Hears what it tells of itself.
+/// Receives the heartbeats of the game.
 fn listen(child: &mut Child, signs: Arc<Mutex<Signs>>) -> Option<JoinHandle<()>> {
     let mut out = child.stdout.take()?;
     Some(thread::spawn(move || {
@@ -270,12 +267,13 @@ fn listen(child: &mut Child, signs: Arc<Mutex<Signs>>) -> Option<JoinHandle<()>>
     }))
 }
 
-/// Passes on what it says, and keeps the last of it.
+/// Forwards the error output of the game, and keeps its last lines.
 fn read(child: &mut Child, lines: Arc<Mutex<VecDeque<String>>>) -> Option<JoinHandle<()>> {
     let mut err = BufReader::new(child.stderr.take()?);
     Some(thread::spawn(move || {
         let mut line = Vec::new();
-        // Drivers say anything, and whoever says something has to be heard.
+        // Output of drivers may be invalid UTF-8. The pipe must be read anyway, so that the game does not
+        // block on it.
         while err
             .read_until(b'\n', &mut line)
             .is_ok_and(|count| count > 0)
@@ -292,7 +290,7 @@ fn read(child: &mut Child, lines: Arc<Mutex<VecDeque<String>>>) -> Option<JoinHa
     }))
 }
 
-/// Writes down what happened, beside the logbook and in it, while the game begins anew.
+/// Writes a crash record to a file and to the logbook, while the game restarts.
 fn note(plan: &Plan, kind: Kind, record: String) -> JoinHandle<()> {
     let (folder, stand, at) = (plan.folder.clone(), plan.stand.clone(), Moment::now());
     thread::spawn(move || {
@@ -322,7 +320,7 @@ fn note(plan: &Plan, kind: Kind, record: String) -> JoinHandle<()> {
     })
 }
 
-/// Keeps a record of a breakdown as a file, and no more of them than are of use.
+/// Writes a crash record to a file and deletes the oldest ones.
 fn keep_record(folder: &Path, at: Moment, kind: &Kind, record: &str) -> io::Result<()> {
     fs::create_dir_all(folder)?;
     let mut known: Vec<PathBuf> = fs::read_dir(folder)?
@@ -365,10 +363,10 @@ mod tests {
     }
 
     #[test]
-    fn what_breaks_down_begins_anew_until_it_ends_as_it_was_meant() {
+    fn crashed_game_is_restarted_until_regular_end() {
         let folder = tempfile::tempdir().unwrap();
         let (count, path) = ("count", folder.path());
-        // Twice it fails, each time in another way.
+        // The script fails twice, in different ways.
         let script = format!(
             "cd '{}'; echo x >> {count}; case $(wc -l < {count}) in \
              1) echo broken >&2; kill -9 $$;; 2) exit {LOST_GRAPHICS};; *) exit 0;; esac",
@@ -386,7 +384,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_still_is_ended_within_five_seconds() {
+    fn hung_game_is_killed_within_five_seconds() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path();
         let script = format!(
@@ -400,7 +398,7 @@ mod tests {
     }
 
     #[test]
-    fn what_breaks_down_again_and_again_makes_room_for_a_calm_picture() {
+    fn calm_picture_is_shown_after_repeated_crashes() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path();
         let mut plan = plan(path, "exit 7");
@@ -418,7 +416,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_killed_fifty_times_is_back_fifty_times() {
+    fn supervisor_restarts_game_after_each_of_fifty_kills() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().to_path_buf();
         let script = format!(

@@ -1,23 +1,23 @@
-//! What is written while the game goes on.
+//! Background writer.
 
 use std::io;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::{self, JoinHandle};
 
-/// Something to write, and what is to be told of it.
+/// Job that returns its result.
 type Job<T> = Box<dyn FnOnce() -> T + Send>;
 
-/// Does one thing after the other on a thread of its own; where the system has none to give, at once.
+/// Runs jobs one after the other on a thread, or at once if the system cannot start a thread.
 pub struct Writer<T> {
     thread: Option<(Sender<Job<T>>, JoinHandle<()>)>,
     results: Receiver<T>,
     teller: Sender<T>,
-    /// How many results are still to come.
+    /// Number of results not yet received.
     open: usize,
 }
 
 impl<T: Send + 'static> Writer<T> {
-    /// Nothing to do yet, and no thread.
+    /// Creates a writer without jobs. The thread starts with the first one.
     pub fn new() -> Self {
         let (teller, results) = channel();
         Self {
@@ -28,7 +28,7 @@ impl<T: Send + 'static> Writer<T> {
         }
     }
 
-    /// Does this after what was asked for before; `told` makes of it what is to be told.
+    /// Adds a job. `told` converts its result.
     pub fn write<V: 'static>(
         &mut self,
         job: impl FnOnce() -> io::Result<V> + Send + 'static,
@@ -47,29 +47,29 @@ impl<T: Send + 'static> Writer<T> {
             None => Some(job),
         };
         if let Some(job) = refused {
-            // This end of it is ours, so somebody hears.
+            // The receiver is a field of `self`, so sending cannot fail.
             let _heard = self.teller.send(job());
         }
     }
 
-    /// Does this too, which may have to wait for a device.
+    /// Adds an asynchronous job, for example one that waits for a GPU.
     pub fn develop<W: Future<Output = T>>(&mut self, job: impl FnOnce() -> W + Send + 'static) {
         self.begin(Box::new(move || pollster::block_on(job())));
     }
 
-    /// What came of what was done, without waiting.
+    /// Returns the results of finished jobs, without waiting.
     pub fn results(&mut self) -> Vec<T> {
         let results: Vec<T> = self.results.try_iter().collect();
         self.open -= results.len();
         results
     }
 
-    /// Waits until all is done; what came of it.
+    /// Waits for all jobs and returns their results.
     pub fn finish(&mut self) -> Vec<T> {
         let mut results = self.results();
         if let Some((jobs, thread)) = self.thread.take() {
             drop(jobs);
-            // One that panicked has told so itself.
+            // A thread that panicked has printed its message.
             let _ended = thread.join();
             results.extend(self.results());
             self.open = 0;
@@ -77,7 +77,7 @@ impl<T: Send + 'static> Writer<T> {
         results
     }
 
-    /// Whether something is still to be done.
+    /// Whether jobs are unfinished.
     pub fn is_busy(&self) -> bool {
         self.open > 0
     }
@@ -101,7 +101,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_is_done_in_its_order_and_waited_for() {
+    fn jobs_run_in_order_and_finish_waits_for_them() {
         let mut writer = Writer::new();
         let told = |number: io::Result<i32>| number.expect("it is there");
         for number in 0..100 {

@@ -15,7 +15,7 @@ const PLACES: Manner = Manner {
     ..MANNER
 };
 
-/// What the first player wants next.
+/// Returns the goal of the first player in the next tick.
 fn goal(players: &mut Players, devices: &Devices, manner: &Manner) -> Option<Vector> {
     goals(players, devices, manner)[0]
 }
@@ -25,7 +25,7 @@ fn goals(players: &mut Players, devices: &Devices, manner: &Manner) -> [Option<V
     [frame.goal(0), frame.goal(1)]
 }
 
-/// A stick that leans so far to the right and upwards.
+/// Creates a stick with this deflection to the right and upwards.
 fn stick(id: u32, lean: [f32; 2]) -> Device {
     let about = About {
         name: String::new(),
@@ -52,7 +52,7 @@ fn assert_near(found: Option<Vector>, expected: [f32; 2]) {
 }
 
 #[test]
-fn the_mouse_says_where_and_its_word_holds() {
+fn mouse_position_is_kept_until_next_round() {
     let mut players = Players::default();
     let mut devices = Devices::default();
     assert_eq!(goal(&mut players, &devices, &MANNER), None);
@@ -65,7 +65,7 @@ fn the_mouse_says_where_and_its_word_holds() {
 }
 
 #[test]
-fn keys_say_how_fast_and_diagonals_are_no_faster() {
+fn keys_set_speed_and_diagonals_are_no_faster() {
     let step = PACE * TICK;
     let held = |keys: &[Key]| Devices {
         keys: keys.iter().copied().collect(),
@@ -82,7 +82,7 @@ fn keys_say_how_fast_and_diagonals_are_no_faster() {
         ..MANNER
     };
     assert_near(of(&[Key::S], &slowly), [-1.0, -0.5 * step]);
-    // A goal stays in the arena, whatever pushes it out.
+    // The goal is clamped to the arena.
     let narrow = Manner {
         arena: [[-1.0, -1.0, 0.0], [1.0, 0.0, 0.0]],
         ..MANNER
@@ -91,7 +91,7 @@ fn keys_say_how_fast_and_diagonals_are_no_faster() {
 }
 
 #[test]
-fn a_stick_that_hardly_leans_does_nothing_and_one_that_leans_far_goes_fast() {
+fn stick_has_dead_zone_and_speed_grows_with_deflection() {
     let of = |lean| {
         goal(
             &mut Players::default(),
@@ -111,7 +111,7 @@ fn a_stick_that_hardly_leans_does_nothing_and_one_that_leans_far_goes_fast() {
 }
 
 #[test]
-fn a_stick_that_points_at_places_leaves_the_rest_to_others_while_it_is_still() {
+fn still_position_stick_leaves_goal_to_other_devices() {
     let mut players = Players::default();
     let mut devices = with_sticks(vec![stick(1, [0.0; 2]), stick(2, [0.0; 2])]);
     assert_eq!(goal(&mut players, &devices, &PLACES), None, "at rest");
@@ -128,7 +128,7 @@ fn a_stick_that_points_at_places_leaves_the_rest_to_others_while_it_is_still() {
 }
 
 #[test]
-fn in_space_what_is_away_is_away_from_the_camera_and_the_hand_rises() {
+fn away_in_space_is_away_from_camera_and_lift_raises_hand() {
     let manner = Manner {
         arena: [[-1.6, 0.0, -1.0], [1.6, 1.6, 1.0]],
         turn: Some(std::f32::consts::FRAC_PI_2),
@@ -145,7 +145,7 @@ fn in_space_what_is_away_is_away_from_the_camera_and_the_hand_rises() {
         assert!(is_near, "{found:?}, expected {expected:?}");
     };
     let step = PACE * TICK;
-    // The camera went around to the right, so it looks to the left.
+    // The camera is rotated by 90° to the right, so it looks to the left.
     check(
         goal(&with_sticks(vec![stick(1, [0.0, 1.0])])),
         [-step, 0.5, 0.0],
@@ -168,13 +168,13 @@ fn in_space_what_is_away_is_away_from_the_camera_and_the_hand_rises() {
 }
 
 #[test]
-fn the_wanted_height_is_kept_as_the_wanted_place_is() {
+fn wanted_height_is_kept_when_goal_cannot_follow() {
     let manner = Manner {
         arena: [[-1.6, 0.0, -1.0], [1.6, 1.6, 1.0]],
         turn: Some(0.0),
         ..MANNER
     };
-    // The body holds the hand down, and the leash its goal.
+    // The body holds the hand down, and the limited distance between hand and goal holds the goal.
     let here = [0.0, 0.5, 0.0];
     let mut players = Players::default();
     let mut goal = |devices: &Devices, manner: &Manner| {
@@ -205,7 +205,8 @@ fn the_wanted_height_is_kept_as_the_wanted_place_is() {
     };
     let pointing = with_sticks(vec![stick(1, [1.0, 0.0])]);
     assert_height(goal(&pointing, &places), 1.3);
-    // Upwards is never down, and back is from where it is: what went on in vain is not to be undone first.
+    // Lifting never lowers the wanted height. Lowering starts from the current goal, so that excess lift need
+    // not be undone first.
     assert_height(goal(&keys(Key::Q), &manner), 1.3);
     assert_height(goal(&keys(Key::Z), &manner), 0.5 - RISE * TICK);
     goal(&lift(9.0), &manner);
@@ -213,12 +214,12 @@ fn the_wanted_height_is_kept_as_the_wanted_place_is() {
     assert_eq!(
         players.wanted(0).map(|goal| goal[0] > 1.5),
         Some(true),
-        "as far as the stick said"
+        "the position of the stick"
     );
 }
 
 #[test]
-fn in_the_plane_nothing_rises() {
+fn lift_has_no_effect_in_plane() {
     let devices = Devices {
         lift: 1.0,
         keys: [Key::Q].into(),
@@ -238,7 +239,7 @@ fn each_device_belongs_to_one_player() {
     let [first, second] = goals(&mut players, &devices, &MANNER);
     assert_near(first, [-1.0 + PACE * TICK, 0.0]);
     assert_near(second, [-1.0 + PACE * TICK, 0.5]);
-    // Who comes in and holds still is where the level says.
+    // A player who joins and gives no input stays at the start position of the level.
     players.join(Seat::Keys);
     assert_near(goals(&mut players, &devices, &MANNER)[1], [-1.0, 0.5]);
     players.join(Seat::Keys);
@@ -247,7 +248,7 @@ fn each_device_belongs_to_one_player() {
     devices.sticks.devices.remove(0);
     assert_eq!(goals(&mut players, &devices, &MANNER)[1], None);
     assert_eq!(players.second(), None, "it was unplugged");
-    // A level may have one hand only.
+    // The level may have only one hand.
     players.join(Seat::Keys);
     let bindings = Bindings::default();
     let frame = players.frame(&devices, &bindings, &MANNER, &HANDS[..1], TICK);
@@ -255,7 +256,7 @@ fn each_device_belongs_to_one_player() {
 }
 
 #[test]
-fn buttons_on_the_screen_are_of_whoever_has_the_pointer() {
+fn screen_buttons_belong_to_player_with_pointer() {
     let manner = Manner {
         turn: Some(0.0),
         ..MANNER

@@ -1,13 +1,13 @@
-//! Where long work and the page have one thread.
+//! Yielding during long work in a browser, where such work shares one thread with the page.
 
 use super::host;
 use wasm_bindgen_futures::JsFuture;
 use web_time::{Duration, Instant};
 
-/// So long may work go on before the page is drawn again.
+/// Longest work before the page gets a frame.
 const LONGEST: Duration = Duration::from_millis(8);
 
-/// Lets the page go on, now and then.
+/// Yields to the page from time to time.
 pub struct Breath(Instant);
 
 impl Default for Breath {
@@ -17,10 +17,10 @@ impl Default for Breath {
 }
 
 impl Breath {
-    /// Waits for the next frame if the last one was long ago.
+    /// Waits for the next frame if the last one was longer than `LONGEST` ago.
     pub async fn take(&mut self) {
         if self.0.elapsed() > LONGEST {
-            // The page never refuses.
+            // The promise is never rejected.
             let _ = JsFuture::from(host().breathe()).await;
             self.0 = Instant::now();
         }

@@ -1,4 +1,4 @@
-//! The clipboard, which browsers hand out as they please.
+//! Clipboard of the browser, which may refuse to copy.
 
 use super::host;
 
@@ -7,12 +7,12 @@ use super::host;
 pub struct Clipboard;
 
 impl Clipboard {
-    /// Puts a text on it. Some browsers take it only in the frame of a press.
+    /// Copies a text to the clipboard. Some browsers allow this only in the frame of a press.
     pub fn copy(&mut self, _: &egui::Context, text: String) {
         host().copy(&text);
     }
 
-    /// Whether it took what was put on it, told once.
+    /// Returns once whether the last copy succeeded.
     pub fn took(&mut self) -> Option<bool> {
         host().take_copied()
     }

@@ -1,9 +1,9 @@
-//! When something was, as the browser's clock has it.
+//! Local date and time as text.
 
 use js_sys::Date;
 use std::time::SystemTime;
 
-/// A time of day where the visitor is: year, month, day, hour, minute.
+/// Formats a time in the local time zone as year, month, day, hour and minute.
 pub fn local(time: SystemTime) -> String {
     let since = time.duration_since(SystemTime::UNIX_EPOCH);
     let milliseconds = since.unwrap_or_default().as_millis() as f64;

@@ -1,22 +1,22 @@
-//! The browser's dialog in which a file is picked.
+//! File dialog of the browser.
 
 use super::host;
 use crate::platform::given::{Given, Picked, read_together};
 
-/// Whether there is one here.
+/// Whether file dialogs are supported.
 pub const IS_THERE: bool = true;
 
-/// The dialog. The page remembers whether it is open.
+/// File dialog. The page knows whether it is open.
 #[derive(Default)]
 pub struct Dialog(Vec<Given>);
 
 impl Dialog {
-    /// Asks for a file; browsers name the kinds by their endings alone.
+    /// Opens the dialog. The description is unused, since browsers show only file extensions.
     pub fn ask(&mut self, _: &str) {
         host().pick(".toml,.tamaire,.png,.vox");
     }
 
-    /// What was picked since this was asked last.
+    /// Returns the next chosen file, if any.
     pub fn take(&mut self) -> Option<Picked> {
         if let Some(files) = host().take_picked() {
             self.0.extend(read_together(&files));

@@ -1,50 +1,51 @@
-//! What the page does for the game: `game/web/host.js`, which says what each of these is.
+//! Interface to the page, implemented and documented in `game/web/host.js`.
 
 use std::cell::RefCell;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 #[wasm_bindgen]
 extern "C" {
-    /// The page. It outlives the game, which begins anew on it after the GPU was lost.
+    /// The page, which outlives the game: after a lost GPU a new game starts on it.
     #[derive(Clone)]
     pub type Host;
 
-    /// The language that the visitor prefers, as in `ja-JP`.
+    /// Preferred language of the player, such as `ja-JP`.
     #[wasm_bindgen(method, getter)]
     pub fn language(this: &Host) -> String;
 
-    /// Why nothing can be kept, if so.
+    /// Reason why nothing can be stored, if any.
     #[wasm_bindgen(method, getter)]
     pub(crate) fn refusal(this: &Host) -> Option<String>;
-    /// The next thing that is kept and not known here yet.
+    /// Next stored entry that the game has not read yet.
     #[wasm_bindgen(method, js_name = takeChange)]
     pub(crate) fn take_change(this: &Host) -> Option<Changed>;
-    /// Keeps and removes things, all of them or none, while no other tab does. Resolves to why they are not kept, if so.
+    /// Stores and removes entries atomically, while no other tab does. The promise resolves to the reason of
+    /// a failure, if any.
     #[wasm_bindgen(method)]
     pub(crate) fn alone(this: &Host, job: &js_sys::Function) -> js_sys::Promise;
     #[wasm_bindgen(method)]
     pub(crate) fn keep(this: &Host, key: &str, bytes: &[u8], written: f64);
     #[wasm_bindgen(method)]
     pub(crate) fn remove(this: &Host, key: &str);
-    /// Why something that was not kept alone is not, told once.
+    /// Returns once the reason why a change outside of `alone` failed.
     #[wasm_bindgen(method, js_name = takeFailure)]
     pub(crate) fn take_failure(this: &Host) -> Option<String>;
 
-    /// Hands a file to the visitor.
+    /// Offers a file as a download.
     #[wasm_bindgen(method)]
     pub(crate) fn download(this: &Host, name: &str, media: &str, bytes: &[u8]);
-    /// Asks for files; they come through [`Host::take_picked`].
+    /// Opens a file dialog; the files arrive through [`Host::take_picked`].
     #[wasm_bindgen(method)]
     pub(crate) fn pick(this: &Host, endings: &str);
-    /// What was picked or dropped together: files, or nothing.
+    /// Files that were chosen or dropped together, if any.
     #[wasm_bindgen(method, js_name = takePicked)]
     pub(crate) fn take_picked(this: &Host) -> Option<js_sys::Array>;
     #[wasm_bindgen(method, js_name = takeDropped)]
     pub(crate) fn take_dropped(this: &Host) -> Option<js_sys::Array>;
-    /// What stood behind the address, once.
+    /// Fragment of the page's address, once.
     #[wasm_bindgen(method, js_name = takeLink)]
     pub(crate) fn take_link(this: &Host) -> Option<String>;
-    /// The address of the page, without what stands behind it.
+    /// Address of the page without its fragment.
     #[wasm_bindgen(method, getter)]
     pub(crate) fn address(this: &Host) -> String;
     #[wasm_bindgen(method)]
@@ -52,55 +53,55 @@ extern "C" {
     #[wasm_bindgen(method, js_name = takeCopied)]
     pub(crate) fn take_copied(this: &Host) -> Option<bool>;
 
-    /// The GPU is gone, or what is drawn with it fails: the page begins anew.
+    /// Reports that the GPU is lost or drawing fails. The page then starts a new game.
     #[wasm_bindgen(method)]
     pub(crate) fn lost(this: &Host);
-    /// Whether the page fills the screen.
+    /// Whether the page is full screen.
     #[wasm_bindgen(method, getter, js_name = isFull)]
     pub(crate) fn is_full(this: &Host) -> bool;
     #[wasm_bindgen(method, js_name = fillScreen)]
     pub(crate) fn fill_screen(this: &Host, wanted: bool);
-    /// The language that the game speaks now, for whoever reads the page aloud.
+    /// Sets the current language of the game, for screen readers.
     #[wasm_bindgen(method, setter)]
     pub(crate) fn set_spoken(this: &Host, language: &str);
 
-    /// What sounds come out of; the same one when the game begins anew.
+    /// Sound output, which stays the same when a new game starts.
     #[wasm_bindgen(method, getter)]
     pub(crate) fn speaker(this: &Host) -> Speaker;
-    /// Resolves in the next frame, and also where no frames are drawn.
+    /// Resolves in the next frame, even if no frames are drawn.
     #[wasm_bindgen(method)]
     pub(crate) fn breathe(this: &Host) -> js_sys::Promise;
-    /// Asks for the letters of Japanese; they come through [`Host::take_letters`], unless the page cannot fetch them.
+    /// Requests the Japanese font. It arrives through [`Host::take_letters`], unless it cannot be fetched.
     #[wasm_bindgen(method, js_name = wantLetters)]
     pub(crate) fn want_letters(this: &Host);
     #[wasm_bindgen(method, js_name = takeLetters)]
     pub(crate) fn take_letters(this: &Host) -> Option<Vec<u8>>;
 
-    /// `game/web/sound.js`
+    /// Implemented in `game/web/sound.js`.
     pub(crate) type Speaker;
     #[wasm_bindgen(method)]
     pub(crate) fn tell(this: &Speaker, bytes: &[u8]);
     #[wasm_bindgen(method)]
     pub(crate) fn trouble(this: &Speaker) -> Option<String>;
 
-    /// Something that was kept.
+    /// A stored entry.
     pub(crate) type Changed;
     #[wasm_bindgen(method, getter)]
     pub(crate) fn key(this: &Changed) -> String;
-    /// Nothing where it is not a thing but says that nothing is kept but what follows.
+    /// Bytes of the entry. `None` marks a reset: all entries before it are obsolete.
     #[wasm_bindgen(method, getter)]
     pub(crate) fn bytes(this: &Changed) -> Option<Vec<u8>>;
-    /// When it was written [ms since 1970].
+    /// Time of the last write [ms since 1970].
     #[wasm_bindgen(method, getter)]
     pub(crate) fn written(this: &Changed) -> f64;
 
-    /// A file that was handed to the game.
+    /// A file passed to the game.
     pub(crate) type GivenFile;
     #[wasm_bindgen(method, getter)]
     pub(crate) fn name(this: &GivenFile) -> String;
     #[wasm_bindgen(method, getter, js_name = bytes)]
     pub(crate) fn contents(this: &GivenFile) -> Option<Vec<u8>>;
-    /// How long it is; one that is too long has no bytes.
+    /// Length [bytes]. A file that is too long has no contents.
     #[wasm_bindgen(method, getter)]
     pub(crate) fn length(this: &GivenFile) -> f64;
 }
@@ -109,15 +110,15 @@ thread_local! {
     static HOST: RefCell<Option<Host>> = const { RefCell::new(None) };
 }
 
-/// From now on this page is asked.
+/// Sets the page on which the game runs.
 pub fn set_host(host: Host) {
     HOST.replace(Some(host));
 }
 
-/// The page.
+/// Returns the page.
 ///
 /// # Panics
-/// Before there is one: the game begins with it.
+/// Before [`set_host`] was called, which happens at the start of the game.
 pub(crate) fn host() -> Host {
-    HOST.with_borrow(|host| host.clone().expect("the page is told first"))
+    HOST.with_borrow(|host| host.clone().expect("set_host is called first"))
 }

@@ -1,5 +1,5 @@
-//! What the game keeps in the browser. All of it lies in memory too, because the browser's own store is slower to answer
-//! than a frame may last; other tabs tell what they change.
+//! Storage in the browser. All entries are also in memory, because the browser's storage may take longer than
+//! a frame. Changes by other tabs are received as messages.
 
 use super::host;
 use crate::platform::storage::{Change, Entry, Kind, Storage};
@@ -8,7 +8,7 @@ use std::io;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, SystemTime};
 
-/// The kinds that stay in the browser, and how their keys begin. Photos and clips are handed to the visitor.
+/// Kinds that are stored in the browser, and their key prefixes. Photos and clips become downloads instead.
 const KINDS: [(Kind, &str); 4] = [
     (Kind::Note, "note"),
     (Kind::Level, "level"),
@@ -16,7 +16,7 @@ const KINDS: [(Kind, &str); 4] = [
     (Kind::Best, "best"),
 ];
 
-/// The browser's store.
+/// Storage in the browser.
 #[derive(Default)]
 pub struct Kept(Mutex<BTreeMap<String, Thing>>);
 
@@ -26,7 +26,7 @@ struct Thing {
 }
 
 impl Kept {
-    /// What is kept now, here and in other tabs.
+    /// Applies changes by other tabs and returns all entries.
     fn now(&self) -> MutexGuard<'_, BTreeMap<String, Thing>> {
         let mut things = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let host = host();
@@ -114,7 +114,7 @@ impl Storage for Kept {
     }
 }
 
-/// Why the browser does not keep something, as it says.
+/// Converts the browser's reason of a failed write to an error.
 pub(super) fn refused(reason: String) -> io::Error {
     let is_full = reason.starts_with("QuotaExceededError");
     let kind = if is_full {
@@ -125,7 +125,7 @@ pub(super) fn refused(reason: String) -> io::Error {
     io::Error::new(kind, reason)
 }
 
-/// How the keys of a kind begin; nothing where it does not stay in the browser.
+/// Key prefix of a kind. `None` if the kind is not stored in the browser.
 fn beginning(kind: Kind) -> Option<String> {
     let (_, word) = KINDS.iter().find(|(known, _)| *known == kind)?;
     Some(format!("{word}/"))

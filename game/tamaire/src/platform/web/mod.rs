@@ -1,5 +1,5 @@
-//! What a browser has in place of folders, a system's dialog and its clock. The page hands in a [`Host`]; nothing here
-//! makes elements of its own.
+//! Browser versions of storage, file dialog, clock, sound and screen. The page passes in a [`Host`]; no
+//! module here creates page elements.
 
 pub mod breath;
 pub mod clipboard;

@@ -1,35 +1,35 @@
-//! What only the page can do to what is seen.
+//! Screen functions that only the page provides.
 
 use super::host;
 use crate::look::add_letters;
 use crate::words::Language;
 
-/// Makes the page as large as was chosen.
+/// Switches full screen on or off.
 pub fn fill_screen(_: &egui::Context, wanted: bool) {
     host().fill_screen(wanted);
 }
 
-/// Has the page begin anew, with another canvas.
+/// Makes the page start a new game on a new canvas.
 pub fn begin_anew() {
     host().lost();
 }
 
-/// Whether the page fills the screen: browsers have keys and gestures of their own for that.
+/// Whether the page is full screen. Browsers have keys and gestures that change it.
 pub fn is_full_by_itself() -> Option<bool> {
     Some(host().is_full())
 }
 
-/// The address of the page, which opens links.
+/// Returns the address of the page, which opens links.
 pub fn address_of_page() -> String {
     host().address()
 }
 
-/// Sees to it that a language can be written, and read aloud.
+/// Makes the page load the font of a language, and tells it the language for screen readers.
 pub fn speak(context: &egui::Context, language: Language, has_own_levels: bool) {
     let host = host();
     let is_japanese = language == Language::Japanese;
     host.set_spoken(if is_japanese { "ja" } else { "en" });
-    // Names that somebody gave may be written in anything.
+    // Names given by players may be in any script.
     if is_japanese || has_own_levels {
         host.want_letters();
     }

@@ -1,19 +1,19 @@
-//! How sound comes out in a browser: `game/web/sound.js` hands it to a synth in an audio worklet.
+//! Sound output in a browser: `game/web/sound.js` passes messages to a synthesizer in an audio worklet.
 
 use super::host;
 use super::host::Speaker;
 use std::cell::RefCell;
 use tamaire_sound::{Cue, Message, Soundscape, Volumes};
 
-/// The loudspeaker. Until a first gesture, and where there is none, everything goes on in silence.
+/// Sound output. It is silent before the first gesture of the player, and if there is no device.
 pub struct Sound {
     speaker: Option<Speaker>,
-    /// What was played since the last frame.
+    /// Sounds played since the last frame.
     message: RefCell<Message>,
 }
 
 impl Sound {
-    /// Opens the device that the browser prefers, once it may.
+    /// Opens the default device of the browser, as soon as the browser allows.
     pub fn open() -> Self {
         Self {
             speaker: Some(host().speaker()),
@@ -21,7 +21,7 @@ impl Sound {
         }
     }
 
-    /// No sound, by choice.
+    /// Turns sound off, by choice.
     pub fn none() -> Self {
         Self {
             speaker: None,
@@ -29,7 +29,7 @@ impl Sound {
         }
     }
 
-    /// Tells what lasts, each frame.
+    /// Updates continuous sounds, once per frame.
     pub fn update(&self, soundscape: &Soundscape, volumes: &Volumes) {
         let mut message = self.message.borrow_mut();
         message.hear(soundscape);
@@ -40,17 +40,17 @@ impl Sound {
         message.clear();
     }
 
-    /// Begins what sounds once, with the next frame.
+    /// Starts a sound effect with the next frame.
     pub fn play(&self, cue: Cue) {
         self.message.borrow_mut().play(cue);
     }
 
-    /// Whether nothing is heard by choice.
+    /// Whether sound is off by choice.
     pub fn is_off(&self) -> bool {
         self.speaker.is_none()
     }
 
-    /// Why nothing is heard that should be, if so.
+    /// Returns the reason why sound does not work, if any.
     pub fn trouble(&self) -> Option<String> {
         self.speaker.as_ref()?.trouble()
     }

@@ -1,4 +1,5 @@
-//! What is written while the game goes on: each thing while no other tab writes, and told once the browser has it.
+//! Background writer. Each job runs while no other tab writes, and is reported once the browser has stored
+//! its result.
 
 use super::host;
 use super::kept::refused;
@@ -10,20 +11,20 @@ use wasm_bindgen::JsCast;
 use wasm_bindgen::closure::Closure;
 use wasm_bindgen_futures::{JsFuture, spawn_local};
 
-/// Something to write that was not begun yet.
+/// Job that has not started yet.
 type Job = Rc<Cell<Option<Box<dyn FnOnce()>>>>;
 
-/// Does one thing after the other.
+/// Runs jobs one after the other.
 pub struct Writer<T> {
     waiting: Vec<Job>,
     results: Receiver<T>,
     teller: Sender<T>,
-    /// How many results are still to come.
+    /// Number of results not yet received.
     open: usize,
 }
 
 impl<T: 'static> Writer<T> {
-    /// Nothing to do yet.
+    /// Creates a writer without jobs.
     pub fn new() -> Self {
         let (teller, results) = channel();
         Self {
@@ -34,7 +35,7 @@ impl<T: 'static> Writer<T> {
         }
     }
 
-    /// Does this after what was asked for before; `told` makes of it what is to be told.
+    /// Adds a job. `told` converts its result.
     pub fn write<V: 'static>(
         &mut self,
         job: impl FnOnce() -> io::Result<V> + 'static,
@@ -56,17 +57,17 @@ impl<T: 'static> Writer<T> {
         });
     }
 
-    /// Does this between frames: it may have to wait for a device.
+    /// Adds an asynchronous job, for example one that waits for a GPU. It runs between frames.
     pub fn develop<W: Future<Output = T>>(&mut self, job: impl FnOnce() -> W + 'static) {
         self.open += 1;
         let teller = self.teller.clone();
         spawn_local(async move {
-            // The game may have begun anew.
+            // Sending fails if a new game has started.
             let _ = teller.send(job().await);
         });
     }
 
-    /// What came of what was done, without waiting.
+    /// Returns the results of finished jobs, without waiting.
     pub fn results(&mut self) -> Vec<T> {
         let results: Vec<T> = self.results.try_iter().collect();
         self.open -= results.len();
@@ -74,7 +75,8 @@ impl<T: 'static> Writer<T> {
         results
     }
 
-    /// Begins at once what waits: the page may not come back. A browser lets nobody wait for more.
+    /// Starts all waiting jobs at once, because the page may not come back. A browser does not allow waiting
+    /// for their end.
     pub fn finish(&mut self) -> Vec<T> {
         for job in self.waiting.drain(..) {
             begin(&job);
@@ -82,7 +84,7 @@ impl<T: 'static> Writer<T> {
         self.results()
     }
 
-    /// Whether something is still to be done.
+    /// Whether jobs are unfinished.
     pub fn is_busy(&self) -> bool {
         self.open > 0
     }
