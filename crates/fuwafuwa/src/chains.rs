@@ -51,7 +51,7 @@ impl<I: Id> Chains<I> {
     /// Takes an id out of the list of a place.
     ///
     /// # Panics
-    /// When it is not there.
+    /// If it is not there.
     pub fn remove(&mut self, place: usize, id: I) {
         let after = self.next[id.index()];
         *self.link(place, id.index() as u32) = after;

@@ -236,7 +236,7 @@ impl<D: Dim> Pyramid<D> {
     /// The cell that owns a solid voxel, and its child that the voxel lies in.
     ///
     /// # Panics
-    /// When the voxel is outside the grid the pyramid was made for.
+    /// If the voxel is outside the grid the pyramid was made for.
     pub fn owner(&self, voxel: Point) -> (Cell, usize) {
         let mut cell = Cell {
             level: 0,

@@ -100,7 +100,7 @@ impl<D: Dim> Stencil<D> {
     /// Hourglass modes are as stiff as pure bending asks for: the softest way to bend decides.
     ///
     /// # Errors
-    /// [`MissingCorner`] when a share ends on a corner slot without a node.
+    /// [`MissingCorner`] if a share ends on a corner slot without a node.
     #[inline(never)]
     pub fn new(children: u8, slots: u32) -> Result<Self, MissingCorner> {
         let mut gradients = [[0.0; 3]; 27];
