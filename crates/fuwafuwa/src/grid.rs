@@ -62,10 +62,7 @@ impl fmt::Display for BuildError {
                 VOXEL_SIZES.end()
             ),
             Self::NotFlat { layers } => {
-                write!(
-                    f,
-                    "a 2D grid must have one layer of voxels, got {layers}"
-                )
+                write!(f, "a 2D grid must have one layer of voxels, got {layers}")
             }
         }
     }

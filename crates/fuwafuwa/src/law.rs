@@ -110,7 +110,11 @@ pub fn forces<D: Dim>(
     size: f64,
     positions: &[Vector64],
 ) -> Vec<Vector64> {
-    assert_eq!(positions.len(), stencil.slots.len(), "the number of positions must match the nodes of the stencil");
+    assert_eq!(
+        positions.len(),
+        stencil.slots.len(),
+        "the number of positions must match the nodes of the stencil"
+    );
     match law {
         Law::Endo2004 => endo(elasticity, stencil, size, positions),
         Law::PatchExact => patch_exact(elasticity, stencil, size, positions),

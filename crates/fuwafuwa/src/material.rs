@@ -107,7 +107,10 @@ impl fmt::Display for BodyError {
                 expected,
             } => write!(f, "material {number}: {field} = {given} must be {expected}"),
             Self::Elasticity { number, reason } => write!(f, "material {number}: {reason}"),
-            Self::Mesh(defect) => write!(f, "the mesh is inconsistent, which is a bug in fuwafuwa: {defect}"),
+            Self::Mesh(defect) => write!(
+                f,
+                "the mesh is inconsistent, which is a bug in fuwafuwa: {defect}"
+            ),
         }
     }
 }

@@ -56,7 +56,11 @@ pub fn strained_after<D: Dim>(
     size: f64,
     positions: &[Vector64],
 ) -> Strained {
-    assert_eq!(positions.len(), stencil.slots.len(), "the number of positions must match the nodes of the stencil");
+    assert_eq!(
+        positions.len(),
+        stencil.slots.len(),
+        "the number of positions must match the nodes of the stencil"
+    );
     let (whole, centre) = deformation_of(stencil, size, positions);
     let deformation = elastic_part(&whole, undone);
     let rotation = rotation_of(&deformation);

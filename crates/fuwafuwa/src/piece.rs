@@ -223,14 +223,20 @@ impl Pieces {
                 .running
                 .iter()
                 .position(|search| sides.joined.lowest(search.place) == sides.joined.lowest(place));
-            sides.meet(own.expect("sides that met are merged into one running search"), seen);
+            sides.meet(
+                own.expect("sides that met are merged into one running search"),
+                seen,
+            );
         }
         let mut turn = 0;
         while sides.running.len() > 1 {
             turn %= sides.running.len();
             let Some(id) = sides.running[turn].next.pop_front() else {
                 // Small pieces are removed from the front, which costs the other searches nothing.
-                let alone = sides.running.remove(turn).expect("turn is a valid index of a running search");
+                let alone = sides
+                    .running
+                    .remove(turn)
+                    .expect("turn is a valid index of a running search");
                 sides.born.push(self.split_off(mesh, &alone.found));
                 continue;
             };

@@ -100,7 +100,11 @@ pub fn forces_after<D: Dim>(
     size: f64,
     positions: &[Vector64],
 ) -> Vec<Vector64> {
-    assert_eq!(positions.len(), stencil.slots.len(), "the number of positions must match the nodes of the stencil");
+    assert_eq!(
+        positions.len(),
+        stencil.slots.len(),
+        "the number of positions must match the nodes of the stencil"
+    );
     let (deformation, _) = deformation_of(stencil, size, positions);
     let stress = stress_after::<D>(elasticity, &deformation, undone);
     forces_of_stress(elasticity, &stress, stencil, size, positions)

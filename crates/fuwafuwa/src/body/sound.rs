@@ -69,7 +69,7 @@ impl<D: Dim> Body<D> {
         rows.iter().all(|row| is_flat(row) && is_finite(row)) && !state.damage[id].is_nan()
     }
 
-    /// Whether the mass of a node is exactly the sum over its elements.
+    /// Whether the mass and the inverse mass of a node are exactly those that follow from its elements.
     fn weighs_right(&self, id: NodeId) -> bool {
         self.state.mass[id] == self.mass_of(id)
             && self.state.inverse_mass[id] == self.inverse_mass_of(id)

@@ -70,8 +70,8 @@ impl<D: Dim> Mesh<D> {
         Ok(true)
     }
 
-    /// Whether a (point, group) is a corner of the cell of another element around the point. For the element
-    /// itself it is no corner.
+    /// Whether an element other than `id` has this (point, group) as a corner of its cell; it must not be a
+    /// corner of the cell of `id`.
     fn is_node_beside(&self, id: ElementId, node: Node) -> bool {
         // Only cells up to this level can have a corner at this point.
         let [x, y, z] = node.at;

@@ -172,7 +172,9 @@ impl<D: Dim> Mesh<D> {
                 let at = self.node(node).at;
                 if sharing.groups(at).iter().count() > 1 {
                     let cell = element.cell;
-                    return Err(Defect(format!("{cell:?} has a node at the split point {at:?}")));
+                    return Err(Defect(format!(
+                        "{cell:?} has a node at the split point {at:?}"
+                    )));
                 }
             }
         }
