@@ -59,7 +59,7 @@ pub struct Body<D: Dim> {
 
 impl<D: Dim> Body<D> {
     /// Creates a body at rest that fills `grid`, with the low corner of the grid at the origin. A voxel of
-    /// material number n consists of `materials[n - 1]`.
+    /// material number n uses `materials[n - 1]`.
     ///
     /// # Errors
     /// [`BodyError`] if a material is missing or has a field out of range.

@@ -5,9 +5,9 @@
 //! axis, so that the voxels are divided into two sides.
 //!
 //! ```text
-//!       A │ B      opens the faces across x: side A and side B
-//!     ────●────    what the node bears, and which cuts there are, changes only when something is
-//!       A │ B      released close by; so it is worked out then, and kept
+//!       A │ B      a cut opens the faces across x: side A and side B
+//!     ────●────    the threshold and the possible cuts of a node change only when something is
+//!       A │ B      released nearby, so they are cached until then
 //! ```
 
 use crate::dim::{Dim, FAR, Point, voxel_around};
@@ -28,7 +28,7 @@ const SCATTER: f32 = 0.4;
 pub struct BreakableNode {
     /// Mask of the octants that share the node.
     pub group: u8,
-    /// Octants whose voxel would become a crumb, or hang by one face, if it were separated alone.
+    /// Octants with a voxel that would become a crumb, or hang by one face, if it were separated alone.
     pub crumbs: u8,
     /// Number of the weakest material around the node.
     pub material: u8,
@@ -51,7 +51,7 @@ pub struct Cut {
     pub lone: u8,
 }
 
-/// For each axis, the octants on its near side whose face across the axis is closed.
+/// For each axis, the octants on its near side with a closed face across the axis.
 type Closed = [u8; 3];
 
 /// Breakable nodes of a body.
@@ -243,7 +243,7 @@ mod tests {
     /// After any releases, the updated breakable nodes must match a search from scratch.
     fn check_upkeep<D: Dim>(n: usize) {
         let grid = VoxelGrid::<D>::ball(n, 1.0).expect("a ball is not empty");
-        let mut body = Body::new(grid, &[Material::default()]).expect("the material is good");
+        let mut body = Body::new(grid, &[Material::default()]).expect("the material is valid");
         let mut seed = 5u32;
         let mut random = |below: i32| {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -252,7 +252,7 @@ mod tests {
         for _ in 0..60 {
             let at = [0, 1, 2].map(|axis: usize| if axis < D::N { random(n as i32) } else { 0 });
             let side = random(254) as u8 + 1;
-            body.release(&[(at, side)]).expect("the mesh stays whole");
+            body.release(&[(at, side)]).expect("the mesh stays consistent");
         }
         let mut fresh = BreakableNodes::default();
         let nodes: Vec<NodeId> = body.truth.mesh.nodes().map(|(id, _)| id).collect();

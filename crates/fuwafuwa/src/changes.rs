@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 pub struct Changes {
     /// Nodes that were added or removed.
     pub nodes: Vec<NodeId>,
-    /// Elements that were added or removed, or whose nodes or exposed faces changed.
+    /// Elements that were added or removed, or got other nodes or exposed faces.
     pub elements: Vec<ElementId>,
     /// Pieces that were detached.
     pub parted: Vec<PieceId>,

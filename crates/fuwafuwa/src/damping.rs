@@ -43,7 +43,7 @@ impl PieceMotion {
         self.nodes += 1;
         self.speed_squared += dot(impulse, velocity);
         match D::N {
-            // The other components are 0 in 2D.
+            // In 2D, angular momentum has only a third component.
             2 => self.angular[2] += x[0] * impulse[1] - x[1] * impulse[0],
             _ => self.angular = plus(self.angular, cross(x, impulse)),
         }
@@ -91,7 +91,7 @@ pub fn motions<D: Dim>(body: &Body<D>) -> Table<PieceId, PieceMotion> {
     // Sums are relative to a node of the piece: far from the world origin they would lose digits.
     let mut origins: Table<PieceId, _> = vec![[0.0; 3]; count].into();
     let of_node = |id| body.truth.pieces.of_node(id);
-    // Consecutive nodes mostly belong to one piece, whose sums stay in registers.
+    // Consecutive nodes mostly belong to one piece: its sums stay in registers.
     for nodes in body.cache.awake.chunk_by(|&a, &b| of_node(a) == of_node(b)) {
         let piece = of_node(nodes[0]);
         let (mut motion, origin) = (motions[piece], &mut origins[piece]);

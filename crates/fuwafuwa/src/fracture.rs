@@ -11,7 +11,6 @@
 //!
 //! The tension σ is compared with the strength at a smooth surface, and with the toughness at the tip of a
 //! crack. A node fails if it is overloaded for some milliseconds.
-//! tip of a crack. A node gives way when it was overstrained for some milliseconds.
 
 use crate::body::Body;
 use crate::body::cooldowns::is_near;

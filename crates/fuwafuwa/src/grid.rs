@@ -46,7 +46,7 @@ pub enum BuildError {
 impl fmt::Display for BuildError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Empty => write!(f, "the grid is empty: at least one voxel must be solid"),
+            Self::Empty => write!(f, "the shape is empty: no voxel is solid"),
             Self::TooLarge { size } => write!(
                 f,
                 "the grid of {} x {} x {} voxels is too large: at most {MAX_EXTENT} on an axis and {MAX_VOXELS} in all",

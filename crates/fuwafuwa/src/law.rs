@@ -14,7 +14,6 @@
 //!
 //! α makes a whole cell bend correctly, β other classes: see [`Stencil::hourglass`]. In 2D the law is plane
 //! strain with 1 m of depth: the same formulas with F₃₃ = R₃₃ = 1.
-//! In 2D this is plane strain, for 1 m of depth: the same formulas with F₃₃ = R₃₃ = 1.
 
 use crate::dim::Dim;
 use crate::stencil::{Stencil, Vector64};

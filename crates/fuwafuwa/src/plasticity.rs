@@ -17,10 +17,6 @@
 //! The factor s prevents flattened elements from becoming too stiff for the substep: relative to its rest
 //! shape, a sheet of half the thickness is four times as stiff across. Beyond the plastic limit of the
 //! material, an element is purely elastic.
-//! return of von Mises' law, to first order]. P Fᵀ is symmetric as Pₑ Fₑᵀ is, so spin is kept; the additive strain of
-//! [Mueller 2004] loses that when an element is dented one way and strained another. s keeps what was pressed flat from
-//! being too stiff for its substep: in terms of what it was built as, a sheet half as thick is four times as stiff across.
-//! Where the flow ends, at a stretch that the material says, it springs as if it had never flowed.
 
 use crate::dim::Dim;
 use crate::law::{

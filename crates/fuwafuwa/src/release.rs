@@ -269,7 +269,7 @@ mod tests {
     /// search from scratch.
     fn check_pieces<D: Dim>(n: usize) {
         let grid = VoxelGrid::<D>::ball(n, 1.0).expect("a ball is not empty");
-        let mut body = Body::new(grid, &[Material::default()]).expect("the material is good");
+        let mut body = Body::new(grid, &[Material::default()]).expect("the material is valid");
         let mut seed = 3u32;
         let mut random = |below: usize| {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

@@ -32,7 +32,7 @@ impl<D: Dim> Body<D> {
         let nodes = truth.mesh.take_out(&truth.sharing, &elements);
         for &piece in pieces {
             let piece = &mut truth.pieces.list[piece];
-            // A removed piece counts as asleep, so that nothing waits for it to come to rest.
+            // A removed piece counts as asleep, so that it never counts as moving.
             (piece.removed, piece.asleep) = (true, true);
         }
         let blocks = &mut self.state.blocks;

@@ -361,7 +361,7 @@ impl<D: Dim> Around<D> {
         self.is_closed_from(from, octant ^ 1 << axis, axis)
     }
 
-    /// For each axis, the octants on its near side whose face across the axis is closed.
+    /// For each axis, the octants on its near side with a closed face across the axis.
     pub fn closed_faces(&self) -> [u8; 3] {
         let mut closed = [0; 3];
         for axis in 0..D::N {
@@ -406,7 +406,7 @@ impl<D: Dim> Around<D> {
         groups
     }
 
-    /// Whether all points around are full and in one group.
+    /// Whether every point around is full and forms one group.
     fn is_whole(&self) -> bool {
         let full = Groups::joined(D::ALL_CORNERS);
         self.groups[..D::SLOTS].iter().all(|&groups| groups == full)

@@ -21,7 +21,7 @@ const SLOW: f64 = 0.03;
 /// vibration.
 const STILL_TIME: f32 = 0.5;
 
-/// Updates the sleep timers of all pieces, and puts those to sleep whose time is over. Pieces in `handled`,
+/// Updates the sleep timers of all pieces, and puts those to sleep that reach [`STILL_TIME`]. Pieces in `handled`,
 /// which touch a coupled rigid body, stay awake. Returns the pieces that fell asleep.
 pub fn fall_asleep<D: Dim>(
     bodies: &mut Bodies<D>,
@@ -43,8 +43,8 @@ pub fn fall_asleep<D: Dim>(
     })
 }
 
-/// Updates the sleep timers of dynamic rigid bodies, and puts those to sleep whose time is over; `handled`
-/// are those in contact with a coupled rigid body.
+/// Updates the sleep timers of dynamic rigid bodies, and puts those to sleep that reach [`STILL_TIME`].
+/// Rigid bodies in `handled`, which touch a coupled rigid body, stay awake.
 pub fn fall_asleep_rigid(rigids: &mut Rigids, handled: &BTreeSet<RigidSlot>, duration: f32) {
     for (slot, rigid) in rigids.by_slot_mut() {
         if !rigid.is_free() || rigid.asleep {

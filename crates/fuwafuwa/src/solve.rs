@@ -68,8 +68,8 @@ pub struct Blocks<D: Dim> {
     slots: Table<NodeId, [u32; 8]>,
     /// Nodes of all blocks: node k of lane l at k · LANES + l after the first of the block.
     nodes: Vec<u32>,
-    /// Forces on these nodes with D::N components each. Padding would add a third (3D) or a half to the
-    /// memory traffic of a substep.
+    /// Forces on these nodes with D::N components each. Padding to four would make up a quarter (3D) or half
+    /// (2D) of the memory traffic of a substep.
     forces: Vec<f32>,
     /// Reused by the next evaluation, so that it need not be cleared.
     scratch: Option<Box<[Scratch; GROUP]>>,
@@ -459,7 +459,7 @@ mod tests {
         }
         assert!(
             2 * evaluated(&blocks) < when_awake,
-            "at most half of the blocks are still evaluated when a quarter of the elements is awake"
+            "a quarter of the elements is awake, so most blocks must be idle"
         );
         assert_eq!(states(&blocks), before);
         evaluate(&mut blocks, 0.2);

@@ -73,7 +73,7 @@ pub fn three([x, y, z, _]: [f32; 4]) -> [f32; 3] {
     [x, y, z]
 }
 
-/// Whether all components are finite.
+/// Whether every component is finite.
 #[inline(always)]
 pub fn is_finite<const K: usize>(a: [f32; K]) -> bool {
     a.iter().all(|k| k.is_finite())

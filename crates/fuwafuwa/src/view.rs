@@ -211,7 +211,7 @@ impl<D: Dim> Body<D> {
         self.mass_where(|at| region.distance(at).0 < 0.0)
     }
 
-    /// Mass of all nodes [kg] whose position [m] satisfies a condition.
+    /// Mass of all nodes [kg] at positions [m] that satisfy a condition.
     pub fn mass_where(&self, is_inside: impl Fn(Vector) -> bool) -> f32 {
         let states = self.truth.mesh.nodes().map(|(id, _)| self.node_state(id));
         states
@@ -447,7 +447,7 @@ mod tests {
             let low = ring
                 .iter()
                 .position(|&slot| slot == 0)
-                .expect("it fills the low corner");
+                .expect("the element fills the low corner");
             let around = ring.iter().cycle().skip(low).take(ring.len());
             let around: Vec<[i32; 2]> = around
                 .map(|&slot| [slot_at(slot)[0], slot_at(slot)[1]])

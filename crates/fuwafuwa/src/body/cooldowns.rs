@@ -5,7 +5,7 @@ use crate::dim::Point;
 /// Lattice steps around a release that cool down: half the distance that a wave travels during the cooldown.
 const REACH: i32 = 2;
 
-/// Recent releases, whose surroundings cool down.
+/// Recent releases, around which nodes cool down.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Cooldowns {

@@ -201,7 +201,7 @@ impl<D: Dim> Mesh<D> {
 pub struct Past {
     /// Removed elements, sorted by cell.
     removed: Vec<Element>,
-    /// Old versions of elements whose nodes changed, by ascending id; elements without nodes are new.
+    /// Old versions of elements with changed nodes, by ascending id; elements without nodes are new.
     pub replaced: Vec<(ElementId, Element)>,
     /// New nodes, and the sources of their state.
     pub inherited: Vec<Inheritance>,

@@ -32,7 +32,7 @@ impl<D: Dim> Mesh<D> {
         self.check_gradients(sharing)
     }
 
-    /// Checks the owners, and returns the level that owns each voxel; `u8::MAX` where there is none.
+    /// Checks the owners, and returns the level that owns each voxel; `u8::MAX` for empty voxels.
     fn check_ownership(&self, grid: &VoxelGrid<D>) -> Result<Vec<u8>, Defect> {
         let mut owners = vec![u8::MAX; grid.voxels().count()];
         for (id, element) in self.elements() {

@@ -1,5 +1,8 @@
 //! Arithmetic of a block, all lanes at once.
 //!
+//! With x relative to the first node, unit stencil (b, r, w, V) and half size h, the formulas of
+//! [`crate::law`] become
+//!
 //! ```text
 //! F = Σ x bᵀ / (V h)     G = Σ x (w r)ᵀ     c = Σ w x / V     W = Σ w r rᵀ
 //! A = (k / V) (G − h F W) − h^(d−1) P       B = k h F
@@ -10,7 +13,7 @@
 //! would need far more registers than exist, and its chain of square roots and divisions would stall the
 //! machine.
 //!
-//! A plain cell, whose nodes are all corners, has w = 1, b and r of ±1 and no skew: its sums need only
+//! A plain cell has nodes only in its corners, and so w = 1, b and r of ±1 and no skew: its sums need only
 //! additions and subtractions. Four of five elements are plain.
 
 use super::turn::{Matrix, turn};
@@ -28,7 +31,7 @@ pub struct BlockView<'a> {
     pub rotation: &'a mut [Eight; 4],
     /// Forces on the nodes, in their order, with D::N components each.
     pub forces: &'a mut [f32],
-    /// Mask of the lanes whose element is inverted.
+    /// Mask of the lanes with an inverted element.
     pub inverted: &'a mut u8,
 }
 
