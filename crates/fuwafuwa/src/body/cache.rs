@@ -21,7 +21,8 @@ pub struct Cache {
     pub breakable: BreakableNodes,
     /// Mask of the exposed faces of each level-0 element: bit 2 · axis + side.
     pub bare: Table<ElementId, u8>,
-    /// For elements with exposed faces: the surrounding voxels that share a node, see [`Sharing::bound`](crate::sharing::Sharing::bound).
+    /// For elements with exposed faces: the surrounding voxels that share a node, see
+    /// [`Sharing::bound`](crate::sharing::Sharing::bound).
     pub bound: Table<ElementId, u32>,
     /// Recent changes.
     pub history: History,
