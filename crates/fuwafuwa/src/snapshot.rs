@@ -58,14 +58,9 @@ impl fmt::Display for BadSnapshot {
                 write!(f, "the snapshot is of a world with {found} dimensions")
             }
             Self::Broken { body, defect } => {
-                write!(
-                    f,
-                    "the snapshot contains an invalid world: body {body}: {defect}"
-                )
+                write!(f, "the snapshot is invalid: body {body}: {defect}")
             }
-            Self::NoWorld { defect } => {
-                write!(f, "the snapshot contains an invalid world: {defect}")
-            }
+            Self::NoWorld { defect } => write!(f, "the snapshot is invalid: {defect}"),
             Self::Damaged => write!(f, "the snapshot is damaged: its checksum does not match"),
         }
     }
