@@ -1,4 +1,4 @@
-//! Where an element takes the points of a body at rest, and back: its motion, taken for affine.
+//! Affine motion of elements: maps between the undeformed body and world space.
 
 use crate::body::Body;
 use crate::dim::Dim;
@@ -8,12 +8,12 @@ use crate::shape::Vector;
 use crate::stencil::slot_at;
 use crate::vector::{cross, dot, minus, plus, scaled, three};
 
-/// An element that is flatter than this has no inside: its volume over that at rest. Undoing the motion of a flatter one
-/// would turn the rounding of positions, about 1e-5 of a voxel, into a hundredth of its width and more.
+/// Volume ratio below which an element counts as flat. Inverting the motion of a flatter element would
+/// amplify the rounding of positions, about 1e-5 of a voxel, to a hundredth of its width and more.
 const FLAT: f32 = 0.01;
 
 impl<D: Dim> Body<D> {
-    /// The centre of an element [m] and its deformation gradient F, by rows.
+    /// Returns the centre of an element [m], and its deformation gradient F by rows.
     pub(crate) fn deformation(&self, element: &Element) -> (Vector, [Vector; 3]) {
         let stencil = self.truth.mesh.stencil(element);
         let half = 0.5 * self.truth.grid.voxel_size() * element.cell.width() as f32;
@@ -36,7 +36,7 @@ impl<D: Dim> Body<D> {
         (centre, gradient)
     }
 
-    /// What of its deformation gradient is elastic: all but the dent that it keeps.
+    /// Elastic part of the deformation gradient, without plastic deformation.
     pub(crate) fn elastic_part(&self, id: ElementId, element: &Element) -> [Vector; 3] {
         let (_, gradient) = self.deformation(element);
         let Some(undone) = self.state.blocks.undone(id) else {
@@ -46,13 +46,14 @@ impl<D: Dim> Body<D> {
         gradient.map(|row| [0, 1, 2].map(|j: usize| dot(row, column(j))))
     }
 
-    /// Where an element takes a point of the undeformed body, given in voxels: its affine motion [m].
+    /// Returns the affine motion of an element: maps a point of the undeformed body, in voxels, to its
+    /// position [m].
     pub(crate) fn carry(&self, element: &Element) -> impl Fn(Vector) -> Vector + use<D> {
         let (centre, gradient) = self.deformation(element);
         let stencil = self.truth.mesh.stencil(element);
         let size = self.truth.grid.voxel_size();
         let half = 0.5 * size * element.cell.width() as f32;
-        // The slot in the low corner of the cell, as seen from the volume centroid at rest.
+        // Slot in the low corner of the cell, relative to the volume centroid at rest.
         let steps = slot_at(stencil.slots[0] as usize).map(|k| k as f32 * half);
         let origin = minus(scaled(stencil.offsets[0].map(|k| k as f32), half), steps);
         let low = element.cell.first_voxel().map(|k| k as f32);
@@ -69,8 +70,8 @@ impl<D: Dim> Body<D> {
         }
     }
 
-    /// Where a place [m] would be in the undeformed body if all moved as an element does, in voxels: what undoes
-    /// [`Body::carry`]. Nothing where the element is flat.
+    /// Maps a position [m] back to the undeformed body, in voxels, by the motion of an element: the inverse
+    /// of [`Body::carry`]. `None` if the element is flat.
     pub(crate) fn at_rest(&self, element: &Element, at: Vector) -> Option<Vector> {
         let stencil = self.truth.mesh.stencil(element);
         let size = self.truth.grid.voxel_size();
@@ -85,8 +86,9 @@ impl<D: Dim> Body<D> {
         Some(place)
     }
 
-    /// By how much each node of an element counts for a place of the undeformed body, given in voxels: what is linear is
-    /// carried exactly, and so a push that is shared out so keeps its torque.
+    /// Returns the weight of each node of an element at a point of the undeformed body, in voxels. Linear
+    /// functions are interpolated exactly, so an impulse that is distributed with these weights keeps its
+    /// torque.
     pub(crate) fn weights(&self, element: &Element, at: Vector) -> Vec<(NodeId, f32)> {
         let stencil = self.truth.mesh.stencil(element);
         let half = 0.5 * element.cell.width() as f32;
@@ -106,20 +108,20 @@ impl<D: Dim> Body<D> {
         nodes.map(|(place, &node)| (node, weight(place))).collect()
     }
 
-    /// How fast the place moves that nodes count so for [m/s].
+    /// Velocity [m/s] at the point with these node weights.
     pub(crate) fn velocity_of(&self, weights: &[(NodeId, f32)]) -> Vector {
         let share = |&(node, weight): &(NodeId, f32)| scaled(self.state.velocity[node], weight);
         three(weights.iter().map(share).fold([0.0; 4], plus))
     }
 
-    /// Where a place [m] was at rest, as seen from the centroid of an element [m], in all three coordinates.
+    /// Maps a position [m] to its rest offset from the centroid of an element [m], in all three coordinates.
     fn offset_at_rest(&self, element: &Element, at: Vector) -> Option<Vector> {
         let (centre, undo) = self.undo(element)?;
         Some(undo(minus(at, centre)))
     }
 
-    /// The centre of an element [m], and what undoes its deformation: which way something at rest points that points this
-    /// way now. Nothing where the element is flat.
+    /// Returns the centre of an element [m], and the inverse of its deformation: it maps present directions
+    /// to directions at rest. `None` if the element is flat.
     pub(crate) fn undo(
         &self,
         element: &Element,
@@ -139,7 +141,7 @@ impl<D: Dim> Body<D> {
         Some((centre, undo))
     }
 
-    /// The child of an element's cell that a position [m] lies in.
+    /// Returns the child of an element's cell that contains a position [m].
     pub(crate) fn child_at(&self, element: &Element, at: Vector) -> Option<usize> {
         let from_centroid = self.offset_at_rest(element, at)?;
         let child_width = 0.5 * self.truth.grid.voxel_size() * element.cell.width() as f32;

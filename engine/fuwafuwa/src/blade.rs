@@ -1,7 +1,7 @@
-//! Cutting on purpose: along a segment in the plane, along a parallelogram in space.
+//! Cuts: along a segment in 2D, along a parallelogram in 3D.
 //!
-//! A blade parts two neighbouring voxels when the line between their middles, where they are now,
-//! crosses it. Shared nodes are then released as they are when a body tears.
+//! A blade separates two neighbouring voxels if the line between their present centres crosses the blade. The
+//! shared nodes are then released, as they are when a body tears.
 
 use crate::body::Body;
 use crate::changes::Changes;
@@ -14,19 +14,19 @@ use crate::sharing::faces_around;
 use crate::vector::{cross, dot, minus, plus, scaled};
 use std::collections::BTreeSet;
 
-/// What cuts: all points `from` + a `across` + b `along`, a and b between 0 and 1.
+/// Cutting segment or parallelogram: all points `from` + a `across` + b `along` with a and b between 0 and 1.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Blade {
-    /// One corner [m].
+    /// Corner [m].
     pub from: Vector,
-    /// One edge [m].
+    /// First edge [m].
     pub across: Vector,
-    /// The other edge [m].
+    /// Second edge [m].
     pub along: Vector,
 }
 
 impl Blade {
-    /// A blade that cuts from one point of the plane to another [m].
+    /// Creates a blade that cuts from one point of the plane to another [m].
     pub fn segment(from: [f32; 2], to: [f32; 2]) -> Self {
         Self {
             from: [from[0], from[1], -0.5],
@@ -35,7 +35,7 @@ impl Blade {
         }
     }
 
-    /// Whether the line between two points crosses it.
+    /// Whether the line between two points crosses the blade.
     fn parts(&self, a: Vector, b: Vector) -> bool {
         let normal = cross(self.across, self.along);
         let (over, under) = (
@@ -54,12 +54,12 @@ impl Blade {
     }
 }
 
-/// What a cut did.
+/// Result of a cut.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CutReport {
-    /// Where shared nodes were released [m].
+    /// Positions at which shared nodes were released [m].
     pub released: Vec<Vector>,
-    /// Numbers of the pieces that came off.
+    /// Numbers of the detached pieces.
     pub parted: Vec<PieceId>,
 }
 
@@ -67,7 +67,7 @@ impl<D: Dim> Body<D> {
     /// Cuts along a blade.
     ///
     /// # Errors
-    /// A [`Defect`] when the mesh breaks: a fault of this library.
+    /// A [`Defect`] if the mesh becomes inconsistent, which is a bug in this library.
     #[inline(never)]
     pub fn cut(&mut self, blade: &Blade) -> Result<CutReport, Defect> {
         if self.truth.pyramid.grading() == Grading::Coarse {
@@ -80,7 +80,8 @@ impl<D: Dim> Body<D> {
         })
     }
 
-    /// Opens faces, each the one after a voxel across an axis. Returns where nodes were released [m], and what that changed.
+    /// Opens faces, each given by the voxel before it and its axis. Returns the positions at which nodes were
+    /// released [m], and the changes.
     pub(crate) fn open(
         &mut self,
         opened: &BTreeSet<(Point, usize)>,
@@ -100,10 +101,10 @@ impl<D: Dim> Body<D> {
         Ok((released, self.tear(&releases)?))
     }
 
-    /// Cuts all voxels apart: nothing is left but dust. Returns the pieces that came off.
+    /// Separates all voxels, so that only pieces of one voxel remain. Returns the detached pieces.
     ///
     /// # Errors
-    /// A [`Defect`] when the mesh breaks: a fault of this library.
+    /// A [`Defect`] if the mesh becomes inconsistent, which is a bug in this library.
     #[inline(never)]
     pub fn crumble(&mut self) -> Result<Vec<PieceId>, Defect> {
         let octants = |at: Point| (0..D::CORNERS).map(move |octant| (at, 1 << octant));
@@ -111,7 +112,7 @@ impl<D: Dim> Body<D> {
         self.release(&everything)
     }
 
-    /// The faces that a blade crosses, each as the voxel before it and its axis.
+    /// Faces that a blade crosses, each given by the voxel before it and its axis.
     fn faces_across(&self, blade: &Blade) -> BTreeSet<(Point, usize)> {
         let mut middles = vec![None; self.truth.grid.voxels().count()];
         for (_, element) in self.truth.mesh.elements() {
@@ -133,7 +134,7 @@ impl<D: Dim> Body<D> {
                     continue;
                 }
                 let there = middles[self.truth.grid.index(next)]
-                    .expect("every voxel that is left is owned");
+                    .expect("every remaining voxel has an owner");
                 if blade.parts(here, there) {
                     crossed.insert((voxel, axis));
                 }
@@ -142,7 +143,7 @@ impl<D: Dim> Body<D> {
         crossed
     }
 
-    /// Where a lattice point is now [m], as one of the elements around it carries it.
+    /// Present position of a lattice point [m], interpolated in one of the elements around it.
     fn position_of(&self, at: Point) -> Option<Vector> {
         let voxels = (0..D::CORNERS).map(|octant| voxel_around::<D>(at, octant));
         let owner = { voxels }.find_map(|voxel| self.truth.mesh.owner(voxel))?;
@@ -151,8 +152,8 @@ impl<D: Dim> Body<D> {
         ))
     }
 
-    /// What is to be released at a point so that the given faces are open: one mask for each side
-    /// that comes off, nothing where they are open already.
+    /// Masks of the octants that must be released at a point to open the given faces, one for each side that
+    /// is separated. Empty if the faces are open already.
     fn sides(&self, at: Point, opened: &BTreeSet<(Point, usize)>) -> Vec<u8> {
         let around = self.truth.sharing.around(at);
         let mut groups = around.middle();
@@ -178,7 +179,7 @@ impl<D: Dim> Body<D> {
     }
 }
 
-/// A corner of the face after a voxel across an axis.
+/// Corner of the face after a voxel on an axis.
 fn corner_of_face<D: Dim>(voxel: Point, axis: usize, corner: usize) -> Point {
     let mut at = voxel;
     at[axis] += 1;

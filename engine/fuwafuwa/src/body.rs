@@ -1,4 +1,4 @@
-//! One soft thing: its voxels, how they hang together, and the state of its nodes.
+//! Soft body: voxels, connectivity, mesh, and the state of the nodes.
 
 mod asleep;
 mod blend;
@@ -32,22 +32,25 @@ pub(crate) use state::MOST_GRAVITY;
 use state::State;
 use truth::Truth;
 
-/// How far the fastest wave may come in a substep, in terms of a voxel. What swings fastest at rest, a free voxel, bears
-/// 2c / Ωs = 0.73 of them in space and 0.84 in the plane at Poisson's ratio 0.3; what is squashed swings faster, and with
-/// 0.6 a ball holds that is squashed to 40 % and hit at the speed of its waves.
+/// Courant number of a substep: the largest fraction of a voxel that the fastest pressure wave may travel.
+///
+/// The fastest oscillator at rest is a free voxel. It is stable up to 2c / Ωs = 0.73 in space and 0.84 in the
+/// plane (Poisson's ratio 0.3). Squashed elements oscillate faster: with 0.6, a ball that is squashed to 40 %
+/// and hit at its wave speed stays stable.
 const COURANT: f64 = 0.6;
-/// The share that is used of the lead that a free voxel bears: as much is kept back as of the square of the substep.
+/// Fraction used of the largest stable lead of a free voxel; about the margin that [`COURANT`] keeps of the
+/// squared substep.
 const LEAD_USED: f64 = 0.7;
 
-/// The bodies of a world.
+/// Arena of the bodies of a world.
 pub type Bodies<D> = Arena<BodyId, Body<D>>;
 
-/// One soft thing, whole or in pieces.
+/// Soft body, whole or in pieces.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Body<D: Dim> {
-    // Snapshots have truth and state.
+    // Snapshots contain `truth` and `state`.
     pub(crate) truth: Truth<D>,
     pub(crate) state: State<D>,
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -55,19 +58,20 @@ pub struct Body<D: Dim> {
 }
 
 impl<D: Dim> Body<D> {
-    /// A body at rest that fills `grid`, its voxels of `materials[number - 1]`, the grid's low
-    /// corner at the origin.
+    /// Creates a body at rest that fills `grid`, with the low corner of the grid at the origin. A voxel of
+    /// material number n uses `materials[n - 1]`.
     ///
     /// # Errors
-    /// [`BodyError`] when a material is missing or has a field out of range.
+    /// [`BodyError`] if a material is missing or has a field out of range.
     pub fn new(grid: VoxelGrid<D>, materials: &[Material]) -> Result<Self, BodyError> {
         Self::with(grid, materials, Law::default(), Grading::default())
     }
 
-    /// As [`Body::new`], with a law and a grading of choice ([`Grading::Coarse`] neither tears nor can be cut).
+    /// Creates a body like [`Body::new`], with a chosen law and grading. [`Grading::Coarse`] can be neither
+    /// torn nor cut.
     ///
     /// # Errors
-    /// As [`Body::new`].
+    /// See [`Body::new`].
     #[inline(never)]
     pub fn with(
         grid: VoxelGrid<D>,
@@ -119,7 +123,7 @@ impl<D: Dim> Body<D> {
         Ok(body)
     }
 
-    /// Works out the cache from truth and state, and how stiff the elements are.
+    /// Recomputes the cache and the element stiffness from `truth` and `state`.
     pub(crate) fn rebuild(&mut self) {
         let Truth {
             grid,
@@ -141,32 +145,34 @@ impl<D: Dim> Body<D> {
         self.refresh_awake();
     }
 
-    /// What changed since the bookmark was put where it is, and puts it to the end; nothing when that is not known,
-    /// for a new reader, another body, or after a while: then everything is to be looked at.
+    /// Returns the changes since `bookmark`, and moves the bookmark to the present.
+    ///
+    /// Returns `None` if the changes are not known: for a new bookmark, a bookmark of another body, or one
+    /// that is too old. The caller must then read the whole body again.
     pub fn changes_since(&self, bookmark: &mut Bookmark) -> Option<Changes> {
         let changes = self.cache.history.since(*bookmark);
         *bookmark = self.bookmark();
         changes
     }
 
-    /// At the end of what changed so far.
+    /// Returns a bookmark at the present state.
     pub fn bookmark(&self) -> Bookmark {
         self.cache.history.end()
     }
 
-    /// Holds a node: from now on it keeps the velocity it is given, whatever pulls at it.
+    /// Fixes a node: it keeps its velocity, and forces no longer change it.
     ///
     /// # Panics
-    /// When the id was never used.
+    /// If the id was never used.
     pub fn hold(&mut self, id: NodeId) {
         self.state.held[id] = true;
         self.state.inverse_mass[id] = 0.0;
     }
 
-    /// Ends what [`Body::hold`] began.
+    /// Frees a node that [`Body::hold`] fixed.
     ///
     /// # Panics
-    /// When the id was never used.
+    /// If the id was never used.
     pub fn let_go(&mut self, id: NodeId) {
         self.state.held[id] = false;
         if !self.truth.pieces.sleeps(id) {
@@ -174,45 +180,45 @@ impl<D: Dim> Body<D> {
         }
     }
 
-    /// The voxels it was made from.
+    /// Voxel grid from which the body was made.
     pub fn grid(&self) -> &VoxelGrid<D> {
         &self.truth.grid
     }
 
-    /// What is connected.
+    /// Connectivity of the voxels.
     pub fn sharing(&self) -> &Sharing<D> {
         &self.truth.sharing
     }
 
-    /// Its elements and nodes.
+    /// Elements and nodes.
     pub fn mesh(&self) -> &Mesh<D> {
         &self.truth.mesh
     }
 
-    /// By which law its elements answer.
+    /// Law of the elastic forces.
     pub fn law(&self) -> Law {
         self.state.blocks.law()
     }
 
-    /// How fine its elements are.
+    /// Grading of the elements.
     pub fn grading(&self) -> Grading {
         self.truth.pyramid.grading()
     }
 
-    /// Its pieces.
+    /// Pieces of the body.
     pub fn pieces(&self) -> &Pieces {
         &self.truth.pieces
     }
 
-    /// Its materials, number 1 first.
+    /// Materials, number 1 first.
     pub fn materials(&self) -> &[Material] {
         &self.truth.materials
     }
 
-    /// The material of an element of its own.
+    /// Material of an element of this body.
     ///
     /// # Panics
-    /// When the element is of another body.
+    /// If the element belongs to another body.
     pub fn material(&self, element: &Element) -> &Material {
         let voxel = self.truth.mesh.first_voxel(element);
         &self.truth.materials[self.truth.grid.material(voxel) as usize - 1]
@@ -221,7 +227,7 @@ impl<D: Dim> Body<D> {
     /// Position [m], velocity [m/s] and mass [kg] of a node.
     ///
     /// # Panics
-    /// When the id was never used.
+    /// If the id was never used.
     pub fn node_state(&self, id: NodeId) -> ([f32; 3], [f32; 3], f32) {
         (
             three(self.state.position[id]),
@@ -230,11 +236,11 @@ impl<D: Dim> Body<D> {
         )
     }
 
-    /// Places a node at `position` [m] with `velocity` [m/s]. Returns false, and changes nothing,
-    /// when a number is not finite.
+    /// Sets the position [m] and velocity [m/s] of a node. Returns false, and changes nothing, if a component
+    /// is not finite.
     ///
     /// # Panics
-    /// When the id was never used.
+    /// If the id was never used.
     pub fn set_node_state(&mut self, id: NodeId, position: [f32; 3], velocity: [f32; 3]) -> bool {
         let finite = position.iter().chain(&velocity).all(|k| k.is_finite());
         if finite {
@@ -246,22 +252,22 @@ impl<D: Dim> Body<D> {
         finite
     }
 
-    /// The elastic force [N] on a node, as of the start of the last step.
+    /// Elastic force [N] on a node at the start of the last step.
     ///
     /// # Panics
-    /// When the id was never used.
+    /// If the id was never used.
     pub fn force_on(&self, id: NodeId) -> [f32; 3] {
         three(self.state.blocks.force_on(id))
     }
 
-    /// Linear and angular momentum of everything, about the origin.
+    /// Linear and angular momentum of the whole body about the origin.
     #[inline(never)]
     pub fn momentum(&self) -> Momentum {
         let ids: Vec<NodeId> = self.truth.mesh.nodes().map(|(id, _)| id).collect();
         Momentum::of(self.states(&ids), [0.0; 3])
     }
 
-    /// Energy of motion [J].
+    /// Kinetic energy [J].
     #[inline(never)]
     pub fn kinetic_energy(&self) -> f64 {
         let states = self.truth.mesh.nodes().map(|(id, _)| {
@@ -271,8 +277,8 @@ impl<D: Dim> Body<D> {
         states.sum()
     }
 
-    /// How many elements that are awake were inside out when forces were last computed; under
-    /// [`Law::Endo2004`], which does not look, none.
+    /// Number of awake elements that were inverted when forces were last computed. Always 0 under
+    /// [`Law::Endo2004`], which does not check for inversion.
     pub fn inverted_count(&self) -> u32 {
         self.state.blocks.inverted_count()
     }
@@ -284,11 +290,11 @@ impl<D: Dim> Body<D> {
         ids.map(|(id, _)| f64::from(self.state.mass[id])).sum()
     }
 
-    /// How it is damped in substeps of `duration` [s]: the lead of its elastic forces [s], and the
-    /// rate [1/s] at which each piece relaxes towards its rigid motion.
+    /// Returns the damping for substeps of `duration` [s]: the lead of the elastic forces [s], and the rate
+    /// [1/s] at which each piece relaxes towards its rigid motion.
     ///
-    /// A lead of τ damps its slowest swing by τω/2; the fast swing Ω of a single voxel bears
-    /// Ω²h (h + 2τ) < 4, that is τ < (4/Ω² − h²) / 2h, of which a part is kept back.
+    /// A lead τ damps the slowest mode ω with a ratio of τω/2. The fastest mode Ω, that of a single voxel, is
+    /// stable if Ω²h (h + 2τ) < 4, that is τ < (4/Ω² − h²) / 2h; [`LEAD_USED`] keeps a margin.
     pub(crate) fn damping(&self, duration: f32) -> (f32, f32) {
         let ratio = self.cache.blend.damping;
         let slow = self.cache.blend.slow * self.truth.stiffness_scale.sqrt();
@@ -300,28 +306,28 @@ impl<D: Dim> Body<D> {
         (lead as f32, rate as f32)
     }
 
-    /// Friction of its surface.
+    /// Friction coefficient of the surface.
     pub(crate) fn friction(&self) -> f32 {
         self.cache.blend.friction
     }
 
-    /// Whether the strength of a material in it is finite: else nothing tears.
+    /// Whether any material has a finite strength; otherwise the body cannot tear.
     pub(crate) fn can_tear(&self) -> bool {
         self.cache.blend.least_strength < f32::INFINITY
     }
 
-    /// The longest substep that its stiffest material bears [s]: 0.6 s / c (s the voxel, c the wave).
+    /// Longest stable substep [s] of the stiffest material: 0.6 s / c, with voxel size s and wave speed c.
     pub fn longest_substep(&self) -> f64 {
         let fastest = self.cache.blend.fastest_wave * self.truth.stiffness_scale.sqrt();
         COURANT * f64::from(self.truth.grid.voxel_size()) / fastest
     }
 
-    /// The factor by which its Young's modulus was lowered so that its substep bears it.
+    /// Factor by which Young's modulus was lowered to keep the substep stable; 1 = unchanged.
     pub fn stiffness_scale(&self) -> f64 {
         self.truth.stiffness_scale
     }
 
-    /// Lowers the stiffness so far that a substep of `duration` [s] is stable, and no further.
+    /// Lowers the stiffness by as little as makes a substep of `duration` [s] stable.
     pub(crate) fn scale_stiffness_for(&mut self, duration: f64) {
         let size = f64::from(self.truth.grid.voxel_size());
         let ratio = COURANT * size / self.cache.blend.fastest_wave / duration;
@@ -334,7 +340,7 @@ impl<D: Dim> Body<D> {
         self.state.blocks.set_elasticities(&elasticities);
     }
 
-    /// Speed of the fastest pressure wave in it [m/s], softened or not.
+    /// Speed of the fastest pressure wave [m/s], before any reduction of the stiffness.
     pub(crate) fn fastest_wave(&self) -> f64 {
         self.cache.blend.fastest_wave
     }

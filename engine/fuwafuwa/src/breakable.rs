@@ -1,13 +1,13 @@
-//! Where a crack can start or go on, and which ways it can take there.
+//! Nodes at which a crack can start or continue, and the possible cuts there.
 //!
-//! A crack can start or go on at a *breakable node*: one that several voxels share where connection is
-//! not complete. The voxels hang together there by closed faces; a *cut* opens some of the faces
-//! across one axis so that they fall into two sides.
+//! A crack can start or continue at a *breakable node*: one that several voxels share where connectivity is
+//! incomplete. The voxels are connected there by closed faces. A *cut* opens some of the faces across one
+//! axis, so that the voxels are divided into two sides.
 //!
 //! ```text
-//!       A │ B      opens the faces across x: side A and side B
-//!     ────●────    what the node bears, and which cuts there are, changes only when something is
-//!       A │ B      released close by; so it is worked out then, and kept
+//!       A │ B      a cut opens the faces across x: side A and side B
+//!     ────●────    the threshold and the possible cuts of a node change only when something is
+//!       A │ B      released nearby, so they are cached until then
 //! ```
 
 use crate::dim::{Dim, FAR, Point, voxel_around};
@@ -19,53 +19,52 @@ use crate::sharing::{Around, Sharing};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// The most that chance adds to what a smooth surface bears; scatter keeps a row of equally
-/// strained nodes from bursting at once. The tip of a crack is one node: there is none to spare.
-/// Without it `core` bursts into 283 pieces in place of 89; from 0.2 to 0.8 into 60 to 91.
+/// Largest random addition to the strength of a smooth surface. The scatter keeps a row of equally loaded
+/// nodes from failing all at once. Crack tips have none, because a tip is a single node.
 const SCATTER: f32 = 0.4;
 
-/// A breakable node.
+/// Node at which a crack can start or continue.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct BreakableNode {
-    /// The octants that share the node.
+    /// Mask of the octants that share the node.
     pub group: u8,
-    /// The octants whose voxel would be set free, or left hanging by one face, if it came off alone.
+    /// Octants with a voxel that would become a crumb, or hang by one face, if it were separated alone.
     pub crumbs: u8,
-    /// The number of the weakest material around.
+    /// Number of the weakest material around the node.
     pub material: u8,
-    /// Tension that the node bears [Pa].
+    /// Tension that the node withstands [Pa].
     pub threshold: f32,
-    /// Which list of cuts is its own.
+    /// Index of its list of cuts.
     cuts: u32,
 }
 
-/// A way to part the voxels at a point: faces across `axis` are opened.
+/// Division of the voxels at a point into two sides by opening faces across `axis`.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Cut {
-    /// The axis across the opened faces.
+    /// Axis across the opened faces.
     pub axis: u8,
-    /// The octants on the far side of the axis that come off.
+    /// Octants that are separated, on the far side of the axis.
     pub side: u8,
-    /// How many faces it opens.
+    /// Number of opened faces.
     pub faces: u8,
-    /// The octants that are alone on a side of it.
+    /// Octants that are the only voxel on their side.
     pub lone: u8,
 }
 
-/// For each octant on the near side of each axis: whether its face across is closed.
+/// For each axis, the octants on its near side with a closed face across the axis.
 type Closed = [u8; 3];
 
-/// The breakable nodes of a body.
+/// Breakable nodes of a body.
 #[derive(Clone, Debug, Default)]
 pub struct BreakableNodes {
     of_node: Table<NodeId, Option<BreakableNode>>,
-    /// The cuts of each pattern of closed faces, in the order in which the patterns came up.
+    /// Cuts of each pattern of closed faces, in the order in which the patterns first occurred.
     cuts: Vec<Vec<Cut>>,
     known: BTreeMap<Closed, u32>,
 }
 
 impl BreakableNodes {
-    /// The breakable nodes among those of some ids, ascending.
+    /// Returns the breakable nodes within a range of ids, ascending.
     pub fn among(&self, ids: Range<usize>) -> impl Iterator<Item = (NodeId, &BreakableNode)> {
         let end = ids.end.min(self.of_node.len());
         let first = ids.start.min(end);
@@ -73,12 +72,12 @@ impl BreakableNodes {
         all.filter_map(|(node, id)| Some((NodeId::of(id), node.as_ref()?)))
     }
 
-    /// All ways to part the voxels at a breakable node.
+    /// Returns all possible cuts at a breakable node.
     pub fn cuts(&self, node: &BreakableNode) -> &[Cut] {
         &self.cuts[node.cuts as usize]
     }
 
-    /// Looks again at `nodes`: all those whose elements or whose connection may have changed.
+    /// Updates `nodes`, which must contain all nodes whose elements or connectivity may have changed.
     pub fn look<D: Dim>(
         &mut self,
         nodes: &[NodeId],
@@ -110,14 +109,14 @@ impl BreakableNodes {
         materials: &[Material],
     ) -> BreakableNode {
         let Node { at, group } = node;
-        // The faces between voxels of the group, and those of them that are closed.
+        // Faces between voxels of the group, and the closed ones among them.
         let faces: Closed = [0, 1, 2].map(|axis| group & group >> (1 << axis) & !FAR[axis]);
         let mut closed = around.closed_faces();
         closed
             .iter_mut()
             .zip(faces)
             .for_each(|(closed, faces)| *closed &= faces);
-        // A crack ends where some voxels still share a node, but no longer a face.
+        // At a crack tip, some voxels still share a node but no longer a face.
         let is_tip = closed != faces;
         let octants = (0..D::CORNERS).filter(|octant| group >> octant & 1 == 1);
         let numbers = octants.map(|octant| grid.material(voxel_around::<D>(at, octant)));
@@ -148,7 +147,7 @@ impl BreakableNodes {
         }
     }
 
-    /// The number of the list of cuts that belongs to a pattern of closed faces in a group.
+    /// Returns the index of the list of cuts for a pattern of closed faces in a group.
     fn pattern<D: Dim>(&mut self, closed: Closed, group: u8) -> u32 {
         let all = &mut self.cuts;
         *self.known.entry(closed).or_insert_with(|| {
@@ -158,8 +157,8 @@ impl BreakableNodes {
     }
 }
 
-/// All ways to open the closed faces across one axis, all of them, half or a quarter, that part
-/// the group.
+/// Returns all cuts that divide the group by opening all, half or a quarter of the closed faces across one
+/// axis.
 fn cuts<D: Dim>(closed: Closed, group: u8) -> impl Iterator<Item = Cut> {
     (0..D::N).flat_map(move |axis| {
         let others = 3usize.pow(D::N as u32 - 1);
@@ -182,7 +181,7 @@ fn cuts<D: Dim>(closed: Closed, group: u8) -> impl Iterator<Item = Cut> {
     })
 }
 
-/// The octants with given places on the axes other than `axis`: digit 0 = all, 1 = near, 2 = far.
+/// Returns the octants with given positions on the axes other than `axis`: digit 0 = all, 1 = near, 2 = far.
 fn part_of<D: Dim>(axis: usize, mut choice: usize) -> u8 {
     let mut part = D::ALL_CORNERS;
     for other in (0..D::N).filter(|&other| other != axis) {
@@ -196,7 +195,7 @@ fn part_of<D: Dim>(axis: usize, mut choice: usize) -> u8 {
     part
 }
 
-/// What hangs together with the far sides of the opened faces, when it reaches no near side.
+/// Returns the octants connected to the far sides of the opened faces, unless they reach a near side.
 fn side_of<D: Dim>(mut closed: Closed, axis: usize, opened: u8) -> Option<u8> {
     closed[axis] &= !opened;
     let near = opened;
@@ -217,14 +216,14 @@ fn side_of<D: Dim>(mut closed: Closed, axis: usize, opened: u8) -> Option<u8> {
     }
 }
 
-/// Whether the voxel of an octant would be set free, or hang by one face: of the faces away from
-/// the point at most one is closed.
+/// Whether the voxel of an octant would become a crumb or hang by one face: at most one of its faces away
+/// from the point is closed.
 fn would_crumble<D: Dim>(around: &Around<D>, octant: usize) -> bool {
     let is_held = |axis: &usize| around.is_far_face_closed(octant, *axis);
     (0..D::N).filter(is_held).count() <= 1
 }
 
-/// A fixed number between 0 and 1 for each lattice point.
+/// Returns a fixed pseudo-random number between 0 and 1 for a lattice point.
 fn chance(at: Point) -> f32 {
     let mix = |hash: u64, k: i32| {
         let hash = (hash ^ u64::from(k as u32)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
@@ -241,10 +240,10 @@ mod tests {
     use crate::body::Body;
     use crate::dim::{Dim2, Dim3};
 
-    /// What is kept about breakable nodes must be what a fresh look finds, after any releases.
+    /// After any releases, the updated breakable nodes must match a search from scratch.
     fn check_upkeep<D: Dim>(n: usize) {
         let grid = VoxelGrid::<D>::ball(n, 1.0).expect("a ball is not empty");
-        let mut body = Body::new(grid, &[Material::default()]).expect("the material is good");
+        let mut body = Body::new(grid, &[Material::default()]).expect("the material is valid");
         let mut seed = 5u32;
         let mut random = |below: i32| {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -253,7 +252,8 @@ mod tests {
         for _ in 0..60 {
             let at = [0, 1, 2].map(|axis: usize| if axis < D::N { random(n as i32) } else { 0 });
             let side = random(254) as u8 + 1;
-            body.release(&[(at, side)]).expect("the mesh stays whole");
+            body.release(&[(at, side)])
+                .expect("the mesh stays consistent");
         }
         let mut fresh = BreakableNodes::default();
         let nodes: Vec<NodeId> = body.truth.mesh.nodes().map(|(id, _)| id).collect();
@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn breakable_nodes_are_kept_up_to_date() {
+    fn breakable_nodes_match_fresh_search_after_releases() {
         check_upkeep::<Dim2>(24);
         check_upkeep::<Dim3>(10);
     }

@@ -1,26 +1,27 @@
-//! Short lists of ids, one for each place of a table: which elements a cell has, which nodes a point.
+//! Linked lists of ids, one per table index: for example the elements of each cell, or the nodes at each
+//! lattice point.
 //!
-//! A place keeps the first id of its list and every id the next one, so that a list costs no
-//! memory of its own and is found without a search.
+//! Each index stores the first id of its list, and each id stores the next one. So lists need no allocation
+//! of their own and no search.
 
 use crate::ids::Id;
 use std::marker::PhantomData;
 
 const END: u32 = u32::MAX;
 
-/// A list of ids for every place; an id is in one list at most.
+/// One list of ids per index; every id is in at most one list.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Chains<I> {
-    /// The first id of each place.
+    /// First id of each list.
     first: Vec<u32>,
-    /// The id after each id.
+    /// Next id after each id.
     next: Vec<u32>,
     ids: PhantomData<I>,
 }
 
 impl<I: Id> Chains<I> {
-    /// Empty lists for `places` places.
+    /// Creates `places` empty lists.
     pub fn new(places: usize) -> Self {
         Self {
             first: vec![END; places],
@@ -29,7 +30,7 @@ impl<I: Id> Chains<I> {
         }
     }
 
-    /// The ids of a place, in the order in which they came.
+    /// Returns the ids of a list, in the order of insertion.
     #[inline]
     pub fn at(&self, place: usize) -> impl Iterator<Item = I> + '_ {
         let mut id = self.first[place];
@@ -40,7 +41,7 @@ impl<I: Id> Chains<I> {
         })
     }
 
-    /// Puts an id, which is in no list, at the end of the list of a place.
+    /// Appends an id to a list; the id must not be in any list.
     pub fn append(&mut self, place: usize, id: I) {
         let end = self.next.len().max(id.index() + 1);
         self.next.resize(end, END);
@@ -48,17 +49,17 @@ impl<I: Id> Chains<I> {
         *self.link(place, END) = id.index() as u32;
     }
 
-    /// Takes an id out of the list of a place.
+    /// Removes an id from a list.
     ///
     /// # Panics
-    /// When it is not there.
+    /// If the id is not in the list.
     pub fn remove(&mut self, place: usize, id: I) {
         let after = self.next[id.index()];
         *self.link(place, id.index() as u32) = after;
     }
 
-    /// Whether chains that were read from a file have so many places, and ids below a number, each in one
-    /// list at most: then every list ends.
+    /// Whether lists read from a file are valid: `places` lists, and every id below `ids` and in at most one
+    /// list. This implies that every list ends.
     #[cfg(feature = "serde")]
     pub fn is_sound(&self, places: usize, ids: usize) -> bool {
         let mut seen = vec![false; ids.min(self.next.len())];
@@ -76,7 +77,7 @@ impl<I: Id> Chains<I> {
         self.first.len() == places && self.first.iter().all(&mut ends)
     }
 
-    /// Where the list of a place names `id`.
+    /// Returns the link of a list that points to `id`.
     fn link(&mut self, place: usize, id: u32) -> &mut u32 {
         let (mut before, mut here) = (END, self.first[place]);
         while here != id {
@@ -90,9 +91,9 @@ impl<I: Id> Chains<I> {
     }
 }
 
-/// Ids below a bound in ascending order, each once. What is touched by a release has most of its ids
-/// several times, and close together: a bit for every id there could be is cheaper than sorting them, as long as only
-/// those between the lowest and the highest are looked through.
+/// Returns ids below `bound` in ascending order, without duplicates. After a release, most ids occur several
+/// times and close together. A bit set over all ids is then cheaper than sorting, if only the range between
+/// the lowest and highest id is scanned.
 pub fn ascending<I: Id>(ids: impl Iterator<Item = I>, bound: usize) -> Vec<I> {
     let mut words = vec![0u64; bound.div_ceil(64)];
     let (mut first, mut end, mut count) = (words.len(), 0, 0);
@@ -120,7 +121,7 @@ mod tests {
 
     #[test]
     #[cfg(feature = "serde")]
-    fn a_list_that_never_ends_is_seen() {
+    fn is_sound_detects_endless_list() {
         let mut chains = Chains::new(2);
         for id in 0..3 {
             chains.append(1, NodeId(id));
@@ -133,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn ids_keep_their_order_and_come_back() {
+    fn chains_preserve_order_after_remove_and_append() {
         let mut chains = Chains::new(2);
         for id in [4, 0, 2].map(NodeId) {
             chains.append(1, id);
@@ -148,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn ids_ascend_and_come_once() {
+    fn ascending_sorts_and_removes_duplicates() {
         let ids = [129, 3, 63, 64, 3, 0, 129, 128].map(NodeId);
         let expected = [0, 3, 63, 64, 128, 129].map(NodeId);
         assert_eq!(ascending(ids.into_iter(), 130), expected);

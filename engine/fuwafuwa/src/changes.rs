@@ -1,44 +1,44 @@
-//! What tears and removals changed in a body, for whoever keeps something that follows from it: contact, pictures, a game.
+//! Changes of a body by tears and removals, for readers that keep derived data: contact, rendering, a game.
 
 use crate::ids::{ElementId, NodeId, PieceId};
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// What changed in a body since somebody looked.
+/// Changes of a body since a bookmark.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Changes {
-    /// Nodes that are gone or new.
+    /// Nodes that were added or removed.
     pub nodes: Vec<NodeId>,
-    /// Elements that are gone or new, or have other nodes or other bare faces than before.
+    /// Elements that were added or removed, or got other nodes or exposed faces.
     pub elements: Vec<ElementId>,
-    /// Pieces that came off.
+    /// Pieces that were detached.
     pub parted: Vec<PieceId>,
-    /// Pieces that were removed: their nodes and elements are gone.
+    /// Pieces that were removed, with their nodes and elements.
     pub removed: Vec<PieceId>,
 }
 
-/// Up to where somebody has followed a body; at first, nowhere.
+/// Point in the history of a body up to which a reader knows the changes. The default lies in no history.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub struct Bookmark {
-    /// Which history, 0 for none, and how much of it.
+    /// Number of the history (0 = none), and number of changes already read.
     history: u64,
     tears: u64,
 }
 
-/// What tears changed in a body, the last ones at least.
+/// Most recent changes of a body.
 #[derive(Debug)]
 pub(crate) struct History {
-    /// Which one it is: no two of a program are the same, so that no body is taken for another one.
+    /// Number of the history, unique within the program, so that two bodies cannot be confused.
     number: u64,
-    /// How many tears there were before the first that is kept.
+    /// Number of changes before the first one that is kept.
     forgotten: u64,
     kept: VecDeque<Changes>,
-    /// How many ids those name.
+    /// Number of ids in `kept`.
     size: usize,
 }
 
 impl Changes {
-    /// How much there is to look at.
+    /// Number of ids.
     fn size(&self) -> usize {
         self.nodes.len() + self.elements.len() + self.parted.len() + self.removed.len()
     }
@@ -46,7 +46,7 @@ impl Changes {
 
 impl Default for History {
     fn default() -> Self {
-        // Nothing that moves depends on it.
+        // The simulation does not depend on this number.
         static COUNT: AtomicU64 = AtomicU64::new(1);
         Self {
             number: COUNT.fetch_add(1, Ordering::Relaxed),
@@ -57,7 +57,7 @@ impl Default for History {
     }
 }
 
-/// A copy goes its own way.
+/// A clone starts its own history.
 impl Clone for History {
     fn clone(&self) -> Self {
         Self::default()
@@ -65,7 +65,8 @@ impl Clone for History {
 }
 
 impl History {
-    /// Adds a tear. More than `most` ids are not kept: from there on it is quicker to look at everything.
+    /// Appends a change. Drops the oldest ones while there are more than `most` ids: then reading the whole
+    /// body is faster.
     pub fn add(&mut self, changes: &Changes, most: usize) {
         self.kept.push_back(changes.clone());
         self.size += changes.size();
@@ -78,7 +79,7 @@ impl History {
         }
     }
 
-    /// Where it is now.
+    /// Returns a bookmark at the present state.
     pub fn end(&self) -> Bookmark {
         Bookmark {
             history: self.number,
@@ -86,7 +87,7 @@ impl History {
         }
     }
 
-    /// All that changed since, each id once, ascending; nothing when that is not known.
+    /// Returns all changes since `bookmark`, each id once, ascending. Returns `None` if they are not known.
     pub fn since(&self, bookmark: Bookmark) -> Option<Changes> {
         if bookmark.history != self.number {
             return None;
@@ -124,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn who_follows_hears_of_everything_once() {
+    fn history_reports_each_change_once() {
         let mut history = History::default();
         assert_eq!(history.since(Bookmark::default()), None);
         let mut own = history.end();
@@ -134,7 +135,7 @@ mod tests {
         assert_eq!(history.since(own), Some(changes(&[2, 3, 5])));
         own = history.end();
         assert_eq!(history.since(own), Some(changes(&[])));
-        // Too much: who read the last one goes on, who has not begins anew.
+        // Changes are dropped: a reader that has read the last one continues, any other must start again.
         let late = own;
         history.add(&changes(&[1, 4]), 3);
         assert_eq!(history.since(late), Some(changes(&[1, 4])));

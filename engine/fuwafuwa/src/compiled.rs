@@ -1,11 +1,11 @@
-//! The engine in the plane and in space, compiled here, so that no program that uses it has to do so again.
+//! Precompiled instances of the engine for 2D and 3D.
 //!
-//! A generic function is compiled where its types are known, in every crate that calls it and as that crate is optimised;
-//! but one that is `#[inline(never)]` is taken from its own crate if it was compiled there. So what goes over all nodes,
-//! elements or voxels is, and stands in this list; what it calls comes along. An entry that is missing costs a user's
-//! compiler some time and changes no bit.
+//! A generic function is compiled in every crate that calls it with concrete types, at the optimisation level
+//! of that crate. An `#[inline(never)]` function is instead linked from its own crate, if it was compiled
+//! there. So all functions that loop over nodes, elements or voxels are `#[inline(never)]`, and listed here
+//! together with everything that they call. A missing entry only costs compile time.
 
-/// The names and the places of what is compiled, in so many dimensions.
+/// Names and addresses of the precompiled functions for one dimension.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! entries {
@@ -102,7 +102,7 @@ macro_rules! entries {
     };
 }
 
-/// All of them as this crate has them: in the plane, and in space.
+/// Returns the precompiled functions of this crate, for 2D and 3D.
 #[inline(never)]
 pub fn compiled() -> [Vec<(&'static str, *const ())>; 2] {
     [entries!(crate::Dim2), entries!(crate::Dim3)]

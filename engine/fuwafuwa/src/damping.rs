@@ -1,9 +1,9 @@
-//! How pieces lose their swing: their motion relaxes towards that of a rigid body.
+//! Damping of the internal vibration of pieces towards their rigid motion.
 //!
-//! Two dampers share the work. The elastic force is taken at positions a moment ahead
-//! (Kelvin–Voigt), which calms fast ripples but, within what the substep bears, hardly the body's
-//! own slow swing. For that the velocities of each piece are drawn towards its rigid motion, at
-//! the rate 2 ζ ω of a damped oscillator; momentum and spin are left alone.
+//! Two dampers are combined. The elastic forces are evaluated at extrapolated positions (Kelvin–Voigt), which
+//! damps fast modes. Within the stability limit of the substep, it hardly damps the slow modes of a body. For
+//! these, the velocities of each piece relax towards its rigid motion, at the rate 2 ζ ω of a damped
+//! oscillator. Linear and angular momentum are not affected.
 
 use crate::body::Body;
 use crate::dim::Dim;
@@ -12,20 +12,20 @@ use crate::momentum::RigidMotion;
 use crate::threads;
 use crate::vector::{cross, dot, minus, plus, scaled, three};
 
-/// The motion of one piece.
+/// Motion of one piece.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct PieceMotion {
-    /// Mass of its nodes that move [kg].
+    /// Mass of the awake nodes [kg].
     pub mass: f64,
-    /// Their centre [m].
+    /// Centre of mass [m].
     pub centre: [f64; 3],
-    /// Velocity of the centre [m/s].
+    /// Velocity of the centre of mass [m/s].
     pub velocity: [f64; 3],
     /// Mean square speed [m²/s²].
     pub speed_squared: f64,
-    /// Number of its nodes that move.
+    /// Number of awake nodes.
     pub nodes: u32,
-    /// Whether some of its nodes are held and on the move: it cannot rest.
+    /// Whether the piece has fixed nodes that move; such a piece never sleeps.
     pub is_driven: bool,
     /// Angular momentum about the centre [kg m²/s].
     angular: [f64; 3],
@@ -34,7 +34,8 @@ pub struct PieceMotion {
 }
 
 impl PieceMotion {
-    /// Adds a node at x from `origin`, still without regard to the centre.
+    /// Adds a node at x relative to `origin`; [`PieceMotion::finish`] converts the sums to the centre of
+    /// mass.
     #[inline(always)]
     fn add<D: Dim>(&mut self, x: [f64; 3], velocity: [f64; 3], mass: f64) {
         let (moment, impulse) = (scaled(x, mass), scaled(velocity, mass));
@@ -42,7 +43,7 @@ impl PieceMotion {
         self.nodes += 1;
         self.speed_squared += dot(impulse, velocity);
         match D::N {
-            // In the plane the other two are 0.
+            // In 2D, angular momentum has only a third component.
             2 => self.angular[2] += x[0] * impulse[1] - x[1] * impulse[0],
             _ => self.angular = plus(self.angular, cross(x, impulse)),
         }
@@ -55,7 +56,7 @@ impl PieceMotion {
         }
     }
 
-    /// From sums about `origin` to what the fields say.
+    /// Converts sums about `origin` to the values described at the fields.
     fn finish(&mut self, origin: [f64; 3]) {
         let share = 1.0 / self.mass;
         let (from, impulse) = (scaled(self.centre, share), self.velocity);
@@ -71,7 +72,7 @@ impl PieceMotion {
         self.centre = plus(origin, from);
     }
 
-    /// The rigid motion with the same momentum; of a piece that sleeps none.
+    /// Returns the rigid motion with the same momentum; zero for a sleeping piece.
     fn rigid(&self) -> RigidMotion {
         if self.nodes == 0 {
             return RigidMotion::default();
@@ -83,14 +84,14 @@ impl PieceMotion {
     }
 }
 
-/// The motions of all pieces, by number; those asleep have no mass here.
+/// Returns the motion of every piece, by number; sleeping pieces have no mass here.
 pub fn motions<D: Dim>(body: &Body<D>) -> Table<PieceId, PieceMotion> {
     let count = body.truth.pieces.list.len();
     let mut motions: Table<PieceId, _> = vec![PieceMotion::default(); count].into();
-    // A node of the piece itself: far from the world's origin the sums would lose digits.
+    // Sums are relative to a node of the piece: far from the world origin they would lose digits.
     let mut origins: Table<PieceId, _> = vec![[0.0; 3]; count].into();
     let of_node = |id| body.truth.pieces.of_node(id);
-    // Nodes that follow one another are mostly of one piece: its sums stay at hand for as long.
+    // Consecutive nodes mostly belong to one piece: its sums stay in registers.
     for nodes in body.cache.awake.chunk_by(|&a, &b| of_node(a) == of_node(b)) {
         let piece = of_node(nodes[0]);
         let (mut motion, origin) = (motions[piece], &mut origins[piece]);
@@ -112,19 +113,19 @@ pub fn motions<D: Dim>(body: &Body<D>) -> Table<PieceId, PieceMotion> {
     motions
 }
 
-/// What slows a piece down: rates [1/s], or the shares that are lost in one round.
+/// Damping of a piece: rates [1/s], or the fractions lost in one round.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Slowing {
-    /// Of the motion within the piece.
+    /// Damping of the motion within the piece.
     pub swing: f32,
-    /// Of its spin.
+    /// Damping of the spin.
     pub spin: f32,
-    /// Of all motion: drag of the air, and of what it touches.
+    /// Damping of all motion: drag of air, and of contacts.
     pub drag: f32,
 }
 
 impl Slowing {
-    /// The shares that these rates take in a round of `duration` [s].
+    /// Converts rates to the fractions lost in a round of `duration` [s].
     pub fn over(self, duration: f32) -> Self {
         let share = |rate: f32| (rate * duration).min(1.0);
         Self {
@@ -135,7 +136,7 @@ impl Slowing {
     }
 }
 
-/// Slows the pieces of a body down, each by its own `slowing`, and notes their rigid motions.
+/// Damps the pieces of a body, each by its own `slowing`, and stores their rigid motions.
 pub fn slow_down<D: Dim>(body: &mut Body<D>, motions: &[PieceMotion], slowing: &[Slowing]) {
     let rigid: Vec<RigidMotion> = motions.iter().map(PieceMotion::rigid).collect();
     body.cache.rigid.clear();
@@ -145,8 +146,8 @@ pub fn slow_down<D: Dim>(body: &mut Body<D>, motions: &[PieceMotion], slowing: &
     if slowing.iter().all(|slowing| *slowing == Slowing::default()) {
         return;
     }
-    // Of the motion of the centre 1 − drag is kept, of the spin about it and of the motion within
-    // the piece what spin and swing leave of that: v ← kept v + pace(x).
+    // The velocity of the centre keeps 1 − drag. The spin keeps (1 − drag)(1 − spin), and the internal motion
+    // (1 − drag)(1 − swing): v ← kept v + pace(x).
     let paces: Vec<_> = rigid
         .iter()
         .zip(slowing)

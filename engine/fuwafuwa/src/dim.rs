@@ -1,31 +1,30 @@
-//! Everything that differs between two and three dimensions, and nothing else.
+//! Everything that differs between two and three dimensions.
 //!
-//! Lattice arithmetic is the same program in both: a [`Point`] always has three
-//! coordinates, and the third one stays 0 in 2D. What a dimension adds is how many axes
-//! count ([`Dim::N`]) and what follows from that.
+//! Lattice arithmetic is the same in both: a [`Point`] always has three coordinates, and the third one is 0
+//! in 2D. A dimension adds the number of axes ([`Dim::N`]) and the constants that follow from it.
 
 use std::fmt::Debug;
 
-/// A lattice point, a voxel, or a cell, in units of the lattice. In 2D the third coordinate is 0.
+/// Lattice point, voxel or cell, in lattice units. In 2D the third coordinate is 0.
 pub type Point = [i32; 3];
 
-/// The number of space dimensions, as a type: [`Dim2`] or [`Dim3`], and no other.
+/// Number of space dimensions as a type: [`Dim2`] or [`Dim3`].
 pub trait Dim:
     sealed::Sealed + Copy + Clone + Debug + Default + PartialEq + Eq + Send + Sync + 'static
 {
     /// Number of axes: 2 or 3.
     const N: usize;
-    /// Corners of a cell, children of a cell, and voxels around a lattice point: 2^N.
+    /// Number of corners of a cell, children of a cell, and voxels around a lattice point: 2^N.
     const CORNERS: usize = 1 << Self::N;
-    /// Slots of the 3 × 3 (× 3) lattice of an element: 3^N.
+    /// Number of slots of the 3 × 3 (× 3) lattice of an element: 3^N.
     const SLOTS: usize = 3usize.pow(Self::N as u32);
-    /// The mask with a bit for every corner.
+    /// Mask with a bit for every corner.
     const ALL_CORNERS: u8 = ((1u16 << Self::CORNERS) - 1) as u8;
-    /// Stiffness of the hourglass modes of a whole cell relative to Young's modulus. Derived so
-    /// that a beam one element thick bends exactly: 1/3 in the plane, 1/6 in space.
+    /// Stiffness of the hourglass modes of a whole cell relative to Young's modulus: 1/3 in the plane, 1/6 in
+    /// space. With these values, a beam one element thick bends exactly.
     const HOURGLASS: f64;
 
-    /// How many layers a grid has along the third axis that is to be `voxels` deep: in the plane one.
+    /// Number of layers of a grid on the third axis if it should be `voxels` deep: 1 in 2D.
     fn depth(voxels: usize) -> usize {
         match Self::N {
             2 => 1,
@@ -34,15 +33,15 @@ pub trait Dim:
     }
 }
 
-/// The plane.
+/// Two dimensions.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub struct Dim2;
 
-/// Space.
+/// Three dimensions.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub struct Dim3;
 
-/// Nobody else can name this, and so nobody else can be a [`Dim`].
+/// Other crates cannot name this trait, so they cannot implement [`Dim`].
 mod sealed {
     pub trait Sealed {}
     impl Sealed for super::Dim2 {}
@@ -59,7 +58,7 @@ impl Dim for Dim3 {
     const HOURGLASS: f64 = 1.0 / 6.0;
 }
 
-/// The corner `index` of the unit cell: bit k of the index is the coordinate on axis k.
+/// Returns corner `index` of the unit cell: bit k of the index is the coordinate on axis k.
 ///
 /// ```text
 ///   2 ─── 3
@@ -75,7 +74,7 @@ pub fn corner(index: usize) -> Point {
     ]
 }
 
-/// The corners on the far side of each axis, as masks.
+/// Masks of the corners on the far side of each axis.
 pub const FAR: [u8; 3] = [0b1010_1010, 0b1100_1100, 0b1111_0000];
 
 /// Coordinate-wise sum.
@@ -90,7 +89,7 @@ pub fn scale(a: Point, k: i32) -> Point {
     [a[0] * k, a[1] * k, a[2] * k]
 }
 
-/// a · b of the components that a dimension has; the others are 0.
+/// Dot product over the components of the dimension; the others are 0.
 #[inline(always)]
 pub(crate) fn inner<D: Dim>(a: [f32; 4], b: [f32; 4]) -> f32 {
     let mut sum = a[0] * b[0];
@@ -100,7 +99,7 @@ pub(crate) fn inner<D: Dim>(a: [f32; 4], b: [f32; 4]) -> f32 {
     sum
 }
 
-/// Of numbers about three axes those about which things turn: in the plane it is the third alone.
+/// Keeps the components of a rotation that the dimension allows: in 2D only the third.
 pub(crate) fn turning<D: Dim>(mut about: [f32; 3]) -> [f32; 3] {
     if D::N == 2 {
         about[..2].fill(0.0);
@@ -108,7 +107,7 @@ pub(crate) fn turning<D: Dim>(mut about: [f32; 3]) -> [f32; 3] {
     about
 }
 
-/// The voxel on side `octant` of the lattice point `at`.
+/// Returns the voxel on side `octant` of the lattice point `at`.
 #[inline]
 pub fn voxel_around<D: Dim>(at: Point, octant: usize) -> Point {
     let mut voxel = at;
@@ -118,7 +117,7 @@ pub fn voxel_around<D: Dim>(at: Point, octant: usize) -> Point {
     voxel
 }
 
-/// All points of the box `low..=high`, the first axis running fastest.
+/// Returns all points of the box `low..=high`, the first axis fastest.
 pub fn points_in(low: Point, high: Point) -> impl Iterator<Item = Point> {
     let mut next = (0..3).all(|axis| low[axis] <= high[axis]).then_some(low);
     std::iter::from_fn(move || {
@@ -133,7 +132,7 @@ pub fn points_in(low: Point, high: Point) -> impl Iterator<Item = Point> {
     })
 }
 
-/// The neighbourhood of `at` out to `reach` lattice steps on every axis of `D`.
+/// Returns all points up to `reach` lattice steps away from `at` on every axis of `D`, including `at`.
 pub fn neighbourhood<D: Dim>(at: Point, reach: i32) -> impl Iterator<Item = Point> {
     let (mut low, mut high) = (at, at);
     for axis in 0..D::N {
@@ -143,15 +142,15 @@ pub fn neighbourhood<D: Dim>(at: Point, reach: i32) -> impl Iterator<Item = Poin
     points_in(low, high)
 }
 
-/// The corners of a cell around its face 2 · axis + side, counterclockwise as seen from outside; in
-/// the plane two, the inside to their left, and the last two say nothing.
+/// Returns the corners of a cell around its face 2 · axis + side, counterclockwise as seen from outside. In
+/// 2D there are two, with the inside to their left, and the last two entries are unused.
 pub fn face_corners<D: Dim>(face: usize) -> [usize; 4] {
     let (axis, side) = (face / 2, face % 2);
     let ring: &[usize] = match D::N {
         2 => &[0, 1],
         _ => &[0, 1, 3, 2],
     };
-    // The other axes, in an order that makes the ring turn around the outward normal.
+    // The other axes, in the order in which the ring turns around the outward normal.
     let others = match D::N {
         2 => [1 - axis, 2],
         _ => [(axis + 1) % 3, (axis + 2) % 3],

@@ -1,31 +1,32 @@
-//! Sets that share nothing and are only ever joined: which of some things hang together.
+//! Union-find: disjoint sets that are only ever merged.
 
-/// Sets of numbers from 0 on, every number in one of them.
+/// Disjoint sets of the numbers from 0 on.
 #[derive(Clone, Debug, Default)]
 pub struct DisjointSets {
-    /// Each points to a lower number of its set, the lowest to itself.
+    /// Each number points to a lower number of its set, the lowest to itself.
     lower: Vec<usize>,
 }
 
 impl DisjointSets {
-    /// So many numbers, each in a set of its own.
+    /// Creates `count` numbers, each in its own set.
     pub fn new(count: usize) -> Self {
         let lower = (0..count).collect();
         Self { lower }
     }
 
-    /// How many numbers there are.
+    /// Number of elements in all sets.
     pub fn count(&self) -> usize {
         self.lower.len()
     }
 
-    /// One number more, in a set of its own; returns it.
+    /// Adds a number in its own set, and returns it.
     pub fn add(&mut self) -> usize {
         self.lower.push(self.lower.len());
         self.lower.len() - 1
     }
 
-    /// The lowest number in the set of one: two have the same when they are in one set.
+    /// Returns the lowest number in the set of a number; two numbers have the same one if they are in one
+    /// set.
     pub fn lowest(&mut self, mut number: usize) -> usize {
         while self.lower[number] != number {
             self.lower[number] = self.lower[self.lower[number]];
@@ -34,7 +35,8 @@ impl DisjointSets {
         number
     }
 
-    /// Some things, one a number, sorted by set: in the order of their lowest numbers, and ascending.
+    /// Groups items, one per number, by set. Sets are in the order of their lowest numbers, and items ascend
+    /// within a set.
     pub fn sort<T: Copy>(&mut self, things: &[T]) -> Vec<Vec<T>> {
         let mut sets: Vec<Vec<T>> = Vec::new();
         let mut set_of = vec![0; self.count()];
@@ -49,7 +51,7 @@ impl DisjointSets {
         sets
     }
 
-    /// Makes one set of those of two numbers.
+    /// Merges the sets of two numbers.
     pub fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.lowest(a), self.lowest(b));
         self.lower[a.max(b)] = a.min(b);
@@ -61,7 +63,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sets_that_were_joined_have_one_lowest_number() {
+    fn disjoint_sets_share_lowest_number_after_join() {
         let mut sets = DisjointSets::new(5);
         assert_eq!(sets.add(), 5);
         for (a, b) in [(4, 3), (1, 5), (3, 5)] {

@@ -1,7 +1,7 @@
-//! Where a body is pulled apart: which shared nodes are to be released next.
+//! Fracture: selects the shared nodes that are released next.
 //!
-//! A cut through a breakable node parts the voxels that share it into two sides A and B. The elements
-//! of either side pull at the node with F_A and F_B:
+//! A cut through a breakable node divides the voxels that share it into two sides A and B. The elements of
+//! either side pull at the node with F_A and F_B:
 //!
 //! ```text
 //!       A │ B        T = (F_B − F_A) / 2      n = mean rotation · axis
@@ -9,8 +9,8 @@
 //!       A │ B
 //! ```
 //!
-//! The tension σ is held against the strength at a smooth surface and against the toughness at the
-//! tip of a crack. A node gives way when it was overstrained for some milliseconds.
+//! The tension σ is compared with the strength at a smooth surface, and with the toughness at the tip of a
+//! crack. A node fails if it is overloaded for some milliseconds.
 
 use crate::body::Body;
 use crate::body::cooldowns::is_near;
@@ -23,43 +23,39 @@ use crate::threads;
 use crate::vector::{dot, length, minus, plus, scaled};
 use fearless_simd::Simd;
 
-/// A node that gives way.
+/// Node that fails.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Failure {
-    /// The node.
+    /// Id of the node.
     pub node: NodeId,
-    /// Its lattice point.
+    /// Lattice point of the node.
     pub at: Point,
-    /// The octants on one side of the crack.
+    /// Octants on one side of the crack.
     pub side: u8,
-    /// The axis across which faces open.
+    /// Axis across which faces open.
     axis: usize,
-    /// Tension over what the node bears.
+    /// Ratio of the tension to the threshold of the node.
     pub excess: f32,
-    /// Elastic energy set free [J], by the tension and the volume of the node's cell.
+    /// Released elastic energy [J], from the tension and the volume of a voxel.
     pub energy: f32,
 }
 
-/// How long a node has to be overstrained by half before it gives way [s]. Shorter: knocks shatter
-/// the surface. Longer: fast hands push through without cutting. Half and twice as much change the load of a bar by 0.6 %, and
-/// the releases in `tear-3d` by +16 and −12 %.
+/// Time until a node fails that is overloaded by half [s]. If shorter, impacts shatter the surface; if
+/// longer, fast rigid bodies push through without cutting.
 const DAMAGE_TIME: f32 = 0.004;
-/// How long one heals that was about to give way and is strained no more [s]: longer than it takes to fail, so that
-/// what swings to and fro can fail too.
+/// Time in which a damaged node heals once it is no longer overloaded [s]. Longer than the time to failure,
+/// so that oscillating loads can break nodes too.
 const HEALING_TIME: f32 = 4.0 * DAMAGE_TIME;
-/// What is overstrained by more than this counts as that much: a knock of a moment is no pull.
-/// With twice as much all scenes tear alike, to the release; with half `tear-3d` has 6 % fewer.
+/// Upper limit of the overload that counts for damage, so that a short impact does not count like a sustained
+/// pull.
 const MOST_OVER: f32 = 3.0;
-/// How much more it takes to set a single voxel free: else a crack leaves a trail of crumbs. With 1, 1.3, 1.6 and 2 there are
-/// 53, 26, 19 and 9 in `tear`, and 503, 446, 419 and 389 releases.
+/// Factor on the threshold of cuts that separate a single voxel. Without it, cracks leave a trail of crumbs.
 const CRUMB_FACTOR: f32 = 1.3;
-/// How many voxels a wave travels before the surroundings of a release are judged again: across
-/// them and back. With half `tear-3d` has three times as many releases, and `tear` three times as many crumbs; with twice
-/// they have about as many.
+/// Cooldown after a release, as the number of voxels that a wave travels: across the surroundings and back.
 const COOLDOWN_VOXELS: f64 = 4.0;
 
-/// Looks at all breakable nodes after a time of `duration` [s]: adds up their damage, and picks those
-/// that give way now, the worst first, no two of them near each other but along a crack's front.
+/// Updates the damage of all breakable nodes after `duration` [s], and returns those that fail now, the worst
+/// first. No two of them are near each other, except along the front of a crack.
 pub fn failures<D: Dim>(body: &mut Body<D>, duration: f32) -> Vec<Failure> {
     body.state.cooldowns.pass(duration);
     if !body.can_tear() {
@@ -72,13 +68,13 @@ pub fn failures<D: Dim>(body: &mut Body<D>, duration: f32) -> Vec<Failure> {
         let nodes = body.cache.breakable.among(first..first + damage.len());
         on_widest_lanes!(simd => for (id, node) in nodes {
             let damage = &mut damage[id.index() - first];
-            // What is not damaged yet is looked at in every other round.
+            // Undamaged nodes are examined only in every other round.
             if body.truth.pieces.sleeps(id)
                 || *damage == 0.0 && (id.0 ^ body.state.cooldowns.rounds) & 1 == 1
             {
                 continue;
             }
-            // Most nodes are far from giving way.
+            // Most nodes are far from failure.
             let failure = match holds(simd, body, id, node) {
                 true => None,
                 false => worst_cut(body, id, node),
@@ -106,9 +102,9 @@ pub fn failures<D: Dim>(body: &mut Body<D>, duration: f32) -> Vec<Failure> {
     chosen
 }
 
-/// Of failures, the worst first, those that no worse one near them forestalls. Neighbours in one
-/// plane stay together: they are the front of one crack, a line in space, and it moves as a whole.
-/// If they had to wait for each other, cracks would crawl, and the load would start new ones.
+/// Returns those failures that have no worse failure nearby; `found` is sorted, the worst first. Neighbours
+/// in one plane are kept together: they form the front of one crack, in 3D a line, which advances as a whole.
+/// If they had to wait for each other, cracks would advance too slowly, and the load would start new ones.
 fn undisturbed(found: Vec<Failure>) -> Vec<Failure> {
     let mut chosen: Vec<Failure> = Vec::new();
     for failure in found {
@@ -123,8 +119,8 @@ fn undisturbed(found: Vec<Failure>) -> Vec<Failure> {
     chosen
 }
 
-/// Whether no cut through a breakable node can be overstrained: no pull is greater than half of all forces together,
-/// (Σ|f|)² ≤ n Σ|f|², with a little for rounding; and no cut opens less than a face.
+/// Whether no cut through a breakable node can be overloaded. No pull is larger than half the sum of all
+/// forces, with (Σ|f|)² ≤ n Σ|f|² and a margin for rounding; every cut opens at least one face.
 #[inline(always)]
 fn holds<D: Dim, S: Simd>(simd: S, body: &Body<D>, id: NodeId, node: &BreakableNode) -> bool {
     let threshold = face_area::<D>(body.truth.grid.voxel_size()) * node.threshold;
@@ -132,7 +128,7 @@ fn holds<D: Dim, S: Simd>(simd: S, body: &Body<D>, id: NodeId, node: &BreakableN
     0.2501 * node.group.count_ones() as f32 * squares <= threshold * threshold
 }
 
-/// The cut through a breakable node that is overstrained most, if one is.
+/// Returns the most overloaded cut through a breakable node, if any is overloaded.
 #[inline(never)]
 fn worst_cut<D: Dim>(body: &Body<D>, id: NodeId, node: &BreakableNode) -> Option<Failure> {
     let size = body.truth.grid.voxel_size();
@@ -141,7 +137,7 @@ fn worst_cut<D: Dim>(body: &Body<D>, id: NodeId, node: &BreakableNode) -> Option
         forces[octant] = force;
     }
     let total = forces.into_iter().fold([0.0; 4], plus);
-    // What its voxels have turned by together: found when it is asked for.
+    // Common rotation of its voxels, computed on demand.
     let mut turn: Option<[[f32; 3]; 3]> = None;
     let mut worst: Option<(f32, f32, Cut)> = None;
     for cut in body.cache.breakable.cuts(node) {
@@ -152,7 +148,7 @@ fn worst_cut<D: Dim>(body: &Body<D>, id: NodeId, node: &BreakableNode) -> Option
         let is_crumb = cut.lone & node.crumbs != 0;
         let threshold = node.threshold * if is_crumb { CRUMB_FACTOR } else { 1.0 };
         let least = area * threshold * worst.map_or(1.0, |(excess, ..)| excess);
-        // No tension is greater than the pull.
+        // The tension is never larger than the pull.
         if dot(pull, pull) <= least * least {
             continue;
         }
@@ -183,12 +179,12 @@ fn worst_cut<D: Dim>(body: &Body<D>, id: NodeId, node: &BreakableNode) -> Option
     })
 }
 
-/// The octants of a mask.
+/// Returns the octants of a mask.
 fn octants(mask: u8) -> impl Iterator<Item = usize> {
     (0..8).filter(move |octant| mask >> octant & 1 == 1)
 }
 
-/// The rotations of all elements around a node, added up.
+/// Returns the sum of the rotations of all elements around a node.
 fn total_turn<D: Dim>(body: &Body<D>, id: NodeId) -> [[f32; 3]; 3] {
     let mut turn = [[0.0; 3]; 3];
     for owner in body.truth.mesh.carrier_ids(id) {
@@ -200,12 +196,13 @@ fn total_turn<D: Dim>(body: &Body<D>, id: NodeId) -> [[f32; 3]; 3] {
     turn
 }
 
-/// The part of a face that belongs to one of its corners: half an edge, a quarter of a square.
+/// Part of a face that belongs to one of its corners [m or m²]: half an edge in 2D, a quarter of a square in
+/// 3D.
 fn face_area<D: Dim>(size: f32) -> f32 {
     (1..D::N).fold(1.0, |area, _| area * 0.5 * size)
 }
 
-/// The tension of a pull across a plane [N]: what opens it counts in full, what shears it half.
+/// Tension of a pull across a plane [N]: the opening part counts in full, the shear part by half.
 fn tension(pull: Row, normal: Row) -> f32 {
     let opening = dot(pull, normal);
     let shear = (dot(pull, pull) - opening * opening).max(0.0);
@@ -217,7 +214,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_front_of_a_crack_moves_as_a_whole() {
+    fn undisturbed_keeps_front_of_crack_together() {
         let failure = |at: Point, axis| Failure {
             node: NodeId(0),
             at,

@@ -1,4 +1,4 @@
-//! Which voxels are solid, and of which material: the shape that a body starts from.
+//! Voxel grids: the solid voxels, and their materials, from which a body starts.
 
 use crate::dim::{Dim, Point, points_in};
 use crate::shape::Vector;
@@ -8,36 +8,38 @@ use std::ops::RangeInclusive;
 
 mod form;
 
-/// Most voxels on one axis of a grid: so far from its origin single precision still tells a ten-thousandth of a voxel.
+/// Largest number of voxels on one axis. At this distance from the origin, single precision still resolves
+/// 1/10000 of a voxel.
 pub const MAX_EXTENT: usize = 1024;
-/// Most voxels in the box of a grid, solid or not: 64 MiB of them, and eight corners of each have numbers of 32 bits.
+/// Largest number of voxels in the box of a grid, solid or not. They take 64 MiB, and eight corners of each
+/// can be numbered with 32 bits.
 pub const MAX_VOXELS: usize = 1 << 26;
-/// Edge lengths that a voxel can have [m]: with others, volumes and positions leave single precision.
+/// Valid edge lengths of a voxel [m]. Beyond them, volumes and positions leave the range of single precision.
 pub const VOXEL_SIZES: RangeInclusive<f32> = 1e-6..=1e3;
 
-/// Why a body or a grid could not be made.
+/// Reason why a body or a grid could not be made.
 #[derive(Debug, Clone, PartialEq)]
 pub enum BuildError {
     /// No voxel is solid.
     Empty,
     /// The grid is larger than [`MAX_EXTENT`] or [`MAX_VOXELS`].
     TooLarge {
-        /// Voxels asked for on each axis.
+        /// Requested voxels on each axis.
         size: [usize; 3],
     },
     /// The number of voxel values is not the product of the size.
     WrongLength {
-        /// Values that the size asks for.
+        /// Number of values required by the size.
         expected: usize,
-        /// Values that were given.
+        /// Number of values given.
         found: usize,
     },
-    /// A grid of the plane has more than one layer.
+    /// A 2D grid has more than one layer.
     NotFlat {
-        /// Layers asked for.
+        /// Requested layers.
         layers: usize,
     },
-    /// The edge length of a voxel [m] is not one of [`VOXEL_SIZES`].
+    /// The edge length of a voxel [m] is outside [`VOXEL_SIZES`].
     BadVoxelSize(f32),
 }
 
@@ -60,10 +62,7 @@ impl fmt::Display for BuildError {
                 VOXEL_SIZES.end()
             ),
             Self::NotFlat { layers } => {
-                write!(
-                    f,
-                    "a grid of the plane has one layer of voxels, not {layers}"
-                )
+                write!(f, "a 2D grid must have one layer of voxels, got {layers}")
             }
         }
     }
@@ -71,7 +70,7 @@ impl fmt::Display for BuildError {
 
 impl std::error::Error for BuildError {}
 
-/// A box of voxels, each empty (0) or of a material (1 to 255).
+/// Box of voxels, each empty (0) or of a material (1 to 255).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
@@ -79,17 +78,18 @@ pub struct VoxelGrid<D: Dim> {
     size: Point,
     voxel_size: f32,
     materials: Vec<u8>,
-    /// Of each voxel, whether it was taken out since; empty while none was.
+    /// Whether each voxel was removed later; empty if no voxel was.
     taken_out: Vec<bool>,
     dim: PhantomData<D>,
 }
 
 impl<D: Dim> VoxelGrid<D> {
-    /// A grid of `size` voxels of edge length `voxel_size` [m], each given by `material` (0 = empty).
+    /// Creates a grid of `size` voxels with edge length `voxel_size` [m]; `material` returns the material of
+    /// each voxel (0 = empty).
     ///
     /// # Errors
-    /// [`BuildError`] when the grid is too large, not flat in 2D or empty, or the voxel size is not one
-    /// of [`VOXEL_SIZES`].
+    /// [`BuildError`] if the grid is too large, empty, or not flat in 2D, or if the voxel size is outside
+    /// [`VOXEL_SIZES`].
     pub fn from_fn(
         size: [usize; 3],
         voxel_size: f32,
@@ -101,10 +101,10 @@ impl<D: Dim> VoxelGrid<D> {
         Self::checked(size, voxel_size, materials)
     }
 
-    /// A grid from voxel values in memory, the first axis running fastest.
+    /// Creates a grid from voxel values in memory order, the first axis fastest.
     ///
     /// # Errors
-    /// As [`VoxelGrid::from_fn`], and when the number of values does not fit the size.
+    /// See [`VoxelGrid::from_fn`]; also if the number of values does not match the size.
     pub fn from_materials(
         size: [usize; 3],
         voxel_size: f32,
@@ -121,8 +121,9 @@ impl<D: Dim> VoxelGrid<D> {
         Self::checked(size, voxel_size, materials)
     }
 
-    /// As [`VoxelGrid::from_fn`], from the position of a voxel's centre: its distance [m] from the
-    /// grid's low corner, in 2D with 0 for the third coordinate. Signed distances become voxels here:
+    /// Creates a grid like [`VoxelGrid::from_fn`], but calls `material` with the centre of each voxel [m],
+    /// measured from the low corner of the grid; the third coordinate is 0 in 2D. This turns signed distances
+    /// into voxels:
     ///
     /// ```
     /// use fuwafuwa::{Dim3, Shape, VoxelGrid};
@@ -141,7 +142,7 @@ impl<D: Dim> VoxelGrid<D> {
     /// ```
     ///
     /// # Errors
-    /// As [`VoxelGrid::from_fn`].
+    /// See [`VoxelGrid::from_fn`].
     pub fn from_centres(
         size: [usize; 3],
         voxel_size: f32,
@@ -152,17 +153,17 @@ impl<D: Dim> VoxelGrid<D> {
         })
     }
 
-    /// The same grid with all lengths multiplied by `factor`: of as many voxels, larger or smaller.
+    /// Multiplies all lengths by `factor`; the number of voxels stays the same.
     ///
     /// # Errors
-    /// [`BuildError::BadVoxelSize`] when they are not of [`VOXEL_SIZES`] then.
+    /// [`BuildError::BadVoxelSize`] if the new voxel size is outside [`VOXEL_SIZES`].
     pub fn scaled(mut self, factor: f32) -> Result<Self, BuildError> {
         self.voxel_size *= factor;
         Self::checked(self.size, self.voxel_size, self.materials)
     }
 
-    /// The centre of a voxel [m] from the low corner of a grid of such voxels; the third coordinate
-    /// is 0 in 2D.
+    /// Centre of a voxel [m], measured from the low corner of a grid with this voxel size; the third
+    /// coordinate is 0 in 2D.
     pub fn centre(voxel: Point, voxel_size: f32) -> Vector {
         let mut centre = [0.0; 3];
         for axis in 0..D::N {
@@ -171,7 +172,7 @@ impl<D: Dim> VoxelGrid<D> {
         centre
     }
 
-    /// Voxels on each axis; 1 on the third axis in 2D.
+    /// Number of voxels on each axis; 1 on the third axis in 2D.
     pub fn size(&self) -> Point {
         self.size
     }
@@ -187,7 +188,7 @@ impl<D: Dim> VoxelGrid<D> {
         self.materials.iter().filter(|&&m| m != 0).count()
     }
 
-    /// The material of a voxel: 0 when it is empty or outside the grid.
+    /// Material of a voxel: 0 if it is empty or outside the grid.
     #[inline]
     pub fn material(&self, voxel: Point) -> u8 {
         let inside = (0..3).all(|axis| voxel[axis] >= 0 && voxel[axis] < self.size[axis]);
@@ -204,21 +205,21 @@ impl<D: Dim> VoxelGrid<D> {
         self.material(voxel) != 0
     }
 
-    /// Whether a voxel is solid and still there: that of a body whose pieces were
-    /// [removed](crate::World::remove_piece) may be gone, and yet tells what lay around the rest.
+    /// Whether a voxel is solid and was not removed with its [piece](crate::World::remove_piece).
+    /// [`VoxelGrid::is_solid`] stays true for removed voxels.
     #[inline]
     pub fn is_left(&self, voxel: Point) -> bool {
         self.is_solid(voxel) && (self.taken_out.is_empty() || !self.taken_out[self.index(voxel)])
     }
 
-    /// Number of solid voxels that are still there.
+    /// Number of solid voxels that were not removed.
     #[inline(never)]
     pub fn left_count(&self) -> usize {
         let gone = self.taken_out.iter().filter(|&&gone| gone).count();
         self.solid_count() - gone
     }
 
-    /// Takes solid voxels out.
+    /// Marks solid voxels as removed.
     pub(crate) fn take_out(&mut self, voxels: &[Point]) {
         self.taken_out.resize(self.materials.len(), false);
         for &voxel in voxels {
@@ -233,13 +234,13 @@ impl<D: Dim> VoxelGrid<D> {
         points_in([0; 3], [size[0] - 1, size[1] - 1, size[2] - 1])
     }
 
-    /// The place of a voxel inside the box in memory order.
+    /// Index of a voxel inside the box, in memory order.
     #[inline]
     pub fn index(&self, voxel: Point) -> usize {
         ((voxel[2] * self.size[1] + voxel[1]) * self.size[0] + voxel[0]) as usize
     }
 
-    /// Whether one that was read from a file could have been made.
+    /// Whether a grid read from a file is valid.
     #[cfg(feature = "serde")]
     pub(crate) fn is_sound(&self) -> bool {
         let size = self.size.map(|extent| usize::try_from(extent).unwrap_or(0));
@@ -288,7 +289,7 @@ mod tests {
     use crate::dim::{Dim2, Dim3};
 
     #[test]
-    fn bad_grids_are_refused_with_their_reason() {
+    fn from_fn_reports_reason_for_invalid_grid() {
         assert_eq!(VoxelGrid::<Dim2>::ball(0, 1.0), Err(BuildError::Empty));
         let size = [2000, 1, 1];
         let long = VoxelGrid::<Dim3>::from_fn(size, 1.0, |_| 1);
@@ -305,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ball_of_one_voxel_is_not_empty() {
+    fn ball_contains_voxels_at_smallest_sizes() {
         for (n, [disc, ball]) in [(1, [1, 1]), (2, [4, 8]), (3, [1, 1]), (4, [4, 8])] {
             let disc_of_n = VoxelGrid::<Dim2>::ball(n, 1.0).unwrap();
             assert_eq!(disc_of_n.solid_count(), disc, "{n}");
@@ -315,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn a_shape_is_solid_where_the_centres_of_voxels_are_inside() {
+    fn from_centres_fills_voxels_with_centre_inside() {
         use crate::shape::Shape;
         let (centre, radius) = ([0.5; 3], 0.3);
         let inside = |at| u8::from(Shape::Ball { centre, radius }.distance(at).0 < 0.0);

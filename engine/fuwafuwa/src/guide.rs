@@ -1,33 +1,34 @@
-//! A guide for who wants to use the engine, from a first body to what it cannot do.
+//! User guide, from a first body to the limits of the engine.
 //!
-//! It is made of words alone, for the documentation: no program has it. Every piece of code in it is run as a test. Words are
-//! those of the engine: a *body* is soft, what is *rigid* is an obstacle, a hand or something that falls, a *tick* is 1/60 s.
+//! Documentation only: the module is not part of any program. Every code example in it runs as a test. Terms:
+//! a *body* is soft, a *rigid body* is fixed, kinematic, coupled or dynamic, and a *tick* is 1/60 s by
+//! default.
 //!
-//! 1. [`first_body`]: five minutes to a ball that falls
-//! 2. [`materials`]: how stiff, how heavy, how strong; real ones, and what a game does with them
+//! 1. [`first_body`]: five minutes to a falling ball
+//! 2. [`materials`]: stiffness, density and strength; real values, and values for games
 //! 3. [`acting`]: impulses, velocities, fields, hands, cuts
-//! 4. [`asking`]: events, sensors, layers, rays, what overlaps, strain and energy
-//! 5. [`rigids`]: what is rigid, what falls, and joints
-//! 6. [`saving`]: snapshots, and going back
-//! 7. [`costs`]: what costs what, measured
-//! 8. [`determinism`]: what holds, and what breaks it
-//! 9. [`how`]: how it works, with figures
-//! 10. [`neighbours`]: what others do better, and what they do not
+//! 4. [`asking`]: events, sensors, layers, rays, overlap tests, strain and energy
+//! 5. [`rigids`]: rigid bodies and joints
+//! 6. [`saving`]: snapshots, and rolling back
+//! 7. [`costs`]: measured costs
+//! 8. [`determinism`]: guarantees, and ways to break them
+//! 9. [`how`]: the method, with figures
+//! 10. [`neighbours`]: comparison with other engines
 //!
-//! # Which crate
+//! # Crates
 //!
-//! | crate | when |
+//! | crate | use |
 //! | --- | --- |
-//! | `fuwafuwa` | always: the engine. It opens no window, reads no file, asks no clock |
+//! | `fuwafuwa` | always: the engine. It opens no window, reads no file, and reads no clock |
 //! | `fuwafuwa_scenes` | worlds from text files, bodies from PNG and MagicaVoxel, recordings |
-//! | `fuwafuwa_render` | to draw with wgpu; or, without its feature `gpu`, smooth vertices for who draws another way |
+//! | `fuwafuwa_render` | drawing with wgpu; without its feature `gpu`, smooth vertices for other renderers |
 //! | `fuwafuwa_painter` | SVG, PNG and GIF without a GPU: figures, films, tests |
-//! | `fuwafuwa_scan` | medical scans (NIfTI) as bodies, to show and to teach; no medical device |
-//! | `force_feedback`, `sticks` | sticks that push back; they know nothing of soft bodies and are good without the engine |
-//! | `bevy_fuwafuwa` | all of it as a plugin for Bevy |
-//! | `fuwafuwa_cli` | a command line that runs, films, measures and checks |
+//! | `fuwafuwa_scan` | medical scans (NIfTI) as bodies, for demonstration and teaching; not a medical device |
+//! | `force_feedback`, `sticks` | force-feedback joysticks; usable without the engine |
+//! | `bevy_fuwafuwa` | plugin for Bevy with all of these |
+//! | `fuwafuwa_cli` | command line that runs, films, measures and checks scenes |
 //!
-//! Nothing is published: depend on them by path. Every interface may still change.
+//! The crates are not published: depend on them by path. Every interface may still change.
 
 #[doc = include_str!("../guide/first_body.md")]
 pub mod first_body {}
@@ -53,7 +54,7 @@ pub mod costs {}
 #[doc = include_str!("../guide/determinism.md")]
 pub mod determinism {}
 
-// Pictures are in the page itself, so that they are there wherever it is.
+// Figures are embedded in the page, so that they need no other files.
 #[doc = include_str!("../guide/how_levels.md")]
 #[doc = "<div class=\"fuwafuwa\"><style>.fuwafuwa svg { max-width: min(100%, 44em); max-height: 34em; height: auto; }</style>"]
 #[doc = include_str!("../guide/figures/levels.svg")]
@@ -75,7 +76,7 @@ pub mod how {}
 #[doc = include_str!("../guide/neighbours.md")]
 pub mod neighbours {}
 
-/// What the package says of itself has to run too.
+/// Runs the examples of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 pub mod readme {}

@@ -1,17 +1,17 @@
-//! Which node, element or piece of a body is meant: numbers that cannot be taken for each other.
+//! Typed ids of the nodes, elements and pieces of a body.
 //!
-//! Each is a place in tables that go by it, and says nothing of the body it is of. Those of nodes and elements are
-//! given out again when what they were of is gone; those of pieces never are.
+//! An id is an index into tables, and does not identify the body. Ids of nodes and elements are reused after
+//! their node or element is removed; ids of pieces are never reused.
 
 use std::marker::PhantomData;
 use std::ops::{Deref, DerefMut, Index, IndexMut};
 
-/// A number that says which thing of its kind is meant.
+/// Index of one kind of object.
 pub trait Id: Copy {
-    /// The id of what stands at a place of a table.
+    /// Creates the id for an index of a table.
     fn of(index: usize) -> Self;
 
-    /// Its place in a table.
+    /// Index in a table.
     fn index(self) -> usize;
 }
 
@@ -24,7 +24,7 @@ macro_rules! id {
         $vis struct $name(pub u32);
 
         impl $name {
-            /// Its place in a table that goes by it.
+            /// Index in a table.
             #[inline(always)]
             pub const fn index(self) -> usize {
                 self.0 as usize
@@ -54,19 +54,19 @@ macro_rules! id {
 pub(crate) use id;
 
 id! {
-    /// A node of a body.
+    /// Id of a node of a body.
     pub NodeId
 }
 id! {
-    /// An element of a body.
+    /// Id of an element of a body.
     pub ElementId
 }
 id! {
-    /// A piece of a body: its number.
+    /// Id of a piece of a body.
     pub PieceId
 }
 
-/// A list that goes by ids of one kind.
+/// Vector indexed by ids of one kind.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(transparent))]
@@ -77,24 +77,24 @@ pub struct Table<I, T> {
 }
 
 impl<I: Id, T> Table<I, T> {
-    /// What it has, each with its id, ascending.
+    /// Returns all entries with their ids, ascending.
     pub fn entries(&self) -> impl DoubleEndedIterator<Item = (I, &T)> + Clone {
         let entries = self.list.iter().enumerate();
         entries.map(|(index, entry)| (I::of(index), entry))
     }
 
-    /// As [`Table::entries`], to be changed.
+    /// Returns all entries mutably, with their ids, ascending.
     pub(crate) fn entries_mut(&mut self) -> impl Iterator<Item = (I, &mut T)> {
         let entries = self.list.iter_mut().enumerate();
         entries.map(|(index, entry)| (I::of(index), entry))
     }
 
-    /// The ids that it has an entry for, ascending.
+    /// Returns the ids of all entries, ascending.
     pub fn ids(&self) -> impl Iterator<Item = I> + use<I, T> {
         (0..self.list.len()).map(I::of)
     }
 
-    /// The id that the next entry will have.
+    /// Returns the id of the next entry to be pushed.
     pub fn next_id(&self) -> I {
         I::of(self.list.len())
     }
@@ -176,7 +176,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_table_goes_by_its_ids() {
+    fn table_is_indexed_by_ids() {
         let mut table: Table<NodeId, char> = vec!['a', 'b'].into();
         assert_eq!(table.next_id(), NodeId(2));
         table.push('c');

@@ -1,15 +1,15 @@
 //! Eight numbers side by side, one for each element of a block.
 //!
-//! Written once, on the vectors of `fearless_simd`, and compiled for each kind of machine. Every
-//! operation works within a lane and rounds once, so that all machines give the same bits: only
-//! + − × ÷ √, comparisons and choices are used, nothing fused and nothing approximate.
+//! The code is written once on the vectors of `fearless_simd`, and compiled for each kind of machine. Every
+//! operation works within a lane and rounds once, so that all machines give the same bits. Only + − × ÷ √,
+//! comparisons and selections are used; no fused or approximate operations.
 
 use fearless_simd::{f32x4, f32x8, prelude::*};
 
-/// Three coordinates and a pad, so that a row is one aligned load; in 2D the third is 0.
+/// Three coordinates and padding, so that a row is one aligned load; in 2D the third is 0.
 pub type Row = [f32; 4];
 
-/// Elements in a block.
+/// Number of elements in a block.
 pub const LANES: usize = 8;
 
 /// One number for each element of a block.
@@ -18,9 +18,9 @@ pub type Lanes<S> = f32x8<S>;
 /// One number for each lane, in memory.
 pub type Eight = [f32; LANES];
 
-/// Evaluates an expression for the lanes `$simd`, the widest that the machine has. Each kind of
-/// lanes is one more copy of all that the expression calls; so on x86 there are two, although more
-/// are known: of AVX-512 eight lanes gain 2 %, and few machines lie between SSE2 and AVX2.
+/// Evaluates an expression with the widest lanes `$simd` of the machine. Each kind of lanes adds a copy of
+/// all code that the expression calls, so on x86-64 only two kinds are used. AVX-512 gains little with eight
+/// lanes, and few machines lie between SSE2 and AVX2.
 #[cfg(target_arch = "x86_64")]
 macro_rules! on_widest_lanes {
     ($simd:ident => $do:expr) => {{
@@ -51,37 +51,37 @@ macro_rules! on_widest_lanes {
 
 pub(crate) use on_widest_lanes;
 
-/// The same number in every lane.
+/// Sets every lane to one number.
 #[inline(always)]
 pub fn splat<S: Simd>(simd: S, value: f32) -> Lanes<S> {
     Lanes::simd_from(simd, value)
 }
 
-/// From memory.
+/// Loads lanes from memory.
 #[inline(always)]
 pub fn load<S: Simd>(simd: S, values: &Eight) -> Lanes<S> {
     Lanes::load_array_ref(simd, values)
 }
 
-/// The greater of two numbers, lane by lane; the second where they do not compare.
+/// Maximum of two numbers per lane; the second one if they do not compare.
 #[inline(always)]
 pub fn at_least<S: Simd>(value: Lanes<S>, least: Lanes<S>) -> Lanes<S> {
     value.simd_gt(least).select(value, least)
 }
 
-/// `yes` in the lanes where the value > 0, `no` elsewhere.
+/// Returns `yes` in lanes where `value` > 0, `no` elsewhere.
 #[inline(always)]
 pub fn if_positive<S: Simd>(value: Lanes<S>, yes: Lanes<S>, no: Lanes<S>) -> Lanes<S> {
     value.simd_gt(0.0).select(yes, no)
 }
 
-/// The lanes where the value > 0, as a mask.
+/// Mask of the lanes where `value` > 0.
 #[inline(always)]
 pub fn positive<S: Simd>(value: Lanes<S>) -> u8 {
     value.simd_gt(0.0).to_bitmask() as u8
 }
 
-/// The three columns of the rows at eight places.
+/// Loads the rows at eight indices, and returns their first three columns.
 #[inline(always)]
 pub fn gather<S: Simd>(simd: S, rows: &[Row], places: &[u32; LANES]) -> [Lanes<S>; 3] {
     let [a, b, c, d, e, f, g, h] = *places;
@@ -105,7 +105,7 @@ fn row<S: Simd>(simd: S, rows: &[Row], place: u32) -> f32x4<S> {
     f32x4::load_array_ref(simd, &rows[place as usize])
 }
 
-/// The first three columns of four rows.
+/// First three columns of four rows.
 #[inline(always)]
 fn columns<S: Simd>(a: f32x4<S>, b: f32x4<S>, c: f32x4<S>, d: f32x4<S>) -> [f32x4<S>; 3] {
     let (ac, bd) = (a.zip_low(c), b.zip_low(d));
@@ -115,8 +115,8 @@ fn columns<S: Simd>(a: f32x4<S>, b: f32x4<S>, c: f32x4<S>, d: f32x4<S>) -> [f32x
 
 #[cfg(target_arch = "x86_64")]
 fearless_simd::kernel!(
-    /// As [`columns`], in the low halves and in the high halves at once: seven shuffles instead of
-    /// fourteen, a tenth of the time of a substep. The crate's own vectors zip across the halves.
+    /// [`columns`] for the low and high halves at once, with seven shuffles instead of fourteen. The vectors
+    /// of `fearless_simd` zip across the halves.
     #[inline(always)]
     fn columns_of_both_halves(avx2: Avx2, a: Eight, b: Eight, c: Eight, d: Eight) -> [Eight; 3] {
         use std::arch::x86_64::*;
@@ -131,7 +131,7 @@ fearless_simd::kernel!(
     }
 );
 
-/// Eight vectors of so many components, one after the other, from three columns.
+/// Stores eight vectors with 2 or 3 components, one after the other, from three columns.
 #[inline(always)]
 pub fn scatter<S: Simd>(simd: S, columns: [Lanes<S>; 3], components: usize, vectors: &mut [f32]) {
     let [x, y, z] = columns;
@@ -157,7 +157,7 @@ pub fn scatter<S: Simd>(simd: S, columns: [Lanes<S>; 3], components: usize, vect
         store(f, vectors, 20);
         return;
     }
-    // Written out number by number: the compiler finds the shuffles of each machine.
+    // Written out per number: the compiler finds the shuffles of each machine.
     store(four(simd, [x[0], y[0], z[0], x[1]]), vectors, 0);
     store(four(simd, [y[1], z[1], x[2], y[2]]), vectors, 4);
     store(four(simd, [z[2], x[3], y[3], z[3]]), vectors, 8);
@@ -168,8 +168,8 @@ pub fn scatter<S: Simd>(simd: S, columns: [Lanes<S>; 3], components: usize, vect
 
 #[cfg(target_arch = "x86_64")]
 fearless_simd::kernel!(
-    /// Vectors from their columns, in the low halves and in the high halves at once: without it the forces of elements in
-    /// space take 6 % longer.
+    /// Interleaves three columns into vectors, in the low and high halves at once. Faster than the generic
+    /// version.
     #[inline(always)]
     fn vectors_of_both_halves(avx2: Avx2, x: Eight, y: Eight, z: Eight) -> [Eight; 3] {
         use std::arch::x86_64::*;
@@ -190,14 +190,14 @@ fn four<S: Simd>(simd: S, values: Row) -> f32x4<S> {
     f32x4::load_array(simd, values)
 }
 
-/// Four numbers to memory: eight at a time would lie across the cache's lines half of the time.
+/// Stores four numbers; stores of eight would cross cache lines half of the time.
 #[inline(always)]
 fn store<S: Simd>(values: f32x4<S>, numbers: &mut [f32], first: usize) {
     values.store_slice(&mut numbers[first..first + 4]);
 }
 
-/// The sum of the four numbers that begin at each place, in their order; 0, where zeros stand, for
-/// those that are fewer.
+/// Sums the rows of four numbers that begin at the given indices, in their order. Unused indices are 0, where
+/// zeros are stored.
 #[inline(always)]
 pub fn sum<S: Simd>(simd: S, numbers: &[f32], places: &[u32]) -> Row {
     let mut sum = row_at(simd, numbers, places[0]);
@@ -207,8 +207,8 @@ pub fn sum<S: Simd>(simd: S, numbers: &[f32], places: &[u32]) -> Row {
     sum.to_array()
 }
 
-/// The squares of the four numbers that begin at each place, added up column by column; 0, where zeros stand, for those that
-/// are fewer.
+/// Sums the squares of the rows of four numbers that begin at the given indices, per column. Unused indices
+/// are 0, where zeros are stored.
 #[inline(always)]
 pub fn sum_of_squares<S: Simd>(simd: S, numbers: &[f32], places: &[u32]) -> Row {
     let mut sum = f32x4::splat(simd, 0.0);

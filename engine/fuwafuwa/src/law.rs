@@ -1,9 +1,9 @@
-//! The forces of one element, in double precision: the reference that faster paths are held against.
+//! Forces of one element in double precision: the reference for the vectorised implementation.
 //!
-//! Two laws behind one setting. [`Law::Endo2004`] is the paper's: the rest shape, turned so that
-//! its moments balance [Endo 2004, Eq. 1], pulls each node back in proportion to its offset. It is
-//! simple and robust, but it fails the patch test as soon as an element has hanging nodes.
-//! [`Law::PatchExact`], the default, is a corotational virtual element [Beirao da Veiga 2013]:
+//! Two laws are available. [`Law::Endo2004`] is that of the paper: the rest shape, rotated so that its
+//! moments balance [Endo 2004, Eq. 1], pulls each node back in proportion to its offset. It is simple and
+//! robust, but fails the patch test as soon as an element has hanging nodes. [`Law::PatchExact`], the
+//! default, is a corotational virtual element [Beirao da Veiga 2013]:
 //!
 //! ```text
 //! F = (1/V) Σ x_i b_iᵀ      R = its rotation      J = det F
@@ -12,21 +12,21 @@
 //! f_i = −P b_i − k (w_i h_i − S b_i / V)           k = α β Y s^(d−2),  w_i = 2^d V_i / s^d
 //! ```
 //!
-//! α makes a whole cell bend as it should, β does so for other classes: [`Stencil::hourglass`].
-//! In 2D this is plane strain, for 1 m of depth: the same formulas with F₃₃ = R₃₃ = 1.
+//! α makes a whole cell bend correctly, β other classes: see [`Stencil::hourglass`]. In 2D the law is plane
+//! strain with 1 m of depth: the same formulas with F₃₃ = R₃₃ = 1.
 
 use crate::dim::Dim;
 use crate::stencil::{Stencil, Vector64};
 use crate::vector::{cross, dot, minus, plus, scaled};
 use std::fmt;
 
-/// How an element answers to being deformed.
+/// Law of the elastic forces of an element.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Law {
-    /// Exactly the force of [Endo 2004, §3.1].
+    /// Shape-matching law of [Endo 2004, §3.1], unchanged.
     Endo2004,
-    /// Exact for every uniform strain, on any graded mesh.
+    /// Corotational virtual element law; exact for every uniform strain, on any graded mesh.
     #[default]
     PatchExact,
 }
@@ -35,16 +35,17 @@ pub enum Law {
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Elasticity {
-    /// Young's modulus Y [Pa]; a game body has about 5000. Too high for the substep: blow-up.
+    /// Young's modulus Y [Pa]; about 5000 for a game body. The simulation diverges if it is too high for the
+    /// substep.
     pub young: f64,
-    /// Poisson ratio ν, 0 to 0.45: how far the body bulges when it is pressed.
+    /// Poisson's ratio ν, 0 to 0.45: lateral expansion under compression.
     pub poisson: f64,
 }
 
-/// An elastic constant outside its range.
+/// Elastic constants of which one is out of range.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct BadElasticity {
-    /// What was given.
+    /// Given constants.
     pub given: Elasticity,
 }
 
@@ -60,16 +61,16 @@ impl fmt::Display for BadElasticity {
 
 impl std::error::Error for BadElasticity {}
 
-/// Below this volume ratio J an element resists being squashed flat, whatever its material. Higher, and it
-/// would stiffen what hands squeeze; lower, and hands would turn elements inside out before it holds against them.
-/// A choice: with 0.2 and 0.6 the tests of dents, crumbs and rings pass as well.
+/// Volume ratio J below which an element resists further compression, regardless of its material. A higher
+/// limit would stiffen soft contacts; with a lower one, strong contacts invert elements before the resistance
+/// sets in.
 pub const SQUASH_LIMIT: f64 = 0.4;
 
 impl Elasticity {
     /// Checks the constants.
     ///
     /// # Errors
-    /// [`BadElasticity`] when one is out of range or not a number.
+    /// [`BadElasticity`] if one is out of range or not a number.
     pub fn new(young: f64, poisson: f64) -> Result<Self, BadElasticity> {
         let given = Self { young, poisson };
         let good = young.is_finite() && young > 0.0 && (0.0..=0.45).contains(&poisson);
@@ -91,15 +92,15 @@ impl Elasticity {
     }
 }
 
-/// A 3 × 3 matrix by rows; in 2D the third row and column are those of the identity.
+/// 3 × 3 matrix by rows; in 2D the third row and column are those of the identity.
 pub type Matrix = [[f64; 3]; 3];
 
 pub(crate) const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// The force [N] of an element of width `size` [m] on each of its nodes, at `positions` [m].
+/// Returns the force [N] of an element of width `size` [m] on each of its nodes, at `positions` [m].
 ///
 /// # Panics
-/// When the number of positions is not the number of nodes of the stencil.
+/// If the number of positions is not the number of nodes of the stencil.
 #[inline(never)]
 pub fn forces<D: Dim>(
     law: Law,
@@ -108,14 +109,18 @@ pub fn forces<D: Dim>(
     size: f64,
     positions: &[Vector64],
 ) -> Vec<Vector64> {
-    assert_eq!(positions.len(), stencil.slots.len(), "one position a node");
+    assert_eq!(
+        positions.len(),
+        stencil.slots.len(),
+        "the number of positions must match the nodes of the stencil"
+    );
     match law {
         Law::Endo2004 => endo(elasticity, stencil, size, positions),
         Law::PatchExact => patch_exact(elasticity, stencil, size, positions),
     }
 }
 
-/// f_i = (Y V d / Σ|R0|²) (M R0_i − r_i), with offsets from the mean of the nodes.
+/// Returns f_i = (Y V d / Σ|R0|²) (M R0_i − r_i), with offsets from the mean of the nodes.
 fn endo<D: Dim>(
     elasticity: Elasticity,
     stencil: &Stencil<D>,
@@ -126,7 +131,7 @@ fn endo<D: Dim>(
     apart.into_iter().map(|d| scaled(d, stiffness)).collect()
 }
 
-/// Y V d / Σ|R0|², and M R0_i − r_i of each node.
+/// Returns Y V d / Σ|R0|², and M R0_i − r_i of each node.
 pub(crate) fn endo_offsets<D: Dim>(
     elasticity: Elasticity,
     stencil: &Stencil<D>,
@@ -149,7 +154,7 @@ pub(crate) fn endo_offsets<D: Dim>(
         add_outer(&mut moment, *x, *r);
         spread += dot(*r, *r);
     }
-    // In the plane it turns around the third axis.
+    // In 2D the rotation axis is the third one.
     (D::N..3).for_each(|axis| moment[axis][axis] = spread);
     let rotation = rotation_of(&moment);
     let stiffness = elasticity.young * volume_of(stencil, half) * D::N as f64 / spread;
@@ -168,7 +173,7 @@ fn patch_exact<D: Dim>(
     forces_of_stress(elasticity, &stress, stencil, size, positions)
 }
 
-/// The forces of a stress [Pa], and those that hold against hourglass modes.
+/// Returns the forces of a stress [Pa], plus the stabilisation of the hourglass modes.
 pub(crate) fn forces_of_stress<D: Dim>(
     elasticity: Elasticity,
     stress: &Matrix,
@@ -197,13 +202,13 @@ pub(crate) fn forces_of_stress<D: Dim>(
         .collect()
 }
 
-/// b of a node: what it adds to V F is x bᵀ.
+/// Returns b of a node: x bᵀ is its contribution to V F.
 fn gradient_of<D: Dim>(stencil: &Stencil<D>, size: f64, node: usize) -> Vector64 {
     let half = 0.5 * size;
     scaled(stencil.gradients[node], volume_scale::<D>(half) / half)
 }
 
-/// The deformation gradient, and the volume centroid.
+/// Returns the deformation gradient and the volume centroid.
 pub(crate) fn deformation_of<D: Dim>(
     stencil: &Stencil<D>,
     size: f64,
@@ -221,7 +226,7 @@ pub(crate) fn deformation_of<D: Dim>(
     (deformation, centre)
 }
 
-/// The stiffness of the hourglass modes, and w h of each node.
+/// Returns the stiffness of the hourglass modes, and w h of each node.
 pub(crate) fn hourglass<D: Dim>(
     elasticity: Elasticity,
     stencil: &Stencil<D>,
@@ -240,7 +245,7 @@ pub(crate) fn hourglass<D: Dim>(
     (stiffness, motion.collect())
 }
 
-/// First Piola–Kirchhoff stress [Pa] of a deformation.
+/// Returns the first Piola–Kirchhoff stress [Pa] of a deformation.
 pub(crate) fn stress(elasticity: Elasticity, deformation: &Matrix) -> Matrix {
     let rotation = rotation_of(deformation);
     let stretch: f64 = (0..3).map(|i| dot(rotation[i], deformation[i])).sum();
@@ -259,28 +264,28 @@ pub(crate) fn stress(elasticity: Elasticity, deformation: &Matrix) -> Matrix {
     stress
 }
 
-/// The rotation that balances the moments of a deformation [Endo 2004, Eq. 1].
+/// Returns the rotation that balances the moments of a deformation [Endo 2004, Eq. 1].
 ///
-/// Each round turns R by ω from (√3‖F‖·I − S) ω = axial(F Rᵀ), S the symmetric part of F Rᵀ. The
-/// matrix is positive definite for every F, unlike a plain Newton step, and the step does not lag
-/// behind a spinning body as the usual division by |tr S| does [Mueller 2016]. The rounds end when
-/// the turn is below rounding.
+/// Each iteration turns R by ω from (√3‖F‖·I − S) ω = axial(F Rᵀ), where S is the symmetric part of F Rᵀ.
+/// Unlike in a plain Newton step, the matrix is positive definite for every F. Unlike the usual division by
+/// |tr S| [Mueller 2016], the step does not lag behind a spinning body. The iteration ends if the turn is
+/// below rounding.
 ///
-/// Half a turn off, about any axis, moments balance too, but tr Rᵀ F is not the greatest. Then they
-/// begin again half a turn about each axis away: one of those is at most 120° off.
+/// Moments also balance half a turn off, about any axis, but tr Rᵀ F is not maximal there. In that case the
+/// iteration restarts half a turn about each axis away: one of these starts is at most 120° off.
 pub fn rotation_of(deformation: &Matrix) -> Matrix {
     from_quaternion(turn_of(deformation))
 }
 
-/// The rotation of a deformation, as a quaternion, when `near` is a quarter turn off or more: too far
-/// for a few rounds from there.
+/// Returns the rotation of a deformation as a quaternion if `near` is a quarter turn off or more: too far for
+/// a few iterations from there.
 pub fn turn_far_from(near: &Matrix, deformation: &Matrix) -> Option<[f64; 4]> {
     if is_greatest(near, deformation) {
         return None;
     }
     let turned = turn_of(deformation);
     let gain = trace(&from_quaternion(turned), deformation) - trace(near, deformation);
-    // A rotation by a off loses 2 − 2 cos a of its trace, and has ‖F‖ = √3.
+    // A rotation that is off by the angle a has a trace smaller by 2 − 2 cos a, and ‖F‖ = √3.
     (gain > norm(deformation)).then_some(turned)
 }
 
@@ -290,7 +295,7 @@ fn turn_of(deformation: &Matrix) -> [f64; 4] {
     if is_greatest(&from_quaternion(turned), deformation) {
         return turned;
     }
-    // In the plane all turns are about the third axis.
+    // In 2D the rotation axis is always the third one.
     let [[.., x], [.., y], third] = deformation;
     let is_flat = [*x, *y] == [0.0; 2] && *third == IDENTITY[2];
     for axis in if is_flat { 2..3 } else { 0..3 } {
@@ -304,7 +309,7 @@ fn turn_of(deformation: &Matrix) -> [f64; 4] {
     turned
 }
 
-/// The rounds of [`rotation_of`], from a quaternion on.
+/// Runs the iteration of [`rotation_of`] from a quaternion.
 fn turn_from(mut turned: [f64; 4], deformation: &Matrix) -> [f64; 4] {
     let scale = 3f64.sqrt() * norm(deformation);
     for _ in 0..100 {
@@ -338,12 +343,12 @@ fn turn_from(mut turned: [f64; 4], deformation: &Matrix) -> [f64; 4] {
     turned
 }
 
-/// Whether no rotation far from this one fits better: no eigenvalue of F Rᵀ is above its trace.
+/// Whether the rotation is the best fit: no eigenvalue of F Rᵀ is above its trace.
 fn is_greatest(rotation: &Matrix, deformation: &Matrix) -> bool {
     trace(rotation, deformation) > norm(deformation)
 }
 
-/// tr Rᵀ F
+/// Returns tr Rᵀ F.
 fn trace(rotation: &Matrix, deformation: &Matrix) -> f64 {
     (0..3).map(|i| dot(rotation[i], deformation[i])).sum()
 }
@@ -372,7 +377,7 @@ fn from_quaternion([x, y, z, w]: [f64; 4]) -> Matrix {
     ]
 }
 
-/// q ← normalise((ω/2, 1) q), ω in world axes.
+/// Returns normalise((ω/2, 1) q), with ω in world axes.
 fn turn_quaternion([x, y, z, w]: [f64; 4], turn: Vector64) -> [f64; 4] {
     let [a, b, c] = scaled(turn, 0.5);
     let next = [
@@ -411,9 +416,9 @@ fn add_outer(m: &mut Matrix, a: Vector64, b: Vector64) {
 mod tests {
     use super::*;
 
-    /// Half a turn off the rounds stood still, and the body tore itself to pieces.
+    /// Regression: an iteration that started half a turn off did not move, and the body tore itself apart.
     #[test]
-    fn half_a_turn_is_found_about_any_axis() {
+    fn rotation_of_finds_half_turn_about_any_axis() {
         let axes = [
             [1.0, 0.0, 0.0],
             [0.0, 1.0, 0.0],

@@ -1,7 +1,8 @@
-//! Who touches whom: layers that things are in, and layers that they meet.
+//! Collision layers.
 
-/// The layers that something is in, and those whose things it touches: bit by bit. Two touch when each is in a layer that the
-/// other meets. Pieces of one body are of its layers, too.
+/// Collision layers of a body: the layers of which it is a member, and the layers that it collides with, bit
+/// by bit. Two bodies collide if each is a member of a layer that the other one collides with. The pieces of
+/// a body use its layers, also among each other.
 ///
 /// ```
 /// use fuwafuwa::Layers;
@@ -12,9 +13,9 @@
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Layers {
-    /// Those that it is in; the first alone unless it is said.
+    /// Layers of which the body is a member; only the first by default.
     pub memberships: u32,
-    /// Those that it meets; all unless it is said.
+    /// Layers that the body collides with; all by default.
     pub filters: u32,
 }
 
@@ -28,7 +29,7 @@ impl Default for Layers {
 }
 
 impl Layers {
-    /// Whether things of both touch each other.
+    /// Whether bodies with these layers collide.
     #[inline(always)]
     pub fn meet(self, other: Self) -> bool {
         self.memberships & other.filters != 0 && other.memberships & self.filters != 0

@@ -1,23 +1,33 @@
-//! Soft bodies whose elements are small at the surface, large inside, and re-graded as a crack runs in.
+//! Soft bodies made of elements that are small at the surface, large inside, and refined where a crack runs
+//! in.
 //!
-//! The way through the library, each module using only those above it:
-//! [`grid`] which voxels are solid → [`sharing`] what is connected → [`pyramid`] which cells exist
-//! → [`stencil`] one class of element → [`mesh`] elements and nodes → [`law`] the forces of one element
-//! → [`solve`] of all of them → [`body`] what moves and tears → `fracture` and `release` where and how
-//! → `touch` and `contact` what meets → [`world`] all of it, and time.
-//! Two and three dimensions are one program: [`dim`] holds all that differs.
+//! Modules in reading order; each uses only those before it:
+//! - [`grid`]: solid voxels
+//! - [`sharing`]: connectivity of the voxels
+//! - [`pyramid`]: cell hierarchy
+//! - [`stencil`]: element classes
+//! - [`mesh`]: elements and nodes
+//! - [`law`]: forces of one element
+//! - [`solve`]: forces of all elements of a body
+//! - [`body`]: state of a body
+//! - `fracture` and `release`: location and execution of cracks
+//! - `touch` and `contact`: broad phase and contact forces
+//! - [`world`]: all bodies, and time
 //!
-//! To use it, begin with the [`guide`], or with [`World`], [`Body`] and [`VoxelGrid`]; `examples` has whole programs. Your
-//! debug builds are a hundred times slower than they need be unless your `Cargo.toml` says
+//! Two and three dimensions share one implementation; [`dim`] contains everything that differs.
+//!
+//! New users start with the [`guide`], or with [`World`], [`Body`] and [`VoxelGrid`]; `examples` contains
+//! complete programs. Debug builds are about a hundred times slower unless your `Cargo.toml` optimises this
+//! crate:
 //! ```toml
 //! [profile.dev.package.fuwafuwa]
 //! opt-level = 3
 //! ```
 //!
 //! # Features
-//! None is on unless asked for.
-//! - `serde`: saving and loading worlds, in the module `snapshot`
-//! - `parallel`: large bodies on several threads, to the same bits
+//! All features are off by default.
+//! - `serde`: saves and loads worlds, see the module `snapshot`
+//! - `parallel`: steps large bodies on several threads, with bitwise identical results
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 // Units and sources stand in brackets: [m], [Endo 2004, §3.1].

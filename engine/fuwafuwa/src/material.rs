@@ -1,46 +1,52 @@
-//! What a voxel is made of, and why a body could not be made of it.
+//! Materials of voxels, and the errors of invalid ones.
 
 use crate::law::{BadElasticity, Elasticity};
 use crate::mesh::Defect;
 use crate::plasticity::Plasticity;
 use std::fmt;
 
-/// What a voxel is made of.
+/// Material of a voxel.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Material {
-    /// Stiffness and bulging.
+    /// Elastic constants: stiffness and lateral expansion.
     pub elasticity: Elasticity,
-    /// Density [kg/m³], in 2D of a sheet 1 m deep; a game body has about 100.
+    /// Density [kg/m³], in 2D of a sheet 1 m deep. About 100 for a game body.
     pub density: f32,
-    /// Damping ratio of a body's slowest own swing: 0 rings on for ever, 1 creeps back; about 0.08.
+    /// Damping ratio of the slowest mode of a body, 0 to 1: 0 rings for ever, 1 is critically damped. Usually
+    /// about 0.08.
     pub damping: f32,
-    /// Coulomb friction between pieces and between bodies, 0 to 2; about 0.4. Of two it is the mean. With what is rigid
-    /// it does not count: that brings its [own](crate::Rigid::friction).
+    /// Coulomb friction coefficient between pieces and between bodies, 0 to 2. Usually about 0.4. Two
+    /// surfaces use the mean of both. Contacts with rigid bodies use the [friction of the rigid
+    /// body](crate::Rigid::friction) instead.
     pub friction: f32,
-    /// Tension that the weakest place of a smooth surface bears [Pa]; infinite = it never tears. A
-    /// fifth of Young's modulus gives a body that can be torn by hand.
+    /// Tensile strength of a smooth surface [Pa]: the tension at which a crack starts; infinite = never
+    /// tears. A fifth of Young's modulus gives a body that can be torn by hand.
     pub strength: f32,
-    /// What a crack tip bears: tension times the root of the distance over which it is spread
-    /// [Pa √m]. The tip of a crack is as sharp as a voxel is small, so its tension grows with
-    /// 1/√voxel and must be compared with toughness/√voxel: that makes a body tear at the same
-    /// load whatever its resolution [Griffith 1921]. A fifth of the strength, in these units, is a
-    /// body whose cracks run once they have begun; half of it is one that only scuffs.
+    /// Toughness of a crack tip [Pa √m]: tension times the root of the distance over which the tension is
+    /// spread.
+    ///
+    /// The tip of a crack is as sharp as a voxel is small, so its tension grows with 1/√voxel. The solver
+    /// compares it with toughness/√voxel, so that a body tears at the same load at every resolution [Griffith
+    /// 1921]. A fifth of the strength (in these units) gives cracks that keep running once they have started;
+    /// with half of it, surfaces only scuff.
     pub toughness: f32,
-    /// The strain that it bears: what is drawn out, pressed or bent by more keeps the rest as a dent, its volume kept;
-    /// infinite = it springs back from anything, as rubber does. About 0.05 is clay, which stays as it is pressed, 0.3 is
-    /// dough, which gives way slowly. Far below 0.01 it runs under its own weight. Without meaning under
-    /// [`Law::Endo2004`](crate::Law::Endo2004).
+    /// Yield strain. Strain beyond it becomes permanent; volume is preserved. Infinite (default) = purely
+    /// elastic, like rubber.
+    ///
+    /// About 0.05 is clay, which keeps its pressed shape; 0.3 is dough, which gives way slowly. Far below
+    /// 0.01 a body flows under its own weight. Ignored under [`Law::Endo2004`](crate::Law::Endo2004).
     pub yield_strain: f32,
-    /// How far it can be kneaded, 1 to 4: to how many times less than its width it is pressed for good; beyond that it
-    /// springs. About 2; more makes thin sheets, whose elements are as flat.
+    /// Limit of plastic compression, 1 to 4: the largest factor by which a width can shrink permanently;
+    /// beyond it the material is elastic. Usually about 2; higher values allow thin sheets, whose elements
+    /// are just as flat.
     pub plastic_limit: f32,
 }
 
 impl Default for Material {
-    /// A soft body for a game: Y = 5000 Pa, ν = 0.3, 100 kg/m³. A body 1 m across is torn by a thin
-    /// hand that pushes with some 1000 N, and in space cracked by a fall of a few decimetres: what
-    /// has to bear more wants more strength.
+    /// Soft body for a game: Y = 5000 Pa, ν = 0.3, 100 kg/m³. A thin rigid body that pushes with some 1000 N
+    /// tears a body 1 m across. In space, a fall of a few decimetres cracks it. Raise the strength for higher
+    /// loads.
     fn default() -> Self {
         Self {
             elasticity: Elasticity {
@@ -58,33 +64,33 @@ impl Default for Material {
     }
 }
 
-/// Why a body could not be made.
+/// Reason why a body could not be made.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BodyError {
-    /// The grid names a material that was not given.
+    /// The grid uses a material that was not given.
     MissingMaterial {
-        /// Number in the grid, from 1.
+        /// Number of the material in the grid, from 1.
         number: u8,
     },
     /// A field of a material is out of range.
     BadMaterial {
-        /// Number in the grid, from 1.
+        /// Number of the material in the grid, from 1.
         number: usize,
-        /// The field.
+        /// Name of the field.
         field: &'static str,
-        /// What it was.
+        /// Given value.
         given: f32,
-        /// What was expected.
+        /// Expected range.
         expected: &'static str,
     },
     /// The elastic constants of a material are out of range.
     Elasticity {
-        /// Number in the grid, from 1.
+        /// Number of the material in the grid, from 1.
         number: usize,
-        /// What is wrong with them.
+        /// Invalid constants.
         reason: BadElasticity,
     },
-    /// The mesh is broken: a fault of this library.
+    /// The mesh is inconsistent, which is a bug in this library.
     Mesh(Defect),
 }
 
@@ -101,7 +107,10 @@ impl fmt::Display for BodyError {
                 expected,
             } => write!(f, "material {number}: {field} = {given} must be {expected}"),
             Self::Elasticity { number, reason } => write!(f, "material {number}: {reason}"),
-            Self::Mesh(defect) => write!(f, "the mesh is broken: {defect}"),
+            Self::Mesh(defect) => write!(
+                f,
+                "the mesh is inconsistent, which is a bug in fuwafuwa: {defect}"
+            ),
         }
     }
 }
@@ -115,10 +124,10 @@ impl From<Defect> for BodyError {
 }
 
 impl Material {
-    /// Checks every field; `number` says in the error which material it is.
+    /// Checks every field; `number` identifies the material in the error.
     ///
     /// # Errors
-    /// [`BodyError`] names the first field that is out of range.
+    /// [`BodyError`] with the first field that is out of range.
     pub fn check(&self, number: usize) -> Result<(), BodyError> {
         let Elasticity { young, poisson } = self.elasticity;
         Elasticity::new(young, poisson)
@@ -149,7 +158,7 @@ impl Material {
         within("plastic_limit", self.plastic_limit, 1.0, 4.0, "1 to 4")
     }
 
-    /// Soft clay, for a game: what it is pressed into it stays.
+    /// Soft clay for a game: keeps the shape into which it is pressed.
     ///
     /// ```
     /// use fuwafuwa::{Body, Dim2, Material, Rigid, Settings, Shape, VoxelGrid, World};
@@ -180,7 +189,7 @@ impl Material {
         }
     }
 
-    /// When it keeps its dents, if it does.
+    /// Plastic parameters, if the yield strain is finite.
     pub(crate) fn plasticity(&self) -> Option<Plasticity> {
         (self.yield_strain < f32::INFINITY).then(|| Plasticity {
             yield_strain: f64::from(self.yield_strain),
@@ -188,7 +197,7 @@ impl Material {
         })
     }
 
-    /// The energy that a square metre of crack takes: toughness² / Y [J/m²] [Irwin 1957].
+    /// Fracture energy per area of crack: toughness² / Y [J/m²] [Irwin 1957].
     pub fn fracture_energy(&self) -> f32 {
         (f64::from(self.toughness) * f64::from(self.toughness) / self.elasticity.young) as f32
     }
@@ -199,11 +208,11 @@ impl Material {
         (stiffness / f64::from(self.density)).sqrt()
     }
 
-    /// How fast a voxel by itself swings as it grows and shrinks, times its width [m/s].
+    /// Frequency of the breathing mode of a single free voxel, times its width [m/s].
     ///
-    /// Let all its nodes be (1 + ε) times as far from its middle, in N dimensions: it holds the
-    /// energy ½ N² (λ + 2µ/N) ε² in a unit of volume, and moves with ½ ρ N s²/4 ε'², because its
-    /// mass is in its corners; so Ω² = 4 N (λ + 2µ/N) / ρs².
+    /// Let all nodes be (1 + ε) times as far from the middle, in N dimensions. The elastic energy per volume
+    /// is ½ N² (λ + 2µ/N) ε². The kinetic energy is ½ ρ N s²/4 ε'², because the mass sits in the corners. So
+    /// Ω² = 4 N (λ + 2µ/N) / ρs².
     pub(crate) fn voxel_swing(&self, dimensions: usize) -> f64 {
         let axes = dimensions as f64;
         let stiffness = axes * self.elasticity.lame() + 2.0 * self.elasticity.shear_modulus();

@@ -1,5 +1,4 @@
-//! What researchers measure in a body: how elements are strained and stressed, how far nodes have given way, and where the
-//! energy of a piece is.
+//! Measurements on a body: strain and stress of elements, damage of nodes, and the energy of pieces.
 
 use crate::body::Body;
 use crate::dim::Dim;
@@ -13,25 +12,25 @@ use crate::shape::Vector;
 use crate::stencil::{Stencil, Vector64};
 use crate::vector::{dot, three};
 
-/// How an element is deformed, what that does in it, and the energy that it stores.
+/// State of an element: deformation, strain, stress and stored energy.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Strained {
-    /// The deformation gradient F, by rows, with what was kneaded into it.
+    /// Deformation gradient F by rows, including plastic deformation.
     pub deformation: Matrix,
-    /// Biot's strain, the symmetric part of RᵀF less 1: along the axes of the body at rest, 0.1 where it is stretched by a
-    /// tenth.
+    /// Biot strain, the symmetric part of RᵀF minus 1, along the axes of the body at rest: 0.1 is a stretch
+    /// by a tenth.
     pub strain: Matrix,
-    /// Cauchy's stress [Pa], along the axes of the world; under [`Law::Endo2004`], which knows of none, 0.
+    /// Cauchy stress [Pa] along the axes of the world; 0 under [`Law::Endo2004`], which defines no stress.
     pub stress: Matrix,
-    /// Elastic energy [J]; in the plane of a metre of depth.
+    /// Elastic energy [J]; in 2D for 1 m of depth.
     pub energy: f64,
 }
 
-/// The state of an element of width `size` [m] whose nodes are at `positions` [m]. The forces of [`crate::law::forces`] are
-/// the slope of its energy.
+/// Returns the state of an element of width `size` [m] with nodes at `positions` [m]. The forces of
+/// [`crate::law::forces`] are the negative gradient of its energy.
 ///
 /// # Panics
-/// When the number of positions is not the number of nodes of the stencil.
+/// If the number of positions is not the number of nodes of the stencil.
 #[inline(never)]
 pub fn strained<D: Dim>(
     law: Law,
@@ -43,10 +42,11 @@ pub fn strained<D: Dim>(
     strained_after(law, elasticity, &IDENTITY, stencil, size, positions)
 }
 
-/// The same of an element that keeps a dent: `undone` is G of [`crate::plasticity`], and strain is what it springs back by.
+/// Returns the state of an element with plastic deformation. `undone` is G of [`crate::plasticity`]; the
+/// strain is the elastic part.
 ///
 /// # Panics
-/// When the number of positions is not the number of nodes of the stencil.
+/// If the number of positions is not the number of nodes of the stencil.
 #[inline(never)]
 pub fn strained_after<D: Dim>(
     law: Law,
@@ -56,7 +56,11 @@ pub fn strained_after<D: Dim>(
     size: f64,
     positions: &[Vector64],
 ) -> Strained {
-    assert_eq!(positions.len(), stencil.slots.len(), "one position a node");
+    assert_eq!(
+        positions.len(),
+        stencil.slots.len(),
+        "the number of positions must match the nodes of the stencil"
+    );
     let (whole, centre) = deformation_of(stencil, size, positions);
     let deformation = elastic_part(&whole, undone);
     let rotation = rotation_of(&deformation);
@@ -111,27 +115,28 @@ pub fn strained_after<D: Dim>(
     }
 }
 
-/// The energy of a piece [J]; in the plane of a metre of depth. What damping, friction and cracks took is gone.
+/// Energy of a piece [J]; in 2D for 1 m of depth. Energy lost to damping, friction and cracks is not
+/// included.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Energy {
-    /// Of motion.
+    /// Kinetic energy.
     pub kinetic: f64,
-    /// Of elastic strain.
+    /// Elastic energy.
     pub elastic: f64,
-    /// Of height in the gravity that it was asked with, 0 at the origin.
+    /// Potential energy in the given gravity; 0 at the origin.
     pub gravitational: f64,
 }
 
 impl Energy {
-    /// All of it [J].
+    /// Sum of all parts [J].
     pub fn total(self) -> f64 {
         self.kinetic + self.elastic + self.gravitational
     }
 }
 
 impl<D: Dim> Body<D> {
-    /// How an element is strained and stressed, and the energy in it, if it is alive: worked out in double precision from
-    /// where its nodes are, with the stiffness that it has (see [`Body::stiffness_scale`]).
+    /// Returns the strain, stress and energy of an element, if it is alive. Computed in double precision from
+    /// the positions of the nodes, with the reduced stiffness of the body (see [`Body::stiffness_scale`]).
     #[inline(never)]
     pub fn strained(&self, id: ElementId) -> Option<Strained> {
         let element = self.truth.mesh.element(id)?;
@@ -148,29 +153,30 @@ impl<D: Dim> Body<D> {
         ))
     }
 
-    /// What was kneaded into an element for good, undone.
+    /// Inverse G of the plastic deformation of an element.
     fn undone(&self, id: ElementId) -> Matrix {
         let undone = self.state.blocks.undone(id);
         undone.map_or(IDENTITY, |undone| undone.map(|row| row.map(f64::from)))
     }
 
-    /// How far an element was kneaded for good, if it is alive: 0 where nothing was, 0.5 where it was pressed to 1 / 1.5 of
-    /// its width along some axis, or drawn out as far in the plane. Of materials that keep no dents, 0.
+    /// Plastic strain of an element, if it is alive: 0 without plastic deformation, 0.5 if it was permanently
+    /// compressed to 1 / 1.5 of its width along some axis, or in 2D stretched by as much. 0 for elastic
+    /// materials.
     pub fn plastic_strain(&self, id: ElementId) -> Option<f32> {
         self.truth.mesh.element(id)?;
         let most = 1.0 / kneaded_stiffness::<D>(&self.undone(id));
         Some((most.sqrt() - 1.0).max(0.0) as f32)
     }
 
-    /// How far a node has given way to what is more than it bears: from 0, not at all, to 1, at which it comes off.
+    /// Damage of a node: from 0, intact, to 1, at which the node is split.
     ///
     /// # Panics
-    /// When the id was never used.
+    /// If the id was never used.
     pub fn damage(&self, node: NodeId) -> f32 {
         self.state.damage[node]
     }
 
-    /// The energy of each piece, by number, under `gravity` [m/s²]; of numbers without a piece, none.
+    /// Returns the energy of each piece, by number, under `gravity` [m/s²]; 0 for removed pieces.
     ///
     /// ```
     /// use fuwafuwa::{Body, Dim2, Material, VoxelGrid};
@@ -195,7 +201,7 @@ impl<D: Dim> Body<D> {
             energy.gravitational -= mass * pull * dot(gravity, at);
         }
         for (id, _) in truth.mesh.elements() {
-            let strained = self.strained(id).expect("it is alive");
+            let strained = self.strained(id).expect("`elements` returns live elements");
             energies[truth.pieces.of_element(id).index()].elastic += strained.energy;
         }
         energies
@@ -211,7 +217,7 @@ mod tests {
     use crate::material::Material;
     use crate::rotation::Rotation;
 
-    /// Moves every node a little, all of them differently.
+    /// Displaces every node a little, each differently.
     fn crooked<D: Dim>(amount: f32) -> Body<D> {
         let grid = VoxelGrid::<D>::ball(12, 1.0).unwrap();
         let mut body = Body::new(grid, &[Material::default()]).unwrap();
@@ -262,14 +268,14 @@ mod tests {
     }
 
     #[test]
-    fn forces_are_the_slope_of_the_energy() {
+    fn forces_match_energy_gradient() {
         for law in [Law::PatchExact, Law::Endo2004] {
             check_slope::<Dim2>(law);
             check_slope::<Dim3>(law);
         }
     }
 
-    /// Drawn out by a twentieth along the first axis, and turned.
+    /// Stretches a body by a twentieth along the first axis, and rotates it.
     fn check_stretch<D: Dim>() {
         let grid = VoxelGrid::<D>::cube(8, 1.0).unwrap();
         let mut body = Body::new(grid, &[Material::default()]).unwrap();
@@ -293,7 +299,8 @@ mod tests {
         for (id, _) in body.mesh().elements() {
             let Strained { strain, stress, .. } = body.strained(id).unwrap();
             assert!((strain[0][0] - 0.05).abs() < 1e-4 && strain[1][1].abs() < 1e-4);
-            // Along the axis that has turned by one radian; the stretch thins nothing, so areas are as they were.
+            // Along the axis after its rotation by one radian. The stretch does not change the other axes, so
+            // areas are unchanged.
             let direction = [libm::cos(1.0), libm::sin(1.0), 0.0];
             let pulled = stress.map(|row| dot(row, direction));
             assert!(
@@ -304,13 +311,13 @@ mod tests {
     }
 
     #[test]
-    fn a_stretch_is_measured_as_what_it_is() {
+    fn strained_measures_uniform_stretch() {
         check_stretch::<Dim2>();
         check_stretch::<Dim3>();
     }
 
     #[test]
-    fn energy_stays_where_nothing_takes_it() {
+    fn energy_is_conserved_without_damping() {
         let calm = Material {
             damping: 0.0,
             strength: f32::INFINITY,

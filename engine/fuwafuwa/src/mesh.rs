@@ -1,8 +1,8 @@
-//! Nodes and elements: the graded mesh that follows from what is solid and what is connected.
+//! Graded mesh: the elements and nodes that follow from the solid voxels and their connectivity.
 //!
-//! A node is a lattice point with one group of voxels there. It exists exactly when it is a corner
-//! of some element's own cell, at a child that the element fills; an element carries every such
-//! node in the closure of its children. Hanging nodes are true nodes of the bigger element.
+//! A node is a lattice point together with one group of voxels there. It exists exactly if it is a corner of
+//! the cell of some element, at a child that the element fills. Every element carries all nodes in the
+//! closure of its children. Hanging nodes are true nodes of the larger element.
 //!
 //! ```text
 //!   ┌───┬─┬─┐     the level-1 element on the left carries five nodes: its four corners and the
@@ -26,31 +26,31 @@ use crate::stencil::{MissingCorner, Stencil};
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// An elastic unit on a cell or on a face-connected part of one.
+/// Elastic element on a cell or on a face-connected part of a cell.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Element {
-    /// Where it sits.
+    /// Cell of the element.
     pub cell: Cell,
-    /// The children of the cell that it fills; every corner set at level 0.
+    /// Mask of the children of the cell that the element fills; all bits are set at level 0.
     pub children: u8,
-    /// Its class: see [`Mesh::stencil`].
+    /// Index of its class, see [`Mesh::stencil`].
     pub stencil: u32,
-    /// Its nodes, in the order of the stencil's slots.
+    /// Nodes, in the order of the slots of the stencil.
     pub nodes: Vec<NodeId>,
 }
 
-/// A mass point: a lattice point and the octants of the group that shares it.
+/// Mass point: a lattice point, and the octants of the voxel group that shares it.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Node {
     /// Lattice point at rest.
     pub at: Point,
-    /// The voxels around the point that share this node, as a mask of octants.
+    /// Mask of the octants of the voxels around the point that share this node.
     pub group: u8,
 }
 
-/// The elements of one body and the nodes they share.
+/// Elements of one body, and the nodes that they share.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
@@ -58,24 +58,24 @@ pub struct Mesh<D: Dim> {
     elements: Table<ElementId, Option<Element>>,
     nodes: Table<NodeId, Node>,
     stencils: Vec<Stencil<D>>,
-    /// Whether every lattice point of the surface is a node, whatever the size of its elements.
+    /// Whether every lattice point of the surface is a node, regardless of the size of its elements.
     dense_surface: bool,
     places: Places,
-    /// The elements of each cell, by its place.
+    /// Elements of each cell, by the index of the cell.
     by_cell: Chains<ElementId>,
-    /// One more than the element that owns each voxel, by the place of its cell of level 0; 0 where
-    /// nothing is.
+    /// Owner of each voxel as its element id + 1, by the index of its level-0 cell; 0 where there is no
+    /// element.
     owners: Vec<u32>,
-    /// The nodes at each lattice point, by its index.
+    /// Nodes at each lattice point, by the index of the point.
     by_point: Chains<NodeId>,
     classes: BTreeMap<(u8, u32), u32>,
-    /// How many elements carry each node; 0 = the id is free.
+    /// Number of elements that carry each node; 0 = the id is free.
     carriers: Table<NodeId, u8>,
     free_elements: Vec<ElementId>,
     free_nodes: Vec<NodeId>,
 }
 
-/// A broken invariant of a mesh: what, and where.
+/// Violated invariant of a mesh, as text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Defect(String);
 
@@ -101,10 +101,10 @@ impl From<MissingCorner> for Defect {
 }
 
 impl<D: Dim> Mesh<D> {
-    /// Places the elements of a body from scratch.
+    /// Builds the elements of a body from scratch.
     ///
     /// # Errors
-    /// A [`Defect`] when the pyramid does not belong to this grid and sharing.
+    /// A [`Defect`] if the pyramid does not match this grid and connectivity.
     #[inline(never)]
     pub fn grade(
         grid: &VoxelGrid<D>,
@@ -138,7 +138,7 @@ impl<D: Dim> Mesh<D> {
         Ok(mesh)
     }
 
-    /// The elements with their ids, ascending.
+    /// Returns the elements with their ids, ascending.
     pub fn elements(&self) -> impl Iterator<Item = (ElementId, &Element)> {
         let alive = self.elements.entries();
         alive.filter_map(|(id, element)| Some((id, element.as_ref()?)))
@@ -149,7 +149,7 @@ impl<D: Dim> Mesh<D> {
         self.elements.iter().flatten().count()
     }
 
-    /// The nodes with their ids, ascending.
+    /// Returns the nodes with their ids, ascending.
     pub fn nodes(&self) -> impl Iterator<Item = (NodeId, Node)> + '_ {
         let alive = self.nodes.entries().zip(self.carriers.iter());
         alive.filter_map(|((id, &node), &carriers)| (carriers > 0).then_some((id, node)))
@@ -160,48 +160,48 @@ impl<D: Dim> Mesh<D> {
         self.nodes.len() - self.free_nodes.len()
     }
 
-    /// One more than the highest node id ever used: the length of an array indexed by node.
+    /// Highest node id ever used plus one: the length of an array indexed by node.
     pub fn node_capacity(&self) -> usize {
         self.nodes.len()
     }
 
-    /// One more than the highest element id ever used: the length of an array indexed by element.
+    /// Highest element id ever used plus one: the length of an array indexed by element.
     pub fn element_capacity(&self) -> usize {
         self.elements.len()
     }
 
-    /// Whether some element carries the node with this id.
+    /// Whether an element carries the node with this id.
     pub fn is_alive(&self, id: NodeId) -> bool {
         self.carriers[id] > 0
     }
 
-    /// The node with an id.
+    /// Returns the node with an id.
     ///
     /// # Panics
-    /// When the id was never used.
+    /// If the id was never used.
     pub fn node(&self, id: NodeId) -> Node {
         self.nodes[id]
     }
 
-    /// The element with an id, if it is alive.
+    /// Returns the element with an id, if it is alive.
     pub fn element(&self, id: ElementId) -> Option<&Element> {
         self.elements.get(id.index())?.as_ref()
     }
 
-    /// The elements that carry a node, each with the node's place among its own, in the order of
-    /// the octants around the node: an order that no numbering can change.
+    /// Returns the elements that carry a node, each with the index of the node in the element. The order is
+    /// that of the octants around the node, which does not depend on the numbering of elements.
     pub fn carriers_of(&self, id: NodeId) -> impl Iterator<Item = (&Element, usize)> {
         self.carrier_ids(id).map(move |owner| {
             let element = self.alive(owner);
             let place = element.nodes.iter().position(|&node| node == id);
             (
                 element,
-                place.expect("an element in a node's group carries it"),
+                place.expect("every element in a node's group carries the node"),
             )
         })
     }
 
-    /// The ids of the elements that carry a node, in the order of the octants around it.
+    /// Returns the ids of the elements that carry a node, in the order of the octants around it.
     pub fn carrier_ids(&self, id: NodeId) -> impl Iterator<Item = ElementId> + use<D> {
         let node = self.node(id);
         let (mut carriers, mut count) = ([ElementId(0); 8], 0);
@@ -226,7 +226,7 @@ impl<D: Dim> Mesh<D> {
         counts
     }
 
-    /// Number of vertices when each element counts its own, as the paper does in §3.1.
+    /// Number of vertices if every element counts its own, as in [Endo 2004, §3.1].
     #[inline(never)]
     pub fn independent_vertex_count(&self) -> usize {
         self.elements()
@@ -234,22 +234,23 @@ impl<D: Dim> Mesh<D> {
             .sum()
     }
 
-    /// The stencil of an element.
+    /// Stencil (element class) of an element.
     pub fn stencil(&self, element: &Element) -> &Stencil<D> {
         &self.stencils[element.stencil as usize]
     }
 
-    /// The element that owns a solid voxel; `None` for an empty one.
+    /// Returns the element that owns a solid voxel; `None` for an empty one.
     pub fn owner(&self, voxel: Point) -> Option<ElementId> {
         owner(self.owners[self.places.number(Cell::of(voxel))?])
     }
 
-    /// The element that a solid voxel belongs to; `None` for an empty one.
+    /// Returns the element that owns a solid voxel; `None` for an empty one.
     pub(crate) fn element_at(&self, voxel: Point) -> Option<&Element> {
         self.element(self.owner(voxel)?)
     }
 
-    /// The elements that own the voxels in some octants around a lattice point, in their order.
+    /// Returns the elements that own the voxels in the given octants around a lattice point, in the order of
+    /// the octants.
     pub fn owners_around(
         &self,
         at: Point,
@@ -274,7 +275,7 @@ impl<D: Dim> Mesh<D> {
         asked.filter_map(move |octant| owner(owners[octant]))
     }
 
-    /// The first of the voxels that an element fills.
+    /// Returns the first voxel that an element fills.
     pub fn first_voxel(&self, element: &Element) -> Point {
         let child = element.children.trailing_zeros() as usize;
         match element.cell.level {
@@ -283,7 +284,7 @@ impl<D: Dim> Mesh<D> {
         }
     }
 
-    /// The voxels that an element fills.
+    /// Returns the voxels that an element fills.
     pub fn voxels(&self, element: &Element) -> impl Iterator<Item = Point> + use<D> {
         let cell = element.cell;
         let is_voxel = cell.level == 0;
@@ -302,7 +303,7 @@ impl<D: Dim> Mesh<D> {
         })
     }
 
-    /// Whether two meshes are the same but for the numbering of their elements and nodes.
+    /// Whether two meshes are equal except for the numbering of elements and nodes.
     #[inline(never)]
     pub fn is_same_as(&self, other: &Self) -> bool {
         self.canonical() == other.canonical()
@@ -314,7 +315,7 @@ impl<D: Dim> Mesh<D> {
             .expect("a cell lists live elements only")
     }
 
-    /// Every element as what it fills and whom it touches, in the order of the cells.
+    /// Every element as its cell, children and nodes, sorted.
     fn canonical(&self) -> Vec<(Cell, u8, Vec<Node>)> {
         let mut all: Vec<_> = self
             .elements()
@@ -350,14 +351,15 @@ impl<D: Dim> Mesh<D> {
     }
 }
 
-/// Who owns a voxel, from what the table of owners says.
+/// Decodes an entry of `owners`.
 fn owner(listed: u32) -> Option<ElementId> {
     listed.checked_sub(1).map(ElementId)
 }
 
-/// The cells that contain a voxel, finest first, each with the child that holds the voxel.
+/// Returns the cells that contain a voxel, finest first, each with the index of the child that contains the
+/// voxel.
 fn path<D: Dim>(voxel: Point) -> impl Iterator<Item = (Cell, usize)> {
-    // The widest grid has 2^10 voxels on an axis.
+    // The largest grid has 2^10 voxels on an axis.
     std::iter::successors(Some((Cell::of(voxel), 0)), |(cell, _)| {
         (cell.level < 10).then(|| (cell.parent(), cell.child_index::<D>()))
     })

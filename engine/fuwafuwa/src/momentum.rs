@@ -1,10 +1,10 @@
-//! Linear and angular momentum of a set of nodes, and the rigid motion that makes up a difference.
+//! Linear and angular momentum of a set of nodes, and the rigid motion with a given momentum.
 
 use crate::dim::Dim;
 use crate::solve::Row;
 use crate::vector::{cross, dot, minus, plus, scaled};
 
-/// Sums over mass points, in double precision, about a common centre.
+/// Momentum of mass points about a common centre, in double precision.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Momentum {
     /// Σ m v [kg m/s].
@@ -14,7 +14,7 @@ pub struct Momentum {
 }
 
 impl Momentum {
-    /// The momentum of the given (position, velocity, mass) about `centre`.
+    /// Computes the momentum of points (position, velocity, mass) about `centre`.
     pub fn of(points: impl Iterator<Item = (Row, Row, f32)>, centre: [f64; 3]) -> Self {
         let mut sum = Self::default();
         for (position, velocity, mass) in points {
@@ -26,7 +26,7 @@ impl Momentum {
         sum
     }
 
-    /// `self` − `other`.
+    /// Returns `self` − `other`.
     pub fn less(self, other: Self) -> Self {
         Self {
             linear: minus(self.linear, other.linear),
@@ -35,7 +35,7 @@ impl Momentum {
     }
 }
 
-/// A rigid velocity field: v(x) = `velocity` + `spin` × (x − centre).
+/// Rigid velocity field: v(x) = `velocity` + `spin` × (x − `centre`).
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct RigidMotion {
     velocity: [f64; 3],
@@ -43,17 +43,17 @@ pub struct RigidMotion {
     centre: [f64; 3],
 }
 
-/// A [`RigidMotion`] in single precision, as an affine map.
+/// [`RigidMotion`] in single precision, as an affine map.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub(crate) struct RoughMotion {
     velocity: Row,
     centre: Row,
-    /// The columns of spin × .
+    /// Columns of the matrix of spin ×.
     spin: [Row; 3],
 }
 
 impl RoughMotion {
-    /// The velocity at a point.
+    /// Velocity at a point.
     #[inline(always)]
     pub fn at<D: Dim>(&self, position: Row) -> Row {
         let from = minus(position, self.centre);
@@ -66,8 +66,8 @@ impl RoughMotion {
 }
 
 impl RigidMotion {
-    /// The motion that gives the points just the momentum `wanted`, itself about `centre`, the
-    /// centre of their mass.
+    /// Returns the motion that gives the points the momentum `wanted`. `centre` must be their centre of mass;
+    /// `wanted` is relative to it.
     pub fn with_momentum(
         points: impl Iterator<Item = (Row, f32)>,
         centre: [f64; 3],
@@ -86,14 +86,15 @@ impl RigidMotion {
         Self::of_spin(velocity, centre, &wanted.angular, &inertia)
     }
 
-    /// The motion with a given velocity of the centre and angular momentum about it.
+    /// Returns the motion with a given velocity of the centre, and the spin that follows from the angular
+    /// momentum and the inertia about it.
     pub(crate) fn of_spin(
         velocity: [f64; 3],
         centre: [f64; 3],
         angular: &[f64; 3],
         inertia: &[[f64; 3]; 3],
     ) -> Self {
-        // Points on one line have no inertia about it; the little that is added stands for it.
+        // Collinear points have no inertia about their line; the small addition keeps the matrix invertible.
         let mut inertia = *inertia;
         let little = 1e-9 * (inertia[0][0] + inertia[1][1] + inertia[2][2]) + f64::MIN_POSITIVE;
         (0..3).for_each(|k| inertia[k][k] += little);
@@ -104,7 +105,7 @@ impl RigidMotion {
         }
     }
 
-    /// The same with a share of its velocity and another of its spin.
+    /// Scales the velocity and the spin by one factor each.
     pub(crate) fn times(&self, velocity: f64, spin: f64) -> Self {
         Self {
             velocity: scaled(self.velocity, velocity),
@@ -113,7 +114,7 @@ impl RigidMotion {
         }
     }
 
-    /// The same in single precision.
+    /// Converts to single precision.
     pub(crate) fn roughly(&self) -> RoughMotion {
         let row = |[x, y, z]: [f64; 3]| [x as f32, y as f32, z as f32, 0.0];
         let [x, y, z] = self.spin;
@@ -124,7 +125,7 @@ impl RigidMotion {
         }
     }
 
-    /// The velocity at a point.
+    /// Velocity at a point.
     pub fn at(&self, position: Row) -> [f64; 3] {
         plus(
             self.velocity,
@@ -133,7 +134,7 @@ impl RigidMotion {
     }
 }
 
-/// The centre of mass.
+/// Centre of mass of points (position, mass).
 pub fn centre_of(points: impl Iterator<Item = (Row, f32)>) -> [f64; 3] {
     let (mut sum, mut total) = ([0.0; 3], 0.0);
     for (position, mass) in points {
@@ -144,7 +145,7 @@ pub fn centre_of(points: impl Iterator<Item = (Row, f32)>) -> [f64; 3] {
     sum.map(|k| k / total)
 }
 
-/// x of m x = b for a symmetric positive definite matrix, by its adjugate.
+/// Solves m x = b for a symmetric positive definite matrix by its adjugate.
 fn solved(m: &[[f64; 3]; 3], b: [f64; 3]) -> [f64; 3] {
     let columns = [cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])];
     let determinant = dot(m[0], columns[0]);

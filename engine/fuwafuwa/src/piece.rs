@@ -1,9 +1,9 @@
-//! Which elements hang together: the pieces of a body.
+//! Pieces of a body: connected sets of elements.
 //!
-//! Elements that share a node are of one piece. A release can part a piece only at the points it
-//! changed, so both sides are followed from there at the same pace until they meet, or until one
-//! of them is used up: that one is the new piece. What it costs goes with the smaller side. Where
-//! much was released at once, a side that comes upon what was followed before goes on from there.
+//! Elements that share a node belong to one piece. A release can divide a piece only at the points that it
+//! changed. So both sides are searched from there at the same pace until they meet or until one is exhausted:
+//! that one is the new piece. The cost is proportional to the smaller side. If many points were released at
+//! once, a search that meets an earlier one continues from there.
 
 use crate::dim::Dim;
 use crate::disjoint::DisjointSets;
@@ -11,32 +11,32 @@ use crate::ids::{ElementId, NodeId, PieceId, Table};
 use crate::mesh::Mesh;
 use std::collections::{BTreeMap, VecDeque};
 
-/// The piece of what has none yet.
+/// Marks elements without a piece.
 const NONE: PieceId = PieceId(u32::MAX);
 
-/// A connected part of a body.
+/// Connected part of a body.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Piece {
-    /// Whether it rests and is left alone until something touches it.
+    /// Whether the piece sleeps: it is not simulated until something touches it.
     pub asleep: bool,
-    /// Whether it went out of hand (not finite) and was stopped for good.
+    /// Whether the piece was quarantined: it was no longer finite and was stopped for good.
     pub quarantined: bool,
-    /// Whether it was [removed](crate::World::remove_piece): nothing is left of it but its number.
+    /// Whether the piece was [removed](crate::World::remove_piece): only its number remains.
     pub removed: bool,
-    /// How long it has been slow [s].
+    /// Sleep timer: time for which the piece has been slow [s].
     pub still: f32,
 }
 
-/// The pieces of one body, and which one each element and node belongs to.
+/// Pieces of one body, and the piece of each element and node.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pieces {
-    /// By piece number. Numbers are never given back.
+    /// Pieces by number. Numbers are never reused.
     pub list: Table<PieceId, Piece>,
     of_element: Table<ElementId, PieceId>,
     of_node: Table<NodeId, PieceId>,
-    /// Scratch of [`Pieces::part`]: which search has seen each element and node.
+    /// Scratch of [`Pieces::part`]: mark of the last search that visited each element and node.
     #[cfg_attr(feature = "serde", serde(skip))]
     seen: Table<ElementId, u32>,
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -45,29 +45,29 @@ pub struct Pieces {
     marked: u32,
 }
 
-/// One side of a release that is being followed.
+/// Search along one side of a release.
 struct Search {
-    /// Its place among the sides of all that was released.
+    /// Index of this side among the sides of all releases.
     place: usize,
     found: Vec<ElementId>,
     next: VecDeque<ElementId>,
 }
 
-/// What is known of the sides of all that was released at once.
+/// State of the search along the sides of all simultaneous releases.
 struct Sides {
-    /// The mark of the first of them.
+    /// Mark of the first side.
     first: u32,
-    /// Which of them hang together.
+    /// Connected sides.
     joined: DisjointSets,
-    /// Those that are being followed, and those that were, as far as was needed.
+    /// Searches that are running, and searches that ended as soon as their sides had met.
     running: VecDeque<Search>,
     resting: Vec<Search>,
-    /// The pieces that came off.
+    /// Detached pieces.
     born: Vec<PieceId>,
 }
 
 impl Pieces {
-    /// The pieces of a mesh from scratch, numbered by their lowest element.
+    /// Computes the pieces of a mesh, numbered by their lowest element.
     pub fn new<D: Dim>(mesh: &Mesh<D>) -> Self {
         let mut pieces = Self::default();
         pieces.make_room(mesh);
@@ -97,36 +97,36 @@ impl Pieces {
         pieces
     }
 
-    /// How many there are, without those that were removed.
+    /// Number of pieces that were not removed.
     pub fn count(&self) -> usize {
         self.list.iter().filter(|piece| !piece.removed).count()
     }
 
-    /// The piece of an element.
+    /// Piece of an element.
     ///
     /// # Panics
-    /// When the id was never used.
+    /// If the id was never used.
     #[inline]
     pub fn of_element(&self, id: ElementId) -> PieceId {
         self.of_element[id]
     }
 
-    /// The piece of a node.
+    /// Piece of a node.
     ///
     /// # Panics
-    /// When the id was never used.
+    /// If the id was never used.
     #[inline]
     pub fn of_node(&self, id: NodeId) -> PieceId {
         self.of_node[id]
     }
 
-    /// Whether the piece of a node is asleep.
+    /// Whether the piece of a node sleeps.
     #[inline]
     pub fn sleeps(&self, node: NodeId) -> bool {
         self.list[self.of_node[node]].asleep
     }
 
-    /// Makes room for elements and nodes that a remodelling added.
+    /// Makes room for the elements and nodes that a remodelling added.
     pub fn make_room<D: Dim>(&mut self, mesh: &Mesh<D>) {
         self.of_element.resize(mesh.element_capacity(), PieceId(0));
         self.seen.resize(mesh.element_capacity(), 0);
@@ -134,7 +134,7 @@ impl Pieces {
         self.node_seen.resize(mesh.node_capacity(), 0);
     }
 
-    /// Whether there is a piece for each element and node, alive or not, as far as lists that were read from a file go.
+    /// Whether every element and node id, alive or not, has an existing piece. Checks lists read from a file.
     #[cfg(feature = "serde")]
     pub(crate) fn has_room<D: Dim>(&self, mesh: &Mesh<D>) -> bool {
         let is_there = |piece: &PieceId| piece.index() < self.list.len();
@@ -147,19 +147,18 @@ impl Pieces {
                 .all(is_there)
     }
 
-    /// A new node belongs where the node it took its state from belongs.
+    /// Assigns a new node to the piece of the node from which it inherited its state.
     pub fn inherit(&mut self, node: NodeId, from: NodeId) {
         self.of_node[node] = self.of_node[from];
     }
 
-    /// An element that was seated belongs where its nodes belong.
+    /// Assigns a seated element to the piece of its nodes.
     pub fn adopt(&mut self, element: ElementId, nodes: &[NodeId]) {
         self.of_element[element] = self.of_node[nodes[0]];
     }
 
-    /// Finds out whether the elements around each of some places, where something was released, still
-    /// hang together. Every part that does not reach the rest of its piece becomes a piece of its
-    /// own; returns their numbers.
+    /// Determines whether the elements around each place of a release are still connected. Every part that is
+    /// not connected to the rest of its piece becomes a new piece. Returns the numbers of the new pieces.
     pub fn part<D: Dim>(&mut self, mesh: &Mesh<D>, places: &[Vec<ElementId>]) -> Vec<PieceId> {
         if self.marked > u32::MAX / 2 {
             self.marked = 0;
@@ -177,8 +176,8 @@ impl Pieces {
         for around in places {
             self.part_at(mesh, around, &mut sides);
         }
-        // What hung together only through a piece that came off shares no place, but each side of
-        // it has one in common with that piece.
+        // Sides that were connected only through a detached piece share no place with each other, but each
+        // shares one with that piece.
         let is_off = |&id: &ElementId| self.of_element(id) >= first_born;
         let beside_off = places.iter().filter(|around| around.iter().any(is_off));
         let around: Vec<ElementId> = beside_off.flatten().copied().collect();
@@ -187,20 +186,20 @@ impl Pieces {
         sides.born
     }
 
-    /// As [`Pieces::part`], at one place.
+    /// Does the work of [`Pieces::part`] at one place.
     fn part_at<D: Dim>(&mut self, mesh: &Mesh<D>, around: &[ElementId], sides: &mut Sides) {
         let mut by_piece: BTreeMap<PieceId, Vec<Vec<ElementId>>> = BTreeMap::new();
         for side in sides_of(mesh, around) {
             let of_piece = by_piece.entry(self.of_element(side[0]));
             of_piece.or_default().push(side);
         }
-        // What hangs together right here needs no search.
+        // Elements that are connected right here need no search.
         for starts in by_piece.into_values().filter(|starts| starts.len() > 1) {
             self.follow(mesh, starts, sides);
         }
     }
 
-    /// Follows the sides of one piece until they have met or are used up.
+    /// Searches along the sides of one piece until they have met or are exhausted.
     fn follow<D: Dim>(&mut self, mesh: &Mesh<D>, starts: Vec<Vec<ElementId>>, sides: &mut Sides) {
         let first = sides.first;
         let mut known = Vec::new();
@@ -224,14 +223,20 @@ impl Pieces {
                 .running
                 .iter()
                 .position(|search| sides.joined.lowest(search.place) == sides.joined.lowest(place));
-            sides.meet(own.expect("a side that met another runs on as one"), seen);
+            sides.meet(
+                own.expect("sides that met are merged into one running search"),
+                seen,
+            );
         }
         let mut turn = 0;
         while sides.running.len() > 1 {
             turn %= sides.running.len();
             let Some(id) = sides.running[turn].next.pop_front() else {
-                // Dust leaves from the front, which costs the rest nothing.
-                let alone = sides.running.remove(turn).expect("a turn is in the list");
+                // Small pieces are removed from the front, which costs the other searches nothing.
+                let alone = sides
+                    .running
+                    .remove(turn)
+                    .expect("turn is a valid index of a running search");
                 sides.born.push(self.split_off(mesh, &alone.found));
                 continue;
             };
@@ -252,7 +257,7 @@ impl Pieces {
                     *seen = mark;
                     sides.running[turn].found.push(near);
                     let next = &mut sides.running[turn].next;
-                    // Through the coarse inside the sides meet soonest.
+                    // Searches meet soonest through the coarse interior.
                     let level = |id| mesh.element(id).map(|element| element.cell.level);
                     if level(near) > level(id) {
                         next.push_front(near);
@@ -266,7 +271,7 @@ impl Pieces {
         sides.resting.extend(sides.running.drain(..));
     }
 
-    /// Makes a piece of the given elements: asleep or stopped, like the one they were of.
+    /// Makes a piece of the given elements; inherits sleep and quarantine from their old piece.
     fn split_off<D: Dim>(&mut self, mesh: &Mesh<D>, elements: &[ElementId]) -> PieceId {
         let number = self.list.next_id();
         let whole = &self.list[self.of_element[elements[0]]];
@@ -287,8 +292,8 @@ impl Pieces {
 }
 
 impl Sides {
-    /// The side at `turn` comes upon what bears a mark: adds the side that left it, if it is another
-    /// one, to it. Returns where it stands now.
+    /// Handles the search at index `turn` that found something with the mark of another search: merges the
+    /// other search into it if they are different sides. Returns the new index of the search.
     fn meet(&mut self, turn: usize, mark: u32) -> usize {
         let own = self.joined.lowest(self.running[turn].place);
         let other = self.joined.lowest((mark - self.first) as usize);
@@ -305,7 +310,7 @@ impl Sides {
             (_, Some(place)) => Some(self.resting.swap_remove(place)),
             _ => None,
         };
-        // All of it came off before, this side with it.
+        // The other side was detached before, and this side with it.
         let Some(met) = met else {
             return turn;
         };
@@ -316,7 +321,7 @@ impl Sides {
     }
 }
 
-/// Some elements, sorted by which of them hang together through nodes of their own.
+/// Groups elements by connection through nodes that they share with each other.
 fn sides_of<D: Dim>(mesh: &Mesh<D>, around: &[ElementId]) -> Vec<Vec<ElementId>> {
     let mut nodes: Vec<(NodeId, usize)> = Vec::new();
     for (place, &id) in around.iter().enumerate() {
@@ -332,7 +337,7 @@ fn sides_of<D: Dim>(mesh: &Mesh<D>, around: &[ElementId]) -> Vec<Vec<ElementId>>
     joined.sort(around)
 }
 
-/// The elements that share a node with one, itself included, some of them more than once.
+/// Returns the elements that share a node with an element, including itself; some occur more than once.
 fn neighbours<D: Dim>(mesh: &Mesh<D>, id: ElementId) -> impl Iterator<Item = ElementId> + '_ {
     let element = mesh.element(id).expect("neighbours of a live element");
     element

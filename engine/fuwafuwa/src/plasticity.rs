@@ -1,19 +1,22 @@
-//! What keeps a dent: how an element flows beyond what it bears, in double precision, as the reference of `solve`.
+//! Plasticity of an element in double precision: the reference for `solve`.
 //!
-//! The deformation is of two parts, F = Fₑ Fₚ: what was kneaded into the element for good, and what springs back from there
-//! [Bargteil 2007]. Kept is G = Fₚ⁻¹, of determinant 1: clay is pressed aside, not together. With R the rotation of Fₑ,
-//! S = sym RᵀFₑ, d its deviator and y the yield strain,
+//! The deformation has two parts, F = Fₑ Fₚ: plastic and elastic [Bargteil 2007]. The state is G = Fₚ⁻¹ with
+//! determinant 1, because plastic flow preserves volume. Let R be the rotation of Fₑ, S = sym RᵀFₑ, d its
+//! deviator and y the yield strain. Then
 //!
 //! ```text
 //! Fₑ = F G       P = s Pₑ(Fₑ) Gᵀ        s = 1 / λ_max(GᵀG)
 //! |d| > y:       G ← G Q / (det G Q)^(1/d),   Q = 1 − min(|d| − y, f) d/|d|
 //! ```
 //!
-//! Q turns with S, so that what is left is exactly as much less strained, and R stays: no decomposition is needed [the
-//! return of von Mises' law, to first order]. P Fᵀ is symmetric as Pₑ Fₑᵀ is, so spin is kept; the additive strain of
-//! [Mueller 2004] loses that when an element is dented one way and strained another. s keeps what was pressed flat from
-//! being too stiff for its substep: in terms of what it was built as, a sheet half as thick is four times as stiff across.
-//! Where the flow ends, at a stretch that the material says, it springs as if it had never flowed.
+//! Q commutes with S, so the flow reduces the elastic strain by exactly that amount and leaves R unchanged:
+//! no decomposition is needed. This is the return mapping of von Mises' law to first order. P Fᵀ is symmetric
+//! like Pₑ Fₑᵀ, so angular momentum is conserved; the additive strain of [Mueller 2004] loses it if an
+//! element is dented in one direction and strained in another.
+//!
+//! The factor s prevents flattened elements from becoming too stiff for the substep: relative to its rest
+//! shape, a sheet of half the thickness is four times as stiff across. Beyond the plastic limit of the
+//! material, an element is purely elastic.
 
 use crate::dim::Dim;
 use crate::law::{
@@ -23,33 +26,34 @@ use crate::law::{
 use crate::stencil::{Stencil, Vector64};
 use crate::vector::{cross, dot};
 
-/// An element flows by so much strain in an evaluation at the most: what is torn about does not jump.
-/// To first order, as Q is, it errs by half its square, 2 %; with half, with twice and without it the same tests pass.
+/// Largest plastic strain per evaluation. It keeps violently torn elements from jumping. Q is correct to
+/// first order, so its error is half the square, 2 %.
 pub(crate) const MOST_FLOW: f64 = 0.2;
-/// What is squashed below this share of its volume is not itself, and flows no further.
-/// A choice, a quarter of [`SQUASH_LIMIT`]: from 0 to twice as much the same tests pass.
+/// Volume ratio below which an element does not flow, because its deformation is not meaningful; a quarter of
+/// [`SQUASH_LIMIT`].
 pub(crate) const LEAST_VOLUME: f64 = 0.1;
 
-/// When a material keeps its dents, and how deep they can be.
+/// Yield strain and plastic limit of a material.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Plasticity {
-    /// The strain that it bears: so far it is drawn out, or pressed, and still springs back. 0.05 is clay.
+    /// Elastic limit: largest strain that is fully recovered. 0.05 is clay.
     pub yield_strain: f64,
-    /// How far it can be kneaded: to how many times less than its width it can be pressed for good.
+    /// Plastic limit: largest factor by which a width can shrink permanently.
     pub limit: f64,
 }
 
 impl Plasticity {
-    /// |d| at which it yields: in d dimensions, of a stretch by ε that keeps the volume, ε √(d / (d − 1)).
+    /// Norm |d| of the deviator at which the material yields: ε √(d / (d − 1)) for a volume-preserving
+    /// stretch by ε in d dimensions.
     pub(crate) fn most_deviator<D: Dim>(self) -> f64 {
         let axes = D::N as f64;
         self.yield_strain * (axes / (axes - 1.0)).sqrt()
     }
 
-    /// |G|² of what was pressed to the limit along one axis, and gave way evenly along the others.
+    /// |G|² after compression to the limit along one axis and even expansion along the others.
     pub(crate) fn most_flown<D: Dim>(self) -> f64 {
         let squared = self.limit * self.limit;
-        // In the plane there is one other axis, in space two.
+        // There is one other axis in 2D, and two in 3D.
         match D::N {
             2 => squared + 1.0 / squared,
             _ => squared + 2.0 / self.limit,
@@ -57,12 +61,12 @@ impl Plasticity {
     }
 }
 
-/// What is elastic of a deformation F, after G: Fₑ = F G.
+/// Returns the elastic part Fₑ = F G of a deformation F.
 pub fn elastic_part(deformation: &Matrix, undone: &Matrix) -> Matrix {
     product(deformation, undone)
 }
 
-/// First Piola–Kirchhoff stress [Pa] of a deformation, after G.
+/// Returns the first Piola–Kirchhoff stress [Pa] of a deformation with plastic state G.
 pub fn stress_after<D: Dim>(
     elasticity: Elasticity,
     deformation: &Matrix,
@@ -79,10 +83,11 @@ pub fn stress_after<D: Dim>(
     total
 }
 
-/// The force [N] of an element of width `size` [m] on each of its nodes, at `positions` [m], after G.
+/// Returns the force [N] of an element of width `size` [m] on each of its nodes, at `positions` [m], with
+/// plastic state G.
 ///
 /// # Panics
-/// When the number of positions is not the number of nodes of the stencil.
+/// If the number of positions is not the number of nodes of the stencil.
 #[inline(never)]
 pub fn forces_after<D: Dim>(
     elasticity: Elasticity,
@@ -91,13 +96,17 @@ pub fn forces_after<D: Dim>(
     size: f64,
     positions: &[Vector64],
 ) -> Vec<Vector64> {
-    assert_eq!(positions.len(), stencil.slots.len(), "one position a node");
+    assert_eq!(
+        positions.len(),
+        stencil.slots.len(),
+        "the number of positions must match the nodes of the stencil"
+    );
     let (deformation, _) = deformation_of(stencil, size, positions);
     let stress = stress_after::<D>(elasticity, &deformation, undone);
     forces_of_stress(elasticity, &stress, stencil, size, positions)
 }
 
-/// What G becomes when a deformation is more than a material bears.
+/// Returns G after plastic flow, which occurs if the deformation exceeds the yield strain.
 pub fn flow<D: Dim>(
     plasticity: Plasticity,
     elasticity: Elasticity,
@@ -137,7 +146,7 @@ pub fn flow<D: Dim>(
     }
     let next = product(undone, &step);
     let volume = determinant(&next);
-    // The third axis of the plane is not scaled.
+    // The third axis is not scaled in 2D.
     let scale = 1.0
         / if D::N == 2 {
             volume.sqrt()
@@ -151,7 +160,8 @@ pub fn flow<D: Dim>(
         }
     }
     let inner = |m: &Matrix| squared(m) - (3 - D::N) as f64;
-    // What was kneaded back is stiffer: it must not store more than before.
+    // Flow back towards the original shape makes the element stiffer; it must not store more energy than
+    // before.
     let eased = product(&stretch, &step);
     let eased = [0, 1, 2].map(|i: usize| {
         [0, 1, 2].map(|j: usize| {
@@ -171,7 +181,7 @@ pub fn flow<D: Dim>(
     if may_be { next } else { *undone }
 }
 
-/// Elastic energy in a unit of volume [J/m³], of a stretch S in an element of a volume, in terms of what it was.
+/// Elastic energy density [J/m³] of a stretch S in an element with volume ratio `volume`.
 fn density(elasticity: Elasticity, stretch: &Matrix, volume: f64) -> f64 {
     let mut strain = *stretch;
     (0..3).for_each(|k| strain[k][k] -= 1.0);
@@ -182,8 +192,8 @@ fn density(elasticity: Elasticity, stretch: &Matrix, volume: f64) -> f64 {
         + 0.5 * elasticity.young * below * below
 }
 
-/// By how much less what was kneaded resists in terms of what it was built as: 1 / λ_max(GᵀG), bounded from the trace and the
-/// norm; exact in the plane and for what was pressed flat.
+/// Stiffness factor s = 1 / λ_max(GᵀG) of a plastically deformed element. Estimated from the trace and the
+/// norm of GᵀG; exact in 2D and for elements flattened along one axis.
 pub fn kneaded_stiffness<D: Dim>(undone: &Matrix) -> f64 {
     let axes = D::N as f64;
     let mut squares = [[0.0; 3]; 3];
@@ -230,7 +240,7 @@ mod tests {
     }
 
     fn check_flow<D: Dim>() {
-        // Drawn out along the first axis, its volume kept.
+        // Stretch along the first axis, volume preserved.
         let drawn = |by: f64| {
             let mut f = IDENTITY;
             f[0][0] = by;
@@ -244,11 +254,12 @@ mod tests {
             undone = flow::<D>(CLAY, soft(), &drawn(1.3), &undone);
             assert!((determinant(&undone) - 1.0).abs() < 1e-12);
         }
-        // What is left is what it bears, and it has flowed by the rest.
+        // The remaining elastic strain is the yield strain; the rest has become plastic.
         let left = elastic_part(&drawn(1.3), &undone)[0][0];
         assert!((left - 1.05).abs() < 2e-3, "{left}");
         assert!(kneaded_stiffness::<D>(&undone) <= 1.0);
-        // It can be pressed to half its width and no further; there and back is as it was.
+        // An element can be compressed to half its width and no further; compression and return restore the
+        // shape.
         let mut flat = IDENTITY;
         for step in 0..400 {
             let by = 1.0 - 0.7 * f64::from(step.min(300)) / 300.0;
@@ -257,7 +268,7 @@ mod tests {
         let pressed = 1.0 / flat[0][0];
         assert!((pressed - 0.5).abs() < 0.02, "{pressed}");
         assert!((kneaded_stiffness::<D>(&flat) - 0.25).abs() < 0.03);
-        // All at once it would give way by more than it has to: a step is right to first order.
+        // In one large step it would flow by more than necessary, because a step is correct to first order.
         for step in 0..400 {
             let by = 0.3 + 0.7 * f64::from(step.min(300)) / 300.0;
             flat = flow::<D>(CLAY, soft(), &drawn(by), &flat);
@@ -266,14 +277,14 @@ mod tests {
     }
 
     #[test]
-    fn it_flows_to_what_it_bears_and_keeps_its_volume() {
+    fn flow_reaches_yield_strain_and_preserves_volume() {
         check_flow::<Dim2>();
         check_flow::<Dim3>();
     }
 
-    /// With the additive strain a dent across turned what was strained along.
+    /// Regression: with the additive strain, a dent across the load direction produced a torque.
     #[test]
-    fn what_was_dented_one_way_and_is_strained_another_does_not_turn() {
+    fn stress_after_flow_preserves_angular_momentum() {
         let mut undone = IDENTITY;
         let sheared = [[1.0, 0.5, 0.0], [0.1, 1.0, 0.2], [0.0, 0.0, 1.0]];
         (0..20).for_each(|_| undone = flow::<Dim3>(CLAY, soft(), &sheared, &undone));

@@ -1,27 +1,27 @@
-//! The multi-level look-up table: which cells of which size exist, and which children each fills.
+//! Cell hierarchy: the existing cells of every size, and the children that each cell fills.
 //!
-//! One rule gives the first placement and every later one [Endo 2004, §3.2, Figs. 2 and 4]: a
-//! voxel at an open point, or where materials meet, is a cell of level 0; a cell of level l exists
-//! when it contains or touches a cell of level l − 1. A cell fills those of its children that are
-//! solid and do not exist as cells themselves, and every face-connected part of them is one element.
-//! All cells of the topmost level exist: it ends the growth of elements at an eighth of the grid.
+//! One rule determines the initial cells and every later change [Endo 2004, §3.2, Figs. 2 and 4]. A voxel at
+//! an open point, or where materials meet, is a cell of level 0. A cell of level l exists if it contains or
+//! touches a cell of level l − 1. A cell fills those of its children that are solid and do not exist as
+//! cells. Every face-connected part of them is one element. All cells of the topmost level exist: this limits
+//! the size of elements to an eighth of the grid.
 //!
-//! Cracks only grow, so cells only come into being: a release is followed upwards from the voxels
-//! at the released point, and the walk ends at the first level where nothing new appears. The cost
-//! of a cut goes with what it touches, not with the body.
+//! Cracks only grow, so cells are only added. A release is followed upwards from the voxels at the released
+//! point, and the update ends at the first level without new cells. The cost of a cut is proportional to the
+//! affected cells, not to the body.
 
 use crate::dim::{Dim, Point, add, corner, neighbourhood, points_in, scale, voxel_around};
 use crate::grid::VoxelGrid;
 use crate::sharing::Sharing;
 use std::marker::PhantomData;
 
-/// A place in the pyramid: level 0 is one voxel, level l is 2^l voxels wide.
+/// Cell of the hierarchy: level 0 is one voxel, level l is 2^l voxels wide.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Cell {
-    /// 0 = finest.
+    /// Level; 0 = finest.
     pub level: u8,
-    /// Position in units of the cell's own size.
+    /// Position in units of the size of the cell.
     pub at: Point,
 }
 
@@ -32,7 +32,7 @@ impl Cell {
         1 << self.level
     }
 
-    /// The cell of the next level that contains this one.
+    /// Returns the cell of the next level that contains this one.
     #[inline]
     pub fn parent(self) -> Self {
         Self {
@@ -41,7 +41,7 @@ impl Cell {
         }
     }
 
-    /// Which child of its parent this cell is.
+    /// Index of this cell among the children of its parent.
     #[inline]
     pub fn child_index<D: Dim>(self) -> usize {
         (0..D::N).fold(0, |index, axis| {
@@ -49,7 +49,7 @@ impl Cell {
         })
     }
 
-    /// Its child `index`.
+    /// Returns child `index`.
     ///
     /// # Panics
     /// At level 0, which has no children.
@@ -61,7 +61,7 @@ impl Cell {
         }
     }
 
-    /// The cell of level 0 that is a voxel.
+    /// Returns the level-0 cell of a voxel.
     #[inline]
     pub fn of(voxel: Point) -> Self {
         Self {
@@ -70,34 +70,34 @@ impl Cell {
         }
     }
 
-    /// The voxel in its low corner.
+    /// Voxel in the low corner.
     #[inline]
     pub fn first_voxel(self) -> Point {
         scale(self.at, self.width())
     }
 }
 
-/// A number for every place that a cell can take, level by level: the shape of tables over cells.
+/// Numbering of all possible cells of a grid, level by level: the indices of tables over cells.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Places {
-    /// Of each level: cells on each axis, and the number of the first one.
+    /// For each level: the number of cells on each axis, and the index of its first cell.
     levels: Vec<(Point, usize)>,
     count: usize,
 }
 
-/// No cell is wider than this share of the longest axis of its grid, but for small levels.
+/// Inverse of the largest width of a cell relative to the longest axis of its grid; small levels are exempt.
 ///
-/// The mass of an element of width H lies in its nodes, so its second moment ∫ x² dm comes out too
-/// large by H²/6 per mass: however fine the voxels, a disc that is graded up to H = D/4 rings 3 %
-/// too slowly. With D/8 it is 1 %, for a dozen elements more.
+/// The mass of an element of width H lies in its nodes, so its second moment ∫ x² dm is too large by H²/6 per
+/// mass. However fine the voxels, a disc of diameter D with cells up to H = D/4 vibrates 3 % too slowly. With
+/// D/8 it is 1 %, for a dozen elements more.
 const WIDEST: i32 = 8;
-/// Up to this level cells may be wider than that, for a small body would not be graded at all: level 1 would have to wait for
-/// 16 voxels across, and level 2 for 32.
+/// Levels up to this one are exempt from [`WIDEST`]. Otherwise small bodies would not be graded at all: level
+/// 1 would need a grid of 16 voxels across, and level 2 one of 32.
 const SMALL_LEVEL: usize = 2;
 
 impl Places {
-    /// The places in a grid of `size` voxels, up to the widest cells that may be.
+    /// Numbers the cells of a grid of `size` voxels, up to the largest allowed cells.
     fn new(mut size: Point) -> Self {
         let longest = size[0].max(size[1]).max(size[2]);
         let mut places = Self {
@@ -115,18 +115,18 @@ impl Places {
         }
     }
 
-    /// How many places there are.
+    /// Number of possible cells.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// Cells of a level; those of level 0 have the first numbers.
+    /// Number of possible cells of a level; those of level 0 have the first indices.
     pub fn count_of(&self, level: usize) -> usize {
         let (size, _) = self.levels[level];
         size.iter().map(|&extent| extent as usize).product()
     }
 
-    /// The number of a cell; `None` outside the grid.
+    /// Index of a cell; `None` outside the grid.
     #[inline]
     pub fn number(&self, cell: Cell) -> Option<usize> {
         let &(size, first) = self.levels.get(cell.level as usize)?;
@@ -135,7 +135,7 @@ impl Places {
         inside.then(|| first + (z * size[1] as usize + y) * size[0] as usize + x)
     }
 
-    /// The numbers of the voxels around a lattice point, by octant; `None` unless all are in the grid.
+    /// Indices of the voxels around a lattice point, by octant; `None` unless all are in the grid.
     #[inline]
     pub fn voxels_around<D: Dim>(&self, at: Point) -> Option<[usize; 8]> {
         let (size, _) = self.levels[0];
@@ -149,22 +149,22 @@ impl Places {
     }
 }
 
-/// How fine the elements are, and where.
+/// Grading of the elements from the surface to the inside.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Grading {
-    /// Single voxels at the surface, larger ones inside: what cutting needs.
+    /// Single voxels at the surface, larger elements inside. Required for cutting.
     #[default]
     Graded,
-    /// Single voxels everywhere: the reference that graded bodies are measured against.
+    /// Single voxels everywhere: the reference for graded bodies.
     Uniform,
-    /// Two voxels wide at the surface, every lattice point there a node: the variant that the
-    /// paper counts [Endo 2004, §3.1]. For counting and comparing: it does not tear, cannot be cut,
-    /// and has no skin to be drawn or touched by other bodies.
+    /// Two voxels wide at the surface, with a node at every lattice point there: the variant counted in [Endo
+    /// 2004, §3.1]. For counting and comparison only: it does not tear, cannot be cut, and has no surface for
+    /// drawing or contact.
     Coarse,
 }
 
-/// Which cells exist.
+/// Cell hierarchy of a body: the set of existing cells.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
@@ -176,12 +176,12 @@ pub struct Pyramid<D: Dim> {
 }
 
 impl<D: Dim> Pyramid<D> {
-    /// The cells of a body from scratch.
+    /// Builds the cells of a body from scratch.
     #[inline(never)]
     pub fn new(grid: &VoxelGrid<D>, sharing: &Sharing<D>, grading: Grading) -> Self {
         let places = Places::new(grid.size());
         let mut exists = vec![false; places.count()];
-        // The topmost cells always exist, so that every voxel is owned.
+        // The topmost cells always exist, so that every voxel has an owner.
         if let [_, .., (_, first)] = places.levels[..] {
             exists[first..].fill(true);
         }
@@ -195,30 +195,31 @@ impl<D: Dim> Pyramid<D> {
         pyramid
     }
 
-    /// How fine the cells are.
+    /// Grading of the cells.
     pub fn grading(&self) -> Grading {
         self.grading
     }
 
-    /// Number of levels, the topmost included.
+    /// Number of levels, including the topmost one.
     pub fn level_count(&self) -> usize {
         self.places.levels.len()
     }
 
-    /// The places of its cells.
+    /// Numbering of the cells.
     pub fn places(&self) -> &Places {
         &self.places
     }
 
-    /// Whether a cell exists: it may own an element, or have handed all its children on.
+    /// Whether a cell exists. An existing cell may own elements, or may have only children that exist as
+    /// cells.
     #[inline]
     pub fn exists(&self, cell: Cell) -> bool {
         let number = self.places.number(cell);
         number.is_some_and(|number| self.exists[number])
     }
 
-    /// The children that a cell fills itself: solid, and no cells of their own.
-    /// At level 0 the whole voxel, as a mask with every corner set.
+    /// Mask of the children that a cell fills itself: solid, and not existing as cells. At level 0 every bit
+    /// is set.
     pub fn filled(&self, grid: &VoxelGrid<D>, cell: Cell) -> u8 {
         if !self.exists(cell) {
             return 0;
@@ -233,10 +234,10 @@ impl<D: Dim> Pyramid<D> {
         })
     }
 
-    /// The cell that owns a solid voxel, and its child that the voxel lies in.
+    /// Returns the cell that owns a solid voxel, and the index of its child that contains the voxel.
     ///
     /// # Panics
-    /// When the voxel is outside the grid the pyramid was made for.
+    /// If the voxel is outside the grid of the hierarchy.
     pub fn owner(&self, voxel: Point) -> (Cell, usize) {
         let mut cell = Cell {
             level: 0,
@@ -249,7 +250,7 @@ impl<D: Dim> Pyramid<D> {
             let parent = cell.parent();
             assert!(
                 (parent.level as usize) < self.level_count(),
-                "the topmost cells exist"
+                "no cell owns the voxel: voxel outside the grid"
             );
             if self.exists(parent) {
                 return (parent, cell.child_index::<D>());
@@ -258,7 +259,7 @@ impl<D: Dim> Pyramid<D> {
         }
     }
 
-    /// All cells of a level that exist, in memory order.
+    /// Returns all existing cells of a level, in memory order.
     pub fn cells(&self, level: u8) -> impl Iterator<Item = Cell> + '_ {
         let (size, _) = self.places.levels[level as usize];
         points_in([0; 3], size.map(|extent| extent - 1))
@@ -266,8 +267,8 @@ impl<D: Dim> Pyramid<D> {
             .filter(|&cell| self.exists(cell))
     }
 
-    /// Brings the cells up to date after the groups at `changed` points have changed. Returns the
-    /// cells that came into being, level by level in ascending order [Endo 2004, §3.2, phase 1].
+    /// Updates the cells after the groups at the `changed` points have changed. Returns the new cells, level
+    /// by level in ascending order [Endo 2004, §3.2, phase 1].
     pub fn refine(
         &mut self,
         grid: &VoxelGrid<D>,
@@ -311,12 +312,12 @@ impl<D: Dim> Pyramid<D> {
         born
     }
 
-    /// Takes out the cells of voxels that are gone from grid and sharing, and those that were there for
-    /// them alone: what is left is what a pyramid from scratch has. Where something is left of a cell, it
-    /// touched what is gone in an open point, and so stands for itself.
+    /// Removes the cells of removed voxels, and the cells that existed only because of them. The result
+    /// equals a hierarchy built from scratch. Where a part of a cell remains, it touched the removed voxels
+    /// at an open point, so it exists for that reason.
     pub(crate) fn take_out(&mut self, grid: &VoxelGrid<D>, sharing: &Sharing<D>, voxels: &[Point]) {
         if self.grading == Grading::Coarse {
-            // Its cells of level 0 never are.
+            // With this grading, cells of level 0 never exist.
             *self = Self::new(grid, sharing, self.grading);
             return;
         }
@@ -347,20 +348,21 @@ impl<D: Dim> Pyramid<D> {
         }
     }
 
-    /// Makes a cell exist no more; false when it did not.
+    /// Removes a cell; returns false if the cell did not exist.
     fn remove(&mut self, cell: Cell) -> bool {
         let number = self.places.number(cell);
         number.is_some_and(|number| std::mem::replace(&mut self.exists[number], false))
     }
 
-    /// Makes a cell exist; false when it did already or lies outside the pyramid.
+    /// Adds a cell; returns false if the cell already existed or lies outside the grid.
     fn add(&mut self, cell: Cell) -> bool {
         let number = self.places.number(cell);
         number.is_some_and(|number| !std::mem::replace(&mut self.exists[number], true))
     }
 }
 
-/// Whether the voxels around a point must be cells of level 0: an open one, or a meeting of materials.
+/// Whether the voxels around a point must be cells of level 0: the point is open, or different materials meet
+/// there.
 fn is_fine<D: Dim>(grid: &VoxelGrid<D>, sharing: &Sharing<D>, at: Point) -> bool {
     if sharing.is_open(at) {
         return true;
@@ -369,7 +371,7 @@ fn is_fine<D: Dim>(grid: &VoxelGrid<D>, sharing: &Sharing<D>, at: Point) -> bool
     (1..D::CORNERS).any(|octant| grid.material(voxel_around::<D>(at, octant)) != first)
 }
 
-/// The face-connected parts of a mask of children, in ascending order of their lowest child.
+/// Returns the face-connected parts of a mask of children, ascending by their lowest child.
 pub fn parts<D: Dim>(mask: u8) -> impl Iterator<Item = u8> {
     let mut left = mask;
     std::iter::from_fn(move || {
@@ -377,7 +379,7 @@ pub fn parts<D: Dim>(mask: u8) -> impl Iterator<Item = u8> {
             return None;
         }
         let mut part = left & left.wrapping_neg();
-        // A child found late may join others before it: a path has at most this many steps.
+        // A child found late may connect others before it: a path has at most this many steps.
         for _ in 0..D::CORNERS {
             let known = part;
             for child in (0..D::CORNERS).filter(|child| known >> child & 1 == 1) {

@@ -1,4 +1,4 @@
-//! What a release of shared nodes does to a body: connections, cells, elements, state, pieces.
+//! Effects of a release of shared nodes on a body: connectivity, cells, elements, state and pieces.
 
 use crate::body::Body;
 use crate::chains::ascending;
@@ -12,26 +12,25 @@ use crate::pyramid::Grading;
 use crate::solve::Row;
 
 impl<D: Dim> Body<D> {
-    /// Releases the sharing of nodes at lattice points, each between the octants of its mask and
-    /// the rest, and remodels around them [Endo 2004, §3.2]. Positions and velocities pass over;
-    /// linear and angular momentum are kept. Returns the pieces that came off. Nothing happens to a
-    /// body of [`Grading::Coarse`].
+    /// Releases shared nodes at lattice points, each between the octants of its mask and the rest, and
+    /// remodels around them [Endo 2004, §3.2]. Positions and velocities are transferred; linear and angular
+    /// momentum are preserved. Returns the detached pieces. Has no effect on a body of [`Grading::Coarse`].
     ///
     /// # Errors
-    /// A [`Defect`] when the mesh breaks: a fault of this library.
+    /// A [`Defect`] if the mesh becomes inconsistent, which is a bug in this library.
     #[inline(never)]
     pub fn release(&mut self, at: &[(Point, u8)]) -> Result<Vec<PieceId>, Defect> {
         Ok(self.tear(at)?.parted)
     }
 
-    /// As [`Body::release`]; tells all that it changed.
+    /// Does the work of [`Body::release`], and returns all changes.
     pub(crate) fn tear(&mut self, at: &[(Point, u8)]) -> Result<Changes, Defect> {
         if self.truth.pyramid.grading() == Grading::Coarse {
             return Ok(Changes::default());
         }
         let mut changed: Vec<Point> = Vec::new();
         for &(point, side) in at {
-            // A point is often released side by side: it is looked around once.
+            // A point is often released several times in sequence: it is examined once.
             if self.truth.sharing.release(point, side) && changed.last() != Some(&point) {
                 changed.push(point);
             }
@@ -77,8 +76,8 @@ impl<D: Dim> Body<D> {
         Ok(changes)
     }
 
-    /// The elements around the given points, ascending: a list for each of the places where they
-    /// met before, if only through others of their list.
+    /// Returns the elements around the given points, ascending, grouped by the places where they were
+    /// connected before, directly or through others of the group.
     fn places_around(&self, points: &[Point]) -> Vec<Vec<ElementId>> {
         let around = |&at: &Point| self.truth.mesh.owners_around(at, D::ALL_CORNERS);
         let elements = points.iter().flat_map(around);
@@ -93,8 +92,8 @@ impl<D: Dim> Body<D> {
         joined.sort(&elements)
     }
 
-    /// Gives new nodes and elements the state of those they come from; `touched` are the nodes of the
-    /// elements that were seated.
+    /// Transfers the state of the old nodes and elements to the new ones; `touched` are the nodes of the
+    /// seated elements.
     fn pass_on(&mut self, remodelled: &Remodelled, touched: &[NodeId]) {
         let Remodelled {
             removed,
@@ -157,7 +156,7 @@ impl<D: Dim> Body<D> {
         }
     }
 
-    /// What new elements have from those that filled their voxels before, where a material keeps dents.
+    /// Plastic deformation of new elements, taken from the elements that filled their voxels before.
     fn dents_of(
         &self,
         remodelled: &Remodelled,
@@ -175,23 +174,22 @@ impl<D: Dim> Body<D> {
         new.iter().filter_map(of).collect()
     }
 
-    /// Those of some nodes that are not held, those of each piece together, in ascending order of the
-    /// pieces and else in their own.
+    /// Returns those nodes that are not fixed, sorted by piece.
     fn free_by_piece(&self, nodes: impl Iterator<Item = NodeId>) -> Vec<NodeId> {
-        // Held nodes keep their velocity; the rest of each piece keeps its momentum.
+        // Fixed nodes keep their velocity; the others of each piece keep its momentum.
         let free = |id: &NodeId| self.state.inverse_mass[*id] > 0.0;
         let mut nodes: Vec<NodeId> = nodes.filter(free).collect();
         nodes.sort_by_key(|&id| self.truth.pieces.of_node(id));
         nodes
     }
 
-    /// The nodes of each piece, of nodes by piece.
+    /// Splits nodes that are sorted by piece into one slice per piece.
     fn pieces_in<'a>(&self, nodes: &'a [NodeId]) -> Vec<&'a [NodeId]> {
         let of_node = |id| self.truth.pieces.of_node(id);
         nodes.chunk_by(|&a, &b| of_node(a) == of_node(b)).collect()
     }
 
-    /// New nodes take over the weighted state of old ones, all read before any is written.
+    /// Gives new nodes the weighted state of old ones; reads all before it writes any.
     fn inherit(&mut self, remodelled: &Remodelled) {
         let inherited = &remodelled.inherited;
         let mean = |rows: &Table<NodeId, Row>, from: &[(NodeId, f64)]| {
@@ -222,7 +220,7 @@ impl<D: Dim> Body<D> {
         }
     }
 
-    /// The nodes of some elements, ascending.
+    /// Returns the nodes of some elements, ascending.
     fn nodes_of(&self, elements: &[ElementId]) -> Vec<NodeId> {
         let elements = elements
             .iter()
@@ -231,9 +229,9 @@ impl<D: Dim> Body<D> {
         ascending(nodes, self.truth.mesh.node_capacity())
     }
 
-    /// Adds the rigid motion that gives the nodes the momentum `before` about `centre` again.
-    /// Interpolation keeps linear momentum, but the spin inside an element is lost when new nodes
-    /// stand between its corners, and their masses move.
+    /// Adds the rigid motion that restores the momentum `before` about `centre`. Interpolation preserves
+    /// linear momentum, but the angular momentum inside an element changes if new nodes are created between
+    /// its corners, because their masses move.
     fn restore_momentum(&mut self, nodes: &[NodeId], before: Momentum, centre: [f64; 3]) {
         let missing = before.less(Momentum::of(self.states(nodes), centre));
         let masses = self.states(nodes).map(|(x, _, mass)| (x, mass));
@@ -247,7 +245,7 @@ impl<D: Dim> Body<D> {
     }
 }
 
-/// The voxels around the given points, in ascending order.
+/// Returns the voxels around the given points, ascending.
 fn beside<D: Dim>(points: &[Point]) -> Vec<Point> {
     let mut voxels: Vec<Point> = points
         .iter()
@@ -267,11 +265,11 @@ mod tests {
     use crate::piece::Pieces;
     use std::collections::BTreeSet;
 
-    /// Many releases at once, near each other and far apart: the pieces must be those of a search
-    /// from scratch.
+    /// Performs many simultaneous releases, near each other and far apart. The pieces must match those of a
+    /// search from scratch.
     fn check_pieces<D: Dim>(n: usize) {
         let grid = VoxelGrid::<D>::ball(n, 1.0).expect("a ball is not empty");
-        let mut body = Body::new(grid, &[Material::default()]).expect("the material is good");
+        let mut body = Body::new(grid, &[Material::default()]).expect("the material is valid");
         let mut seed = 3u32;
         let mut random = |below: usize| {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -284,7 +282,7 @@ mod tests {
                 at[D::N..].fill(0);
                 releases.push((at, 1 << random(D::CORNERS)));
             }
-            body.release(&releases).expect("the mesh stays whole");
+            body.release(&releases).expect("the mesh stays consistent");
             let fresh = Pieces::new(&body.truth.mesh);
             let both = |(id, _)| (body.truth.pieces.of_element(id), fresh.of_element(id));
             let pairs: BTreeSet<(PieceId, PieceId)> =
@@ -294,12 +292,12 @@ mod tests {
         }
         assert!(
             body.truth.pieces.list.len() > 20,
-            "hardly anything came off"
+            "too few pieces were detached to test anything"
         );
     }
 
     #[test]
-    fn pieces_are_those_of_a_search_from_scratch() {
+    fn pieces_match_search_from_scratch_after_releases() {
         check_pieces::<Dim2>(20);
         check_pieces::<Dim3>(8);
     }

@@ -1,7 +1,7 @@
-//! What it does to a body that some of its pieces are taken out of it: voxels, connections, cells, elements, nodes.
+//! Removal of pieces from a body: voxels, connectivity, cells, elements and nodes.
 //!
-//! A piece shares no node with the rest, so nothing of the rest changes but who is beyond the crack: its elements and
-//! nodes keep their numbers, their places, their masses and their motion.
+//! A piece shares no node with the rest. So the rest keeps its elements, nodes, numbers, masses and motion;
+//! only the neighbours across the crack are gone.
 
 use crate::body::Body;
 use crate::changes::Changes;
@@ -9,13 +9,13 @@ use crate::dim::{Dim, Point};
 use crate::ids::{ElementId, PieceId};
 
 impl<D: Dim> Body<D> {
-    /// Whether it has a piece of this number that is still there.
+    /// Whether the body has a piece with this number that was not removed.
     pub fn has_piece(&self, piece: PieceId) -> bool {
         let piece = self.truth.pieces.list.get(piece.index());
         piece.is_some_and(|piece| !piece.removed)
     }
 
-    /// Takes pieces out, given in ascending order, of which one at least is left; tells all that it changed.
+    /// Removes pieces, given in ascending order, of which at least one exists; returns all changes.
     pub(crate) fn take_out(&mut self, pieces: &[PieceId]) -> Changes {
         let truth = &mut self.truth;
         let of_element = |id: &ElementId| truth.pieces.of_element(*id);
@@ -32,7 +32,7 @@ impl<D: Dim> Body<D> {
         let nodes = truth.mesh.take_out(&truth.sharing, &elements);
         for &piece in pieces {
             let piece = &mut truth.pieces.list[piece];
-            // Nobody waits for it to come to rest.
+            // A removed piece counts as asleep, so that it never counts as moving.
             (piece.removed, piece.asleep) = (true, true);
         }
         let blocks = &mut self.state.blocks;

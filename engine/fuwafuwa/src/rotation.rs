@@ -1,13 +1,14 @@
-//! Turning things.
+//! Rotations.
 
 use crate::dim::Dim;
 use crate::vector::{Vector, cross, dot, minus, plus, scaled};
 
-/// A rotation, kept as a unit quaternion. The same on every machine: no sine of a system's own library is in it.
+/// Rotation, stored as a unit quaternion. Identical on every machine, because it does not use the sine of the
+/// system library.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rotation {
-    /// x, y, z, w.
+    /// Components x, y, z, w.
     quaternion: [f64; 4],
 }
 
@@ -18,13 +19,13 @@ impl Default for Rotation {
 }
 
 impl Rotation {
-    /// No rotation.
+    /// Identity.
     pub const NONE: Self = Self {
         quaternion: [0.0, 0.0, 0.0, 1.0],
     };
 
-    /// By an angle [rad] about an axis of any length, counterclockwise as seen from its tip; none about an axis
-    /// without a length or by an angle that is not finite.
+    /// Creates a rotation by an angle [rad] about an axis of any length, counterclockwise as seen from its
+    /// tip. Returns [`Rotation::NONE`] if the axis has no length or a value is not finite.
     ///
     /// ```
     /// use fuwafuwa::Rotation;
@@ -42,27 +43,28 @@ impl Rotation {
         Self::unit([x, y, z, cosine])
     }
 
-    /// In the plane, by an angle [rad], counterclockwise.
+    /// Creates a rotation in the plane by an angle [rad], counterclockwise.
     pub fn in_plane(angle: f32) -> Self {
         Self::about([0.0, 0.0, 1.0], angle)
     }
 
-    /// From a quaternion x, y, z, w of any length; none from one without a length or with a number that is not finite.
+    /// Creates a rotation from a quaternion x, y, z, w of any length. Returns [`Rotation::NONE`] if it has no
+    /// length or a component is not finite.
     pub fn from_quaternion(quaternion: [f32; 4]) -> Self {
         Self::unit(quaternion.map(f64::from))
     }
 
-    /// The unit quaternion x, y, z, w.
+    /// Returns the unit quaternion x, y, z, w.
     pub fn quaternion(self) -> [f32; 4] {
         self.quaternion.map(|part| part as f32)
     }
 
-    /// A vector, turned.
+    /// Rotates a vector.
     pub fn apply(self, vector: Vector) -> Vector {
         self.turn(vector.map(f64::from)).map(|part| part as f32)
     }
 
-    /// The rotation back.
+    /// Returns the inverse rotation.
     #[must_use]
     pub fn inverse(self) -> Self {
         let [x, y, z, w] = self.quaternion;
@@ -71,13 +73,13 @@ impl Rotation {
         }
     }
 
-    /// This one, and then another.
+    /// Returns the rotation that first applies `self` and then `next`.
     #[must_use]
     pub fn then(self, next: Self) -> Self {
         Self::unit(product(next.quaternion, self.quaternion))
     }
 
-    /// Axis times angle [rad], the shorter way round.
+    /// Axis times angle [rad], with an angle of at most π.
     pub fn scaled_axis(self) -> Vector {
         let [x, y, z, w] = self.quaternion;
         let (axis, sign) = ([x, y, z], if w < 0.0 { -1.0 } else { 1.0 });
@@ -87,34 +89,34 @@ impl Rotation {
         scaled(axis, sign * stretch).map(|part| part as f32)
     }
 
-    /// What it makes of the three axes.
+    /// Returns the three rotated axes.
     pub fn axes(self) -> [Vector; 3] {
         [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| self.apply(axis))
     }
 
-    /// Whether it is one: what is read from a file need not be.
+    /// Whether the quaternion has length 1; one read from a file may not.
     pub(crate) fn is_one(self) -> bool {
         (dot(self.quaternion, self.quaternion) - 1.0).abs() < 1e-9
     }
 
-    /// A place [m], turned about another one.
+    /// Rotates a position [m] about a centre.
     pub(crate) fn apply_about(self, place: Vector, centre: Vector) -> Vector {
         let (place, centre) = (place.map(f64::from), centre.map(f64::from));
         let turned = self.turn(minus(place, centre));
         plus(centre, turned).map(|part| part as f32)
     }
 
-    /// The same as a world of `D` sees it: in the plane all turns are about the third axis.
+    /// Restricts the rotation to the dimension: in 2D to the third axis.
     pub(crate) fn seen_in<D: Dim>(self) -> Self {
         let [x, y, z, w] = self.quaternion;
-        // To make the length 1 once more would change the last bits.
+        // Normalising again would change the last bits.
         match D::N == 2 && (x, y) != (0.0, 0.0) {
             true => Self::unit([0.0, 0.0, z, w]),
             false => self,
         }
     }
 
-    /// This one after another, as a quaternion that need not be of length 1.
+    /// Returns the quaternion that first applies `other` and then `self`; not normalised.
     pub(crate) fn after(self, other: [f32; 4]) -> [f32; 4] {
         product(self.quaternion, other.map(f64::from)).map(|part| part as f32)
     }
@@ -136,7 +138,7 @@ impl Rotation {
     }
 }
 
-/// a b: the second rotation, then the first.
+/// Returns the quaternion product a b: first b, then a.
 fn product([x, y, z, w]: [f64; 4], [bx, by, bz, bw]: [f64; 4]) -> [f64; 4] {
     [
         w * bx + x * bw + y * bz - z * by,
@@ -153,7 +155,7 @@ mod tests {
     use std::f32::consts::PI;
 
     #[test]
-    fn turns_follow_each_other() {
+    fn rotations_compose_in_order() {
         let first = Rotation::about([1.0, 2.0, -1.0], 0.7);
         let second = Rotation::about([0.0, -3.0, 1.0], -2.0);
         let both = Rotation::from_quaternion(second.after(first.quaternion()));
@@ -166,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rotation_is_an_axis_times_an_angle() {
+    fn scaled_axis_returns_axis_times_shortest_angle() {
         for angle in [0.0, 1e-7, 0.5, 3.0] {
             let axis = Rotation::about([0.0, -2.0, 0.0], angle).scaled_axis();
             assert!((axis[1] + angle).abs() < 1e-6 && axis[0] == 0.0, "{axis:?}");
@@ -176,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_rotation_is_none() {
+    fn invalid_rotations_become_identity() {
         let bad = [
             Rotation::about([0.0; 3], 1.0),
             Rotation::about([1.0, 0.0, 0.0], f32::NAN),

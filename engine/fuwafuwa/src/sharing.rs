@@ -1,9 +1,9 @@
-//! For every lattice point, how the voxels around it are grouped: the truth about what is connected.
+//! Connectivity: the grouping of the voxels around every lattice point.
 //!
-//! Voxels of one group share a node at that point; releasing a node splits its group. Two voxels
-//! with a common face are *closed* where they share a node at every point of that face. After a
-//! release, the voxels at a point stay together only through closed faces, so that cracks which
-//! meet join up and no hinge of a single node remains ([`Sharing::normalise`]).
+//! Voxels of one group share a node at that point; releasing a node splits its group. A face between two
+//! voxels is *closed* if they share a node at every point of that face. After a release, the voxels at a
+//! point stay together only through closed faces. So cracks that meet join up, and no hinge of a single node
+//! remains ([`Sharing::normalise`]).
 //!
 //! ```text
 //!   a │ b        the crack came from below and ended at p: c and d are no longer closed, but
@@ -17,21 +17,21 @@ use crate::dim::{Dim, FAR, Point, add, neighbourhood, points_in, voxel_around};
 use crate::grid::VoxelGrid;
 use crate::ids::id;
 use std::marker::PhantomData;
-/// The label of a side of a lattice point where there is no voxel.
+/// Label of an octant without a voxel.
 const EMPTY: u32 = 15;
 
-/// A partition of the voxels around one lattice point; a group is named by its lowest octant.
+/// Partition of the voxels around one lattice point; a group is named by its lowest octant.
 ///
-/// Four bits an octant, 15 where there is no voxel.
+/// Four bits per octant, 15 = no voxel.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Groups(u32);
 
 impl Groups {
-    /// No voxel at all.
+    /// No voxels.
     pub const NONE: Self = Self(u32::MAX);
 
-    /// All octants of `solid` in one group.
+    /// Puts all octants of `solid` in one group.
     #[inline]
     pub fn joined(solid: u8) -> Self {
         let mut groups = Self::NONE;
@@ -44,7 +44,7 @@ impl Groups {
         groups
     }
 
-    /// Every octant of `solid` in a group of its own.
+    /// Puts every octant of `solid` in its own group.
     fn apart(solid: u8) -> Self {
         let mut groups = Self::NONE;
         for octant in (0..8).filter(|octant| solid >> octant & 1 == 1) {
@@ -53,13 +53,13 @@ impl Groups {
         groups
     }
 
-    /// The octants that hold a voxel.
+    /// Mask of the octants with a voxel.
     #[inline]
     pub fn solid(self) -> u8 {
         !self.named(EMPTY)
     }
 
-    /// The octants that share a node with `octant`: 0 when there is no voxel.
+    /// Mask of the octants that share a node with `octant`; 0 if there is no voxel.
     #[inline]
     pub fn group_of(self, octant: usize) -> u8 {
         match self.name(octant) {
@@ -68,20 +68,21 @@ impl Groups {
         }
     }
 
-    /// Whether two octants hold voxels that share a node.
+    /// Whether two octants contain voxels that share a node.
     #[inline]
     pub fn shares(self, a: usize, b: usize) -> bool {
         self.name(a) != EMPTY && self.name(a) == self.name(b)
     }
 
-    /// The groups, each as a mask of octants, in ascending order of their lowest octant.
+    /// Returns the groups as masks of octants, ascending by their lowest octant.
     pub fn iter(self) -> impl Iterator<Item = u8> {
         (0..8)
             .filter(move |&octant| self.name(octant) == octant as u32)
             .map(move |octant| self.group_of(octant))
     }
 
-    /// Splits every group that has octants both inside and outside `side`; false when there is none.
+    /// Splits every group that has octants both inside and outside `side`; returns false if there is no such
+    /// group.
     pub fn release(&mut self, side: u8) -> bool {
         let split = self.split(side);
         std::mem::replace(self, split) != split
@@ -109,10 +110,10 @@ impl Groups {
         }
     }
 
-    /// The octants that have a name.
+    /// Mask of the octants with a name.
     #[inline]
     fn named(self, name: u32) -> u8 {
-        // Four bits that are all 0 where the name fits; then one bit for the four, then side by side.
+        // Four bits that are all 0 where the name matches; then one bit per octant, then adjacent bits.
         let mut other = self.0 ^ (name * 0x1111_1111);
         other |= other >> 2;
         other |= other >> 1;
@@ -134,23 +135,23 @@ impl Groups {
 }
 
 id! {
-    /// A lattice point: its place in memory order.
+    /// Index of a lattice point in memory order.
     PointId
 }
 
-/// The grouping at every lattice point of a voxel grid.
+/// Grouping of the voxels at every lattice point of a grid.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Sharing<D: Dim> {
-    /// Lattice points on each axis: one more than there are voxels (1 on the third axis in 2D).
+    /// Number of lattice points on each axis: voxels + 1 (1 on the third axis in 2D).
     size: Point,
     groups: Vec<Groups>,
     dim: PhantomData<D>,
 }
 
 impl<D: Dim> Sharing<D> {
-    /// The uncut body: voxels at a point are together when closed faces around it join them.
+    /// Connectivity of the uncut body: voxels at a point are together if closed faces around it connect them.
     #[inline(never)]
     pub fn new(grid: &VoxelGrid<D>) -> Self {
         let mut size = grid.size();
@@ -178,7 +179,7 @@ impl<D: Dim> Sharing<D> {
         self.size
     }
 
-    /// All lattice points.
+    /// Returns all lattice points.
     pub fn points(&self) -> impl Iterator<Item = Point> + use<D> {
         points_in([0; 3], self.size.map(|extent| extent - 1))
     }
@@ -194,13 +195,13 @@ impl<D: Dim> Sharing<D> {
         (0..3).all(|axis| at[axis] >= 0 && at[axis] < self.size[axis])
     }
 
-    /// The place of a lattice point in memory order.
+    /// Index of a lattice point in memory order.
     #[inline]
     pub fn index(&self, at: Point) -> usize {
         ((at[2] * self.size[1] + at[1]) * self.size[0] + at[0]) as usize
     }
 
-    /// The grouping at a point: nothing outside the lattice.
+    /// Grouping at a point; [`Groups::NONE`] outside the lattice.
     #[inline]
     pub fn groups(&self, at: Point) -> Groups {
         if self.contains(at) {
@@ -210,12 +211,12 @@ impl<D: Dim> Sharing<D> {
         }
     }
 
-    /// The voxels around a solid voxel that share a node with it, itself included: bit x + 3 y + 9 z,
-    /// each from 0 to 2.
+    /// Mask of the voxels around a solid voxel that share a node with it, including itself: bit x + 3 y + 9
+    /// z, each from 0 to 2.
     pub fn bound(&self, voxel: Point) -> u32 {
         let mut bound = 0;
         for octant in 0..D::CORNERS {
-            // The lattice point that sees the voxel in this octant.
+            // Lattice point that sees the voxel in this octant.
             let mut at = voxel;
             (0..D::N).for_each(|axis| at[axis] += 1 - (octant >> axis & 1) as i32);
             let group = self.groups(at).group_of(octant);
@@ -228,12 +229,12 @@ impl<D: Dim> Sharing<D> {
         bound
     }
 
-    /// The groupings at a point and at those next to it.
+    /// Groupings at a point and its neighbours.
     pub fn around(&self, at: Point) -> Around<D> {
         let mut groups = [Groups::NONE; 27];
         let is_inner = (0..D::N).all(|axis| at[axis] > 0 && at[axis] + 1 < self.size[axis]);
         if is_inner {
-            // What lies along the first axis lies side by side in memory.
+            // Points along the first axis are adjacent in memory.
             let below = D::depth(3) as i32 / 2;
             for (row, three) in groups[..D::SLOTS].chunks_exact_mut(3).enumerate() {
                 let (y, z) = (row as i32 % 3 - 1, row as i32 / 3 - below);
@@ -251,13 +252,13 @@ impl<D: Dim> Sharing<D> {
         }
     }
 
-    /// The lattice points next to the given ones and themselves, each once, in memory order.
+    /// Returns the given lattice points and their neighbours, each once, in memory order.
     pub fn all_around(&self, points: &[Point]) -> Vec<Point> {
         let near = { points.iter() }.flat_map(|&point| neighbourhood::<D>(point, 1));
         self.each_once(near.filter(|&near| self.contains(near)))
     }
 
-    /// Points of the lattice, each once, in memory order.
+    /// Sorts lattice points in memory order and removes duplicates.
     pub fn each_once(&self, points: impl Iterator<Item = Point>) -> Vec<Point> {
         let ids = points.map(|at| PointId(self.index(at) as u32));
         let ids = ascending(ids, self.point_count()).into_iter();
@@ -269,14 +270,14 @@ impl<D: Dim> Sharing<D> {
         [place % x, place / x % y, place / x / y]
     }
 
-    /// Whether a crack can start or go on at a point: some side is empty, it has more than one
+    /// Whether a crack can start or continue at a point: an octant is empty, the point has more than one
     /// group, or one of the faces around it is open.
     pub fn is_open(&self, at: Point) -> bool {
         self.around(at).is_open()
     }
 
-    /// Splits the groups at `at` into what lies in the octants of `side` and what does not.
-    /// Returns whether anything changed; [`Sharing::normalise`] must follow.
+    /// Splits the groups at `at` into the octants of `side` and the others. Returns whether anything changed;
+    /// [`Sharing::normalise`] must follow.
     pub fn release(&mut self, at: Point, side: u8) -> bool {
         if !self.contains(at) {
             return false;
@@ -285,7 +286,7 @@ impl<D: Dim> Sharing<D> {
         self.groups[index].release(side)
     }
 
-    /// Whether one that was read from a file groups the voxels of a grid, by closed faces alone.
+    /// Whether connectivity read from a file groups the voxels of `grid`, by closed faces only.
     #[cfg(feature = "serde")]
     pub(crate) fn is_sound(&self, grid: &VoxelGrid<D>) -> bool {
         let whole = Self::new(grid);
@@ -296,7 +297,7 @@ impl<D: Dim> Sharing<D> {
                 octants.for_each(|octant| named.put(octant, name));
                 named
             });
-            // What is no voxel has no group, and no group is larger than before anything was released.
+            // Only voxels have groups, and no group is larger than before any release.
             let is_part = |group: u8| {
                 let of = whole.group_of(group.trailing_zeros() as usize);
                 group & !of == 0
@@ -309,8 +310,8 @@ impl<D: Dim> Sharing<D> {
             && self.clone().normalise(self.points().collect()).is_empty()
     }
 
-    /// Regroups the voxels at each point of `work`, and wherever that spreads, by closed faces
-    /// alone. Returns the points that changed, in ascending order without repeats.
+    /// Regroups the voxels at each point of `work` by closed faces only, and continues wherever that changes
+    /// neighbours. Returns the changed points, ascending and without duplicates.
     #[inline(never)]
     pub fn normalise(&mut self, mut work: Vec<Point>) -> Vec<Point> {
         let mut changed = Vec::new();
@@ -328,39 +329,39 @@ impl<D: Dim> Sharing<D> {
     }
 }
 
-/// The groupings at a lattice point and at those next to it: all that there is to know about the
-/// faces that meet there, and about the voxels around it.
+/// Groupings at a lattice point and its neighbours: they determine the faces that meet at the point, and the
+/// voxels around it.
 #[derive(Copy, Clone, Debug)]
 pub struct Around<D: Dim> {
-    /// The first axis running fastest, the point itself in the middle.
+    /// The first axis fastest, the point itself in the middle.
     groups: [Groups; 27],
     dim: PhantomData<D>,
 }
 
 impl<D: Dim> Around<D> {
-    /// How far apart neighbours along each axis stand.
+    /// Distance in `groups` between neighbours along each axis.
     const STEPS: [usize; 3] = [1, 3, 9];
 
-    /// The grouping at the point itself.
+    /// Grouping at the point itself.
     pub fn middle(&self) -> Groups {
         self.groups[D::SLOTS / 2]
     }
 
-    /// Whether the face between `octant` and its neighbour across `axis`, seen from the point, is
-    /// closed: both voxels exist and share a node at all of its corners.
+    /// Whether the face between `octant` and its neighbour across `axis`, seen from the point, is closed:
+    /// both voxels exist and share a node at all of its corners.
     #[inline]
     pub fn is_closed(&self, octant: usize, axis: usize) -> bool {
         self.is_closed_from(D::SLOTS / 2, octant, axis)
     }
 
-    /// Whether the face across `axis` of the voxel in `octant` that does not meet the point is closed.
+    /// Whether the face across `axis` of the voxel in `octant` is closed, on the side away from the point.
     #[inline]
     pub fn is_far_face_closed(&self, octant: usize, axis: usize) -> bool {
         let from = Self::towards(D::SLOTS / 2, octant, axis);
         self.is_closed_from(from, octant ^ 1 << axis, axis)
     }
 
-    /// For each axis, the octants on its near side whose face across it is closed.
+    /// For each axis, the octants on its near side with a closed face across the axis.
     pub fn closed_faces(&self) -> [u8; 3] {
         let mut closed = [0; 3];
         for axis in 0..D::N {
@@ -373,13 +374,13 @@ impl<D: Dim> Around<D> {
         closed
     }
 
-    /// Whether a crack can start or go on at the point: see [`Sharing::is_open`].
+    /// Whether a crack can start or continue at the point: see [`Sharing::is_open`].
     pub fn is_open(&self) -> bool {
         let groups = self.middle();
         if groups != Groups::joined(D::ALL_CORNERS) {
             return groups != Groups::NONE;
         }
-        // Where everything around is together no face is open: true of most points of a body.
+        // If all points around are full, no face is open; this holds for most points of a body.
         let is_open = |(faces, far): (u8, u8)| faces != D::ALL_CORNERS & !far;
         !self.is_whole()
             && self
@@ -390,7 +391,7 @@ impl<D: Dim> Around<D> {
                 .any(is_open)
     }
 
-    /// The voxels at the point as closed faces alone hold them together.
+    /// Regroups the voxels at the point by closed faces only.
     fn joined_by_faces(&self) -> Groups {
         let mut groups = Groups::apart(self.middle().solid());
         if groups == self.middle() || self.is_whole() {
@@ -405,14 +406,14 @@ impl<D: Dim> Around<D> {
         groups
     }
 
-    /// Whether everything around is together.
+    /// Whether every point around is full and forms one group.
     fn is_whole(&self) -> bool {
         let full = Groups::joined(D::ALL_CORNERS);
         self.groups[..D::SLOTS].iter().all(|&groups| groups == full)
     }
 
-    /// As [`Around::is_closed`], seen from the point at a place of `groups`; all corners of the face
-    /// must have one.
+    /// Does the work of [`Around::is_closed`], seen from the point at index `place` of `groups`. All corners
+    /// of the face must have an entry.
     #[inline]
     fn is_closed_from(&self, place: usize, octant: usize, axis: usize) -> bool {
         (0..D::CORNERS / 2).all(|corner| {
@@ -428,7 +429,7 @@ impl<D: Dim> Around<D> {
         })
     }
 
-    /// The place one step along an axis to the side on which an octant lies.
+    /// Index one step along an axis, towards the side of an octant.
     #[inline]
     fn towards(place: usize, octant: usize, axis: usize) -> usize {
         if octant >> axis & 1 == 1 {
@@ -439,7 +440,7 @@ impl<D: Dim> Around<D> {
     }
 }
 
-/// The faces that meet in a lattice point, each as its low octant and its axis.
+/// Returns the faces that meet at a lattice point, each as its low octant and its axis.
 pub fn faces_around<D: Dim>() -> impl Iterator<Item = (usize, usize)> {
     (0..D::N).flat_map(|axis| {
         (0..D::CORNERS)
@@ -454,7 +455,7 @@ mod tests {
     use crate::dim::{Dim2, Dim3};
 
     #[test]
-    fn voxels_that_meet_in_a_corner_only_do_not_share_it() {
+    fn sharing_separates_voxels_that_meet_only_at_corner() {
         let diagonal = |at: Point| u8::from(at[0] == at[1]);
         let grid = VoxelGrid::<Dim2>::from_fn([2, 2, 1], 1.0, diagonal).unwrap();
         let sharing = Sharing::new(&grid);
@@ -462,8 +463,8 @@ mod tests {
     }
 
     #[test]
-    fn a_crack_that_reaches_the_far_side_leaves_no_hinge() {
-        // Release the middle column of a 4 x 2 block point by point: the last release parts it.
+    fn normalise_removes_hinge_when_crack_reaches_far_side() {
+        // Release the middle column of a 4 × 2 block point by point: the last release separates it.
         let grid = VoxelGrid::<Dim2>::from_fn([4, 2, 1], 1.0, |_| 1).unwrap();
         let mut sharing = Sharing::new(&grid);
         assert!(sharing.release([2, 0, 0], 0b1010));
@@ -475,24 +476,24 @@ mod tests {
         );
         assert!(sharing.release([2, 1, 0], 0b1010));
         let changed = sharing.normalise(neighbourhood::<Dim2>([2, 1, 0], 1).collect());
-        assert_eq!(changed, [[2, 2, 0]], "the last node follows by itself");
+        assert_eq!(changed, [[2, 2, 0]], "`normalise` splits the last node");
         assert_eq!(sharing.groups([2, 2, 0]).iter().count(), 2);
     }
 
     #[test]
-    fn an_open_face_makes_its_far_corners_open() {
+    fn is_open_includes_far_corners_of_open_face() {
         let grid = VoxelGrid::<Dim3>::cube(6, 1.0).unwrap();
         let mut sharing = Sharing::new(&grid);
         assert!(!sharing.is_open([3, 3, 3]));
         sharing.release([3, 3, 3], 0b1010_1010);
         sharing.normalise(neighbourhood::<Dim3>([3, 3, 3], 1).collect());
         assert_eq!(sharing.groups([3, 3, 3]).iter().count(), 2);
-        // The four faces across x are open, so the points in that plane are the crack's front.
+        // The four faces across x are open, so the points in that plane are the front of the crack.
         assert!(sharing.is_open([3, 4, 4]) && sharing.is_open([3, 2, 3]));
         assert_eq!(
             sharing.groups([3, 4, 4]),
             Groups::joined(255),
-            "still together there"
+            "one group at the front of the crack"
         );
         assert!(!sharing.is_open([4, 3, 3]));
     }

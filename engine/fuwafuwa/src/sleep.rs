@@ -1,8 +1,8 @@
-//! Who sleeps: pieces that have been slow for a while, until something moves against them.
+//! Sleeping of pieces and rigid bodies that have been slow for a while.
 //!
-//! Each piece sleeps and wakes on its own. What sleeps is as good as a wall to the rest. A
-//! neighbour that moves wakes it, whichever way it goes: so a heap freezes from the ground up
-//! while its top still settles, and nothing is left hanging when its support is pulled away.
+//! Each piece sleeps and wakes on its own. To all others, a sleeping piece is as immovable as a wall. A
+//! neighbour that moves wakes it, in either direction. So a heap falls asleep from the ground up while its
+//! top still settles, and nothing stays suspended when its support is removed.
 
 use crate::body::Bodies;
 use crate::contact::Hit;
@@ -13,16 +13,16 @@ use crate::ids::{PieceId, Table};
 use crate::rigid::Rigids;
 use std::collections::BTreeSet;
 
-/// Pieces slower than this [m/s], on the average over their nodes, are on their way to sleep: what falls is
-/// faster after 3 ms. With half of it towers of ten boxes lean by a fifth of a box and `pile` sleeps after 6.8 s in place of
-/// 4.9; with twice as much a nail on which a ball hangs tells 11 % more than its weight.
+/// Sleep speed threshold [m/s], as root mean square over the nodes of a piece. A falling body exceeds it
+/// after 3 ms. Higher values let bodies sleep before contact forces have settled; with lower ones, piles take
+/// longer to sleep.
 const SLOW: f64 = 0.03;
-/// How long they must have been [s]: what turns back at the top of its flight, or of a swing, is not for so long.
-/// With half of it a box whose foot was pulled away does not get to lie flat; with twice as much `pile` takes 7.6 s to sleep.
+/// Time below the speed threshold until a piece sleeps [s]. Longer than the turning point of a flight or a
+/// vibration.
 const STILL_TIME: f32 = 0.5;
 
-/// Counts for how long each piece has been slow, and puts to sleep those that have been long
-/// enough. Pieces in `handled`, which a hand touches, stay awake. Returns who fell asleep.
+/// Updates the sleep timers of all pieces, and puts those to sleep that reach [`STILL_TIME`]. Pieces in `handled`,
+/// which touch a coupled rigid body, stay awake. Returns the pieces that fell asleep.
 pub fn fall_asleep<D: Dim>(
     bodies: &mut Bodies<D>,
     motions: &[Table<PieceId, PieceMotion>],
@@ -43,7 +43,8 @@ pub fn fall_asleep<D: Dim>(
     })
 }
 
-/// The same for what is free of the rigid things; `handled` are those that a hand presses on.
+/// Updates the sleep timers of dynamic rigid bodies, and puts those to sleep that reach [`STILL_TIME`].
+/// Rigid bodies in `handled`, which touch a coupled rigid body, stay awake.
 pub fn fall_asleep_rigid(rigids: &mut Rigids, handled: &BTreeSet<RigidSlot>, duration: f32) {
     for (slot, rigid) in rigids.by_slot_mut() {
         if !rigid.is_free() || rigid.asleep {
@@ -58,7 +59,7 @@ pub fn fall_asleep_rigid(rigids: &mut Rigids, handled: &BTreeSet<RigidSlot>, dur
     }
 }
 
-/// Wakes the pieces that were hit; returns who woke.
+/// Wakes the pieces in `hits`; returns the pieces that woke.
 pub fn wake<D: Dim>(bodies: &mut Bodies<D>, hits: &[Hit]) -> Vec<Hit> {
     if hits.is_empty() {
         return Vec::new();
@@ -71,7 +72,7 @@ pub fn wake<D: Dim>(bodies: &mut Bodies<D>, hits: &[Hit]) -> Vec<Hit> {
     })
 }
 
-/// Puts to sleep or wakes all pieces that a condition on body, number and piece holds for.
+/// Puts to sleep or wakes all pieces for which a condition on body, number and piece holds; returns them.
 fn change<D: Dim>(
     bodies: &mut Bodies<D>,
     asleep: bool,

@@ -1,4 +1,4 @@
-//! Saving a world and going on from there, to the same bits.
+//! Saving and loading of worlds; a loaded world continues bit for bit like the original.
 //!
 //! ```text
 //! "fuwa"  version u32  dimensions u8  checksum u64  the world, in postcard's format
@@ -9,39 +9,39 @@ use crate::hash::Hash;
 use crate::world::World;
 use std::fmt;
 
-/// Number of the format. It changes when an older world would be misread or go on differently.
+/// Version of the format. It changes when an older snapshot would be misread or would continue differently.
 pub const VERSION: u32 = 17;
 
 const MAGIC: [u8; 4] = *b"fuwa";
 const HEADER: usize = 17;
 
-/// Why a snapshot was not taken up.
+/// Reason why a snapshot could not be loaded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum BadSnapshot {
-    /// It is no snapshot, or ends in its header.
+    /// The bytes are not a snapshot, or end within the header.
     NotOne,
-    /// It was saved by another version of this library.
+    /// The snapshot has another format version.
     Version {
-        /// The format it has.
+        /// Version in the header.
         found: u32,
     },
-    /// It is of a world with another number of dimensions.
+    /// The snapshot is of a world with another number of dimensions.
     Dimensions {
-        /// The number it has.
+        /// Number of dimensions in the header.
         found: u8,
     },
-    /// It is not as it was saved: cut off, damaged or changed.
+    /// The snapshot is truncated, damaged or modified: its checksum does not match.
     Damaged,
-    /// It is as it was written, but not of a world.
+    /// The checksum matches, but the world is invalid.
     NoWorld {
-        /// What is wrong with it.
+        /// Violated invariant.
         defect: &'static str,
     },
-    /// It is as it was written, but not of a world: a body in it cannot be.
+    /// The checksum matches, but a body of the world is invalid.
     Broken {
-        /// Which body.
+        /// Slot of the body.
         body: usize,
-        /// What is wrong with it.
+        /// Violated invariant.
         defect: String,
     },
 }
@@ -52,26 +52,26 @@ impl fmt::Display for BadSnapshot {
             Self::NotOne => write!(f, "this is no snapshot of a world"),
             Self::Version { found } => write!(
                 f,
-                "the snapshot has format {found}, this library reads format {VERSION}"
+                "unsupported snapshot format {found}: expected format {VERSION}"
             ),
             Self::Dimensions { found } => {
                 write!(f, "the snapshot is of a world with {found} dimensions")
             }
             Self::Broken { body, defect } => {
-                write!(f, "the snapshot is of no world: of body {body}, {defect}")
+                write!(f, "the snapshot is invalid: body {body}: {defect}")
             }
-            Self::NoWorld { defect } => write!(f, "the snapshot is of no world: {defect}"),
-            Self::Damaged => write!(f, "the snapshot is damaged: its checksum does not fit"),
+            Self::NoWorld { defect } => write!(f, "the snapshot is invalid: {defect}"),
+            Self::Damaged => write!(f, "the snapshot is damaged: its checksum does not match"),
         }
     }
 }
 
 impl std::error::Error for BadSnapshot {}
 
-/// The world as it is now, to be saved.
+/// Serialises the present state of a world.
 #[inline(never)]
 pub fn save<D: Dim>(world: &World<D>) -> Vec<u8> {
-    let state = postcard::to_stdvec(world).expect("a world has nothing that postcard cannot write");
+    let state = postcard::to_stdvec(world).expect("postcard can serialise every world");
     let mut bytes = Vec::with_capacity(HEADER + state.len());
     bytes.extend(MAGIC);
     bytes.extend(VERSION.to_le_bytes());
@@ -81,14 +81,16 @@ pub fn save<D: Dim>(world: &World<D>) -> Vec<u8> {
     bytes
 }
 
-/// The world that was saved.
+/// Loads a world from the bytes of [`save`].
 ///
 /// # Errors
-/// [`BadSnapshot`] when it is none, has another format or other dimensions, was damaged, or when the
-/// voxels, connections, elements, nodes or pieces of a body in it contradict each other, or a node is nowhere.
+/// [`BadSnapshot`] if the bytes are not a snapshot, have another version or number of dimensions, or are
+/// damaged. Also if the voxels, connections, elements, nodes or pieces of a body contradict each other, or if
+/// a position is not finite.
 ///
-/// So who wrote it does not matter: what is loaded can be stepped, and goes out of hand at the worst, as what is
-/// placed badly does. It takes time and memory by how long the snapshot is, and not by what it says of lengths.
+/// Input from untrusted sources is therefore safe: a loaded world can be stepped, and at worst it diverges,
+/// like a badly posed scene. Time and memory are bounded by the number of bytes, not by lengths that the
+/// bytes claim.
 #[inline(never)]
 pub fn load<D: Dim>(bytes: &[u8]) -> Result<World<D>, BadSnapshot> {
     if bytes.len() < HEADER || bytes[..4] != MAGIC {

@@ -1,13 +1,12 @@
-//! The forces of all elements, eight at a time.
+//! Forces of all elements, evaluated eight at a time.
 //!
-//! Elements stand side by side in the lanes of a block. Each lane does the operations of the scalar
-//! formula in the scalar order and nothing is summed across lanes, so the width of the machine's
-//! vectors cannot change a bit; the tests hold the forces against [`crate::law`]. An element writes
-//! to its own slots, and a node adds up its slots in the order of the octants around it: neither
-//! thread nor numbering can change a bit.
+//! Elements occupy the lanes of a block. Each lane performs the operations of the scalar formula in the
+//! scalar order, and nothing is summed across lanes, so the vector width of the machine does not change the
+//! result. Tests compare the forces with [`crate::law`]. An element writes to its own slots, and a node sums
+//! its slots in the order of the octants around it. So neither threads nor numbering change the result.
 //!
-//! The lanes of a block are of one class where a class has elements enough. The rest, a fifth of a
-//! body in some hundred classes, is pooled by number of nodes, with a stencil for each lane.
+//! All lanes of a block have one class, if the class has enough elements. The rest, a fifth of a body in
+//! about a hundred classes, is pooled by number of nodes, with one stencil per lane.
 
 mod assign;
 mod block;
@@ -36,65 +35,66 @@ use plastic::Flow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::marker::PhantomData;
 
-/// Blocks from which on several threads are worth their meeting: about as many as make shares enough
-/// in [`threads`].
+/// Smallest number of blocks that are evaluated on several threads; about as many as fill enough chunks in
+/// [`threads`].
 #[cfg(feature = "parallel")]
 const LEAST_PARALLEL: usize = 1024;
 
-/// Numbers after the last force, so that four can be read from where it begins.
+/// Padding after the last force, so that four numbers can be read from its start.
 const PAD: usize = 4;
 
-/// All elements of a body in blocks, with the forces they put on their nodes.
+/// All elements of a body in blocks, with their nodal forces.
 #[derive(Clone, Debug)]
 pub struct Blocks<D: Dim> {
     law: Law,
     moduli: Vec<Moduli>,
-    /// When elements of each material flow; of those that keep no dents, never.
+    /// Plastic flow of each material; `None` for elastic materials.
     flows: Vec<Option<Flow>>,
     voxel_size: f32,
     blocks: Vec<Block>,
     /// Blocks with vacant lanes.
     open: BTreeMap<Home, BTreeSet<u32>>,
-    /// Blocks without elements, by number of nodes and by whether their lanes differ.
+    /// Blocks without elements, by number of nodes and by whether their lanes have different classes.
     empty: BTreeMap<(u32, bool), Vec<u32>>,
-    /// The stencil of each class that has a block of its own: `numbers` each.
+    /// Start of the stencil in `numbers`, for each class that has blocks of its own.
     stencils: BTreeMap<u32, u32>,
     numbers: Vec<f32>,
-    /// The stencils of pooled lanes.
+    /// Stencils of pooled lanes.
     pooled: Vec<Eight>,
-    /// Block and lane of each element, by id; the block is [`VACANT`] while it has none.
+    /// Block and lane of each element, by id; the block is [`VACANT`] if the element has none.
     assigned: Table<ElementId, (u32, u8)>,
-    /// Where the forces on each node stand, by id: places in `forces`, one an element, in the order
-    /// of the octants; 0, where no force is, for those that are fewer.
+    /// Indices in `forces` of the forces on each node, by id: one per element, in the order of the octants.
+    /// Unused entries are 0, where a zero force is stored.
     slots: Table<NodeId, [u32; 8]>,
-    /// The nodes of all blocks: node k of lane l at k · LANES + l after the block's first.
+    /// Nodes of all blocks: node k of lane l at k · LANES + l after the first of the block.
     nodes: Vec<u32>,
-    /// The forces on them, each of as many numbers as there are dimensions: a pad would be a quarter
-    /// of what a substep has to move, or half of it.
+    /// Forces on these nodes with D::N components each. Padding to four would make up a quarter (3D) or half
+    /// (2D) of the memory traffic of a substep.
     forces: Vec<f32>,
-    /// Kept for the next evaluation, so that it need not be cleared.
+    /// Reused by the next evaluation, so that it need not be cleared.
     scratch: Option<Box<[Scratch; GROUP]>>,
-    /// What was read from a file, until [`Blocks::restore`] puts it in its place.
+    /// State read from a file, until [`Blocks::restore`] distributes it.
     #[cfg(feature = "serde")]
     saved: Option<saved::Saved>,
     dim: PhantomData<D>,
 }
 
-/// What changes velocities in a substep, beside the elastic forces.
+/// Parameters of the velocity update in a substep.
 #[derive(Copy, Clone, Debug)]
 pub struct Kick<'a> {
-    /// The nodes that move, ascending.
+    /// Nodes to be moved, ascending.
     pub nodes: &'a [NodeId],
-    /// One over the mass of each node [1/kg], by id; 0 where it is held.
+    /// Inverse mass of each node [1/kg], by id; 0 if the node is fixed.
     pub inverse_mass: &'a [f32],
-    /// The substep [s].
+    /// Length of the substep [s].
     pub duration: f32,
-    /// [m/s²]
+    /// Gravity [m/s²].
     pub gravity: Row,
 }
 
 impl<D: Dim> Blocks<D> {
-    /// No elements yet. `elasticities[number - 1]` belongs to material `number`; `voxel_size` [m].
+    /// Creates blocks without elements. `elasticities[number - 1]` belongs to material `number`; `voxel_size`
+    /// is in metres.
     pub fn new(law: Law, elasticities: &[Elasticity], voxel_size: f32) -> Self {
         Self {
             law,
@@ -118,17 +118,18 @@ impl<D: Dim> Blocks<D> {
         }
     }
 
-    /// By which law forces are computed.
+    /// Law of the forces.
     pub fn law(&self) -> Law {
         self.law
     }
 
-    /// Other stiffnesses for the materials, in their order.
+    /// Sets the elasticity of each material.
     pub fn set_elasticities(&mut self, elasticities: &[Elasticity]) {
         self.moduli = moduli::<D>(elasticities);
     }
 
-    /// Says which materials keep dents, in their order, before any element is put in. Under [`Law::Endo2004`] none does.
+    /// Sets the plasticity of each material; must be called before elements are added. Ignored under
+    /// [`Law::Endo2004`].
     pub fn set_plasticities(&mut self, plasticities: &[Option<Plasticity>]) {
         self.flows.clear();
         if self.law == Law::PatchExact {
@@ -137,8 +138,8 @@ impl<D: Dim> Blocks<D> {
         }
     }
 
-    /// What was kneaded into an element for good, undone: G of [`crate::plasticity`], by rows; none where its material keeps
-    /// no dents.
+    /// Returns the plastic state G of an element ([`crate::plasticity`]) by rows; `None` if its material is
+    /// elastic.
     pub fn undone(&self, id: ElementId) -> Option<[[f32; 3]; 3]> {
         let &(block, lane) = self.assigned.get(id.index())?;
         let block = self.blocks.get(block as usize)?;
@@ -146,7 +147,7 @@ impl<D: Dim> Blocks<D> {
         Some(undone.get(lane as usize))
     }
 
-    /// Gives an element what another one had.
+    /// Sets the plastic state of an element.
     pub fn set_undone(&mut self, id: ElementId, undone: [[f32; 3]; 3]) {
         let (block, lane) = self.assigned[id];
         if let Some(own) = &mut self.blocks[block as usize].undone {
@@ -154,12 +155,12 @@ impl<D: Dim> Blocks<D> {
         }
     }
 
-    /// Whether some material keeps dents.
+    /// Whether any material is plastic.
     pub fn has_plastic(&self) -> bool {
         self.flows.iter().any(Option::is_some)
     }
 
-    /// Computes the forces of all elements that are awake, at the given node positions [m].
+    /// Computes the forces of all awake elements at the given node positions [m].
     pub fn evaluate(&mut self, position: &[Row]) {
         #[cfg(feature = "parallel")]
         if self.blocks.len() >= LEAST_PARALLEL && rayon::current_num_threads() > 1 {
@@ -180,8 +181,8 @@ impl<D: Dim> Blocks<D> {
         self.scratch = kept;
     }
 
-    /// The blocks in groups that share nothing that is written: on any number of threads the same
-    /// bits come out.
+    /// Splits the blocks into groups that write disjoint data, so that the result is bitwise identical for
+    /// any number of threads.
     fn groups(&mut self) -> impl Iterator<Item = Group<'_>> {
         let Self {
             law,
@@ -203,7 +204,7 @@ impl<D: Dim> Blocks<D> {
         let mut forces = &mut self.forces[LANES * D::N..];
         let mut first = LANES;
         self.blocks.chunks_mut(GROUP).map(move |blocks| {
-            // Blocks stand in the order of their forces.
+            // Blocks are in the order of their forces.
             let end = blocks.last().map_or(first, Block::end);
             let (own, others) = std::mem::take(&mut forces).split_at_mut((end - first) * D::N);
             let group = Group {
@@ -217,14 +218,13 @@ impl<D: Dim> Blocks<D> {
         })
     }
 
-    /// The force [N] on a node, as of the last evaluation.
+    /// Force [N] on a node in the last evaluation.
     #[inline]
     pub fn force_on(&self, node: NodeId) -> Row {
         on_widest_lanes!(simd => self.force_by(simd, node))
     }
 
-    /// The forces [N] of the elements on a node, in the order of the octants around it, as of the
-    /// last evaluation.
+    /// Forces [N] of the elements on a node in the last evaluation, in the order of the octants around it.
     #[inline]
     pub fn parts_on(&self, node: NodeId) -> impl Iterator<Item = Row> + '_ {
         let places = self.slots[node].iter();
@@ -236,7 +236,7 @@ impl<D: Dim> Blocks<D> {
         })
     }
 
-    /// The squares of the forces of the elements on a node, added up [N²], as of the last evaluation.
+    /// Sum of the squared forces of the elements on a node in the last evaluation [N²].
     #[inline(always)]
     pub fn squares_on<S: Simd>(&self, simd: S, node: NodeId) -> f32 {
         let slots = &self.slots[node][..D::CORNERS];
@@ -251,10 +251,10 @@ impl<D: Dim> Blocks<D> {
         sum
     }
 
-    /// The rotation of an element as of the last evaluation, by rows.
+    /// Rotation of an element in the last evaluation, by rows.
     pub fn rotation(&self, id: ElementId) -> [[f32; 3]; 3] {
         let turned = self.rotation_of(id);
-        // Kept as cosine and sine in the plane, as a quaternion in space.
+        // Stored as cosine and sine in 2D, as a quaternion in 3D.
         if D::N == 2 {
             let [cosine, sine, ..] = turned;
             return [[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]];
@@ -271,7 +271,7 @@ impl<D: Dim> Blocks<D> {
         assigned.is_some_and(|&(block, _)| block != VACANT)
     }
 
-    /// Gives an element in space another rotation, as a quaternion, for the next evaluation to begin with.
+    /// Sets the rotation of a 3D element, as a quaternion, from which the next evaluation starts.
     pub fn set_rotation(&mut self, id: ElementId, turned: [f32; 4]) {
         let (block, lane) = self.assigned[id];
         let rotation = &mut self.blocks[block as usize].rotation;
@@ -280,8 +280,8 @@ impl<D: Dim> Blocks<D> {
         }
     }
 
-    /// Turns all elements, and the forces of the last evaluation. Rotations are kept as cosine and sine in the plane, as quaternions in
-    /// space.
+    /// Rotates all elements, and the forces of the last evaluation. Rotations are stored as cosine and sine
+    /// in 2D, as quaternions in 3D.
     pub fn rotate(&mut self, rotation: Rotation) {
         for block in &mut self.blocks {
             for lane in 0..LANES {
@@ -304,15 +304,15 @@ impl<D: Dim> Blocks<D> {
         }
     }
 
-    /// How many elements that are awake were inside out in the last evaluation; under
-    /// [`Law::Endo2004`], which does not look, none.
+    /// Number of awake elements that were inverted in the last evaluation. Always 0 under [`Law::Endo2004`],
+    /// which does not check for inversion.
     pub fn inverted_count(&self) -> u32 {
         let awake = self.blocks.iter().filter(|block| !block.is_idle());
         let inverted = |block: &Block| (block.inverted & !block.vacant).count_ones();
         awake.map(inverted).sum()
     }
 
-    /// Adds a substep's worth of elastic force and of gravity to velocities [m/s].
+    /// Applies the elastic forces and gravity of one substep to velocities [m/s].
     pub fn kick(&self, kick: &Kick, velocity: &mut [Row]) {
         threads::map(threads::rows(kick.nodes, [velocity]), |rows| {
             on_widest_lanes!(simd => self.kick_by(simd, kick, rows));
@@ -339,7 +339,7 @@ impl<D: Dim> Blocks<D> {
             Some(&(block, lane)) if block != VACANT => self.blocks[block as usize]
                 .rotation
                 .map(|part| part[lane as usize]),
-            // None, as a cosine and a sine or as a quaternion.
+            // Identity, as cosine and sine or as a quaternion.
             _ if D::N == 2 => [1.0, 0.0, 0.0, 0.0],
             _ => [0.0, 0.0, 0.0, 1.0],
         }
@@ -361,7 +361,7 @@ mod tests {
     use crate::pyramid::{Grading, Pyramid};
     use crate::sharing::Sharing;
 
-    /// The widest lanes against others, on a body with every kind of block.
+    /// Compares the widest lanes with others, on a body with every kind of block.
     fn check_same_bits<D: Dim, S: Simd>(law: Law, simd: S) {
         let grid = VoxelGrid::<D>::ball(24, 1.0).unwrap();
         let sharing = Sharing::new(&grid);
@@ -416,8 +416,9 @@ mod tests {
         assert_eq!(by_best, by_other);
     }
 
-    /// Sleepers that shared a block with who was awake turned on and pulled anew: what happened when they woke went
-    /// by how elements were put together. And who came into a block had the forces of who had been there.
+    /// Regression: sleeping elements in a block with awake ones were evaluated again, so waking depended on
+    /// the distribution over blocks. An element that entered a block also kept the forces of the previous one
+    /// in its lane.
     fn check_sleepers<D: Dim>() {
         let grid = VoxelGrid::<D>::ball(16, 1.0).unwrap();
         let sharing = Sharing::new(&grid);
@@ -451,12 +452,15 @@ mod tests {
             awake.count()
         };
         let (when_awake, before) = (evaluated(&blocks), states(&blocks));
-        // One by one, as crumbs do.
+        // One by one, like crumbs.
         let sleepers: Vec<ElementId> = all.iter().copied().filter(sleeps).collect();
         for &id in &sleepers {
             blocks.set_asleep(&mesh, &[id], true);
         }
-        assert!(2 * evaluated(&blocks) < when_awake, "a quarter is awake");
+        assert!(
+            2 * evaluated(&blocks) < when_awake,
+            "a quarter of the elements is awake, so most blocks must be idle"
+        );
         assert_eq!(states(&blocks), before);
         evaluate(&mut blocks, 0.2);
         let after = states(&blocks);
@@ -472,22 +476,22 @@ mod tests {
     }
 
     #[test]
-    fn sleepers_stay_as_they_are_beside_who_is_awake() {
+    fn sleeping_elements_keep_state_beside_awake_ones() {
         check_sleepers::<Dim2>();
         check_sleepers::<Dim3>();
     }
 
     #[test]
-    fn all_lanes_give_the_same_bits() {
+    fn lanes_of_all_widths_give_same_bits() {
         for law in [Law::PatchExact, Law::Endo2004] {
-            // With assertions between them plain numbers take the compiler four minutes and as many gigabytes.
+            // In debug builds with scalar lanes, compilation takes four minutes and several gigabytes.
             #[cfg(not(debug_assertions))]
             {
                 let plain = fearless_simd::Fallback::new();
                 check_same_bits::<Dim2, _>(law, plain);
                 check_same_bits::<Dim3, _>(law, plain);
             }
-            // The widest ones are what the others are held against.
+            // The widest lanes are the reference.
             #[cfg(target_arch = "x86_64")]
             {
                 let level = fearless_simd::Level::baseline();

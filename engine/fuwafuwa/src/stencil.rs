@@ -1,18 +1,18 @@
-//! One class of element: which children it fills and which of its slots carry a node.
+//! Element class: the children that an element fills, and the slots that carry a node.
 //!
-//! Every node of an element sits on the element's 3 × 3 (× 3) lattice of slots; the number of 1s
-//! among a slot's coordinates says what it is: corner 0, edge middle 1, face centre 2, centre 3.
-//! Rest offsets, gradient weights, volumes and masses depend on the class alone, and scale with
-//! powers of the element's size, so they are computed once a class.
+//! Every node of an element lies on its 3 × 3 (× 3) lattice of slots. The number of 1s among the coordinates
+//! of a slot gives its kind: 0 corner, 1 edge middle, 2 face centre, 3 centre. Rest offsets, gradient
+//! weights, volumes and masses depend on the class only, and scale with powers of the element size. So they
+//! are computed once per class.
 
 use crate::dim::{Dim, Point, add, corner};
 use std::fmt;
 use std::marker::PhantomData;
 
-/// A vector in double precision; the third coordinate is 0 in 2D.
+/// Vector in double precision; the third coordinate is 0 in 2D.
 pub type Vector64 = [f64; 3];
 
-/// The coordinates of a slot, each 0, 1 or 2.
+/// Coordinates of a slot, each 0, 1 or 2.
 pub fn slot_at(slot: usize) -> Point {
     [
         (slot % 3) as i32,
@@ -21,12 +21,12 @@ pub fn slot_at(slot: usize) -> Point {
     ]
 }
 
-/// The slot at the given coordinates.
+/// Slot at the given coordinates.
 pub fn slot_index(at: Point) -> usize {
     (at[0] + 3 * at[1] + 9 * at[2]) as usize
 }
 
-/// The slots in the closure of a mask of children: the corners of each of them.
+/// Mask of the slots in the closure of a mask of children: the corners of all children.
 pub fn closure<D: Dim>(children: u8) -> u32 {
     let mut slots = 0;
     for child in (0..D::CORNERS).filter(|child| children >> child & 1 == 1) {
@@ -37,17 +37,17 @@ pub fn closure<D: Dim>(children: u8) -> u32 {
     slots
 }
 
-/// The slots in the corners of the whole cell.
+/// Mask of the slots in the corners of the whole cell.
 pub fn cell_corners<D: Dim>() -> u32 {
     (0..D::CORNERS).fold(0, |slots, vertex| {
         slots | 1 << slot_index(corner(vertex).map(|k| 2 * k))
     })
 }
 
-/// A class that cannot be an element: a corner of it carries no node to take its share.
+/// Error of a class in which a corner with a share of the volume or area has no node.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MissingCorner {
-    /// The slot without a node.
+    /// Slot without a node.
     pub slot: usize,
 }
 
@@ -63,44 +63,45 @@ impl fmt::Display for MissingCorner {
 
 impl std::error::Error for MissingCorner {}
 
-/// The geometry of a class of element, for a child of edge length 1.
+/// Geometry of an element class, for children of edge length 1.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Stencil<D: Dim> {
-    /// The children it fills; every corner set for a whole cell.
+    /// Mask of the filled children; every bit set for a whole cell.
     pub children: u8,
-    /// The slots that carry a node, ascending.
+    /// Slots that carry a node, ascending.
     pub slots: Vec<u8>,
-    /// The same as a mask.
+    /// Mask of `slots`.
     pub mask: u32,
     /// Rest offset of each node from the volume centroid.
     pub offsets: Vec<Vector64>,
-    /// ∂V/∂x of each node at rest: an exact gradient for every polygon or polyhedron, after
-    /// [Beirao da Veiga 2013]. Σ x bᵀ = V F for every affine motion.
+    /// ∂V/∂x of each node at rest: an exact gradient for every polygon or polyhedron [Beirao da Veiga 2013].
+    /// Σ x bᵀ = V F for every affine motion.
     pub gradients: Vec<Vector64>,
-    /// The share of the volume that belongs to each node.
+    /// Part of the volume that belongs to each node.
     pub volumes: Vec<f64>,
-    /// Number of children it fills.
+    /// Volume: number of filled children.
     pub volume: f64,
-    /// Stiffness of its hourglass modes relative to that of a plain cell: see [`Stencil::new`].
+    /// Stiffness of the hourglass modes relative to those of a plain cell: see [`Stencil::new`].
     pub hourglass: f64,
     dim: PhantomData<D>,
 }
 
 impl<D: Dim> Stencil<D> {
-    /// The class that fills `children` and carries nodes on `slots`.
+    /// Computes the class that fills `children` and carries nodes on `slots`.
     ///
-    /// Each exposed face of a child hands its area vector in equal parts to its corners, and each
-    /// child its volume. A slot without a node hands its share on in equal parts to what it lies
-    /// between: the centre to the face centres, a face centre to its edge middles, an edge middle
-    /// to its ends. The rule sees a face's own pattern only, so that both sides of a shared face
-    /// agree: that is what makes a graded mesh pass the patch test.
+    /// Each exposed face of a child distributes its area vector in equal parts to its corners, and each child
+    /// its volume. A slot without a node passes its share in equal parts to its neighbours of lower order:
+    /// the centre to the face centres, a face centre to its edge middles, an edge middle to its ends. The
+    /// rule depends only on the pattern of the face itself, so both sides of a shared face agree. This makes
+    /// a graded mesh pass the patch test.
     ///
-    /// Hourglass modes are as stiff as pure bending asks for: the softest way to bend decides.
+    /// The stiffness of the hourglass modes follows from pure bending: the softest bending mode determines
+    /// it.
     ///
     /// # Errors
-    /// [`MissingCorner`] when a share ends on a corner slot without a node.
+    /// [`MissingCorner`] if a corner slot without a node would receive a share.
     #[inline(never)]
     pub fn new(children: u8, slots: u32) -> Result<Self, MissingCorner> {
         let mut gradients = [[0.0; 3]; 27];
@@ -158,20 +159,21 @@ impl<D: Dim> Stencil<D> {
         Ok(stencil)
     }
 
-    /// Which of its nodes a slot carries, if any.
+    /// Index of the node of a slot, if the slot has one.
     #[inline(always)]
     pub fn node_at(&self, slot: usize) -> Option<usize> {
         let before = self.mask & ((1 << slot) - 1);
         (self.mask >> slot & 1 == 1).then_some(before.count_ones() as usize)
     }
 
-    /// How much stiffer than in a plain cell hourglass modes must be to store the energy of pure
-    /// bending; the least over all ways to bend, so that the element is too stiff for none.
+    /// Returns the stiffness of the hourglass modes, relative to a plain cell, with which they store the
+    /// energy of pure bending. This is the minimum over all bending modes, so that the element is too stiff
+    /// for none of them.
     ///
-    /// Bending along axis a towards axis b is u = x_a x_b e_a − ½ x_a² e_b. Without lateral
-    /// contraction its energy is Y/2 ∫ x_b² dV, and the hourglass term of [`crate::law`] stores
-    /// k/2 Σ V_i |h_i|². A plain cell has Σ V_i |h_i|² = V = 3 ∫ x_b² dV. Where mid nodes take volume
-    /// from the corners, or children are gone, the sum is a smaller part of the integral.
+    /// Bending along axis a towards axis b is u = x_a x_b e_a − ½ x_a² e_b. Without lateral contraction its
+    /// energy is Y/2 ∫ x_b² dV, and the hourglass term of [`crate::law`] stores k/2 Σ V_i |h_i|². A plain
+    /// cell has Σ V_i |h_i|² = V = 3 ∫ x_b² dV. The sum is a smaller part of the integral if mid nodes take
+    /// volume from the corners, or if children are missing.
     fn least_bending(&self) -> f64 {
         let mut least = f64::INFINITY;
         for towards in 0..D::N {
@@ -190,7 +192,7 @@ impl<D: Dim> Stencil<D> {
         least
     }
 
-    /// ∫ x² dV of the children along an axis, about the centroid.
+    /// Returns ∫ x² dV of the children along an axis, about the centroid.
     fn second_moment(&self, axis: usize) -> f64 {
         let sides = (0..D::CORNERS).filter(|child| self.children >> child & 1 == 1);
         let sides: Vec<f64> = sides.map(|child| (child >> axis & 1) as f64).collect();
@@ -199,7 +201,7 @@ impl<D: Dim> Stencil<D> {
         parts.sum::<f64>() + self.volume / 12.0
     }
 
-    /// Σ V_i |h_i|² of a motion of the nodes.
+    /// Returns Σ V_i |h_i|² of a motion of the nodes.
     fn not_affine(&self, moved: &[Vector64]) -> f64 {
         let (mut slope, mut mean) = ([[0.0; 3]; 3], [0.0; 3]);
         for (k, u) in moved.iter().enumerate() {
@@ -221,13 +223,13 @@ impl<D: Dim> Stencil<D> {
         sum
     }
 
-    /// Whether this is a whole cell with nodes in its corners only.
+    /// Whether the class is a whole cell with nodes only in its corners.
     pub fn is_plain(&self) -> bool {
         self.children == D::ALL_CORNERS && self.slots.len() == D::CORNERS
     }
 }
 
-/// Moves the shares of slots without a node to the slots they lie between.
+/// Passes the shares of slots without a node to the slots between which they lie.
 fn hand_on<D: Dim, const K: usize>(
     shares: &mut [[f64; K]; 27],
     nodes: u32,
@@ -259,7 +261,7 @@ mod tests {
     use super::*;
     use crate::dim::{Dim2, Dim3};
 
-    /// Σ x bᵀ = V·I for every class that carries at least the corners of its children's outline.
+    /// Checks Σ x bᵀ = V·I of a class that carries at least the corners of the outline of its children.
     fn check_gradient_is_exact<D: Dim>(children: u8, slots: u32) {
         let stencil = Stencil::<D>::new(children, slots).unwrap();
         for i in 0..D::N {
@@ -277,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn hanging_nodes_keep_the_gradient_exact() {
+    fn stencil_gradient_is_exact_with_hanging_nodes() {
         let square = cell_corners::<Dim2>();
         check_gradient_is_exact::<Dim2>(15, square);
         check_gradient_is_exact::<Dim2>(15, square | 1 << slot_index([1, 0, 0]));
@@ -291,9 +293,9 @@ mod tests {
         }
     }
 
-    /// The stiffness of hourglass modes in classes that can be worked out by hand.
+    /// Stiffness of the hourglass modes in classes that can be computed by hand.
     #[test]
-    fn hourglass_modes_are_as_stiff_as_bending_asks_for() {
+    fn hourglass_stiffness_matches_bending_energy() {
         fn check<D: Dim>(children: u8, slots: u32, expected: f64) {
             let stencil = Stencil::<D>::new(children, slots).unwrap();
             assert!((stencil.hourglass - expected).abs() < 1e-12, "{stencil:?}");
@@ -301,10 +303,11 @@ mod tests {
         let (square, cube) = (cell_corners::<Dim2>(), cell_corners::<Dim3>());
         check::<Dim2>(15, square, 1.0);
         check::<Dim3>(255, cube, 1.0);
-        // A lone child is a plain cell of half the width: h goes with the square of it, x does not.
+        // A single child is a plain cell of half the width: h scales with the square of the width, x does
+        // not.
         check::<Dim2>(1, closure::<Dim2>(1), 4.0);
         check::<Dim3>(1, closure::<Dim3>(1), 4.0);
-        // All edge middles: corners keep a quarter of the volume, and x² makes up 15/256 of it.
+        // With all edge middles, corners keep a quarter of the volume, and x² contributes 15/256.
         let middles = [[1, 0, 0], [0, 1, 0], [2, 1, 0], [1, 2, 0]];
         let all = middles
             .iter()
@@ -313,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn a_corner_without_a_node_is_refused() {
+    fn stencil_new_fails_for_corner_without_node() {
         let slots = cell_corners::<Dim2>() & !1;
         assert_eq!(
             Stencil::<Dim2>::new(15, slots),

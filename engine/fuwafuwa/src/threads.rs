@@ -1,20 +1,20 @@
-//! Work shared out among threads, as far as the feature `parallel` and the caller's pool of them
-//! allow. Shares write nothing that another one reads or writes, and their results come in order: on
-//! any number of threads the same bits come out.
+//! Work distribution over threads, with the feature `parallel` and the thread pool of the caller. Chunks do
+//! not write what another chunk reads or writes, and their results are returned in order. So the result is
+//! bitwise identical for any number of threads.
 
 use crate::ids::NodeId;
 
-/// Items in a share: with fewer, handing them over takes longer than they do. At 9 to 29 ns, as an element takes in a substep,
-/// these take 20 to 60 µs. Unit tests have small bodies, and are to see several shares all the same.
+/// Number of items in a chunk. With fewer, the handover takes longer than the work. Unit tests use small
+/// bodies, and should still cover several chunks.
 pub const SHARE: usize = if cfg!(test) { 32 } else { 2048 };
 
-/// Shares from which on several threads take part: where other programs want the machine too, each
-/// meeting of threads can last as long as a tick, and small bodies have nothing to win. So many
-/// hold the nodes of a ball of 40 voxels across.
+/// Smallest number of chunks that are processed on several threads. If other programs use the machine, each
+/// synchronisation of threads can take as long as a tick, and small bodies gain nothing. The nodes of a ball
+/// of 40 voxels across fill this many chunks.
 #[cfg(feature = "parallel")]
 const LEAST: usize = if cfg!(test) { 2 } else { 8 };
 
-/// Does the work of each share; returns what came of them, in their order.
+/// Processes each chunk; returns the results in order.
 pub fn map<T: Send, R: Send>(
     shares: impl Iterator<Item = T>,
     work: impl Fn(T) -> R + Sync,
@@ -31,23 +31,23 @@ pub fn map<T: Send, R: Send>(
     shares.map(work).collect()
 }
 
-/// A list in shares, each with the place of its first item.
+/// Splits a list into chunks, each with the index of its first item.
 pub fn shares<T>(list: &mut [T]) -> impl Iterator<Item = (usize, &mut [T])> {
     let firsts = (0..).step_by(SHARE);
     firsts.zip(list.chunks_mut(SHARE))
 }
 
-/// Some nodes and their rows of several lists that go by node id.
+/// Some nodes, and their rows in several lists indexed by node id.
 pub struct Rows<'a, T, const N: usize> {
-    /// Ascending.
+    /// Nodes, ascending.
     pub nodes: &'a [NodeId],
-    /// The id that the first rows belong to.
+    /// Id of the first row in `lists`.
     pub first: usize,
-    /// Those of all ids from there to beyond the last of the nodes.
+    /// Rows of all ids from `first` to the last node.
     pub lists: [&'a mut [T]; N],
 }
 
-/// The rows of nodes, whose ids ascend, in shares.
+/// Splits nodes with ascending ids, and their rows, into chunks.
 pub fn rows<'a, T, const N: usize>(
     nodes: &'a [NodeId],
     mut lists: [&'a mut [T]; N],
@@ -75,7 +75,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_node_is_in_one_share_with_its_rows() {
+    fn rows_assign_every_node_to_one_chunk() {
         let nodes = (0..5 * SHARE as u32).map(|k| NodeId(3 * k + k % 2));
         let nodes: Vec<NodeId> = nodes.collect();
         let count = 20 * SHARE;

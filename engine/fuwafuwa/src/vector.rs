@@ -1,11 +1,11 @@
-//! The little vector arithmetic that the rest needs, in single and double precision.
+//! Vector arithmetic in single and double precision.
 
 use std::ops::{Add, Mul, Sub};
 
-/// A vector or a place in space; the third coordinate is 0 in 2D.
+/// Vector or position in space; the third coordinate is 0 in 2D.
 pub type Vector = [f32; 3];
 
-/// A number that vectors are made of.
+/// Scalar type of vectors.
 pub trait Number:
     Copy + Default + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
 {
@@ -61,19 +61,19 @@ pub fn cross<T: Number>(a: [T; 3], b: [T; 3]) -> [T; 3] {
     ]
 }
 
-/// A vector as a row, its fourth number 0.
+/// Pads a vector with a fourth component 0.
 #[inline(always)]
 pub fn as_row([x, y, z]: [f32; 3]) -> [f32; 4] {
     [x, y, z, 0.0]
 }
 
-/// The vector in a row.
+/// Drops the fourth component.
 #[inline(always)]
 pub fn three([x, y, z, _]: [f32; 4]) -> [f32; 3] {
     [x, y, z]
 }
 
-/// Whether all of a is finite.
+/// Whether every component is finite.
 #[inline(always)]
 pub fn is_finite<const K: usize>(a: [f32; K]) -> bool {
     a.iter().all(|k| k.is_finite())
@@ -85,7 +85,7 @@ pub fn length<const K: usize>(a: [f32; K]) -> f32 {
     dot(a, a).sqrt()
 }
 
-/// Two directions of length 1, square to one of length 1 and to each other.
+/// Returns two unit vectors that are perpendicular to the unit vector `way` and to each other.
 pub fn across(way: Vector) -> [Vector; 2] {
     let least = (0..3).fold(0, |least, k| match way[k].abs() < way[least].abs() {
         true => k,

@@ -1,4 +1,4 @@
-//! What can be asked of a body: its pieces, its skin, its elements, the mass in a region.
+//! Views of a body: pieces, surface, elements, and the mass in a region.
 
 use crate::body::Body;
 use crate::dim::{Dim, Dim2, Point, add, corner, face_corners, scale};
@@ -8,93 +8,95 @@ use crate::shape::{Shape, Vector};
 use crate::stencil::{slot_at, slot_index};
 use crate::vector::{cross, length, minus, plus, scaled, three};
 
-/// A piece as a whole.
+/// Summary of a piece.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct PieceView {
-    /// Its number.
+    /// Number of the piece.
     pub number: PieceId,
     /// Mass [kg].
     pub mass: f32,
     /// Centre of mass [m].
     pub centre: Vector,
-    /// Velocity of the centre [m/s].
+    /// Velocity of the centre of mass [m/s].
     pub velocity: Vector,
-    /// Least coordinates of its nodes [m].
+    /// Lowest coordinates of the nodes [m].
     pub low: Vector,
-    /// Greatest coordinates of its nodes [m].
+    /// Highest coordinates of the nodes [m].
     pub high: Vector,
     /// Number of elements.
     pub element_count: u32,
-    /// Whether it rests.
+    /// Whether the piece sleeps.
     pub asleep: bool,
-    /// Whether it was stopped for good.
+    /// Whether the piece was quarantined: stopped for good because it was no longer finite.
     pub quarantined: bool,
-    /// Whether it was removed: then all the rest is 0.
+    /// Whether the piece was removed; then all other values are 0.
     pub removed: bool,
 }
 
-/// A bare face of a voxel: a segment in 2D, a quad in 3D.
+/// Exposed face of a voxel: a segment in 2D, a quad in 3D.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Facet {
-    /// Its nodes, two in 2D, four in 3D; seen from outside they run counterclockwise in 3D, and
-    /// in 2D the body lies to the left.
+    /// Nodes of the face: two in 2D, four in 3D. In 3D they run counterclockwise as seen from outside; in 2D
+    /// the body lies to the left.
     pub nodes: [NodeId; 4],
-    /// Where they are [m].
+    /// Positions of the nodes [m].
     pub corners: [Vector; 4],
-    /// Outwards, of length 1.
+    /// Outward unit normal.
     pub normal: Vector,
-    /// The element it belongs to.
+    /// Element of the face.
     pub element: ElementId,
-    /// Its piece.
+    /// Piece of the element.
     pub piece: PieceId,
-    /// Whether it was inside before the body tore.
+    /// Whether the face was exposed by a crack.
     pub is_fresh: bool,
 }
 
-/// A closed line around a piece, or around a hole in it, of a body in the plane.
+/// Closed line around a piece of a 2D body, or around a hole in it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline {
-    /// Its piece.
+    /// Piece inside the line.
     pub piece: PieceId,
-    /// Node ids, the body to the left.
+    /// Node ids; the body lies to the left.
     pub nodes: Vec<NodeId>,
-    /// Where they are [m].
+    /// Positions of the nodes [m].
     pub points: Vec<Vector>,
-    /// Outward normals at the points, of length 1.
+    /// Outward unit normals at the points.
     pub normals: Vec<Vector>,
-    /// Whether the segment from each point to the next was inside before the body tore.
+    /// Whether a crack exposed the segment from each point to the next.
     pub is_fresh: Vec<bool>,
 }
 
-/// An element, to be looked at.
+/// Drawable view of an element.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ElementView {
-    /// Its id.
+    /// Id of the element.
     pub id: ElementId,
-    /// 0 = finest.
+    /// Level of the cell; 0 = finest.
     pub level: u8,
-    /// Its piece.
+    /// Piece of the element.
     pub piece: PieceId,
-    /// Number of its material.
+    /// Number of the material.
     pub material: u8,
-    /// The children of its cell that it fills, as a mask.
+    /// Mask of the children that the element fills in its cell.
     pub children: u8,
-    /// How far it is strained: ‖F − R‖, 0 at rest.
+    /// Elastic strain ‖F − R‖; 0 at rest.
     pub strain: f32,
-    /// Where the slots of its 3 × 3 (× 3) lattice are [m]; those it does not reach hold its centre.
+    /// Positions of the slots of the 3 × 3 (× 3) lattice [m]; slots that the element does not reach hold its
+    /// centre.
     pub slots: [Vector; 27],
 }
 
-/// A face of what an element fills, with nothing of that element beyond it.
+/// Boundary face of the region that an element fills.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct ElementFace {
-    /// The slots at its corners: two in 2D, four in 3D, in the order of [`face_corners`].
+    /// Slots at the corners: two in 2D, four in 3D, in the order of [`face_corners`].
     pub slots: [usize; 4],
-    /// In 3D, from each corner to the next: whether no other face goes on flat from there.
+    /// In 3D: whether each side, from a corner to the next, is an edge at which no other face continues in
+    /// the same plane.
     pub is_edge: [bool; 4],
 }
 
-/// The blocks of slots that an element fills: their low corners, and their width in slots.
+/// Returns the blocks of slots that an element fills: their low corners, and their width in slots.
 pub fn blocks<D: Dim>(level: u8, children: u8) -> impl Iterator<Item = (Point, i32)> {
     let whole = (level == 0).then_some(([0; 3], 2));
     let filled = (0..D::CORNERS).filter(move |child| level > 0 && children >> child & 1 == 1);
@@ -102,7 +104,7 @@ pub fn blocks<D: Dim>(level: u8, children: u8) -> impl Iterator<Item = (Point, i
     whole.into_iter().chain(filled)
 }
 
-/// The faces around what an element fills, block by block.
+/// Returns the boundary faces of the region that an element fills, block by block.
 ///
 /// ```text
 ///     o──o──o        2D: the element fills three of its children. Where two of them meet there is no face;
@@ -138,12 +140,13 @@ pub fn faces<D: Dim>(level: u8, children: u8) -> Vec<ElementFace> {
     faces
 }
 
-/// The slots around what an element in 2D fills, in one round; twice through a slot where children meet in a corner.
+/// Returns the slots around the region that a 2D element fills, in one round. A slot at which children meet
+/// only in a corner occurs twice.
 pub fn ring(level: u8, children: u8) -> Vec<usize> {
     let mut faces = faces::<Dim2>(level, children);
     let mut at = faces.first().map(|face| face.slots[0]);
     let mut ring = Vec::new();
-    // The last face of those that go on there belongs to another child, if there is one.
+    // If several faces continue here, the last one belongs to another child.
     while let Some(next) = faces.iter().rposition(|face| Some(face.slots[0]) == at) {
         let [from, to, ..] = faces.remove(next).slots;
         ring.push(from);
@@ -152,14 +155,14 @@ pub fn ring(level: u8, children: u8) -> Vec<usize> {
     ring
 }
 
-/// The block beyond a face of a block.
+/// Returns the block on the other side of a face of a block.
 fn beyond(mut block: Point, face: usize) -> Point {
     block[face / 2] += 2 * (face % 2) as i32 - 1;
     block
 }
 
 impl<D: Dim> Body<D> {
-    /// Its pieces as wholes, by number.
+    /// Returns a summary of each piece, by number.
     #[inline(never)]
     pub fn piece_views(&self) -> Vec<PieceView> {
         let none = |(number, piece): (PieceId, &crate::piece::Piece)| PieceView {
@@ -201,14 +204,14 @@ impl<D: Dim> Body<D> {
         views
     }
 
-    /// The mass of all nodes inside a region [kg]; in the plane its third coordinates do not count.
+    /// Mass of all nodes inside a region [kg]; in 2D the third coordinate of the region is ignored.
     #[inline(never)]
     pub fn mass_inside(&self, region: &Shape) -> f32 {
         let region = region.seen_in::<D>();
         self.mass_where(|at| region.distance(at).0 < 0.0)
     }
 
-    /// The mass of all nodes at positions [m] that satisfy a condition [kg].
+    /// Mass of all nodes [kg] at positions [m] that satisfy a condition.
     pub fn mass_where(&self, is_inside: impl Fn(Vector) -> bool) -> f32 {
         let states = self.truth.mesh.nodes().map(|(id, _)| self.node_state(id));
         states
@@ -216,7 +219,7 @@ impl<D: Dim> Body<D> {
             .fold(0.0, |sum, (_, _, mass)| sum + mass)
     }
 
-    /// All bare faces, by element.
+    /// Returns all exposed faces, by element.
     pub fn facets(&self) -> impl Iterator<Item = Facet> + '_ {
         self.truth.mesh.elements().flat_map(move |(id, element)| {
             let bare = self.bare_faces(id);
@@ -226,11 +229,11 @@ impl<D: Dim> Body<D> {
         })
     }
 
-    /// Which faces of an element are bare, as a mask: bit 2 · axis + side. Only elements of level 0
-    /// have any. What a crack changed of it, [`Body::changes_since`] tells.
+    /// Mask of the exposed faces of an element: bit 2 · axis + side. Only elements of level 0 have any. Use
+    /// [`Body::changes_since`] to learn where cracks changed the mask.
     ///
     /// # Panics
-    /// When the id was never used.
+    /// If the id was never used.
     pub fn bare_faces(&self, element: ElementId) -> u8 {
         match self.cache.bare[element] {
             0 => 0,
@@ -241,16 +244,15 @@ impl<D: Dim> Body<D> {
         }
     }
 
-    /// Where all nodes are [m], by id, each with a 0 behind its coordinates; anything for ids that
-    /// are free.
+    /// Positions of all nodes [m], by id, each padded with a 0. Entries of free ids are unspecified.
     pub fn positions(&self) -> &Table<NodeId, [f32; 4]> {
         &self.state.position
     }
 
-    /// The closed lines around all pieces of a body in the plane; nothing in space.
+    /// Returns the closed lines around all pieces of a 2D body; empty in 3D.
     #[inline(never)]
     pub fn outlines(&self) -> Vec<Outline> {
-        // Around a quad of a skin in space there is no next one.
+        // Quads of a 3D surface have no unique successor.
         if D::N != 2 {
             return Vec::new();
         }
@@ -284,7 +286,7 @@ impl<D: Dim> Body<D> {
         outlines
     }
 
-    /// All elements, to be looked at.
+    /// Returns views of all elements.
     pub fn element_views(&self) -> impl Iterator<Item = ElementView> + '_ {
         self.truth
             .mesh
@@ -292,7 +294,7 @@ impl<D: Dim> Body<D> {
             .map(|(id, element)| self.view_of(id, element))
     }
 
-    /// An element, to be looked at, if it is alive.
+    /// Returns the view of an element, if the element is alive.
     #[inline(never)]
     pub fn element_view(&self, id: ElementId) -> Option<ElementView> {
         Some(self.view_of(id, self.truth.mesh.element(id)?))
@@ -314,8 +316,8 @@ impl<D: Dim> Body<D> {
         }
     }
 
-    /// How far an element is strained, if it is alive: ‖F − R‖, where 0.1 is a stretch by a tenth; of what was kneaded,
-    /// [what is left](Body::plastic_strain) of that.
+    /// Elastic strain ‖F − R‖ of an element, if it is alive; 0.1 is a stretch by a tenth. [Plastic
+    /// strain](Body::plastic_strain) is not included.
     #[inline(never)]
     pub fn strain(&self, id: ElementId) -> Option<f32> {
         Some(self.strain_of(id, self.truth.mesh.element(id)?))
@@ -334,7 +336,8 @@ impl<D: Dim> Body<D> {
         sum.sqrt()
     }
 
-    /// Where the slots of an element are: at its nodes, or between the nodes that stand for them.
+    /// Positions of the slots of an element: those of its nodes, or interpolated between the nodes that
+    /// represent them.
     fn slot_positions(&self, element: &Element) -> [Vector; 27] {
         let centre = self.deformation(element).0;
         let mut positions: [Option<Vector>; 27] = [None; 27];
@@ -342,7 +345,7 @@ impl<D: Dim> Body<D> {
         for (&slot, &node) in slots.iter().zip(&element.nodes) {
             positions[slot as usize] = Some(three(self.state.position[node]));
         }
-        // From edge middles up to the centre: the mean of what a slot lies between.
+        // From edge middles to the centre: the mean of the slots on both sides.
         for order in 1..=D::N {
             for slot in 0..D::SLOTS {
                 let at = slot_at(slot);
@@ -379,7 +382,7 @@ impl<D: Dim> Body<D> {
             nodes[place] = element.nodes[ring[place]];
             corners[place] = three(self.state.position[nodes[place]]);
         }
-        // Across a segment, or across both diagonals of a quad, which need not be flat.
+        // Perpendicular to the segment, or to both diagonals of a quad, which need not be flat.
         let normal = match D::N {
             2 => {
                 let along = minus(corners[1], corners[0]);
@@ -399,8 +402,8 @@ impl<D: Dim> Body<D> {
 }
 
 impl ElementView {
-    /// The corners [m] of a child that the element fills, in the order of [`corner`]; those of the
-    /// whole cell at level 0, which has no children.
+    /// Corners [m] of a child that the element fills, in the order of [`corner`]; at level 0, which has no
+    /// children, the corners of the whole cell.
     pub fn child_corners<D: Dim>(&self, child: usize) -> Vec<Vector> {
         let at = |vertex: usize| match self.level {
             0 => scale(corner(vertex), 2),
@@ -421,7 +424,7 @@ mod tests {
     use crate::dim::Dim3;
 
     #[test]
-    fn faces_close_around_what_is_filled() {
+    fn faces_enclose_filled_children() {
         let count = |faces: &[ElementFace]| {
             let edges = faces.iter().flat_map(|face| face.is_edge);
             (faces.len(), edges.filter(|&is| is).count())
@@ -438,13 +441,13 @@ mod tests {
     }
 
     #[test]
-    fn rings_go_once_around_all_that_is_filled() {
+    fn ring_encloses_filled_children_once() {
         let check = |level, children, expect: &[[i32; 2]]| {
             let ring = ring(level, children);
             let low = ring
                 .iter()
                 .position(|&slot| slot == 0)
-                .expect("it fills the low corner");
+                .expect("the element fills the low corner");
             let around = ring.iter().cycle().skip(low).take(ring.len());
             let around: Vec<[i32; 2]> = around
                 .map(|&slot| [slot_at(slot)[0], slot_at(slot)[1]])

@@ -1,4 +1,4 @@
-//! Pieces that are put to sleep and woken, and those that are stopped for good.
+//! Sleeping, waking and quarantine of pieces.
 
 use super::Body;
 use crate::dim::{Dim, Point};
@@ -8,7 +8,7 @@ use crate::solve::Row;
 use crate::vector::{dot, is_finite, plus};
 
 impl<D: Dim> Body<D> {
-    /// Wakes or puts to sleep all pieces whose number is marked.
+    /// Puts all marked pieces to sleep, or wakes them.
     pub(crate) fn set_asleep(&mut self, marked: &Table<PieceId, bool>, asleep: bool) {
         let mut elements = Vec::new();
         for (id, element) in self.truth.mesh.elements() {
@@ -39,7 +39,7 @@ impl<D: Dim> Body<D> {
         self.cache.awake_is_stale = true;
     }
 
-    /// Notes where all nodes are.
+    /// Records the positions of all nodes.
     pub(crate) fn note_before(&mut self) {
         let (mesh, before) = (&self.truth.mesh, &mut self.cache.before);
         let both = |(id, &row): (NodeId, &Row)| match mesh.is_alive(id) {
@@ -50,8 +50,8 @@ impl<D: Dim> Body<D> {
         before.extend(self.state.position.entries().map(both));
     }
 
-    /// Puts pieces with a node that is not finite, or faster than `top_speed` [m/s], back to where
-    /// they were when that was noted, and to sleep for good; returns their numbers.
+    /// Quarantines pieces with a node that is not finite or faster than `top_speed` [m/s]: resets them to the
+    /// recorded positions and puts them to sleep for good. Returns their numbers.
     pub(crate) fn quarantine(&mut self, top_speed: f32) -> Vec<PieceId> {
         let mut marked: Table<PieceId, _> = vec![false; self.truth.pieces.list.len()].into();
         for &id in &self.cache.awake {
@@ -76,9 +76,9 @@ impl<D: Dim> Body<D> {
         numbers
     }
 
-    /// Where a node was. One that is new, or whose id was another's, is put beside the nearest of its
-    /// elements that was anywhere, and to where it was built when none was: across a crack, what is
-    /// near in the lattice may be far away.
+    /// Recorded position of a node. A new node, or one whose id was reused, is placed relative to the nearest
+    /// recorded node of its elements, or at its rest position if there is none. Only its own elements count:
+    /// across a crack, lattice neighbours may be far away.
     fn position_before(&self, id: NodeId, at: Point) -> Row {
         let was = |id: NodeId, at: Point| {
             let known = self.cache.before.get(id.index());

@@ -1,4 +1,4 @@
-//! What the materials of its voxels come to in a body as a whole.
+//! Properties of a whole body, combined from the materials of its voxels.
 
 use crate::dim::Dim;
 use crate::grid::VoxelGrid;
@@ -6,20 +6,20 @@ use crate::law::Elasticity;
 use crate::material::Material;
 use crate::plasticity::Plasticity;
 
-/// What the materials of its voxels come to in a body as a whole.
+/// Properties of a whole body, combined from the materials of its voxels.
 #[derive(Copy, Clone, Debug, Default)]
 pub struct Blend {
-    /// Damping ratio of the slowest swing, the mean over the voxels.
+    /// Damping ratio of the slowest mode; mean over the voxels.
     pub damping: f64,
-    /// Its ω = π √(Y/ρ) / width [1/s].
+    /// Angular frequency ω = π √(Y/ρ) / width of the slowest mode [1/s].
     pub slow: f64,
-    /// Friction, the mean over the voxels.
+    /// Friction coefficient; mean over the voxels.
     pub friction: f32,
-    /// The least strength of a material that is in use [Pa].
+    /// Lowest strength of the materials in use [Pa].
     pub least_strength: f32,
-    /// The fastest pressure wave of a material that is in use [m/s].
+    /// Speed of the fastest pressure wave of the materials in use [m/s].
     pub fastest_wave: f64,
-    /// The fastest swing, that of a single voxel which grows and shrinks [1/s].
+    /// Angular frequency of the fastest mode, the breathing mode of a single voxel [1/s].
     pub fastest_swing: f64,
 }
 
@@ -73,7 +73,7 @@ pub fn elasticities(materials: &[Material], stiffness_scale: f64) -> Vec<Elastic
     materials.iter().map(soft).collect()
 }
 
-/// The square or cube root, by Newton's iteration: it may not come from the platform.
+/// Square or cube root by Newton's iteration: platform functions may round differently.
 fn root(of: f64, order: usize) -> f64 {
     let mut root = of.max(1.0);
     for _ in 0..60 {

@@ -1,4 +1,4 @@
-//! What is worked out from the truth and the state of a body, and kept so that it need not be again.
+//! Data derived from the truth and the state of a body.
 
 use super::blend::Blend;
 use crate::breakable::BreakableNodes;
@@ -8,27 +8,26 @@ use crate::ids::{ElementId, NodeId, PieceId, Table};
 use crate::momentum::RoughMotion;
 use crate::solve::Row;
 
-/// What is worked out from the truth and the state of a body, and kept so that it need not be again. No
-/// snapshot has it: `Body::rebuild` makes it anew, and each tick begins by noting what was `before`.
+/// Data derived from the truth and the state of a body. Not part of snapshots: `Body::rebuild` recomputes it,
+/// and each tick begins by recording `before`.
 #[derive(Clone, Debug, Default)]
 pub struct Cache {
-    /// What its materials come to as a whole.
+    /// Properties of the body, combined from its materials.
     pub blend: Blend,
-    /// The nodes that move, ascending; stale after a remodelling.
+    /// Nodes of awake pieces, ascending; outdated while `awake_is_stale`.
     pub awake: Vec<NodeId>,
     pub awake_is_stale: bool,
-    /// Nodes where a crack can start or go on, and what they bear.
+    /// Nodes at which a crack can start or continue, with their thresholds.
     pub breakable: BreakableNodes,
-    /// Which faces of an element of level 0 are bare: bit 2 · axis + side.
+    /// Mask of the exposed faces of each level-0 element: bit 2 · axis + side.
     pub bare: Table<ElementId, u8>,
-    /// Of those with bare faces, the voxels around that share a node: see [`Sharing::bound`].
-    ///
-    /// [`Sharing::bound`]: crate::sharing::Sharing::bound
+    /// For elements with exposed faces: the surrounding voxels that share a node, see
+    /// [`Sharing::bound`](crate::sharing::Sharing::bound).
     pub bound: Table<ElementId, u32>,
-    /// What tears changed lately.
+    /// Recent changes.
     pub history: History,
-    /// The rigid motion of each piece, as of the last round of damping: every tick begins with one.
+    /// Rigid motion of each piece at the last damping round; every tick begins with one.
     pub rigid: Table<PieceId, RoughMotion>,
-    /// The lattice point and the position [m] of every node, by id, as the tick began; no position where there was none.
+    /// Lattice point and position [m] of every node at the start of the tick, by id; NaN for unused ids.
     pub before: Vec<(Point, Row)>,
 }

@@ -1,23 +1,22 @@
-//! Where a body tore a short while ago: nothing there gives way again before the waves have passed.
+//! Cooldowns after releases: no node nearby fails again before the stress waves have passed.
 
 use crate::dim::Point;
 
-/// Lattice steps around a release that cool down after it: half as far as a wave goes while they do. With 1 `tear-3d` has 2.5 times
-/// as many releases, with 4 a fifth fewer.
+/// Lattice steps around a release that cool down: half the distance that a wave travels during the cooldown.
 const REACH: i32 = 2;
 
-/// Where releases happened a short while ago: their surroundings cool down.
+/// Recent releases, around which nodes cool down.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Cooldowns {
-    /// Lattice points and for how much longer they cool down [s].
+    /// Lattice points, and their remaining cooldown [s].
     points: Vec<(Point, f32)>,
-    /// Rounds so far.
+    /// Number of fracture rounds up to now.
     pub rounds: u32,
 }
 
 impl Cooldowns {
-    /// Lets a round of some time pass [s].
+    /// Advances by one round of `duration` [s].
     pub fn pass(&mut self, duration: f32) {
         self.rounds = self.rounds.wrapping_add(1);
         self.points.retain_mut(|(_, left)| {
@@ -26,24 +25,24 @@ impl Cooldowns {
         });
     }
 
-    /// From now on the surroundings of some points cool down for a time [s].
+    /// Starts a cooldown of `duration` [s] around some points.
     pub fn start(&mut self, points: impl Iterator<Item = Point>, duration: f32) {
         self.points.extend(points.map(|at| (at, duration)));
     }
 
-    /// The points that it knows.
+    /// Returns the points that cool down.
     #[cfg(feature = "serde")]
     pub fn points(&self) -> impl Iterator<Item = Point> + '_ {
         self.points.iter().map(|&(at, _)| at)
     }
 
-    /// Whether a point cools down.
+    /// Whether a point lies within a cooldown.
     pub fn covers(&self, at: Point) -> bool {
         self.points.iter().any(|&(point, _)| is_near(at, point))
     }
 }
 
-/// Whether a release at one point disturbs the other one.
+/// Whether a release at one point disturbs the other point.
 pub fn is_near(a: Point, b: Point) -> bool {
     (0..3).all(|axis| (a[axis] - b[axis]).abs() <= REACH)
 }

@@ -1,4 +1,4 @@
-//! What a body works out from its mesh, in the beginning and where a release changed something.
+//! Data that a body derives from its mesh, initially and after releases.
 
 use super::Body;
 use super::truth::Truth;
@@ -18,12 +18,12 @@ impl<D: Dim> Body<D> {
         truth.pieces.make_room(&truth.mesh);
     }
 
-    /// A new node is held when every node it comes from was.
+    /// Fixes a new node if all nodes from which it inherits were fixed.
     pub(crate) fn inherit_hold(&mut self, node: NodeId, from: &[(NodeId, f64)]) {
         self.state.held[node] = from.iter().all(|&(old, _)| self.state.held[old]);
     }
 
-    /// Notes the masses of nodes, added up anew.
+    /// Recomputes the masses of nodes.
     pub(crate) fn weigh(&mut self, nodes: &[NodeId]) {
         for &id in nodes {
             self.state.mass[id] = self.mass_of(id);
@@ -31,7 +31,7 @@ impl<D: Dim> Body<D> {
         }
     }
 
-    /// The mass of a node, added up from the elements that carry it [kg].
+    /// Mass of a node [kg], summed over the elements that carry it.
     pub(super) fn mass_of(&self, id: NodeId) -> f32 {
         let half = f64::from(self.truth.grid.voxel_size()) * 0.5;
         let mut mass = 0.0;
@@ -44,7 +44,7 @@ impl<D: Dim> Body<D> {
         mass as f32
     }
 
-    /// One over the mass of a node [1/kg]; 0 while it is held or sleeps.
+    /// Inverse mass of a node [1/kg]; 0 while the node is fixed or sleeps.
     pub(super) fn inverse_mass_of(&self, id: NodeId) -> f32 {
         let free = !self.state.held[id] && !self.truth.pieces.sleeps(id);
         match free {
@@ -53,7 +53,7 @@ impl<D: Dim> Body<D> {
         }
     }
 
-    /// Notes which faces of the elements of level 0 on these voxels are bare.
+    /// Updates the exposed faces of the level-0 elements on these voxels.
     pub(crate) fn expose(&mut self, voxels: &[Point]) {
         for &voxel in voxels
             .iter()
@@ -63,12 +63,12 @@ impl<D: Dim> Body<D> {
                 .truth
                 .mesh
                 .owner(voxel)
-                .expect("a voxel that is left has an owner");
+                .expect("every remaining voxel has an owner");
             let element = self.truth.mesh.element(owner).expect("owners are alive");
             if element.cell.level > 0 {
                 continue;
             }
-            // Seen from its low corner, the voxel stands on the far side of every axis.
+            // Seen from its low corner, the voxel lies on the far side of every axis.
             let (around, octant) = (self.truth.sharing.around(voxel), D::CORNERS - 1);
             let mut bare = 0;
             for axis in 0..D::N {
@@ -82,7 +82,7 @@ impl<D: Dim> Body<D> {
         }
     }
 
-    /// Looks again which of `nodes` are breakable nodes.
+    /// Updates which of `nodes` are breakable.
     pub(crate) fn find_breakable(&mut self, nodes: &[NodeId]) {
         let Truth {
             grid,

@@ -1,4 +1,4 @@
-//! How the nodes of a body move in a substep.
+//! Motion of the nodes of a body in a substep.
 
 use super::Body;
 use crate::dim::{Dim, inner};
@@ -11,15 +11,15 @@ use crate::threads;
 use crate::vector::{as_row, is_finite, minus, plus, scaled, three};
 
 impl<D: Dim> Body<D> {
-    /// Moves a free body on by `duration` seconds under `gravity` [m/s²], without contact or
-    /// damping: symplectic Euler, stable while `duration` is at most [`Body::longest_substep`].
+    /// Advances an isolated body by `duration` [s] under `gravity` [m/s²], without contact or damping.
+    /// Symplectic Euler, stable if `duration` is at most [`Body::longest_substep`].
     #[inline(never)]
     pub fn advance(&mut self, duration: f32, gravity: [f32; 3]) {
         self.push(duration, gravity);
         self.drift(duration, 0.0);
     }
 
-    /// Adds elastic forces and gravity over `duration` [s] to the velocities.
+    /// Applies elastic forces and gravity over `duration` [s] to the velocities.
     pub(crate) fn push(&mut self, duration: f32, gravity: [f32; 3]) {
         self.refresh_awake();
         if std::mem::take(&mut self.state.placed) {
@@ -38,7 +38,7 @@ impl<D: Dim> Body<D> {
         self.state.blocks.kick(&kick, &mut self.state.velocity);
     }
 
-    /// Adds a field [m/s²] over `duration` [s] to the velocities.
+    /// Applies an acceleration field [m/s²] over `duration` [s] to the velocities.
     pub(crate) fn pull(&mut self, duration: f32, field: &dyn Fn(Vector) -> Vector) {
         for &id in &self.cache.awake {
             let pull = as_row(field(three(self.state.position[id])));
@@ -50,9 +50,9 @@ impl<D: Dim> Body<D> {
         }
     }
 
-    /// Turns elements that are far from how their nodes lie, because they are new or their nodes were
-    /// placed: `solve` follows what turns step by step, and stands still half a turn off. In the plane it
-    /// finds the rotation at once.
+    /// Recomputes the rotation of elements that are far from their nodes' orientation, because they are new
+    /// or their nodes were placed. The iteration of `solve` only follows small turns, and does not move half
+    /// a turn off. In 2D it finds the rotation directly.
     pub(crate) fn settle(&mut self, elements: &[ElementId]) {
         if D::N == 2 {
             return;
@@ -62,7 +62,7 @@ impl<D: Dim> Body<D> {
                 .truth
                 .mesh
                 .element(id)
-                .expect("only live elements settle");
+                .expect("`settle` is called with live elements");
             let wide = |rows: [[f32; 3]; 3]| rows.map(|row| row.map(f64::from));
             let (rotation, deformation) = (
                 self.state.blocks.rotation(id),
@@ -76,13 +76,14 @@ impl<D: Dim> Body<D> {
         }
     }
 
-    /// Moves every awake node by its velocity, and looks `lead` seconds ahead for the next forces,
-    /// as seen from the rigid motion of its piece: what only turns must not be braked.
-    /// No node moves by more than a voxel: faster ones would turn elements inside out, and the
-    /// forces would grow from substep to substep. Returns how far the fastest has come [m].
+    /// Moves every awake node by its velocity. Also extrapolates positions by `lead` [s] for the next forces,
+    /// relative to the rigid motion of the piece, so that pure rotation is not damped.
+    ///
+    /// No node moves by more than a voxel per substep. Faster nodes would invert elements, and the forces
+    /// would grow from substep to substep. Returns the distance that the fastest node has moved [m].
     pub(crate) fn drift(&mut self, duration: f32, lead: f32) -> f32 {
         let top_speed = self.truth.grid.voxel_size() / duration;
-        // Pieces born since the last round of damping have no motion yet.
+        // Pieces created since the last damping round have no motion yet.
         self.cache
             .rigid
             .resize(self.truth.pieces.list.len(), RoughMotion::default());
@@ -94,8 +95,8 @@ impl<D: Dim> Body<D> {
         ];
         let rows = threads::rows(&self.cache.awake, lists.map(|rows| rows.as_mut_slice()));
         let fastest = threads::map(rows, move |rows| {
-            // Of one length, so that one check of a node's place is enough for all three. A tenth of the time of small bodies is
-            // spent here: what is in slices and by value is not read anew for each node.
+            // Slices of equal length need only one bounds check per node. About a tenth of the time of small
+            // bodies is spent in this loop: slices and values in locals are not reloaded for each node.
             let count = rows.lists[0].len();
             let [positions, velocities, ahead] = rows.lists.map(|list| &mut list[..count]);
             let mut fastest = 0.0f32;
@@ -103,7 +104,7 @@ impl<D: Dim> Body<D> {
                 let node = id.index() - rows.first;
                 let mut velocity = velocities[node];
                 let squared = inner::<D>(velocity, velocity);
-                // Not `max`, which would have every node wait for the one before.
+                // Not `max`, which would make each node depend on the previous one.
                 if squared > fastest {
                     fastest = squared;
                 }
@@ -122,7 +123,7 @@ impl<D: Dim> Body<D> {
         fastest.sqrt().min(top_speed) * duration
     }
 
-    /// Brings the list of moving nodes up to date.
+    /// Updates the list of awake nodes.
     pub(crate) fn refresh_awake(&mut self) {
         if !self.cache.awake_is_stale {
             return;

@@ -1,4 +1,4 @@
-//! Where a body is put, which way round, and how fast it goes: all of it at once.
+//! Position, orientation, velocity and user settings of a whole body.
 
 use super::Body;
 use super::state::State;
@@ -12,31 +12,32 @@ use crate::solve::Row;
 use crate::vector::{as_row, cross, minus, plus, three};
 
 impl<D: Dim> Body<D> {
-    /// The layers that it is in and those that it meets: [`World::set_layers`](crate::World::set_layers).
+    /// Collision layers of the body: see [`World::set_layers`](crate::World::set_layers).
     pub fn layers(&self) -> Layers {
         self.state.layers
     }
 
-    /// What whoever put it into a world wanted to know of it: [`World::set_user_data`](crate::World::set_user_data).
+    /// User data of the body: see [`World::set_user_data`](crate::World::set_user_data).
     pub fn user_data(&self) -> u64 {
         self.state.user_data
     }
 
-    /// How many times as strongly as on others gravity pulls on it:
-    /// [`World::set_gravity_scale`](crate::World::set_gravity_scale).
+    /// Factor on gravity for this body: see [`World::set_gravity_scale`](crate::World::set_gravity_scale).
     pub fn gravity_scale(&self) -> f32 {
         self.state.gravity_scale
     }
 
-    /// The same body, moved `by` [m]. What is then not finite is quarantined in its first tick.
+    /// Returns the body translated by `by` [m]. Pieces that are then not finite are quarantined in their
+    /// first tick.
     #[inline(never)]
     pub fn moved(mut self, by: Vector) -> Self {
         self.shift(by);
         self
     }
 
-    /// The same body, turned about a place [m]: nothing in it is strained by that, and nothing tears. In the plane only
-    /// turns about the third axis count. What is then not finite is quarantined in its first tick.
+    /// Returns the body rotated about the point `about` [m], without strain and without tearing. In 2D only
+    /// the rotation about the third axis counts. Pieces that are then not finite are quarantined in their
+    /// first tick.
     ///
     /// ```
     /// use fuwafuwa::{Body, Dim2, Material, Rotation, VoxelGrid};
@@ -54,7 +55,7 @@ impl<D: Dim> Body<D> {
         self
     }
 
-    /// The same body, every node moving at `velocity` [m/s].
+    /// Returns the body with every node moving at `velocity` [m/s].
     #[inline(never)]
     pub fn thrown(mut self, velocity: Vector) -> Self {
         for row in self.state.velocity.iter_mut() {
@@ -63,7 +64,7 @@ impl<D: Dim> Body<D> {
         self
     }
 
-    /// The centre of its mass [m].
+    /// Centre of mass [m].
     #[inline(never)]
     pub fn centre_of_mass(&self) -> Vector {
         let nodes: Vec<NodeId> = self.truth.mesh.nodes().map(|(id, _)| id).collect();
@@ -101,8 +102,8 @@ impl<D: Dim> Body<D> {
         blocks.rotate(rotation);
     }
 
-    /// Adds `linear` [m/s], and `angular` [rad/s] about the centre of mass, to the velocities of all nodes that are
-    /// neither held nor asleep.
+    /// Adds `linear` [m/s], and `angular` [rad/s] about the centre of mass, to the velocities of all nodes
+    /// that are neither fixed nor asleep.
     pub(crate) fn add_velocity(&mut self, linear: Vector, angular: Vector) {
         let centre = self.centre_of_mass();
         let angular = turning::<D>(angular);
@@ -115,8 +116,9 @@ impl<D: Dim> Body<D> {
         }
     }
 
-    /// Spreads an impulse [N s] over the nodes within `radius` [m] of a place, in proportion to their mass, so that all of
-    /// them gain the same velocity; over the nearest one where none is. Those that are held or asleep gain none.
+    /// Distributes an impulse [N s] over the nodes within `radius` [m] of the point `at`, in proportion to
+    /// their mass, so that all of them gain the same velocity. If there is no node within the radius, the
+    /// nearest one receives it. Fixed and sleeping nodes are skipped.
     pub(crate) fn add_impulse(&mut self, at: Vector, radius: f32, impulse: Vector) {
         let nodes = self.truth.mesh.nodes().map(|(id, _)| id);
         let free = nodes.filter(|&id| self.state.inverse_mass[id] > 0.0);

@@ -1,5 +1,4 @@
-//! Whether a body that was read from a file is one: a checksum says only that nobody changed it since
-//! it was written, not who wrote it.
+//! Validation of bodies read from files: a checksum detects damage, but not invalid content.
 
 use super::Body;
 use super::blend::plasticities;
@@ -13,8 +12,8 @@ use crate::pyramid::Pyramid;
 use crate::solve::Row;
 
 impl<D: Dim> Body<D> {
-    /// Checks that cells, elements, nodes and pieces are those that follow from the voxels and from what
-    /// is connected, and that there is a state for each node that it can be in.
+    /// Checks that cells, elements, nodes and pieces follow from the voxels and their connectivity, and that
+    /// every node has a valid state.
     ///
     /// # Errors
     /// The first [`Defect`] found.
@@ -29,23 +28,23 @@ impl<D: Dim> Body<D> {
             "states of elements",
         )?;
         let pull = self.state.gravity_scale;
-        ensure(pull.abs() <= MOST_GRAVITY, "pull of gravity")?;
+        ensure(pull.abs() <= MOST_GRAVITY, "gravity scale")?;
         let points = self.state.cooldowns.points();
         let is_known = { points }.all(|at| self.truth.sharing.contains(at));
-        ensure(is_known, "points that cool down")?;
+        ensure(is_known, "cooldown points")?;
         for (id, node) in self.truth.mesh.nodes() {
             let defect = |what: &str| Err(Defect::of(format!("the node at {:?} {what}", node.at)));
             if !self.is_somewhere(id) {
-                return defect("is not finite, or off the plane, or moves so");
+                return defect("has a position or velocity that is not finite or leaves the plane");
             }
             if !self.weighs_right(id) {
-                return defect("has the mass of another one");
+                return defect("has a mass that does not match its elements");
             }
         }
         Ok(())
     }
 
-    /// Works out what no snapshot has, once it has been checked.
+    /// Recomputes everything that snapshots do not contain, after the checks.
     pub(crate) fn restore(&mut self) {
         let Truth {
             mesh,
@@ -60,8 +59,8 @@ impl<D: Dim> Body<D> {
         self.rebuild();
     }
 
-    /// Whether where a node is, where it goes and how it has suffered are numbers, and none of them leads out
-    /// of the plane of a body in the plane.
+    /// Whether position, velocity, extrapolated position and damage of a node are numbers, and lie in the
+    /// plane in 2D.
     fn is_somewhere(&self, id: NodeId) -> bool {
         let state = &self.state;
         let rows = [&state.position, &state.velocity, &state.ahead].map(|rows| rows[id]);
@@ -70,7 +69,7 @@ impl<D: Dim> Body<D> {
         rows.iter().all(|row| is_flat(row) && is_finite(row)) && !state.damage[id].is_nan()
     }
 
-    /// Whether its elements give a node the mass that it has, to the last bit.
+    /// Whether the mass and the inverse mass of a node are exactly those that follow from its elements.
     fn weighs_right(&self, id: NodeId) -> bool {
         self.state.mass[id] == self.mass_of(id)
             && self.state.inverse_mass[id] == self.inverse_mass_of(id)
@@ -98,7 +97,7 @@ impl<D: Dim> Truth<D> {
 }
 
 impl<D: Dim> State<D> {
-    /// Whether there is a state for each node.
+    /// Whether every node has a state.
     fn has_room(&self, nodes: usize) -> bool {
         let rows = [&self.position, &self.velocity, &self.ahead].map(|rows| rows.len());
         let numbers = [&self.mass, &self.inverse_mass, &self.damage].map(|numbers| numbers.len());
@@ -110,12 +109,12 @@ impl<D: Dim> State<D> {
 fn ensure(good: bool, what: &str) -> Result<(), Defect> {
     match good {
         true => Ok(()),
-        false => Err(Defect::of(format!("{what} do not fit"))),
+        false => Err(Defect::of(format!("invalid {what}"))),
     }
 }
 
 impl Pieces {
-    /// Whether they are the pieces of a mesh, whatever their numbers.
+    /// Whether the pieces are those of the mesh, regardless of their numbers.
     fn is_sound<D: Dim>(&self, mesh: &Mesh<D>) -> bool {
         let fresh = Self::new(mesh);
         let mut numbers: Table<PieceId, _> = vec![None; fresh.list.len()].into();

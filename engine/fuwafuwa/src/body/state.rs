@@ -1,4 +1,4 @@
-//! What changes in a body from substep to substep, and what the next one goes on from.
+//! State of a body that changes from substep to substep.
 
 use super::cooldowns::Cooldowns;
 use crate::dim::Dim;
@@ -6,11 +6,10 @@ use crate::ids::{NodeId, Table};
 use crate::layers::Layers;
 use crate::solve::{Blocks, Row};
 
-/// How many times as strongly as on others gravity may pull on a body. A choice: with it a body falls by
-/// 1 m within three ticks.
+/// Largest absolute factor on gravity for a body. With it, a body falls by 1 m within three ticks.
 pub const MOST_GRAVITY: f32 = 100.0;
 
-/// What changes in a body from substep to substep, and what the next one goes on from.
+/// State of a body that changes from substep to substep.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
@@ -19,30 +18,30 @@ pub struct State<D: Dim> {
     pub position: Table<NodeId, Row>,
     pub velocity: Table<NodeId, Row>,
     pub mass: Table<NodeId, f32>,
-    /// One over the mass [1/kg]; 0 while a node is held or sleeps.
+    /// Inverse mass [1/kg]; 0 while a node is fixed or sleeps.
     pub inverse_mass: Table<NodeId, f32>,
     pub held: Table<NodeId, bool>,
-    /// How far each node has given way to what is more than it bears; at 1 it comes off.
+    /// Damage of each node; at 1 the node is split.
     pub damage: Table<NodeId, f32>,
-    /// Where it tore a short while ago.
+    /// Recent releases.
     pub cooldowns: Cooldowns,
-    /// Positions a moment ahead, where damped forces are evaluated.
+    /// Extrapolated positions at which the damped forces are evaluated.
     pub ahead: Table<NodeId, Row>,
-    /// How many times as strongly as on others gravity pulls on it.
+    /// Factor on gravity.
     pub gravity_scale: f32,
-    /// Who touches it.
+    /// Collision layers.
     pub layers: Layers,
-    /// What whoever put it into a world wants to know of it.
+    /// User data.
     pub user_data: u64,
     /// Whether nodes were placed from outside since forces were last computed.
     pub placed: bool,
-    /// How each element has turned, and the forces of the last substep: where an element has come to turns
-    /// step by step, and the next crack goes where the last forces pulled. Snapshots have no more of them.
+    /// Rotation of each element, and the forces of the last substep. Both are state: rotations are followed
+    /// iteratively, and the next crack follows the last forces. Snapshots contain only these.
     pub blocks: Blocks<D>,
 }
 
 impl<D: Dim> State<D> {
-    /// Of a body without nodes.
+    /// Creates the state of a body without nodes.
     pub fn new(blocks: Blocks<D>) -> Self {
         Self {
             position: Table::default(),
@@ -61,7 +60,7 @@ impl<D: Dim> State<D> {
         }
     }
 
-    /// Makes room for as many nodes.
+    /// Makes room for `nodes` nodes.
     pub fn make_room(&mut self, nodes: usize) {
         self.position.resize(nodes, [0.0; 4]);
         self.velocity.resize(nodes, [0.0; 4]);

@@ -1,4 +1,4 @@
-//! What a body is made of, how that hangs together, and what follows from it.
+//! Topology of a body: voxels, connectivity, and the mesh that follows from them.
 
 use crate::dim::Dim;
 use crate::grid::VoxelGrid;
@@ -8,10 +8,10 @@ use crate::piece::Pieces;
 use crate::pyramid::Pyramid;
 use crate::sharing::Sharing;
 
-/// What a body is made of, how that hangs together, and what follows from it.
+/// Topology of a body: voxels, connectivity, and the mesh that follows from them.
 ///
-/// Grid and sharing say all that is true. Cells, elements, nodes and pieces could be worked out from them but
-/// for their numbers, which are of what happened: so they are kept, and saved.
+/// Grid and sharing determine everything else except the numbers of cells, elements, nodes and pieces, which
+/// depend on the history. So they are stored, and saved.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
@@ -21,8 +21,8 @@ pub struct Truth<D: Dim> {
     pub pyramid: Pyramid<D>,
     pub mesh: Mesh<D>,
     pub pieces: Pieces,
-    /// Number 1 first.
+    /// Materials, number 1 first.
     pub materials: Vec<Material>,
-    /// By what their stiffness was lowered so that the substep bears it; 1 = not at all.
+    /// Factor by which the stiffness was lowered to keep the substep stable; 1 = unchanged.
     pub stiffness_scale: f64,
 }

@@ -1,23 +1,23 @@
-//! Grids with the shape of something that has a name.
+//! Grids of named shapes: ball, cube, ring, heart, flower.
 //!
-//! Each is one formula for the plane and for space.
+//! One formula serves both the plane and space.
 
 use super::{BuildError, VoxelGrid};
 use crate::dim::{Dim, Point};
 use crate::shape::Vector;
 
 impl<D: Dim> VoxelGrid<D> {
-    /// The disc (2D) or ball (3D) that fills a grid of `n` voxels across `diameter` metres.
+    /// Creates the disc (2D) or ball (3D) that fills a grid of `n` voxels across `diameter` metres.
     ///
-    /// A voxel is solid when its centre lies within the radius less half a voxel, so that the
-    /// outermost layer stays inside the box. One or two voxels across it fills the box.
+    /// A voxel is solid if its centre lies within the radius minus half a voxel, so that the outermost layer
+    /// stays inside the box. With one or two voxels across, the ball fills the box.
     ///
     /// # Errors
-    /// As [`VoxelGrid::from_fn`].
+    /// See [`VoxelGrid::from_fn`].
     #[inline(never)]
     pub fn ball(n: usize, diameter: f32) -> Result<Self, BuildError> {
         let centre = n as f32 * 0.5;
-        // Wide enough for the corners of 2 × 2 × 2 voxels, and less than the 1 of three voxels.
+        // Larger than the 0.87 of the corner voxels of 2 × 2 × 2, smaller than the 1 of three voxels.
         let radius = (centre - 0.5).max(0.9);
         Self::from_fn(Self::cube_size(n), diameter / n as f32, |at| {
             let squared: f32 = at[..D::N]
@@ -28,24 +28,24 @@ impl<D: Dim> VoxelGrid<D> {
         })
     }
 
-    /// The square (2D) or cube (3D) of `n` voxels across `width` metres.
+    /// Creates the square (2D) or cube (3D) of `n` voxels across `width` metres.
     ///
     /// # Errors
-    /// As [`VoxelGrid::from_fn`].
+    /// See [`VoxelGrid::from_fn`].
     #[inline(never)]
     pub fn cube(n: usize, width: f32) -> Result<Self, BuildError> {
         Self::from_fn(Self::cube_size(n), width / n as f32, |_| 1)
     }
 
-    /// The ring (2D) or torus in the plane of the first two axes (3D) of `n` voxels across `diameter`
-    /// metres, its hole half as wide.
+    /// Creates the ring (2D) or torus (3D, in the plane of the first two axes) of `n` voxels across
+    /// `diameter` metres. The hole is half as wide.
     ///
     /// # Errors
-    /// As [`VoxelGrid::from_fn`]; a small `n` leaves nothing solid.
+    /// See [`VoxelGrid::from_fn`]; with a small `n` no voxel is solid.
     #[inline(never)]
     pub fn ring(n: usize, diameter: f32) -> Result<Self, BuildError> {
         let size = [n, n, D::depth(n.div_ceil(4))];
-        // In halves of a voxel; like a ball it leaves one free on each side.
+        // In half voxels; leaves one free on each side, like a ball.
         let outer = n as f32 - 1.0;
         let tube = 0.25 * outer;
         Self::from_fn(size, diameter / n as f32, |voxel| {
@@ -55,16 +55,16 @@ impl<D: Dim> VoxelGrid<D> {
         })
     }
 
-    /// A heart of `n` voxels across `width` metres, its point down.
+    /// Creates a heart of `n` voxels across `width` metres, its point down.
     ///
-    /// In space it is the sextic (x² + 9/4 z² + y² − 1)³ ≤ x²y³ + 9/80 z²y³ [Taubin 1994] with y up,
-    /// in the plane the section of that through z = 0.
+    /// In space the heart is the sextic (x² + 9/4 z² + y² − 1)³ ≤ x²y³ + 9/80 z²y³ [Taubin 1994] with y up;
+    /// in the plane it is the section of that sextic at z = 0.
     ///
     /// # Errors
-    /// As [`VoxelGrid::from_fn`].
+    /// See [`VoxelGrid::from_fn`].
     #[inline(never)]
     pub fn heart(n: usize, width: f32) -> Result<Self, BuildError> {
-        // The curve reaches from −1.14 to 1.14 in x and from −1 to 1.24 in y.
+        // The curve spans −1.14 to 1.14 in x and −1 to 1.24 in y.
         const HALF_WIDTH: f32 = 1.2;
         const MIDDLE: f32 = 0.12;
         let size = Self::cube_size(n);
@@ -77,13 +77,14 @@ impl<D: Dim> VoxelGrid<D> {
         })
     }
 
-    /// A flower of five petals, one of them up, `n` voxels across `width` metres; in space a cushion.
+    /// Creates a flower of `n` voxels across `width` metres, with five petals, one of them up; in space a
+    /// cushion.
     ///
-    /// Its radius is 0.7 + 0.3 cos 5φ of the half width, φ from the y axis. As r⁵ cos 5φ is the real
-    /// part of (y + ix)⁵, no angle has to be found.
+    /// The radius is 0.7 + 0.3 cos 5φ of the half width, with φ measured from the y axis. Because r⁵ cos 5φ
+    /// is the real part of (y + ix)⁵, no angle is computed.
     ///
     /// # Errors
-    /// As [`VoxelGrid::from_fn`].
+    /// See [`VoxelGrid::from_fn`].
     #[inline(never)]
     pub fn flower(n: usize, width: f32) -> Result<Self, BuildError> {
         let size = Self::cube_size(n);
@@ -101,7 +102,7 @@ impl<D: Dim> VoxelGrid<D> {
         [n, n, D::depth(n)]
     }
 
-    /// The centre of a voxel from the middle of a grid of `size`, in halves of a voxel: whole numbers.
+    /// Centre of a voxel relative to the middle of a grid of `size`, in half voxels: whole numbers.
     fn from_middle(voxel: Point, size: [usize; 3]) -> Vector {
         [0, 1, 2].map(|axis| (2 * voxel[axis] + 1 - size[axis] as i32) as f32)
     }
@@ -112,7 +113,7 @@ mod tests {
     use super::*;
     use crate::dim::{Dim2, Dim3};
 
-    /// The picture of a flat grid, or of the middle layer of a solid one; the highest row first.
+    /// Draws a flat grid, or the middle layer of a 3D grid; the highest row first.
     fn picture<D: Dim>(grid: Result<VoxelGrid<D>, BuildError>) -> Vec<String> {
         let grid = grid.unwrap();
         let [width, height, depth] = grid.size();
@@ -122,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn shapes_look_like_their_names() {
+    fn named_shapes_match_pictures() {
         let ring = [
             ".........",
             "..#####..",
@@ -138,7 +139,7 @@ mod tests {
         assert_eq!(picture(VoxelGrid::<Dim3>::ring(9, 1.0)), ring);
         let torus = VoxelGrid::<Dim3>::ring(33, 1.0).unwrap();
         assert_eq!(torus.size(), [33, 33, 9]);
-        // Round in section too, and the same on both sides.
+        // The section of the tube is round, and the same on both sides.
         let tube = (0..9).map(|z| torus.is_solid([1, 16, z]));
         assert_eq!(tube.filter(|&solid| solid).count(), 5);
         let heart = [
@@ -178,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn shapes_too_small_to_be_seen_are_refused() {
+    fn named_shapes_fail_below_smallest_size() {
         assert_eq!(VoxelGrid::<Dim2>::heart(0, 1.0), Err(BuildError::Empty));
         assert_eq!(VoxelGrid::<Dim3>::flower(0, 1.0), Err(BuildError::Empty));
         assert_eq!(VoxelGrid::<Dim3>::ring(0, 1.0), Err(BuildError::Empty));
@@ -188,8 +189,8 @@ mod tests {
     }
 
     #[test]
-    fn a_ball_keeps_the_count_of_its_voxels() {
-        // Counts of the prototypes: 15,408 voxels at n = 32 in 3D.
+    fn ball_has_known_voxel_count() {
+        // Number of solid voxels at n = 32 in 3D.
         assert_eq!(
             VoxelGrid::<Dim3>::ball(32, 1.0).unwrap().solid_count(),
             15_408

@@ -1,4 +1,4 @@
-//! Keeping the mesh up to date while cracks grow, at a cost that goes with what they touch.
+//! Incremental update of the mesh while cracks grow, at a cost proportional to the changed elements.
 
 use super::{Defect, Element, Mesh, path};
 use crate::chains::ascending;
@@ -10,43 +10,43 @@ use crate::sharing::Sharing;
 use crate::stencil::{Stencil, slot_index};
 use std::ops::Range;
 
-/// What one remodelling changed.
+/// Changes made by one remodelling.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Remodelled {
-    /// Elements that are gone.
+    /// Removed elements.
     pub removed: Vec<ElementId>,
     /// Elements that are new or carry other nodes than before, ascending.
     pub seated: Vec<ElementId>,
-    /// Nodes that are new, and where their state comes from.
+    /// New nodes, and the sources of their state.
     pub inherited: Vec<Inheritance>,
-    /// Old nodes and their weights, for one new node after the other.
+    /// Old nodes with weights, grouped by new node.
     pub shares: Vec<(NodeId, f64)>,
     /// Nodes that no element carries any more.
     pub abandoned: Vec<NodeId>,
-    /// What the elements that are gone filled, in the order of their cells.
+    /// Cell, children and id of the removed elements, sorted by cell.
     gone: Vec<(Cell, u8, ElementId)>,
 }
 
-/// A new node and the old nodes whose state it takes, with weights that add up to 1.
+/// New node, and the old nodes from which it inherits its state, with weights that add up to 1.
 ///
-/// The weights are those by which a slot without a node hands on its share, so that position,
-/// velocity and linear momentum pass over exactly and both sides of a face agree. The old ids are
-/// never among the new ones of the same remodelling.
+/// The weights are those by which a slot without a node distributes its share. So position, velocity and
+/// linear momentum are transferred exactly, and both sides of a face agree. The old ids are never new ids of
+/// the same remodelling.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Inheritance {
-    /// The new node.
+    /// New node.
     pub node: NodeId,
-    /// Which of the shares are its own.
+    /// Range of its entries in [`Remodelled::shares`].
     pub from: Range<usize>,
 }
 
 impl Remodelled {
-    /// The old nodes, and their weights, whose state a new one takes.
+    /// Returns the old nodes, with weights, from which a new node inherits its state.
     pub fn from(&self, new: &Inheritance) -> &[(NodeId, f64)] {
         &self.shares[new.from.clone()]
     }
 
-    /// The element that is gone and filled a voxel before.
+    /// Returns the removed element that filled a voxel before.
     pub fn origin<D: Dim>(&self, voxel: Point) -> Option<ElementId> {
         path::<D>(voxel).find_map(|(cell, child)| {
             let first = self.gone.partition_point(|gone| gone.0 < cell);
@@ -58,14 +58,13 @@ impl Remodelled {
 }
 
 impl<D: Dim> Mesh<D> {
-    /// Brings the mesh up to date after the groups at `changed` points have changed and the cells
-    /// `born` have come into being [Endo 2004, §3.2, Fig. 3]: children are generated, parents
-    /// rebuilt around what is left, and nodes split, made or abandoned. What it costs goes with
-    /// the elements it touches.
+    /// Updates the mesh after the groups at the `changed` points have changed and the cells `born` have been
+    /// created [Endo 2004, §3.2, Fig. 3]: generates children, rebuilds parents around the rest, and splits,
+    /// creates or drops nodes. The cost is proportional to the affected elements.
     ///
     /// # Errors
-    /// A [`Defect`] when sharing and pyramid do not follow from one another; the mesh must then be
-    /// graded anew.
+    /// A [`Defect`] if the connectivity and the pyramid do not match; the mesh must then be graded from
+    /// scratch.
     #[inline(never)]
     pub fn remodel(
         &mut self,
@@ -114,8 +113,8 @@ impl<D: Dim> Mesh<D> {
         })
     }
 
-    /// Takes out elements, and the nodes that no other carries, which it returns; grid, sharing and
-    /// pyramid have them no more.
+    /// Removes elements, and returns the nodes that no other element carries; both are removed from the mesh.
+    /// The caller updates grid, connectivity and pyramid.
     pub(crate) fn take_out(&mut self, sharing: &Sharing<D>, elements: &[ElementId]) -> Vec<NodeId> {
         let mut nodes = Vec::new();
         for &id in elements {
@@ -146,9 +145,8 @@ impl<D: Dim> Mesh<D> {
         gone
     }
 
-    /// The elements that may need other nodes, ascending: those in cells that were `refitted`, and those
-    /// around points whose groups have changed or which are corners of cells that were `born`, for
-    /// nodes come into being nowhere else.
+    /// Returns the elements that may need other nodes, ascending: those in `refitted` cells, and those around
+    /// points whose groups have changed or which are corners of `born` cells. Nodes are created nowhere else.
     fn elements_touched(
         &self,
         sharing: &Sharing<D>,
@@ -161,7 +159,7 @@ impl<D: Dim> Mesh<D> {
             (0..D::CORNERS).map(corner_of)
         };
         let corners = born.iter().flat_map(corners);
-        // Cells have their corners in common with others.
+        // Neighbouring cells share corners.
         let points = sharing.each_once(changed.iter().copied().chain(corners));
         let around = |at| self.owners_around(at, D::ALL_CORNERS);
         let places = refitted.iter().filter_map(|&cell| self.places.number(cell));
@@ -198,23 +196,23 @@ impl<D: Dim> Mesh<D> {
     }
 }
 
-/// What a remodelling has changed so far, as it was before, and what came of it.
+/// State before a remodelling, and the state that new nodes inherit.
 #[derive(Default)]
 pub struct Past {
-    /// Elements that are gone, in the order of their cells.
+    /// Removed elements, sorted by cell.
     removed: Vec<Element>,
-    /// Elements that have other nodes now, by ascending id; those without any were not there before.
+    /// Old versions of elements with changed nodes, by ascending id; elements without nodes are new.
     pub replaced: Vec<(ElementId, Element)>,
-    /// New nodes, and where their state comes from.
+    /// New nodes, and the sources of their state.
     pub inherited: Vec<Inheritance>,
-    /// Old nodes and their weights, for one new node after the other.
+    /// Old nodes with weights, grouped by new node.
     shares: Vec<(NodeId, f64)>,
 }
 
 impl Past {
-    /// Adds a new node at `at` next to `voxel`, with the old nodes and weights that it inherits from: the
-    /// lattice of the voxel's old owner, completed where it carries no node, and interpolated
-    /// linearly inside the child that holds the voxel.
+    /// Adds a new node at `at` next to `voxel`, and computes the old nodes and weights from which it
+    /// inherits. They follow from the slots of the old owner of the voxel: slots without a node are
+    /// interpolated, and the child that contains the voxel is interpolated linearly.
     pub fn inherit<D: Dim>(
         &mut self,
         mesh: &Mesh<D>,
@@ -256,7 +254,7 @@ impl Past {
         Ok(())
     }
 
-    /// The old owner of a voxel and the child it lies in.
+    /// Returns the old owner of a voxel, and the child that contains the voxel.
     fn owner<'a, D: Dim>(
         &'a self,
         mesh: &'a Mesh<D>,
@@ -277,7 +275,7 @@ impl Past {
         })
     }
 
-    /// An element as it was, if it was there.
+    /// Returns an element as it was before the remodelling, if it existed.
     fn was<'a, D: Dim>(&'a self, mesh: &'a Mesh<D>, id: ElementId) -> Option<&'a Element> {
         let place = self.replaced.binary_search_by_key(&id, |&(id, _)| id);
         let element = match place {
@@ -287,7 +285,7 @@ impl Past {
         (!element.nodes.is_empty()).then_some(element)
     }
 
-    /// The old nodes that nobody carries any more, ascending.
+    /// Old nodes that no element carries any more, ascending.
     fn abandoned(&self, carriers: &Table<NodeId, u8>) -> Vec<NodeId> {
         let replaced = self.replaced.iter().map(|(_, element)| element);
         let old = self.removed.iter().chain(replaced);
@@ -296,8 +294,8 @@ impl Past {
     }
 }
 
-/// Adds `weight` of a slot to the nodes that stand for it: its own, or those it hands on to. Those of one new node
-/// begin at a place of all shares.
+/// Distributes `weight` of a slot to the nodes that represent it: its own node, or recursively those of the
+/// adjacent slots. The shares of the current new node start at index `first`.
 fn collect_shares<D: Dim>(
     stencil: &Stencil<D>,
     nodes: &[NodeId],

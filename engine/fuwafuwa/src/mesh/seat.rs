@@ -1,4 +1,4 @@
-//! Which nodes an element has, and so which class: what its surroundings ask for.
+//! Seating of elements: determines their nodes, and so their class, from the surroundings.
 
 use super::remodel::Past;
 use super::{Defect, Element, Mesh, Node};
@@ -9,8 +9,8 @@ use crate::sharing::Sharing;
 use crate::stencil::{Stencil, cell_corners, slot_at};
 
 impl<D: Dim> Mesh<D> {
-    /// Gives an element the nodes and the class that its surroundings ask for; false when it has
-    /// them already. A new node inherits from the past, where there is one.
+    /// Gives an element the nodes and the class that follow from its surroundings; returns false if nothing
+    /// changed. A new node inherits its state from `past`, if given.
     pub(super) fn seat(
         &mut self,
         id: ElementId,
@@ -45,7 +45,7 @@ impl<D: Dim> Mesh<D> {
             count += 1;
         }
         let seated = &seated[..count];
-        // The nodes tell the slots, and so the class.
+        // The nodes determine the slots, and so the class.
         if self.alive(id).nodes == seated {
             return Ok(false);
         }
@@ -70,17 +70,18 @@ impl<D: Dim> Mesh<D> {
         Ok(true)
     }
 
-    /// Whether a (point, group) is a corner of the own cell of an element beside one of which it is
-    /// no corner.
+    /// Whether an element other than `id` has this (point, group) as a corner of its cell; it must not be a
+    /// corner of the cell of `id`.
     fn is_node_beside(&self, id: ElementId, node: Node) -> bool {
-        // Up to this level, and no further, a cell can have a corner here.
+        // Only cells up to this level can have a corner at this point.
         let [x, y, z] = node.at;
         let highest = (x | y | z).trailing_zeros();
         self.owners_around(node.at, node.group)
             .any(|owner| owner != id && u32::from(self.alive(owner).cell.level) <= highest)
     }
 
-    /// The id of a node at the lattice point with this index, and whether it was made just now.
+    /// Returns the id of a node at the lattice point with index `point`, and whether the node was created by
+    /// this call.
     fn node_id(&mut self, node: Node, point: usize) -> (NodeId, bool) {
         let mut present = self.by_point.at(point);
         if let Some(id) = present.find(|&id| self.node(id).group == node.group) {
@@ -110,8 +111,8 @@ impl<D: Dim> Mesh<D> {
     }
 }
 
-/// The lattice point of a slot, and an octant there that belongs to the element; nothing where the
-/// slot is no corner of any of its children.
+/// Returns the lattice point of a slot, and an octant there that belongs to the element. `None` if the slot
+/// is no corner of any of its children.
 fn seat_of<D: Dim>(cell: Cell, children: u8, slot: usize) -> Option<(Point, usize)> {
     let steps = slot_at(slot);
     let touching = children & TOUCHING[slot];
@@ -126,7 +127,7 @@ fn seat_of<D: Dim>(cell: Cell, children: u8, slot: usize) -> Option<(Point, usiz
     Some((at, octant))
 }
 
-/// The children that each slot is a corner of.
+/// Children that have each slot as a corner.
 const TOUCHING: [u8; 27] = {
     // Along one axis: the near child, both, the far one.
     let along = [

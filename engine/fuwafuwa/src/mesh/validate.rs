@@ -1,4 +1,4 @@
-//! What must hold for every mesh: the checks behind [`Mesh::validate`].
+//! Invariants of a mesh, checked by [`Mesh::validate`].
 
 use super::{Defect, Mesh};
 #[cfg(feature = "serde")]
@@ -17,9 +17,9 @@ use crate::stencil::Stencil;
 use std::collections::BTreeMap;
 
 impl<D: Dim> Mesh<D> {
-    /// Checks that every solid voxel is owned once, that neighbours differ by at most one level,
-    /// that no coarse element meets a split point, that every node has the carriers it counts,
-    /// and that gradients balance at inner nodes.
+    /// Checks the mesh: every solid voxel has one owner, neighbours differ by at most one level, no coarse
+    /// element has a node at a split point, every node has the number of carriers that it counts, and
+    /// gradients balance at inner nodes.
     ///
     /// # Errors
     /// The first [`Defect`] found.
@@ -32,7 +32,7 @@ impl<D: Dim> Mesh<D> {
         self.check_gradients(sharing)
     }
 
-    /// The level that owns each voxel; `u8::MAX` where there is none.
+    /// Checks the owners, and returns the level that owns each voxel; `u8::MAX` for empty voxels.
     fn check_ownership(&self, grid: &VoxelGrid<D>) -> Result<Vec<u8>, Defect> {
         let mut owners = vec![u8::MAX; grid.voxels().count()];
         for (id, element) in self.elements() {
@@ -40,7 +40,7 @@ impl<D: Dim> Mesh<D> {
                 if self.owner(voxel) != Some(id) {
                     let other = self.owner(voxel);
                     return Err(Defect(format!(
-                        "{id} fills {voxel:?}, listed for {other:?}"
+                        "element {id} fills voxel {voxel:?}, which is listed for {other:?}"
                     )));
                 }
                 if !grid.is_left(voxel) {
@@ -62,8 +62,8 @@ impl<D: Dim> Mesh<D> {
         }
     }
 
-    /// Checks that a mesh that was read from a file is `fresh`, which was graded from scratch, but for the
-    /// numbers of its elements and nodes; and that what it is looked up by leads there.
+    /// Checks a mesh read from a file: equal to `fresh`, which was graded from scratch, except for the
+    /// numbers of elements and nodes; and its lookup tables are consistent.
     ///
     /// # Errors
     /// The first [`Defect`] found.
@@ -71,13 +71,13 @@ impl<D: Dim> Mesh<D> {
     pub(crate) fn check_against(&self, fresh: &Self, sharing: &Sharing<D>) -> Result<(), Defect> {
         let ensure = |good: bool, what: &str| match good {
             true => Ok(()),
-            false => Err(Defect(format!("{what} do not fit"))),
+            false => Err(Defect(format!("inconsistent {what}"))),
         };
         let tables = self.places == fresh.places
             && self.dense_surface == fresh.dense_surface
             && self.carriers.len() == self.nodes.len()
             && self.owners.len() == fresh.owners.len();
-        ensure(tables, "the tables of a mesh")?;
+        ensure(tables, "tables of the mesh")?;
         let is_class = |(&(children, slots), &class): (&(u8, u32), &u32)| {
             let known = children != 0 && children <= D::ALL_CORNERS && slots >> D::SLOTS == 0;
             let stencil = known
@@ -141,7 +141,8 @@ impl<D: Dim> Mesh<D> {
         ensure(same, "owners")
     }
 
-    /// The class of each element and its nodes, by what it fills: once each.
+    /// Returns the nodes of each element by its cell and children; `None` if a class is wrong or an element
+    /// occurs twice.
     #[cfg(feature = "serde")]
     fn by_shape(&self) -> Option<BTreeMap<(Cell, u8), Vec<Node>>> {
         let mut shapes = BTreeMap::new();
@@ -171,7 +172,9 @@ impl<D: Dim> Mesh<D> {
                 let at = self.node(node).at;
                 if sharing.groups(at).iter().count() > 1 {
                     let cell = element.cell;
-                    return Err(Defect(format!("{cell:?} meets the split point {at:?}")));
+                    return Err(Defect(format!(
+                        "{cell:?} has a node at the split point {at:?}"
+                    )));
                 }
             }
         }
@@ -188,7 +191,7 @@ impl<D: Dim> Mesh<D> {
             .find(|&node| counts[node] != self.carriers[node])
         {
             Some(node) => Err(Defect(format!(
-                "{:?} has {} carriers and counts {}",
+                "{:?} has {} carriers, but counts {}",
                 self.nodes[node], counts[node], self.carriers[node]
             ))),
             None => Ok(()),
@@ -220,7 +223,7 @@ impl<D: Dim> Mesh<D> {
     }
 }
 
-/// Whether ids, in whatever order, are just those expected, which ascend.
+/// Whether ids, in any order, are exactly the expected ones, which ascend.
 #[cfg(feature = "serde")]
 fn are_just<I: Id + Ord>(ids: &[I], expected: impl Iterator<Item = I>) -> bool {
     let mut ids = ids.to_vec();

@@ -1,14 +1,14 @@
-//! Voxels that are taken out.
+//! Removal of voxels.
 
 use super::{EMPTY, Sharing};
 use crate::dim::{Dim, Point};
 
 impl<D: Dim> Sharing<D> {
-    /// Takes voxels out: whole groups, so that who is left is grouped as before.
+    /// Removes voxels. They must form whole groups, so that the remaining voxels keep their grouping.
     pub(crate) fn take_out(&mut self, voxels: &[Point]) {
         for &voxel in voxels {
             for octant in 0..D::CORNERS {
-                // The lattice point that sees the voxel in this octant.
+                // Lattice point that sees the voxel in this octant.
                 let mut at = voxel;
                 (0..D::N).for_each(|axis| at[axis] += 1 - (octant >> axis & 1) as i32);
                 let index = self.index(at);

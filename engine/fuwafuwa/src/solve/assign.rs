@@ -1,4 +1,4 @@
-//! Which block and lane an element is in: how blocks follow a remodelling.
+//! Assignment of elements to blocks and lanes, and its update after a remodelling.
 
 use super::block::{ALL_LANES, Block, Home, Kind, VACANT};
 use super::kernel::{numbers, numbers_a_node, symmetric};
@@ -16,8 +16,8 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 impl<D: Dim> Blocks<D> {
-    /// Follows a remodelling: takes out `removed` elements and puts in, or in other blocks, those
-    /// that were `seated`, of which some are `asleep`. Costs by what changed.
+    /// Updates the blocks after a remodelling: removes the elements `removed`, and adds or moves the elements
+    /// `seated`, of which some are `asleep`. The cost is proportional to the changes.
     pub fn update(
         &mut self,
         mesh: &Mesh<D>,
@@ -38,8 +38,9 @@ impl<D: Dim> Blocks<D> {
         self.take_in(mesh, newcomers);
     }
 
-    /// Lets elements sleep, or wakes them. A block is evaluated as a whole: those of a block that all do so stay together, and
-    /// where it falls in two, who is left with no more than half of it goes to other blocks.
+    /// Puts elements to sleep, or wakes them. A block is evaluated as a whole. If all elements of a block
+    /// change, they stay together. If a block splits, the smaller group, at most half of the lanes, moves to
+    /// other blocks.
     pub fn set_asleep(&mut self, mesh: &Mesh<D>, elements: &[ElementId], asleep: bool) {
         let mut changing: BTreeMap<u32, u8> = BTreeMap::new();
         for &id in elements {
@@ -66,7 +67,7 @@ impl<D: Dim> Blocks<D> {
         self.relocate(mesh, &movers);
     }
 
-    /// All in a block fall asleep or wake.
+    /// Puts a whole block to sleep, or wakes it.
     fn rehome(&mut self, index: u32, asleep: bool) {
         let block = &mut self.blocks[index as usize];
         let home = Home {
@@ -80,10 +81,10 @@ impl<D: Dim> Blocks<D> {
         }
     }
 
-    /// Puts elements into other blocks, with all that they had; of each it is told whether it sleeps there.
+    /// Moves elements with their state to other blocks; the flag says whether the element sleeps there.
     fn relocate(&mut self, mesh: &Mesh<D>, movers: &[(ElementId, bool)]) {
         let state = |&(id, asleep): &(ElementId, bool)| {
-            let element = mesh.element(id).expect("who sleeps or wakes is alive");
+            let element = mesh.element(id).expect("only live elements sleep or wake");
             let (index, lane) = self.assigned[id];
             let block = &self.blocks[index as usize];
             let newcomer = self.newcomer(id, element, block.home.material, asleep);
@@ -108,7 +109,7 @@ impl<D: Dim> Blocks<D> {
         }
     }
 
-    /// An element as it is, on its way into a block.
+    /// Collects the state of an element that is to be added to a block.
     fn newcomer<'a>(
         &self,
         id: ElementId,
@@ -126,7 +127,7 @@ impl<D: Dim> Blocks<D> {
         }
     }
 
-    /// Puts elements that are in no block into some, and finds out where the forces on their nodes stand.
+    /// Adds elements that are in no block, and updates the indices of the forces on their nodes.
     fn take_in(&mut self, mesh: &Mesh<D>, newcomers: Vec<Newcomer>) {
         let nodes = newcomers
             .iter()
@@ -158,14 +159,15 @@ impl<D: Dim> Blocks<D> {
         }
     }
 
-    /// Where the force on a node of the element in a lane of a block stands; nodes count in the order of the element.
+    /// Range in `forces` of the force on node `node` of the element in a lane of a block; nodes are counted
+    /// in the order of the element.
     pub(super) fn place(&self, index: u32, lane: u8, node: usize) -> Range<usize> {
         let first = self.blocks[index as usize].first as usize;
         let place = (first + node * LANES + lane as usize) * D::N;
         place..place + D::N
     }
 
-    /// The place of an element's force on a node.
+    /// Index in `forces` of the force of an element on a node.
     pub(super) fn slot(&self, id: ElementId, node: NodeId) -> u32 {
         let (block, lane) = self.assigned[id];
         let block = &self.blocks[block as usize];
@@ -198,8 +200,8 @@ impl<D: Dim> Blocks<D> {
         }
     }
 
-    /// Puts elements of one class and material, all asleep or all awake, into blocks: into vacant lanes of the class, eight
-    /// at a time into blocks of their own, and what is left into the pool.
+    /// Adds elements of one class and material that are all asleep or all awake. They go to vacant lanes of
+    /// the class, then eight at a time to new blocks of the class, and the rest to the pool.
     fn put_in(&mut self, stencil: &Stencil<D>, mut newcomers: &[Newcomer]) {
         let Newcomer {
             element,
@@ -240,7 +242,7 @@ impl<D: Dim> Blocks<D> {
         }
     }
 
-    /// A block without elements, for elements of so many nodes.
+    /// Returns a block without elements, for elements with `count` nodes.
     fn empty_block(&mut self, home: Home, count: u32) -> u32 {
         let kind = (count, home.is_pool());
         if let Some(index) = self.empty.get_mut(&kind).and_then(Vec::pop) {
@@ -275,13 +277,13 @@ impl<D: Dim> Blocks<D> {
         self.blocks.len() as u32 - 1
     }
 
-    /// What the elements of a block start with, where their material keeps dents.
+    /// Initial plastic state of the elements of a block, if their material is plastic.
     fn undone_in(&self, home: Home) -> Option<Box<Undone>> {
         let flow = self.flows.get(home.material as usize - 1);
         flow.copied().flatten().map(|_| Undone::none())
     }
 
-    /// Where the numbers of a class stand.
+    /// Returns the start of the stencil of a class in `numbers`; adds the stencil if necessary.
     fn stencil_of(&mut self, class: u32, numbers: &[f32]) -> u32 {
         let all = &mut self.numbers;
         *self.stencils.entry(class).or_insert_with(|| {
@@ -294,11 +296,12 @@ impl<D: Dim> Blocks<D> {
     fn assign(&mut self, index: u32, newcomer: &Newcomer, numbers: &[f32]) {
         let block = &mut self.blocks[index as usize];
         let is_first = block.vacant == ALL_LANES;
-        assert_ne!(block.vacant, 0, "open blocks have a vacancy");
+        assert_ne!(block.vacant, 0, "open blocks have vacant lanes");
         let lane = block.vacant.trailing_zeros() as usize;
         block.vacant &= !(1 << lane);
         let is_last = block.vacant == 0;
-        // The first in a block lends the vacant lanes its numbers: they compute something sane.
+        // The first element of a block fills the vacant lanes with its numbers, so that they compute finite
+        // values.
         let lanes = if is_first { 0..LANES } else { lane..lane + 1 };
         let half_size = 0.5 * self.voxel_size * newcomer.element.cell.width() as f32;
         let first = block.first as usize;
@@ -320,7 +323,7 @@ impl<D: Dim> Blocks<D> {
                 }
             }
         }
-        // Who was here before leaves nothing: a crack that is looked for before the next evaluation would go there.
+        // Clears the forces of the previous element: fracture may read them before the next evaluation.
         for place in 0..newcomer.element.nodes.len() {
             let force = (first + place * LANES + lane) * D::N;
             self.forces[force..][..D::N].fill(0.0);
@@ -340,7 +343,7 @@ impl<D: Dim> Blocks<D> {
     }
 }
 
-/// An element on its way into a block.
+/// Element that is to be added to a block.
 #[derive(Copy, Clone)]
 struct Newcomer<'a> {
     id: ElementId,
@@ -351,7 +354,7 @@ struct Newcomer<'a> {
     undone: Dent,
 }
 
-/// A stencil in single precision, as the kernel reads it.
+/// Returns a stencil in single precision, in the layout of the kernel.
 fn numbers_of<D: Dim>(law: Law, stencil: &Stencil<D>) -> Vec<f32> {
     let count = stencil.slots.len();
     let mut mean = [0.0; 3];

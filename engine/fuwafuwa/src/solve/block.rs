@@ -1,4 +1,4 @@
-//! A block of elements, and how a group of them goes through the three loops of the kernel.
+//! Blocks of elements, and the evaluation of groups of blocks in the three loops of the kernel.
 
 use super::kernel::{
     BlockView, Moduli, PerLane, Scratch, Uniform, forces, gradient, plain_forces, plain_gradient,
@@ -11,52 +11,53 @@ use crate::law::Law;
 use fearless_simd::Simd;
 use std::ops::Range;
 
-/// Blocks that go through the three loops of the kernel together: their scratch, 28 KB, fits an L1 cache of 32 KB.
+/// Number of blocks that pass through the three loops of the kernel together. Their scratch of 28 KB fits
+/// into an L1 cache of 32 KB.
 pub const GROUP: usize = 8;
 
 pub const VACANT: u32 = u32::MAX;
 pub const ALL_LANES: u8 = u8::MAX;
 
-/// Elements side by side, and where their nodes, forces and stencils stand.
+/// Block of elements, with the indices of their nodes, forces and stencils.
 #[derive(Clone, Debug)]
 pub struct Block {
     pub home: Home,
     pub elements: [u32; LANES],
-    /// The lanes without an element, as a mask.
+    /// Mask of the lanes without an element.
     pub vacant: u8,
-    /// The lanes that are inside out, as of the last evaluation.
+    /// Mask of the lanes that were inverted in the last evaluation.
     pub inverted: u8,
     pub half_size: Eight,
-    /// In space a quaternion; in the plane cosine and sine.
+    /// Quaternion in 3D; cosine and sine in 2D.
     pub rotation: [Eight; 4],
-    /// What was kneaded into each, where their material keeps dents.
+    /// Plastic state of each lane, if the material is plastic.
     pub undone: Option<Box<Undone>>,
     pub node_count: u32,
-    /// Where its nodes and forces begin.
+    /// Index of its first nodes and forces.
     pub first: u32,
-    /// Where its stencil begins, in `numbers` or in `pooled`, and how long it is.
+    /// Start of its stencil in `numbers` or in `pooled`, and its length.
     pub stencil: u32,
     pub numbers: u32,
 }
 
-/// What the elements of a block have in common.
+/// Properties that the elements of a block have in common.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Home {
     pub kind: Kind,
-    /// The number of their material.
+    /// Number of the material.
     pub material: u8,
-    /// Whether they sleep: then they keep the rotation and the forces that they have.
+    /// Whether the elements sleep; then their rotations and forces are not updated.
     pub asleep: bool,
 }
 
-/// Of which classes the elements of a block are.
+/// Classes of the elements of a block.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
-    /// Whole cells with nodes in their corners only.
+    /// Whole cells with nodes only in their corners.
     Plain,
     /// One class.
     Class(u32),
-    /// Any with this number of nodes.
+    /// Any class with this number of nodes.
     Pool(u32),
 }
 
@@ -66,7 +67,7 @@ impl Home {
     }
 }
 
-/// What all blocks read.
+/// Data that all blocks read.
 #[derive(Copy, Clone)]
 pub struct Shared<'a> {
     pub law: Law,
@@ -77,7 +78,7 @@ pub struct Shared<'a> {
     pub nodes: &'a [u32],
 }
 
-/// Some blocks, and the forces that they write, the first of which has the number `first`.
+/// Some blocks, and the forces that they write; `first` is the index of the first force.
 pub struct Group<'a> {
     pub blocks: &'a mut [Block],
     pub forces: &'a mut [f32],
@@ -86,24 +87,24 @@ pub struct Group<'a> {
 }
 
 impl Block {
-    /// Where its forces end.
+    /// Index after its last force.
     pub fn end(&self) -> usize {
         self.first as usize + self.node_count as usize * LANES
     }
 
-    /// Whether nobody in it is awake.
+    /// Whether no element of the block is awake.
     #[inline(always)]
     pub fn is_idle(&self) -> bool {
         self.home.asleep || self.vacant == ALL_LANES
     }
 
-    /// Where its forces stand among those of a group, the first of which has the number `first`.
+    /// Range of its forces within those of a group; `first` is the index of the first force of the group.
     #[inline(always)]
     fn forces<D: Dim>(&self, first: usize) -> Range<usize> {
         (self.first as usize - first) * D::N..(self.end() - first) * D::N
     }
 
-    /// Its stencil: one for all lanes, or else one for each.
+    /// Its stencil: one for all lanes, or one for each.
     #[inline(always)]
     fn stencil<'a>(&self, shared: &Shared<'a>) -> (&'a [f32], &'a [Eight]) {
         let places = self.stencil as usize..(self.stencil + self.numbers) as usize;
@@ -114,7 +115,7 @@ impl Block {
         }
     }
 
-    /// What the kernel works on; `first` is the number of the first of the forces.
+    /// View for the kernel; `first` is the index of the first of the forces.
     #[inline(always)]
     fn view<'a, D: Dim>(
         &'a mut self,
@@ -134,7 +135,7 @@ impl Block {
     }
 }
 
-/// The forces of the blocks of a group that are awake.
+/// Evaluates the awake blocks of a group.
 #[inline(always)]
 pub fn evaluate_group<D: Dim, S: Simd>(
     simd: S,
@@ -201,7 +202,7 @@ pub fn evaluate_group<D: Dim, S: Simd>(
     }
 }
 
-/// The forces of a group, by the widest lanes the machine has.
+/// Evaluates a group with the widest lanes of the machine.
 pub fn evaluate_best<D: Dim>(group: Group, position: &[Row], scratch: &mut [Scratch; GROUP]) {
     on_widest_lanes!(simd => evaluate_group::<D, _>(simd, group, position, scratch));
 }

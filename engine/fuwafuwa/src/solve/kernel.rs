@@ -1,4 +1,4 @@
-//! The arithmetic of a block, all lanes at once.
+//! Arithmetic of a block, all lanes at once.
 //!
 //! With x relative to the first node, unit stencil (b, r, w, V) and half size h, the formulas of
 //! [`crate::law`] become
@@ -9,12 +9,12 @@
 //! f = A b + B (w r) − k w (x − c)
 //! ```
 //!
-//! Blocks are taken in small groups through three short loops, gradient, stress and forces: a
-//! single long one needs far more registers than there are, and its chain of square roots and
-//! divisions leaves the machine waiting.
+//! Small groups of blocks pass through three short loops: gradient, stress and forces. A single long loop
+//! would need far more registers than exist, and its chain of square roots and divisions would stall the
+//! machine.
 //!
-//! A plain cell, all of whose nodes are corners, has w = 1, b and r of ±1 and no skew: its sums
-//! are sums and differences. Four of five elements are plain.
+//! A plain cell has nodes only in its corners, and so w = 1, b and r of ±1 and no skew: its sums need only
+//! additions and subtractions. Four of five elements are plain.
 
 use super::turn::{Matrix, turn};
 use crate::dim::Dim;
@@ -22,20 +22,20 @@ use crate::lanes::{Eight, LANES, Lanes, Row, at_least, gather, load, positive, s
 use crate::law::{Elasticity, Law, SQUASH_LIMIT};
 use fearless_simd::prelude::*;
 
-/// What one block brings along.
+/// Data of one block for the kernel.
 pub struct BlockView<'a> {
     /// Node k of lane l at k · LANES + l.
     pub nodes: &'a [u32],
     pub half_size: &'a Eight,
-    /// In space a quaternion; in the plane cosine and sine.
+    /// Quaternion in 3D; cosine and sine in 2D.
     pub rotation: &'a mut [Eight; 4],
-    /// The forces on the nodes, in their order, each of as many numbers as there are dimensions.
+    /// Forces on the nodes, in their order, with D::N components each.
     pub forces: &'a mut [f32],
-    /// The lanes whose element is inside out, as a mask.
+    /// Mask of the lanes with an inverted element.
     pub inverted: &'a mut u8,
 }
 
-/// The stiffnesses of a material in single precision.
+/// Elastic moduli of a material in single precision.
 #[derive(Copy, Clone, Debug)]
 pub struct Moduli {
     pub twice_shear: f32,
@@ -55,16 +55,16 @@ impl Moduli {
     }
 }
 
-/// Numbers of a stencil: for each node b, w r and w, then the upper half of W, 1/V and the
-/// stiffness: of the hourglass modes, or of [`Law::Endo2004`]. `get` reads one of them, for all lanes or for each.
+/// Numbers of a stencil: b, w r and w for each node, then the upper half of W, 1/V and the stiffness of the
+/// hourglass modes or of [`Law::Endo2004`]. `get` reads one number, for all lanes or for each.
 pub trait Stencils {
     fn get<S: Simd>(&self, simd: S, index: usize) -> Lanes<S>;
 }
 
-/// All lanes are of one class.
+/// Stencil of one class for all lanes.
 pub struct Uniform<'a>(pub &'a [f32]);
 
-/// Each lane is of its own class.
+/// Stencils with a class of its own in each lane.
 pub struct PerLane<'a>(pub &'a [Eight]);
 
 impl Stencils for Uniform<'_> {
@@ -81,25 +81,25 @@ impl Stencils for PerLane<'_> {
     }
 }
 
-/// How many numbers a node has in a stencil.
+/// Number of values per node in a stencil.
 pub const fn numbers_a_node<D: Dim>() -> usize {
     2 * D::N + 1
 }
 
-/// How many numbers a stencil has.
+/// Number of values in a stencil.
 pub const fn numbers<D: Dim>(nodes: usize) -> usize {
     numbers_a_node::<D>() * nodes + D::N * (D::N + 1) / 2 + 2
 }
 
-/// What passes from one loop over some blocks to the next.
+/// Intermediate results that one loop passes to the next.
 #[derive(Copy, Clone, Debug)]
 pub struct Scratch {
-    /// Positions of the nodes from the first of them.
+    /// Positions of the nodes relative to the first one.
     x: [[Eight; 3]; 27],
     pub f: [[Eight; 3]; 3],
     moment: [[Eight; 3]; 3],
     centre: [Eight; 3],
-    /// The stress; for [`Law::Endo2004`] the rotation.
+    /// Stress; the rotation under [`Law::Endo2004`].
     pub stress: [[Eight; 3]; 3],
 }
 
@@ -137,7 +137,7 @@ pub fn plain_gradient<D: Dim, S: Simd>(
         let (d0, s0) = (x[1][i], x[1][i]);
         let (d1, s1) = (x[3][i] - x[2][i], x[3][i] + x[2][i]);
         let f = &mut scratch.f[i];
-        // Pairs along the first axis, then pairs of those: in space there is one axis more to add along.
+        // Pairs along the first axis, then pairs of those; 3D has one more axis.
         if D::N == 2 {
             (scale * (d0 + d1)).store_array(&mut f[0]);
             (scale * (s1 - s0)).store_array(&mut f[1]);
@@ -202,7 +202,7 @@ pub fn gradient<D: Dim, S: Simd>(
     }
 }
 
-/// Second loop: brings the rotation up to date, and finds the stress.
+/// Second loop: updates the rotation and computes the stress.
 #[inline(always)]
 pub fn stress<D: Dim, S: Simd>(
     simd: S,
@@ -229,7 +229,7 @@ pub fn stress<D: Dim, S: Simd>(
     }
 }
 
-/// Third loop: the forces of plain cells.
+/// Third loop: forces of plain cells.
 #[inline(always)]
 pub fn plain_forces<D: Dim, S: Simd>(
     simd: S,
@@ -253,7 +253,7 @@ pub fn plain_forces<D: Dim, S: Simd>(
         for j in 0..D::N {
             m[j] = bend * load(simd, &scratch.f[i][j]) - area * load(simd, &scratch.stress[i][j]);
         }
-        // ± of each axis at each corner, in as few sums as there are corners.
+        // Sign combinations of the axes at each corner, with as few sums as there are corners.
         if D::N == 2 {
             let (sum, difference) = (m[0] + m[1], m[0] - m[1]);
             force[0][i] -= sum;
@@ -278,7 +278,7 @@ pub fn plain_forces<D: Dim, S: Simd>(
     }
 }
 
-/// Third loop: the forces of elements of any class.
+/// Third loop: forces of elements of any class.
 #[inline(always)]
 pub fn forces<D: Dim, S: Simd>(
     simd: S,
@@ -315,7 +315,7 @@ pub fn forces<D: Dim, S: Simd>(
             }
         }
     } else {
-        // Young's modulus times a length, h^(d−2).
+        // Young's modulus times the length h^(d−2).
         let length = if D::N == 2 { splat(simd, 1.0) } else { half };
         stiffness = splat(simd, moduli.young) * own_stiffness * length;
         for i in 0..D::N {
@@ -343,7 +343,7 @@ pub fn forces<D: Dim, S: Simd>(
     }
 }
 
-/// k and h^(d−1): the stiffness of the hourglass term, and what turns stress into force.
+/// Returns k and h^(d−1): the stiffness of the hourglass term, and the factor from stress to force.
 #[inline(always)]
 fn scales<D: Dim, S: Simd>(simd: S, moduli: &Moduli, half: Lanes<S>) -> (Lanes<S>, Lanes<S>) {
     let hourglass = splat(simd, moduli.hourglass);
@@ -354,8 +354,8 @@ fn scales<D: Dim, S: Simd>(simd: S, moduli: &Moduli, half: Lanes<S>) -> (Lanes<S
     }
 }
 
-/// First Piola–Kirchhoff stress [Pa] of the deformation f with rotation r; notes where f turns
-/// inside out.
+/// Returns the first Piola–Kirchhoff stress [Pa] of the deformation f with rotation r; sets the mask of the
+/// lanes where f is inverted.
 #[inline(always)]
 pub(super) fn stress_of<D: Dim, S: Simd>(
     simd: S,
@@ -402,7 +402,7 @@ pub(super) fn stress_of<D: Dim, S: Simd>(
     p
 }
 
-/// The place of W's row i and column j in its upper half.
+/// Index of row i and column j of W in its upper half.
 #[inline(always)]
 pub fn symmetric<D: Dim>(i: usize, j: usize) -> usize {
     let (low, high) = if i < j { (i, j) } else { (j, i) };
@@ -413,7 +413,7 @@ pub fn symmetric<D: Dim>(i: usize, j: usize) -> usize {
 fn places(nodes: &[u32], node: usize) -> &[u32; LANES] {
     nodes[node * LANES..][..LANES]
         .try_into()
-        .expect("a node has a place for every lane")
+        .expect("every node has one index per lane")
 }
 
 #[inline(always)]

@@ -1,4 +1,4 @@
-//! Elements that keep their dents, all lanes at once: [`crate::plasticity`] in single precision.
+//! Plastic elements, all lanes at once: [`crate::plasticity`] in single precision.
 
 use super::kernel::{BlockView, Moduli, Scratch, stress_of};
 use super::turn::{Matrix, turn};
@@ -8,16 +8,16 @@ use crate::law::SQUASH_LIMIT;
 use crate::plasticity::{LEAST_VOLUME, MOST_FLOW, Plasticity};
 use fearless_simd::prelude::*;
 
-/// What was kneaded into each lane, undone: G, by rows.
+/// Plastic state G of each lane, by rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Undone(pub [[Eight; 3]; 3]);
 
-/// G of one element.
+/// Plastic state G of one element.
 pub type Dent = [[f32; 3]; 3];
 
 pub const NO_DENT: Dent = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// When elements of a material flow, in single precision.
+/// Flow parameters of a material in single precision.
 #[derive(Copy, Clone, Debug)]
 pub struct Flow {
     most_deviator: f32,
@@ -34,7 +34,7 @@ impl Flow {
 }
 
 impl Undone {
-    /// Nothing kneaded.
+    /// Returns the state without plastic deformation.
     pub fn none() -> Box<Self> {
         Box::new(Self(NO_DENT.map(|row| row.map(|entry| [entry; LANES]))))
     }
@@ -52,8 +52,9 @@ impl Undone {
     }
 }
 
-/// Second loop, as that of the kernel; then lets flow what is strained more than it bears. It stays out of the kernel, and
-/// its parts out of each other: compilers took minutes over all of it in one, where lanes are single numbers.
+/// Second loop for plastic elements: computes the stress like that of the kernel, then applies plastic flow.
+/// Kept out of the kernel, and in separate functions: as one function, it took the compiler minutes with
+/// scalar lanes.
 #[inline(never)]
 pub fn plastic_stress<D: Dim, S: Simd>(
     simd: S,
@@ -174,13 +175,14 @@ fn flown<D: Dim, S: Simd>(
             eased[i][j] *= scale;
         }
     }
-    // What was kneaded back is stiffer: it must not store more than before.
+    // Flow back towards the original shape makes the element stiffer; it must not store more energy than
+    // before.
     let whole = determinant::<D, S>(elastic);
     let before =
         kneaded_stiffness::<D, S>(simd, g) * density::<D, S>(simd, moduli, &stretch, whole);
     let after =
         kneaded_stiffness::<D, S>(simd, &next) * density::<D, S>(simd, moduli, &eased, whole);
-    // Four things must hold, and numbers that are none hold nothing.
+    // Four conditions must hold; comparisons with NaN are false.
     let (now, then) = (squared::<D, S>(zero, g), squared::<D, S>(zero, &next));
     let room = splat(simd, flow.most_flown) - then;
     let room = if_positive(room, room, now - then);
@@ -196,7 +198,7 @@ fn flown<D: Dim, S: Simd>(
     kept
 }
 
-/// Elastic energy in a unit of volume, of a stretch in an element of a volume.
+/// Elastic energy density of a stretch in an element with volume ratio `volume`.
 #[inline(always)]
 fn density<D: Dim, S: Simd>(
     simd: S,
@@ -216,7 +218,7 @@ fn density<D: Dim, S: Simd>(
         + splat(simd, moduli.young) * below * below)
 }
 
-/// 1 / λ_max(GᵀG), bounded from the trace and the norm.
+/// Returns 1 / λ_max(GᵀG), estimated from the trace and the norm.
 #[inline(always)]
 fn kneaded_stiffness<D: Dim, S: Simd>(simd: S, g: &Matrix<S>) -> Lanes<S> {
     let zero = splat(simd, 0.0);
@@ -240,7 +242,7 @@ fn kneaded_stiffness<D: Dim, S: Simd>(simd: S, g: &Matrix<S>) -> Lanes<S> {
     splat(simd, 1.0) / (mean + (share * spread).sqrt())
 }
 
-/// One over the square or the cube root of what is near 1.
+/// Returns 1 over the square root (2D) or cube root (3D) of a number near 1.
 #[inline(always)]
 fn inverse_root<D: Dim, S: Simd>(simd: S, of: Lanes<S>) -> Lanes<S> {
     let one = splat(simd, 1.0);
@@ -271,7 +273,7 @@ fn product<D: Dim, S: Simd>(zero: Lanes<S>, a: &Matrix<S>, b: &Matrix<S>) -> Mat
 
 #[inline(always)]
 fn determinant<D: Dim, S: Simd>(m: &Matrix<S>) -> Lanes<S> {
-    // The third axis of the plane stays as it is.
+    // The third axis is unchanged in 2D.
     if D::N == 2 {
         return m[0][0] * m[1][1] - m[0][1] * m[1][0];
     }

@@ -1,5 +1,5 @@
-//! Blocks in a snapshot: all but the state of each element is made anew from the mesh, for it changes no bit how
-//! elements are put together.
+//! Snapshots of the blocks. Only the state of each element is saved; the blocks are rebuilt from the mesh,
+//! because the distribution over blocks does not change the result.
 
 use super::Blocks;
 use super::block::VACANT;
@@ -14,8 +14,8 @@ use crate::vector::{cross, dot};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 impl<D: Dim> Blocks<D> {
-    /// Whether blocks that were read from a file have a state for each element of a mesh. Its numbers may be any:
-    /// what is not finite moves no node that is not quarantined after the tick.
+    /// Whether a state read from a file matches the elements of a mesh. Its numbers may be arbitrary: pieces
+    /// that become non-finite are quarantined after the tick.
     pub fn is_sound(&self, mesh: &Mesh<D>) -> bool {
         let numbers = |(_, element): (_, &Element)| parts::<D>() + element.nodes.len() * D::N;
         let numbers: usize = mesh.elements().map(numbers).sum();
@@ -31,8 +31,8 @@ impl<D: Dim> Blocks<D> {
         self.saved.as_ref().is_some_and(fits)
     }
 
-    /// Puts the elements of a mesh, some of which are `asleep`, into blocks and gives them the state that was read from a file.
-    /// Stiffnesses are still to be set.
+    /// Puts the elements of a mesh, some of which are `asleep`, into blocks, and restores the state read from
+    /// a file. The elasticities must be set afterwards.
     pub fn restore(
         &mut self,
         mesh: &Mesh<D>,
@@ -100,7 +100,7 @@ impl<D: Dim> Blocks<D> {
     }
 }
 
-/// Whether something can have been kneaded into an element: it kept its volume, and is flat in the plane.
+/// Whether a plastic state is possible: it preserves volume, and is flat in 2D.
 fn is_sound<D: Dim>(dent: &Dent) -> bool {
     let [x, y, z] = *dent;
     let volume = dot(x, cross(y, z));
@@ -115,7 +115,7 @@ fn is_sound<D: Dim>(dent: &Dent) -> bool {
     is_flat && most < 100.0 && (volume - 1.0).abs() < 0.1
 }
 
-/// How many numbers a rotation has: cosine and sine, or a quaternion.
+/// Number of components of a rotation: cosine and sine, or a quaternion.
 const fn parts<D: Dim>() -> usize {
     match D::N {
         2 => 2,

@@ -1,18 +1,18 @@
-//! What a snapshot has of the blocks: how each element has turned and what it pulled at last.
+//! State of the blocks in a snapshot: rotation and last forces of each element.
 
 use super::plastic::Dent;
 use crate::ids::ElementId;
 use crate::law::Law;
 use serde::{Deserialize, Serialize};
 
-/// What is state in the blocks, element by element, by ascending ids.
+/// State of the elements, by ascending id.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Saved {
     pub law: Law,
-    /// Of each element its rotation, then the forces on its nodes [N], in their order.
+    /// For each element its rotation, then the forces on its nodes [N], in their order.
     pub numbers: Vec<f32>,
-    /// What was kneaded into those that were, ascending.
+    /// Plastic states other than the initial one, by ascending id.
     pub undone: Vec<(ElementId, Dent)>,
-    /// Whether each was inside out.
+    /// Whether each element was inverted.
     pub inverted: Vec<bool>,
 }

@@ -1,4 +1,4 @@
-//! The rotation of a deformation, all lanes at once.
+//! Rotation of a deformation, all lanes at once.
 
 use crate::dim::Dim;
 use crate::lanes::{Eight, Lanes, if_positive, load, splat};
@@ -6,7 +6,7 @@ use fearless_simd::prelude::*;
 
 pub type Matrix<S> = [[Lanes<S>; 3]; 3];
 
-/// The rotation of a deformation; see [`crate::law::rotation_of`]. In the plane it is found at once, in space step by step.
+/// Returns the rotation of a deformation; see [`crate::law::rotation_of`]. Exact in 2D, iterative in 3D.
 #[inline(always)]
 pub fn turn<D: Dim, S: Simd>(simd: S, f: &Matrix<S>, rotation: &mut [Eight; 4]) -> Matrix<S> {
     if D::N == 2 {
@@ -16,7 +16,7 @@ pub fn turn<D: Dim, S: Simd>(simd: S, f: &Matrix<S>, rotation: &mut [Eight; 4]) 
     for part in 0..4 {
         q[part] = load(simd, &rotation[part]);
     }
-    // Two rounds keep up with a body that spins and is squashed at once; one lags.
+    // Two iterations follow a body that spins and is squashed at the same time; one iteration lags.
     q = turn_in_space(simd, f, turn_in_space(simd, f, q));
     for part in 0..4 {
         q[part].store_array(&mut rotation[part]);
@@ -24,7 +24,8 @@ pub fn turn<D: Dim, S: Simd>(simd: S, f: &Matrix<S>, rotation: &mut [Eight; 4]) 
     matrix_of(simd, q)
 }
 
-/// The exact rotation in the plane: (cos, sin) ∝ (F₀₀ + F₁₁, F₁₀ − F₀₁). Where both vanish, it stays.
+/// Returns the exact rotation in 2D: (cos, sin) ∝ (F₀₀ + F₁₁, F₁₀ − F₀₁). If both vanish, the rotation is
+/// unchanged.
 #[inline(always)]
 fn turn_in_plane<S: Simd>(simd: S, f: &Matrix<S>, rotation: &mut [Eight; 4]) -> Matrix<S> {
     let zero = splat(simd, 0.0);
@@ -39,7 +40,7 @@ fn turn_in_plane<S: Simd>(simd: S, f: &Matrix<S>, rotation: &mut [Eight; 4]) -> 
     [[cosine, zero - sine, zero], [sine, cosine, zero], [zero; 3]]
 }
 
-/// One round towards the rotation in space.
+/// Performs one iteration towards the rotation in 3D.
 #[inline(always)]
 fn turn_in_space<S: Simd>(simd: S, f: &Matrix<S>, q: [Lanes<S>; 4]) -> [Lanes<S>; 4] {
     let zero = splat(simd, 0.0);
@@ -54,7 +55,7 @@ fn turn_in_space<S: Simd>(simd: S, f: &Matrix<S>, q: [Lanes<S>; 4]) -> [Lanes<S>
         }
     }
     let t = (splat(simd, 3.0) * norm).sqrt() + splat(simd, 1e-6);
-    // Numbers below 1e-12 are rounded away: at rest their products would be subnormal, and slow.
+    // Rounds values below 1e-12 to 0: at rest their products would be subnormal, and slow.
     let rounder = splat(simd, 1e-5);
     let settled = |value: Lanes<S>| (value + rounder) - rounder;
     let axial = [
@@ -91,7 +92,7 @@ fn turn_in_space<S: Simd>(simd: S, f: &Matrix<S>, q: [Lanes<S>; 4]) -> [Lanes<S>
     ]
 }
 
-/// The matrix of a quaternion.
+/// Returns the matrix of a quaternion.
 #[inline(always)]
 pub fn matrix_of<S: Simd>(simd: S, q: [Lanes<S>; 4]) -> Matrix<S> {
     let [x, y, z, w] = q;
